@@ -20,7 +20,7 @@ from ptmcad.exact.models.potential import elements_of, system_from
 from ptmcad.exact.models.system import polynomial_at
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
-from ptmcad.model.evaluate import value_at
+from ptmcad.model.evaluate import Assignment
 from ptmcad.model.work import moments_at
 from ptmcad.show.render.view import Floats
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -85,14 +85,12 @@ def energy_of(model: Model, parameters: Mapping[str, Fraction]) -> Energy:
     sizes = [abs(c) for c in (*exact.values(), *moments.values())]
     unit = Fraction(10) ** magnitude(max(sizes, default=Fraction(1)))
     roots = []
-    mechanism = model.drawable
-    squares = elements_of(model, [spring.square for spring in compiled(model).springs])
-    springs = () if mechanism is None else zip(mechanism.springs, squares, strict=True)
-    for spring, square in springs:
-        free = value_at(spring.free, dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters))
-        pull = value_at(spring.stiffness, parameters) * free
+    known, given = compiled(model), dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
+    for spring in known.kinked:
+        pull, collapsed = known.values((spring.pull, spring.collapsed), Assignment(given, Fraction))
         if pull:
-            offset += pull * free / 2
+            offset += collapsed
+            (square,) = elements_of(model, [spring.square])
             square_terms = polynomial_at(system, square, values)
             roots.append((float(-pull / unit), tuple((m, float(to_fraction(c))) for m, c in square_terms.items())))
     terms = tuple((m, float(c / unit)) for m, c in sorted(exact.items()))

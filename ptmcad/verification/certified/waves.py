@@ -255,8 +255,7 @@ def _margins(model: Model, _mechanism: Mechanism | None) -> tuple[Margin, ...]:
     ring, found = _Exponentials(model, true.ring), []
     for spring in true.springs:
         free = next(iter(ring.waves(spring.free).values()), ring.numbers.constant(0))
-        squared = ring.waves(spring.squared - spring.free**2)
-        found.append(Margin(spring.name, ring.vector(spring.vector), free, squared))
+        found.append(Margin(spring.name, ring.vector(spring.vector), free, ring.waves(spring.excess)))
     return tuple(found)
 
 
@@ -279,7 +278,7 @@ def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Ite
     everything = range(len(ring.unknowns))
     sides: list[_Side] = []
     for spring in true.pulling:
-        pull = ring.waves(spring.stiffness * spring.free)
+        pull = ring.waves(spring.pull)
         vector = ring.vector(spring.vector)
         if all(map(parameters.vanishes, pull.values())) or not any(_by(d, k) for d in vector for k in everything):
             continue
