@@ -24,6 +24,8 @@ from ptmcad.text.tree import to_text as text_of
 
 MAX_SHOWN = 60
 """Characters of an expression."""
+Unit = tuple[str, ...]
+"""Quantities, ``length`` and ``force``, and between two of them what joins them."""
 LEVEL: Tree = ZERO
 """The direction of a base from left to right."""
 _TWO: Tree = Number(Fraction(2))
@@ -197,15 +199,17 @@ class Law(Enum):
 
     Attributes
     ----------
+    unit : of the stiffness.
     energy : smooth - pull*l, but for what has no length in it.
     smooth : the energy without a free length: a polynomial in q.
     pull : what the energy lacks for each unit of length; without lengths, and zero without a free length.
     force : the energy's slope by the length, positive where the spring pulls.
     """
 
-    LINEAR = ("1/2*k*(l - f)^2", "1/2*k*q", "k*f", "k*(l - f)")
+    LINEAR = (("force", "/", "length"), "1/2*k*(l - f)^2", "1/2*k*q", "k*f", "k*(l - f)")
 
-    def __init__(self, *formulas: str) -> None:
+    def __init__(self, unit: Unit, *formulas: str) -> None:
+        self.unit = unit
         self.energy, self.smooth, self.pull, self.force = map(parse, formulas)
 
     @property
@@ -223,6 +227,11 @@ class Spring(NamedTuple):
     stiffness: Tree
     free: Tree
     law: Law = Law.LINEAR
+
+    @property
+    def unit(self) -> Unit:
+        """Of its stiffness."""
+        return self.law.unit
 
     def element(self, points: Mapping[str, Place]) -> Element:
         """For traversals, given the points' coordinates."""
@@ -314,6 +323,19 @@ class TorsionSpring(NamedTuple):
     rest: tuple[Fraction, Fraction]
     name: str = ""
     at: str = ""
+
+    @property
+    def unit(self) -> Unit:
+        """Of its stiffness, a moment."""
+        return "force", "·", "length"
+
+    @property
+    def law(self) -> str:
+        """What it does, in words."""
+        return (
+            "energy k (1 - cos(angle - rest)), moment k sin(angle - rest): for small angles that of a linear spring, "
+            "k (angle - rest)"
+        )
 
     @property
     def energy(self) -> Tree:

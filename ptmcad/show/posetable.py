@@ -57,7 +57,7 @@ def table(poses: Poses, digits: int | None = None) -> str:
             "",
             *(_wrapped("units", units) if (units := _units(poses)) else []),
             *(_wrapped("energy", [note]) if (note := _energy_note(poses)) else []),
-            *(_wrapped("torsion", [_TORSION]) if poses.equilibria[0].torsion else []),
+            *(line for label, note in poses.equilibria[0].notes.items() for line in _wrapped(label, [note])),
             *(line for each in _columns(poses).values() for line in _wrapped(each.head, [each.note])),
             *_bounds(poses),
         ]
@@ -86,7 +86,7 @@ def _units(poses: Poses) -> list[str]:
 
 def _in_products(mechanism: Mechanism, product: str) -> list[str]:
     """What is measured in force times length."""
-    moments = "moments" if mechanism.torsion else ""
+    moments = "moments" if any(spring.unit == mechanism.energy_unit for spring in mechanism.elastic) else ""
     if not mechanism.has_potential:
         return [f"{moments} in {product}"] if moments else []
     if mechanism.closing or mechanism.xjoints:
@@ -102,9 +102,6 @@ def _energy_note(poses: Poses) -> str:
     if model.drawable is None:
         return ""
     return "none" if poses.model.tells_stability else f"none, and {untold(model)}"
-
-
-_TORSION = "deflection: angle - rest; moment: k sin(deflection), positive where it turns back an angle beyond rest"
 
 
 def _point(poses: Poses) -> list[str]:

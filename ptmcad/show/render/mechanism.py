@@ -55,13 +55,9 @@ def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> N
         kind = number if few else 0
         width = bar_width(seen.mechanism, number)
         _line(axes, (start, end), style.bars[kind], width, f"{prefix}bar-{''.join(names)}", 2 + kind)
-    for number, points in enumerate(seen.springs):
+    for name, points in seen.coils.items():
         _line(axes, points, "white", 2.4, "", 4)
-        _line(axes, points, style.spring, 0.95, f"{prefix}spring-{number + 1}", 5)
-    for number, wound in enumerate(seen.spirals):
-        if wound is not None:
-            _line(axes, wound, "white", 2.2, "", 4)
-            _line(axes, wound, style.spring, 0.95, f"{prefix}torsion-{number + 1}", 5)
+        _line(axes, points, style.spring, 0.95, f"{prefix}{name}", 5)
     for name, (x, y) in seen.nodes.items():
         axes.add_artist(_pin(x, y, style.base, f"{prefix}node-{name}"))
     for name, start, end in seen.arrows:
@@ -151,8 +147,8 @@ _SMALL_SPIRAL = 6.8
 """In points, the radius in a legend, whose lines are no higher."""
 
 
-def torsion_mark() -> Mark:
-    """A torsion spring in a legend, about its joint."""
+def spiral_mark() -> Mark:
+    """A spiral in a legend, about its joint."""
 
     def mark(figure: Any, left: float, middle: float) -> None:
         x, y = (left + SWATCH / 2) * 72, middle * 72
