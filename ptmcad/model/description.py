@@ -360,17 +360,16 @@ class Mechanism(Model):
     @property
     def census(self) -> Mapping[tuple[str, str], int]:
         """How many parts of each sort there are, by its noun and its plural."""
-        turning = sum(unknown in self.angles for unknown in self.work)
         found = {
-            ("bar", "bars"): len(self.bars),
-            ("body", "bodies"): len(self.bodies),
-            ("spring", "springs"): len(self.springs),
-            ("torsion spring", "torsion springs"): len(self.torsion),
-            ("load", "loads"): len(self.loads),
-            ("moment", "moments"): turning,
-            ("force on a length", "forces on lengths"): len(self.work) - turning,
+            ("bar", "bars"): self.bars,
+            ("body", "bodies"): self.bodies,
+            ("spring", "springs"): self.springs,
+            ("torsion spring", "torsion springs"): self.torsion,
+            ("load", "loads"): self.loads,
+            ("moment", "moments"): self.work.keys() & self.angles,
+            ("force on a length", "forces on lengths"): self.work.keys() & self.reals,
         }
-        return {nouns: number for nouns, number in found.items() if number}
+        return {nouns: len(parts) for nouns, parts in found.items() if parts}
 
     @property
     def laws(self) -> Mapping[str, str]:
@@ -525,8 +524,3 @@ def looped(model: Model) -> Mechanism | None:
 def equations_in(model: Model) -> System | None:
     """The system that a model is, also in the place of closed loops; None of another mechanism."""
     return model if isinstance(model, System) else None
-
-
-def mechanism_in(model: Model) -> Mechanism | None:
-    """The mechanism that a model is, or of whose poses it has the equations; None of another system."""
-    return model.whole

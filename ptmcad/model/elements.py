@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 
 from ptmcad.errors import shown
 from ptmcad.model.evaluate import multiples
-from ptmcad.model.trees import ZERO, cosine_and_sine, derivative, negative, product, total
+from ptmcad.model.trees import ONE, ZERO, cosine_and_sine, derivative, negative, product, total
 from ptmcad.text.numerals import text_of as value_text
 from ptmcad.text.syntax import parse
-from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, replaced
+from ptmcad.text.tree import Chain, Name, Negative, Number, Power, Step, Tree, replaced
 from ptmcad.text.tree import to_text as text_of
 
 MAX_SHOWN = 60
@@ -170,10 +170,20 @@ NAMES: Mapping[str, Place] = _CoordinateNames()
 """The names of points' coordinates, ``P.x`` and ``P.y``, in place of what these are."""
 
 
+def difference(points: Mapping[str, Place], start: str, end: str) -> Place:
+    """The way from one point to another, given the coordinates as trees."""
+    (x0, y0), (x1, y1) = points[start], points[end]
+    return total(x1, negative(x0)), total(y1, negative(y0))
+
+
+def squared(tree: Tree) -> Tree:
+    """The square of a tree."""
+    return Power(tree, _TWO)
+
+
 def squared_distance(points: Mapping[str, Place], start: str, end: str) -> Tree:
     """The square of a distance, given the coordinates as trees."""
-    pairs = zip(points[start], points[end], strict=True)
-    return total(*(Power(total(b, negative(a)), _TWO) for a, b in pairs))
+    return total(*map(squared, difference(points, start, end)))
 
 
 def factor(tree: Tree) -> str:
@@ -235,14 +245,14 @@ class Spring(NamedTuple):
 
     def element(self, points: Mapping[str, Place]) -> Element:
         """For traversals, given the points' coordinates."""
-        squared = squared_distance(points, self.start, self.end)
+        square = squared_distance(points, self.start, self.end)
         is_zero = isinstance(self.free, Number) and not self.free.value
-        names = {"k": self.stiffness, "f": self.free, "q": squared}
+        names = {"k": self.stiffness, "f": self.free, "q": square}
         return Element(
             (Part("k", Kind.STIFFNESS, self.stiffness), Part("free", Kind.FREE_LENGTH, self.free)),
             (replaced(self.law.smooth, names),),
-            None if is_zero else Root(replaced(self.law.pull, names), squared),
-            squared,
+            None if is_zero else Root(replaced(self.law.pull, names), square),
+            square,
             f"the length of {self.start}{self.end} is constant, so that this spring does nothing: leave it out, or put "
             "an end where it moves",
         )
@@ -340,20 +350,16 @@ class TorsionSpring(NamedTuple):
     @property
     def energy(self) -> Tree:
         """As a tree; the cosine of the difference is expanded, since only the rest's cosine and sine are known."""
-        turned = tuple(Step("-", part) for part in self._parts("cos", "sin"))
-        return Chain(self.stiffness, (Step("*", Chain(Number(Fraction(1)), turned)),))
+        return product(self.stiffness, total(ONE, negative(self.deflection[0])))
 
     @property
     def deflection(self) -> tuple[Tree, Tree]:
         """Cosine and sine of angle - rest, expanded in the same way."""
-        (c, s), (cosine, sine) = self._parts("cos", "sin"), self._parts("sin", "cos")
-        return Chain(c, (Step("+", s),)), Chain(cosine, (Step("-", sine),))
-
-    def _parts(self, *functions: str) -> tuple[Tree, Tree]:
-        """Cosine and sine of the rest times functions of the angle."""
-        pairs = zip(self.rest, functions, strict=True)
-        one, other = (Chain(Number(value), (Step("*", Call(function, self.angle)),)) for value, function in pairs)
-        return one, other
+        (c, s), (cosine, sine) = map(Number, self.rest), cosine_and_sine(self.angle, 0)
+        return (
+            total(product(c, cosine), product(s, sine)),
+            total(product(c, sine), negative(product(s, cosine))),
+        )
 
     def element(self, points: Mapping[str, Place]) -> Element:
         """For traversals."""
@@ -431,7 +437,7 @@ class XJoint(NamedTuple):
             (
                 Part("base", Kind.LENGTH, self.length),
                 Part("bars", Kind.LENGTH, self.bars),
-                Part("bars", Kind.LENGTH, Power(off, _TWO), meaning),
+                Part("bars", Kind.LENGTH, squared(off), meaning),
             )
         )
 

@@ -12,7 +12,7 @@ import pytest
 import ptmcad
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError
-from ptmcad.model import Mechanism, mechanism_in
+from ptmcad.model import Mechanism
 from ptmcad.question.config import load
 from ptmcad.question.counts import KINDS, Count, Margin
 
@@ -32,7 +32,7 @@ def test_stable_equilibria_above_the_ground(record: str, monkeypatch: pytest.Mon
     slice = load(record)
     found = ptmcad.classify(slice, count="admissible", tolerance="1/10", jobs=1)
     assert found.cover is not None and len({region.admissible for region in found.regions}) > 1
-    mechanism = mechanism_in(slice.model)
+    mechanism = slice.model.whole
     assert mechanism is not None
     choose = random.Random(41)
     for _ in range(30):

@@ -81,21 +81,21 @@ def energy_of(model: Model, parameters: Mapping[str, Fraction]) -> Energy:
     assert system.potential is not None
     exact = {m: to_fraction(c) for m, c in polynomial_at(system, system.potential, values).items()}
     offset = exact.pop((0,) * system.ring.width, Fraction(0))
-    moments = moments_at(model, parameters)
-    sizes = [abs(c) for c in (*exact.values(), *moments.values())]
+    known = compiled(model)
+    given = Assignment(dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters), Fraction)
+    moments = known.values(tuple(known.acting.values()), given)
+    sizes = [abs(c) for c in (*exact.values(), *moments)]
     unit = Fraction(10) ** magnitude(max(sizes, default=Fraction(1)))
     roots = []
-    known, given = compiled(model), dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
     for spring in known.kinked:
-        pull, collapsed = known.values((spring.pull, spring.collapsed), Assignment(given, Fraction))
+        pull, collapsed = known.values((spring.pull, spring.collapsed), given)
         if pull:
             offset += collapsed
             (square,) = elements_of(model, [spring.square])
             square_terms = polynomial_at(system, square, values)
             roots.append((float(-pull / unit), tuple((m, float(to_fraction(c))) for m, c in square_terms.items())))
     terms = tuple((m, float(c / unit)) for m, c in sorted(exact.items()))
-    names = (*model.angles, *model.reals)
-    slopes = tuple((k, float(-moments[name] / unit)) for k, name in enumerate(names) if name in moments)
+    slopes = tuple((k, float(-moment / unit)) for k, moment in zip(known.acting, moments, strict=True) if moment)
     return Energy(len(model.angles), offset, unit, terms, tuple(roots), slopes)
 
 

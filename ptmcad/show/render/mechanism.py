@@ -147,22 +147,6 @@ _SMALL_SPIRAL = 6.8
 """In points, the radius in a legend, whose lines are no higher."""
 
 
-def spiral_mark() -> Mark:
-    """A spiral in a legend, about its joint."""
-
-    def mark(figure: Any, left: float, middle: float) -> None:
-        x, y = (left + SWATCH / 2) * 72, middle * 72
-        line = Line2D(
-            *zip(*spiral((x, y), (x + 1, y), SPIRAL[0] - 0.4, _SMALL_SPIRAL), strict=True), color=STRONG.spring,
-            linewidth=0.95, solid_capstyle="round", solid_joinstyle="round",
-        )  # fmt: skip
-        for artist in (line, _pin(x, y, STRONG.base)):
-            artist.set_transform(_points(figure))
-            figure.add_artist(artist)
-
-    return mark
-
-
 def _line_mark(points: Sequence[Position], colour: str, width: float) -> Mark:
     def mark(figure: Any, left: float, middle: float) -> None:
         u, v = zip(*((left + x, middle + y) for x, y in points), strict=True)
@@ -177,7 +161,7 @@ def _line_mark(points: Sequence[Position], colour: str, width: float) -> Mark:
 
 
 def symbol_mark(kind: str) -> Mark:
-    """The support, the slider or a load's arrow in a legend."""
+    """The support, the slider, a load's arrow, or a spiral about its joint in a legend."""
 
     def mark(figure: Any, left: float, middle: float) -> None:
         x, y = (left + SWATCH / 2) * 72, middle * 72
@@ -188,6 +172,13 @@ def symbol_mark(kind: str) -> Mark:
                 _slider(x, y, STRONG.base), _pin(x, y, STRONG.base),
             ],
             "load": lambda: [_arrow((x - 9, y), (x + 9, y), STRONG.load)],
+            "spiral": lambda: [
+                Line2D(
+                    *zip(*spiral((x, y), (x + 1, y), SPIRAL[0] - 0.4, _SMALL_SPIRAL), strict=True),
+                    color=STRONG.spring, linewidth=0.95, solid_capstyle="round", solid_joinstyle="round",
+                ),
+                _pin(x, y, STRONG.base),
+            ],
         }[kind]()  # fmt: skip
         for artist in artists:
             artist.set_transform(_points(figure))
