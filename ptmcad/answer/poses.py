@@ -51,6 +51,7 @@ class TorsionSpring:
 
 _OF_TORSION = (("deflection", "rad", "deflection"), ("deflection", "deg", "degrees"), ("moment", "", "moment"))
 """What is said of a torsion spring: the words, the unit, and the field."""
+_TORSION = "deflection: angle - rest; moment: k sin(deflection), positive where it turns back an angle beyond rest"
 
 
 class NamedNumber(NamedTuple):
@@ -127,6 +128,11 @@ class Pose:
         """Whether it is stable with every spring longer than its free length, as cables demand; None when the springs
         have no free lengths, or it is not decided."""
         return self.further.get(Count.ADMISSIBLE.value)
+
+    @property
+    def notes(self) -> Mapping[str, str]:
+        """What words of its quantities stand for."""
+        return {"torsion": _TORSION} if self.torsion else {}
 
     @property
     def forces(self) -> tuple[Enclosure, ...]:

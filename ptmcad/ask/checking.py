@@ -289,12 +289,6 @@ def foretold(slice: Slice) -> Iterator[str]:
     yield f"the whole map takes {found.cost}" if found.forecast is not None else f"cost {found.cost}"
 
 
-_TORSION = (
-    "energy k (1 - cos(angle - rest)), moment k sin(angle - rest): for small angles that of a linear spring, "
-    "k (angle - rest)"
-)
-
-
 def asked_text(slice: Slice) -> Iterator[str]:
     """What a slice asks as lines of text, before anything is computed."""
     model = slice.model
@@ -302,20 +296,9 @@ def asked_text(slice: Slice) -> Iterator[str]:
     yield f"{'system' if mechanism is None else 'mechanism':<12}{model.name}"
     yield f"{'unknowns':<12}{', '.join(f'{name} ({kind.value})' for name, kind in model.unknowns.items())}"
     if mechanism is not None:
-        turning = sum(unknown in model.angles for unknown in mechanism.work)
-        parts = {
-            ("bar", "bars"): len(mechanism.bars),
-            ("body", "bodies"): len(mechanism.bodies),
-            ("spring", "springs"): len(mechanism.springs),
-            ("torsion spring", "torsion springs"): len(mechanism.torsion),
-            ("load", "loads"): len(mechanism.loads),
-            ("moment", "moments"): turning,
-            ("force on a length", "forces on lengths"): len(mechanism.work) - turning,
-        }
-        words = (f"{number} {one if number == 1 else many}" for (one, many), number in parts.items() if number)
+        words = (f"{number} {one if number == 1 else many}" for (one, many), number in mechanism.census.items())
         yield f"{'parts':<12}{', '.join(words)}"
-        if mechanism.torsion:
-            yield f"{'torsion':<12}{_TORSION}"
+        yield from (f"{key:<12}{law}" for key, law in mechanism.laws.items())
     values = {name: e.to_text(slice.axis_names) for name, e in slice.parameters.items() if name not in slice.axis_names}
     fixed = [
         f"{name} = {value if len(value) <= MAX_SHOWN else shown(slice.text.get(name, value), MAX_SHOWN)}"

@@ -214,9 +214,8 @@ def _pose(solution: ExactSolution, settled: _Settled) -> Pose:
         return element.rational
 
     def stretch(spring: Any) -> tuple[Enclosure, Enclosure]:
-        length, stiffness = square_root(number(spring.square)), constant(spring.stiffness)
-        force = None if length.exact is None else stiffness * length.exact
-        return settled(length), settled(RealNumber(force, length.ball * ball_of(stiffness)))
+        force = square_root(number(spring.square * spring.density * spring.density))  # without a free length
+        return settled(square_root(number(spring.square))), settled(force)
 
     def turn(spring: Any) -> tuple[Enclosure, ...]:
         return *angle(spring.cosine, spring.sine), enclosed(spring.moment)

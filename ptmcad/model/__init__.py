@@ -5,7 +5,7 @@ Guarantee: nothing here computes an equilibrium; a description that was read can
 
 from __future__ import annotations
 
-from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System, mechanism_in
+from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System
 from ptmcad.model.elements import Kind, Parameter, Support
 from ptmcad.model.mechanisms import built_in, known_of, mechanism_of, ptm, recognised
 from ptmcad.model.record import described, read_mechanism
@@ -23,7 +23,6 @@ __all__ = [
     "described",
     "described_system",
     "known_of",
-    "mechanism_in",
     "mechanism_of",
     "ptm",
     "read_mechanism",

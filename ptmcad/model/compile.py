@@ -21,8 +21,8 @@ from ptmcad.formulas.graph import Formula, Graph, length
 from ptmcad.formulas.values import values
 from ptmcad.model.criterion import Criterion
 from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System
-from ptmcad.model.elements import second_bar
-from ptmcad.model.evaluate import Element, Ring, evaluate, evaluated
+from ptmcad.model.elements import Law, Spring, second_bar
+from ptmcad.model.evaluate import Assignment, Element, Ring, evaluate, evaluated, value_among
 from ptmcad.model.work import split_moments
 from ptmcad.text.tree import Tree
 
@@ -30,31 +30,38 @@ Vector = tuple[Formula, Formula]
 E = TypeVar("E", bound=Element)
 
 
-class LinearSpring(NamedTuple):
-    """A spring between two points: its energy is stiffness (|difference| - free)^2/2.
+class ElasticLine(NamedTuple):
+    """A spring between two points, by its law.
 
     Attributes
     ----------
-    difference : from its start to its end.
+    difference, square : from its start to its end, and the square of its length.
+    smooth, density : its energy, and its force for each unit of length, as if its free length were zero.
+    pull : what its energy with the free length lacks for each unit of length.
     """
 
     name: str
     start: str
     end: str
+    law: Law
     stiffness: Formula
     free: Formula
     difference: Vector
+    square: Formula
+    smooth: Formula
+    pull: Formula
+    density: Formula
 
-    @property
-    def pull(self) -> Formula:
-        """What the energy lacks for each unit of length: stiffness times free length."""
-        return self.stiffness * self.free
-
-    @property
-    def square(self) -> Formula:
-        """Of its length."""
-        x, y = self.difference
-        return x * x + y * y
+    @classmethod
+    def of(cls, spring: Spring, points: Mapping[str, Vector], ring: _Ring) -> ElasticLine:
+        (x0, y0), (x1, y1) = points[spring.start], points[spring.end]
+        x, y = x1 - x0, y1 - y0
+        stiffness, free = ring.of((spring.stiffness, spring.free))
+        names = {"k": stiffness, "f": free, "q": x * x + y * y}
+        law = spring.law
+        formulas = Assignment(names, ring.constant)
+        of_law = evaluated((law.smooth, law.pull, law.density), formulas)
+        return cls(spring.name, spring.start, spring.end, law, stiffness, free, (x, y), names["q"], *of_law)
 
     @property
     def length(self) -> Formula:
@@ -63,7 +70,7 @@ class LinearSpring(NamedTuple):
     @property
     def force(self) -> Formula:
         """Positive where it pulls."""
-        return self.stiffness * (self.length - self.free)
+        return self._at(self.law.force, self.length, self.square)
 
     @property
     def quantities(self) -> dict[str, Formula]:
@@ -71,16 +78,20 @@ class LinearSpring(NamedTuple):
         return {"length": self.length, "force": self.force}
 
     @property
-    def relaxed_energy(self) -> Formula:
-        """As if its free length were zero."""
-        return self.stiffness * self.square / 2
-
-    @property
     def energy(self) -> Formula:
         """Where the free length is the number zero without the length, so that short springs are nothing singular."""
-        if self.free.value == 0:
-            return self.relaxed_energy
-        return self.stiffness * (self.length - self.free).squared() / 2
+        return self.smooth if self.free.value == 0 else self._at(self.law.energy, self.length, self.square)
+
+    @property
+    def collapsed(self) -> Formula:
+        """The energy where it has no length."""
+        nothing = self.stiffness.graph.constant(0)
+        return self._at(self.law.energy, nothing, nothing)
+
+    def _at(self, tree: Tree, extent: Formula, square: Formula) -> Formula:
+        """A formula of the law at a length."""
+        names = {"k": self.stiffness, "f": self.free, "l": extent, "q": square}
+        return value_among(tree, names, self.stiffness.graph.constant)
 
 
 class AngularSpring(NamedTuple):
@@ -154,7 +165,7 @@ class CompiledSystem:
     reals: tuple[int, ...]
     followers: tuple[Follower, ...] = ()
     points: Mapping[str, Vector] = field(default_factory=dict, repr=False)
-    springs: tuple[LinearSpring, ...] = ()
+    springs: tuple[ElasticLine, ...] = ()
     torsion: tuple[AngularSpring, ...] = ()
     loads: tuple[Vector, ...] = ()
     smooth: Formula | None = None
@@ -185,7 +196,12 @@ class CompiledSystem:
         return tuple((spring.length, spring.free, spring.force) for spring in self.springs)
 
     @property
-    def elastic(self) -> tuple[tuple[LinearSpring, ...], tuple[AngularSpring, ...]]:
+    def kinked(self) -> tuple[ElasticLine, ...]:
+        """The springs whose energy has a kink where they have no length: those with a free length."""
+        return tuple(spring for spring in self.springs if spring.pull.value != 0)
+
+    @property
+    def elastic(self) -> tuple[tuple[ElasticLine, ...], tuple[AngularSpring, ...]]:
         """The springs between points, and those between directions."""
         return self.springs, self.torsion
 
@@ -218,15 +234,14 @@ class CompiledSystem:
         if self.smooth is None:
             return None
         counted = set(range(len(self.springs)) if relaxed is None else relaxed)
-        parts = [s.energy if k in counted else s.relaxed_energy for k, s in enumerate(self.springs)]
+        parts = [s.energy if k in counted else s.smooth for k, s in enumerate(self.springs)]
         return sum((*parts, *self.others), start=self.graph.constant(0))
 
     def balance(self, relaxed: Iterable[int]) -> tuple[Formula, ...]:
         """The equations with the free lengths of some springs."""
         slack = self.graph.constant(0)
         for k in relaxed:
-            spring = self.springs[k]
-            slack = slack + spring.pull * (spring.free / 2 - spring.length)
+            slack = slack - self.springs[k].pull * self.springs[k].length
         slopes = [self.graph.derivative(slack, k) for k in self.unknowns]
         if not self.tangent:
             return tuple(equation + slope for equation, slope in zip(self.equations, slopes, strict=True))
@@ -242,7 +257,7 @@ class CompiledSystem:
         found: dict[str, Formula] = {}
         for name, (x, y) in self.points.items():
             found |= {f"{name}.x": x, f"{name}.y": y}
-        springs: tuple[LinearSpring | AngularSpring, ...] = (*self.springs, *self.torsion)
+        springs: tuple[ElasticLine | AngularSpring, ...] = (*self.springs, *self.torsion)
         for spring in springs:
             found |= {f"{spring.name}.{what}": formula for what, formula in spring.quantities.items()}
         return found
@@ -336,11 +351,7 @@ class _Ring:
 def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> CompiledSystem:
     """Points, springs, loads, the smooth energy, moments."""
     points = {name: (evaluate(x, ring), evaluate(y, ring)) for name, (x, y) in mechanism.points.items()}
-    springs = []
-    for spring in mechanism.springs:
-        (x0, y0), (x1, y1) = points[spring.start], points[spring.end]
-        stiffness, free = ring.of((spring.stiffness, spring.free))
-        springs.append(LinearSpring(spring.name, spring.start, spring.end, stiffness, free, (x1 - x0, y1 - y0)))
+    springs = tuple(ElasticLine.of(spring, points, ring) for spring in mechanism.springs)
     torsion = [AngularSpring(t.name, *ring.of((t.stiffness, *t.deflection))) for t in mechanism.torsion]
     split = split_moments(mechanism)
     others = [turned.stiffness * (1 - turned.cosine) for turned in torsion]
@@ -361,10 +372,10 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         known,
         followers=tuple(followers),
         points=points,
-        springs=tuple(springs),
+        springs=springs,
         torsion=tuple(torsion),
         loads=tuple(loads),
-        smooth=sum((*(spring.relaxed_energy for spring in springs), *others), start=ring.constant(Fraction(0))),
+        smooth=sum((*(spring.smooth for spring in springs), *others), start=ring.constant(Fraction(0))),
         others=tuple(others),
         moments=tuple(steady[name] for name in (*mechanism.angles, *mechanism.reals)),
         heights=() if mechanism.closing or followers else tuple(points[name][1] for name in mechanism.rising),

@@ -29,14 +29,13 @@ from ptmcad.model.elements import (
     Spring,
     Support,
     TorsionSpring,
+    Unit,
     UnknownKind,
     XJoint,
 )
 from ptmcad.model.evaluate import multiples
 from ptmcad.text.tree import Name, Tree, names_of
 
-Unit = tuple[str, ...]
-"""Quantities, ``length`` and ``force``, and between two of them what joins them."""
 _UNITS: Mapping[Kind, Unit] = {
     Kind.LENGTH: ("length",),
     Kind.BASE: ("length",),
@@ -359,6 +358,25 @@ class Mechanism(Model):
         }
 
     @property
+    def census(self) -> Mapping[tuple[str, str], int]:
+        """How many parts of each sort there are, by its noun and its plural."""
+        found = {
+            ("bar", "bars"): self.bars,
+            ("body", "bodies"): self.bodies,
+            ("spring", "springs"): self.springs,
+            ("torsion spring", "torsion springs"): self.torsion,
+            ("load", "loads"): self.loads,
+            ("moment", "moments"): self.work.keys() & self.angles,
+            ("force on a length", "forces on lengths"): self.work.keys() & self.reals,
+        }
+        return {nouns: len(parts) for nouns, parts in found.items() if parts}
+
+    @property
+    def laws(self) -> Mapping[str, str]:
+        """What springs do, by the keys of the description, where it is not what an engineer expects."""
+        return {"torsion": self.torsion[0].law} if self.torsion else {}
+
+    @property
     def elastic(self) -> tuple[Spring | TorsionSpring, ...]:
         """The springs, between points and then between directions."""
         return self.springs + self.torsion
@@ -380,14 +398,14 @@ class Mechanism(Model):
         return ends | {spring.name: k for k, spring in enumerate(self.springs)}
 
     def unit_of(self, name: str) -> Unit:
-        """As of any model; a stiffness that is a number times those of torsion springs alone is a moment."""
+        """As of any model; a stiffness that is a number times those of springs of one sort alone has their unit."""
         known = super().unit_of(name)
         if known != _UNITS[Kind.STIFFNESS]:
             return known
         names = {name, *self.shorthands.get(name, ())}
         stiff = [spring for spring in self.elastic if names & set(names_of(spring.stiffness))]
-        turning = stiff and all(spring in self.torsion and _is_multiple(spring.stiffness) for spring in stiff)
-        return self.energy_unit if turning else known
+        found = {spring.unit if _is_multiple(spring.stiffness) else known for spring in stiff}
+        return found.pop() if len(found) == 1 else known
 
     def _trees(self) -> Iterator[Tree]:
         yield from self.coordinates.values()
@@ -505,8 +523,3 @@ def looped(model: Model) -> Mechanism | None:
 def equations_in(model: Model) -> System | None:
     """The system that a model is, also in the place of closed loops; None of another mechanism."""
     return model if isinstance(model, System) else None
-
-
-def mechanism_in(model: Model) -> Mechanism | None:
-    """The mechanism that a model is, or of whose poses it has the equations; None of another system."""
-    return model.whole

@@ -1,13 +1,14 @@
 """What descriptions are made of: parameters, springs, loads, moments and joints, with their expressions as trees.
 
 Guarantee: each says by `element` all that a traversal of a description needs of it: what is written in it, its energy,
-and what an unknown has to change in it. So proofs, loops and X-joints need no list of kinds. A new law of a spring is a
-class here, a field and a row of `elements_with` in `description`, a key in `record`, its formulas in `compile`, and
-once more in `verification/derivation`.
+and what an unknown has to change in it. So proofs, loops and X-joints need no list of kinds. What a spring between
+points does is said once, by its `Law`, whose formulas both engines, drawings and documents read; the checker has its
+own in `verification/derivation`.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from enum import Enum
 from fractions import Fraction
@@ -15,16 +16,18 @@ from typing import Any, NamedTuple
 
 from ptmcad.errors import shown
 from ptmcad.model.evaluate import multiples
-from ptmcad.model.trees import ZERO, cosine_and_sine, negative, product, total
+from ptmcad.model.trees import ONE, ZERO, cosine_and_sine, derivative, negative, product, total
 from ptmcad.text.numerals import text_of as value_text
-from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree
+from ptmcad.text.syntax import parse
+from ptmcad.text.tree import Chain, Name, Negative, Number, Power, Step, Tree, replaced
 from ptmcad.text.tree import to_text as text_of
 
 MAX_SHOWN = 60
 """Characters of an expression."""
+Unit = tuple[str, ...]
+"""Quantities, ``length`` and ``force``, and between two of them what joins them."""
 LEVEL: Tree = ZERO
 """The direction of a base from left to right."""
-_HALF: Tree = Number(Fraction(1, 2))
 _TWO: Tree = Number(Fraction(2))
 Place = tuple[Tree, Tree]
 
@@ -133,10 +136,9 @@ class Part(NamedTuple):
 
 
 class Root(NamedTuple):
-    """An energy stiffness/2 (length - free)^2 that is no polynomial, as the length is a root."""
+    """What an energy lacks beside its polynomial part: pull times a length, which is a root."""
 
-    stiffness: Tree
-    free: Tree
+    pull: Tree
     squared: Tree
 
 
@@ -147,7 +149,7 @@ class Element(NamedTuple):
     ----------
     written : its expressions.
     energies : the summands of its energy, where there is a root without the free length.
-    root : its energy with the free length, where that is not written as zero.
+    root : what the energy lacks with the free length, where that is not written as zero.
     varying : what an unknown has to change.
     idle : what is wrong where none does; without ``varying`` what is wrong at sight.
     """
@@ -168,10 +170,20 @@ NAMES: Mapping[str, Place] = _CoordinateNames()
 """The names of points' coordinates, ``P.x`` and ``P.y``, in place of what these are."""
 
 
+def difference(points: Mapping[str, Place], start: str, end: str) -> Place:
+    """The way from one point to another, given the coordinates as trees."""
+    (x0, y0), (x1, y1) = points[start], points[end]
+    return total(x1, negative(x0)), total(y1, negative(y0))
+
+
+def squared(tree: Tree) -> Tree:
+    """The square of a tree."""
+    return Power(tree, _TWO)
+
+
 def squared_distance(points: Mapping[str, Place], start: str, end: str) -> Tree:
     """The square of a distance, given the coordinates as trees."""
-    pairs = zip(points[start], points[end], strict=True)
-    return total(*(Power(total(b, negative(a)), _TWO) for a, b in pairs))
+    return total(*map(squared, difference(points, start, end)))
 
 
 def factor(tree: Tree) -> str:
@@ -192,6 +204,30 @@ def _difference(tree: Tree, less: Tree) -> str:
     return text_of(Chain(tree, (Step("-", less),)))
 
 
+class Law(Enum):
+    """What springs between points do, in the stiffness k, the free length f, the length l and its square q.
+
+    Attributes
+    ----------
+    unit : of the stiffness.
+    energy : smooth - pull*l, but for what has no length in it.
+    smooth : the energy without a free length: a polynomial in q.
+    pull : what the energy lacks for each unit of length; without lengths, and zero without a free length.
+    force : the energy's slope by the length, positive where the spring pulls.
+    """
+
+    LINEAR = (("force", "/", "length"), "1/2*k*(l - f)^2", "1/2*k*q", "k*f", "k*(l - f)")
+
+    def __init__(self, unit: Unit, *formulas: str) -> None:
+        self.unit = unit
+        self.energy, self.smooth, self.pull, self.force = map(parse, formulas)
+
+    @property
+    def density(self) -> Tree:
+        """The force for each unit of length without a free length."""
+        return product(_TWO, derivative(self.smooth, "q"))
+
+
 class Spring(NamedTuple):
     """A spring between two points; its name, which no other has, is that of its stiffness or is made of its points'."""
 
@@ -200,16 +236,23 @@ class Spring(NamedTuple):
     end: str
     stiffness: Tree
     free: Tree
+    law: Law = Law.LINEAR
+
+    @property
+    def unit(self) -> Unit:
+        """Of its stiffness."""
+        return self.law.unit
 
     def element(self, points: Mapping[str, Place]) -> Element:
         """For traversals, given the points' coordinates."""
-        squared = squared_distance(points, self.start, self.end)
+        square = squared_distance(points, self.start, self.end)
         is_zero = isinstance(self.free, Number) and not self.free.value
+        names = {"k": self.stiffness, "f": self.free, "q": square}
         return Element(
             (Part("k", Kind.STIFFNESS, self.stiffness), Part("free", Kind.FREE_LENGTH, self.free)),
-            (product(_HALF, self.stiffness, squared),),
-            None if is_zero else Root(self.stiffness, self.free, squared),
-            squared,
+            (replaced(self.law.smooth, names),),
+            None if is_zero else Root(replaced(self.law.pull, names), square),
+            square,
             f"the length of {self.start}{self.end} is constant, so that this spring does nothing: leave it out, or put "
             "an end where it moves",
         )
@@ -217,8 +260,9 @@ class Spring(NamedTuple):
     def text(self, points: Mapping[str, Place]) -> str:
         """Its energy as problem records write it, with a root."""
         (x0, y0), (x1, y1) = points[self.start], points[self.end]
-        length = f"sqrt(({_difference(x1, x0)})^2 + ({_difference(y1, y0)})^2)"
-        return f"1/2*{factor(self.stiffness)}*({length} - {factor(self.free)})^2"
+        square = f"({_difference(x1, x0)})^2 + ({_difference(y1, y0)})^2"
+        names = {"k": factor(self.stiffness), "f": factor(self.free), "l": f"sqrt({square})", "q": f"({square})"}
+        return re.sub("[kflq]", lambda name: names[name[0]], text_of(self.law.energy))
 
 
 class Load(NamedTuple):
@@ -291,22 +335,31 @@ class TorsionSpring(NamedTuple):
     at: str = ""
 
     @property
+    def unit(self) -> Unit:
+        """Of its stiffness, a moment."""
+        return "force", "·", "length"
+
+    @property
+    def law(self) -> str:
+        """What it does, in words."""
+        return (
+            "energy k (1 - cos(angle - rest)), moment k sin(angle - rest): for small angles that of a linear spring, "
+            "k (angle - rest)"
+        )
+
+    @property
     def energy(self) -> Tree:
         """As a tree; the cosine of the difference is expanded, since only the rest's cosine and sine are known."""
-        turned = tuple(Step("-", part) for part in self._parts("cos", "sin"))
-        return Chain(self.stiffness, (Step("*", Chain(Number(Fraction(1)), turned)),))
+        return product(self.stiffness, total(ONE, negative(self.deflection[0])))
 
     @property
     def deflection(self) -> tuple[Tree, Tree]:
         """Cosine and sine of angle - rest, expanded in the same way."""
-        (c, s), (cosine, sine) = self._parts("cos", "sin"), self._parts("sin", "cos")
-        return Chain(c, (Step("+", s),)), Chain(cosine, (Step("-", sine),))
-
-    def _parts(self, *functions: str) -> tuple[Tree, Tree]:
-        """Cosine and sine of the rest times functions of the angle."""
-        pairs = zip(self.rest, functions, strict=True)
-        one, other = (Chain(Number(value), (Step("*", Call(function, self.angle)),)) for value, function in pairs)
-        return one, other
+        (c, s), (cosine, sine) = map(Number, self.rest), cosine_and_sine(self.angle, 0)
+        return (
+            total(product(c, cosine), product(s, sine)),
+            total(product(c, sine), negative(product(s, cosine))),
+        )
 
     def element(self, points: Mapping[str, Place]) -> Element:
         """For traversals."""
@@ -384,7 +437,7 @@ class XJoint(NamedTuple):
             (
                 Part("base", Kind.LENGTH, self.length),
                 Part("bars", Kind.LENGTH, self.bars),
-                Part("bars", Kind.LENGTH, Power(off, _TWO), meaning),
+                Part("bars", Kind.LENGTH, squared(off), meaning),
             )
         )
 

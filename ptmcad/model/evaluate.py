@@ -94,7 +94,7 @@ def value_at(tree: Tree, parameters: Mapping[str, Fraction]) -> Fraction:
 
 def value_among(tree: Tree, parameters: Mapping[str, E], constant: Callable[[Fraction], E]) -> E:
     """The same where parameters have values of any kind; ``constant`` makes one of a number."""
-    return evaluate(tree, _Values(parameters, constant))
+    return evaluate(tree, Assignment(parameters, constant))
 
 
 class Named(Generic[E]):
@@ -114,7 +114,7 @@ class Named(Generic[E]):
         return self.known[name]
 
 
-class _Values(Generic[E]):
+class Assignment(Generic[E]):
     """A ring of values of parameters."""
 
     def __init__(self, parameters: Mapping[str, E], constant: Callable[[Fraction], E]):

@@ -199,7 +199,7 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
     whole, own = model.whole, equations_in(model)
     if own is not None:
         roots = () if whole is None else (element.root for element in whole.elements.values() if element.root)
-        if any(evaluate(root.free, ring).terms for root in roots):
+        if any(evaluate(root.pull, ring).terms for root in roots):
             raise ExpressionError("free lengths are in none of a closed loop's equations")
         kept = [values(own.inequalities), values(own.stability)]
         if own.potential is not None:
@@ -208,13 +208,13 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
         yield from (_Part(f, equations, True) for f in equations)
     else:
         assert whole is not None
-        energy, springs, work = felt(Points(whole, ring))
+        energy, lengths, work = felt(Points(whole, ring))
         # how many are the same is said in their polynomial
-        lengths = [
-            marked({f"spring {n}": p for n, p in enumerate((*spring, ring.constant(Fraction(number))))})
-            for spring, number in springs.items()
+        pulling = [
+            marked({f"root {n}": p for n, p in enumerate((*root, ring.constant(Fraction(number))))})
+            for root, number in lengths.items()
         ]
-        kept = [felt_by_unknowns(energy), [marked({f"d {u}": p for u, p in work.items()})], lengths]
+        kept = [felt_by_unknowns(energy), [marked({f"d {u}": p for u, p in work.items()})], pulling]
     yield from (_Part(f, images) for images in kept for f in images)
 
 

@@ -10,15 +10,16 @@ The ring is a small one of its own: readers and checkers load no algebra.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.elements import NAMES, UnknownKind, squared_distance
-from ptmcad.model.evaluate import Named, evaluate, multiples, value_at
-from ptmcad.text.tree import Name, Tree, mapped, names_of
+from ptmcad.model.evaluate import Named, evaluated, multiples, value_at
+from ptmcad.model.trees import ZERO
+from ptmcad.text.tree import Name, Tree, names_of, replaced
 
 MAX_WORK = 12_000
 """Products of terms for one question, a fraction of a second; two bars and a spring take some hundred."""
@@ -204,10 +205,10 @@ def check_unknowns(mechanism: Mechanism, faults: Faults) -> None:
 def _held(mechanism: Mechanism) -> set[str]:
     """The unknowns whose equations do not vanish identically."""
     points = Points(mechanism)
-    energy, springs, work = felt(points)
+    energy, roots, work = felt(points)
     held = {unknown for unknown, moment in work.items() if moment.terms}
     # a root does not cancel against the rest
-    lengths = [squared for _, _, squared in springs]
+    lengths = [squared for _, squared in roots]
     lengths += [points.squared(bar.start, bar.end) for bar in mechanism.closing]
     held.update(u for u in mechanism.unknowns for p in (energy, *lengths) if p.derivative(u).terms)
     return held | {first for second, first in mechanism.followers.items() if energy.derivative(second).terms}
@@ -233,32 +234,29 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
 
 
 class Felt(NamedTuple):
-    """What unknowns feel: the energy without springs of free length, these (stiffness, free length, squared length),
-    and the moments' work along each unknown. Equilibria are the same where these are, but for numbers in the energy."""
+    """What unknowns feel: the energy's polynomial part, its roots (pull, squared length), and the moments' work along
+    each unknown. Equilibria are the same where these are, but for numbers in the energy."""
 
     energy: Polynomial
-    springs: Counter[tuple[Polynomial, Polynomial, Polynomial]]
+    roots: Counter[tuple[Polynomial, Polynomial]]
     work: dict[str, Polynomial]
 
 
 def felt(points: Points) -> Felt:
     """What unknowns feel in a mechanism."""
     mechanism, zero = points.mechanism, points.ring.constant(Fraction(0))
-    energy, springs = zero, Counter[tuple[Polynomial, Polynomial, Polynomial]]()
+    energy, roots = zero, Counter[tuple[Polynomial, Polynomial]]()
     for element in mechanism.elements.values():
-        if element.root is not None:
-            stiffness, free, squared = map(points.value, element.root)
-            if free.terms:
-                springs[stiffness, free, squared] += 1
-                continue
-        for tree in element.energies:
-            energy += points.value(tree)
+        *energies, pull, squared = points.values((*element.energies, *(element.root or (ZERO, ZERO))))
+        energy = sum(energies, energy)
+        if pull.terms:
+            roots[pull, squared] += 1
     work = dict.fromkeys(mechanism.unknowns, zero)
     for own, value in mechanism.work.items():
         for unknown, c in multiples(points.images.get(own, Name(own))).items():
             if unknown in work:
                 work[unknown] += points.value(value) * points.ring.constant(c)
-    return Felt(energy, springs, work)
+    return Felt(energy, roots, work)
 
 
 class Points:
@@ -273,14 +271,17 @@ class Points:
         self.mechanism = mechanism
         self.ring = ring or Ring()
         self.images = images or {}
-        self.placed = Named(self.ring, {name: self._image(tree) for name, tree in mechanism.coordinates.items()})
-
-    def _image(self, tree: Tree) -> Tree:
-        return mapped(tree, lambda part: self.images.get(part.name) if isinstance(part, Name) else None)
+        self.placed = Named(
+            self.ring, {name: replaced(tree, self.images) for name, tree in mechanism.coordinates.items()}
+        )
 
     def value(self, tree: Tree) -> Polynomial:
         """Of an expression, in which coordinates are names ``P.x``."""
-        return evaluate(self._image(tree), self.placed)
+        return self.values((tree,))[0]
+
+    def values(self, trees: Iterable[Tree]) -> tuple[Polynomial, ...]:
+        """The same of several ones, of which parts that they share are evaluated once."""
+        return evaluated([replaced(tree, self.images) for tree in trees], self.placed)
 
     def at(self, name: str) -> tuple[Polynomial, Polynomial]:
         return self.placed.parameter(f"{name}.x"), self.placed.parameter(f"{name}.y")

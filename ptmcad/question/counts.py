@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from fractions import Fraction
 from typing import TYPE_CHECKING, Protocol
 
 from ptmcad.model import Mechanism, Model
+from ptmcad.model.elements import difference, squared
 from ptmcad.model.mechanisms import title_of
-from ptmcad.text.tree import Chain, Number, Power, Step, Tree
+from ptmcad.model.trees import negative, total
+from ptmcad.text.tree import Tree
 
 if TYPE_CHECKING:
     from ptmcad.text.enclosure import Enclosure
@@ -151,20 +152,14 @@ def _longer_than_free(mechanism: Mechanism) -> Iterator[Margin]:
     negative. Lengths that are constant are in no description."""
     for spring in mechanism.springs:
         name = title_of(spring, mechanism)
-        ends = zip(mechanism.points[spring.end], mechanism.points[spring.start], strict=True)
-        vector = tuple(Chain(end, (Step("-", start),)) for end, start in ends)
-        across, up = (_squared(part) for part in vector)
+        vector = difference(mechanism.points, spring.start, spring.end)
         yield Margin(
             text=f"the length of spring {name} less its free length",
             curve=f"point where spring {name} has its free length",
             reason=f"spring {name} of a stable equilibrium has its free length",
-            value=Chain(across, (Step("+", up), Step("-", _squared(spring.free)))),
+            value=total(*map(squared, vector), negative(squared(spring.free))),
             squares=vector,
         )
-
-
-def _squared(tree: Tree) -> Tree:
-    return Power(tree, Number(Fraction(2)))
 
 
 KINDS = {

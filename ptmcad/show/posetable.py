@@ -43,7 +43,7 @@ def table(poses: Poses, digits: int | None = None) -> str:
         lines += ["", *aligned([*zip(*block, strict=True)], str.rjust)]
     if poses.equilibria:
         notes = {"units": _units(poses), "energy": [_energy_note(poses)]}
-        notes["torsion"] = [_TORSION] if poses.equilibria[0].torsion else []
+        notes |= {label: [note] for label, note in poses.equilibria[0].notes.items()}
         notes |= {each.head: [each.note] for each in _columns(poses).values()}
         lines += ["", *(line for label, parts in notes.items() if any(parts) for line in wrapped(label, parts))]
         lines += _bounds(poses)
@@ -80,9 +80,6 @@ def _energy_note(poses: Poses) -> str:
     if not foreign(model):
         return of_what(model, poses.parameters)
     return "none" if poses.known_stable is not None else f"none, and {untold(model)}"
-
-
-_TORSION = "deflection: angle - rest; moment: k sin(deflection), positive where it turns back an angle beyond rest"
 
 
 def _point(poses: Poses) -> list[str]:

@@ -8,7 +8,7 @@ of any ring in `ptmcad.model.evaluate`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import NamedTuple, Protocol, TypeVar
 
@@ -179,11 +179,11 @@ def mapped(tree: Tree, change: Callable[[Tree], Tree | None]) -> Tree:
     return tree
 
 
-def replaced(tree: Tree, name: str, value: Tree) -> Tree:
-    """A tree with another in place of a name; the same object where the name does not occur."""
-    if name not in names_of(tree):
+def replaced(tree: Tree, values: Mapping[str, Tree]) -> Tree:
+    """A tree with others in place of names, all at once; the same object where none of them occurs."""
+    if values.keys().isdisjoint(names_of(tree)):
         return tree
-    return mapped(tree, lambda part: value if isinstance(part, Name) and part.name == name else None)
+    return mapped(tree, lambda part: values.get(part.name) if isinstance(part, Name) else None)
 
 
 _MAX_PLACES = 20

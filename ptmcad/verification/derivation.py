@@ -65,7 +65,10 @@ def _has_moments_apart(mechanism: Mechanism) -> bool:
 
 
 class SpringVector(NamedTuple):
-    """A spring of the description; with a free length, stiffness times free length times |vector| is off the energy."""
+    """A spring of the description, and what it does: all that the checks know of its law.
+
+    Its energy is that without a free length, less pull times |vector|, and what it has without a length.
+    """
 
     name: str
     stiffness: fmpq_mpoly
@@ -76,6 +79,26 @@ class SpringVector(NamedTuple):
     def squared(self) -> fmpq_mpoly:
         """Its squared length."""
         return squared(self.vector)
+
+    @property
+    def energy(self) -> fmpq_mpoly:
+        """As if its free length were zero."""
+        return self.squared * self.stiffness * fmpq(1, 2)
+
+    @property
+    def pull(self) -> fmpq_mpoly:
+        """Stiffness times free length."""
+        return self.stiffness * self.free
+
+    @property
+    def collapsed(self) -> fmpq_mpoly:
+        """The energy where it has no length."""
+        return self.pull * self.free * fmpq(1, 2)
+
+    @property
+    def excess(self) -> fmpq_mpoly:
+        """Positive where it is longer than its free length, as no free length is negative."""
+        return self.squared - self.free**2
 
 
 class Required(NamedTuple):
@@ -166,10 +189,10 @@ class Derivation:
         assert self.energy is not None
         energy = ring.taken(self.energy, self.ring)
         for spring in self.springs:
-            stiffness, free, square = (
-                ring.taken(p, self.ring) for p in (spring.stiffness, spring.free, spring.squared)
+            pull, collapsed, square = (
+                ring.taken(p, self.ring) for p in (spring.pull, spring.collapsed, spring.squared)
             )
-            energy += stiffness * free * (free * fmpq(1, 2) - length(square))
+            energy += collapsed - pull * length(square)
         return energy
 
     @property
@@ -283,7 +306,7 @@ class _Parts(NamedTuple):
             SpringVector(s.name, ring.value(s.stiffness), ring.value(s.free), between(s.start, s.end))
             for s in mechanism.springs
         )
-        energy = sum((s.squared * s.stiffness * fmpq(1, 2) for s in springs), ring.context.constant(0))
+        energy = sum((s.energy for s in springs), ring.context.constant(0))
         for point, x, y in mechanism.loads:
             energy -= points[point][0] * ring.value(x) + points[point][1] * ring.value(y)
         required = [Required(f"the stiffness of spring {s.name}", s.stiffness, True) for s in springs]

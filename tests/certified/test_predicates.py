@@ -12,7 +12,7 @@ import pytest
 import ptmcad
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError
-from ptmcad.model import Mechanism, mechanism_in
+from ptmcad.model import Mechanism
 from ptmcad.question.config import load
 from ptmcad.question.counts import KINDS, Count, Margin
 
@@ -39,7 +39,7 @@ def test_stable_equilibria_above_the_ground(record: str, engine: str, monkeypatc
     accuracy = {} if engine == "exact" else {"tolerance": "1/10"}
     found = ptmcad.classify(slice, count="admissible", engine=engine, jobs=1, **accuracy)
     assert (found.cover is None) == (engine == "exact") and len({region.admissible for region in found.regions}) > 1
-    mechanism = mechanism_in(slice.model)
+    mechanism = slice.model.whole
     assert mechanism is not None
     choose = random.Random(41)
     for _ in range(30):

@@ -26,7 +26,7 @@ import ptmcad
 from ptmcad.ask.fields.equations import state_at
 from ptmcad.exact.models import system_from
 from ptmcad.formulas.values import evaluated, values
-from ptmcad.model import Mechanism, Model, described, described_system, mechanism_in, without_loops
+from ptmcad.model import Mechanism, Model, described, described_system, without_loops
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.text.tree import Number
 
@@ -176,7 +176,7 @@ def agree(owner: tuple[Owner, float, bool], model: Model, seed: str) -> None:
     """Assert that a function's values are those of the definition at a place that is drawn."""
     function, tolerance, has_roots = owner
     model = model if has_roots else _without_roots(model)
-    mechanism = mechanism_in(model)
+    mechanism = model.whole
     parameters, unknowns = place_of(model, seed)
     found = function(model, parameters, unknowns)
     with mp.workdps(60):

@@ -81,7 +81,9 @@ def test_what_is_fixed_stands_still_and_all_is_at_one_scale(stage: Stage, motion
     wide, tall = stage.world.sides
     for node in nodes:
         assert all(0 < x < wide and 0 < y < tall for x, y in node.values())
-    assert {len(line) for seen in stage.sketches for line in seen.springs} == {len(stage.sketches[0].springs[0])}
+    assert {len(line) for seen in stage.sketches for line in seen.coils.values()} == {
+        len(stage.sketches[0].coils["spring-1"])
+    }
 
 
 @pytest.mark.slow

@@ -10,7 +10,6 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.poses import Poses
-from ptmcad.model import mechanism_in
 from ptmcad.show.document.poses import read_poses
 
 MECHANISMS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
@@ -45,7 +44,7 @@ def poses(name: str) -> Poses:
 @pytest.mark.slow_cases("two-dof-tensegrity-loaded")
 def test_bars_keep_their_lengths_and_energies_are_told(name: str) -> None:
     found = poses(name)
-    mechanism = mechanism_in(found.model)
+    mechanism = found.model.whole
     assert mechanism is not None
     assert found.equilibria
     for pose in found.equilibria:

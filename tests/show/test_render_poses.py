@@ -145,7 +145,7 @@ def labels_are_clear(found: Poses) -> None:
     for pose in found.equilibria:
         seen = sketch(found.model, pose, frame, arrows)
         strokes = [Stroke(a, b, w / 2) for (a, b), w in zip(seen.bars, BAR_WIDTHS, strict=True)]
-        strokes += [s for line in seen.springs for s in polyline(line, 0.4)]
+        strokes += [s for line in seen.coils.values() for s in polyline(line, 0.4)]
         strokes += [Stroke(start, end, 2.0) for _, start, end in seen.arrows]
         boxes = [placed.box for placed in seen.labels]
         for box in boxes:
@@ -153,7 +153,7 @@ def labels_are_clear(found: Poses) -> None:
             assert not any(overlap(box, (x - PIN, y - PIN, x + PIN, y + PIN)) for x, y in seen.nodes.values())
             assert box[0] >= 0 and box[1] >= 0 and box[2] <= frame.width and box[3] <= frame.height
         assert not any(overlap(a, b) for a, b in combinations(boxes, 2))
-        inside = [*seen.nodes.values(), *(p for line in seen.springs for p in line)]
+        inside = [*seen.nodes.values(), *(p for line in seen.coils.values() for p in line)]
         inside += [p for _, *ends in seen.arrows for p in ends]
         assert all(0 <= x <= frame.width and 0 <= y <= frame.height for x, y in inside)
 
@@ -165,7 +165,7 @@ def test_a_springs_teeth_stand_across_it_at_any_length_and_slope(name: str) -> N
     frame = frame_of(found.equilibria)
     for pose in found.equilibria:
         seen = sketch(found.model, pose, frame, {})
-        for spring, line in zip(pose.springs, seen.springs, strict=True):
+        for spring, line in zip(pose.springs, seen.coils.values(), strict=True):
             assert (line[0], line[-1]) == (seen.nodes[spring.start], seen.nodes[spring.end])
             teeth = len(line) - 4
             assert teeth % 2 == 0 and teeth >= 2 * MIN_TURNS
@@ -184,9 +184,9 @@ def test_springs_on_bars_are_drawn_aside() -> None:
     assert len(flat) == 4
     for pose in flat:
         seen = sketch(found.model, pose, frame, {})
-        middles = [np.mean(line[1:-1], axis=0)[1] - seen.nodes["A1"][1] for line in seen.springs]
+        middles = [np.mean(line[1:-1], axis=0)[1] - seen.nodes["A1"][1] for line in seen.coils.values()]
         bars = [(min(a[0], b[0]), max(a[0], b[0])) for a, b in seen.bars]
-        for line, middle in zip(seen.springs, middles, strict=True):
+        for line, middle in zip(seen.coils.values(), middles, strict=True):
             if any(low < np.mean(line, axis=0)[0] < high for low, high in bars):
                 assert abs(middle) > 5
 
@@ -467,7 +467,7 @@ def test_labels_keep_clear_of_torsion_springs() -> None:
     scene, shown = frame_of(jaw().equilibria), jaw().in_order
     for pose in shown:
         seen = sketch(jaw().model, pose, scene, arrow_lengths(jaw()))  # type: ignore[arg-type]
-        turns = [stroke for line in seen.spirals if line is not None for stroke in polyline(line, 0.5)]
+        turns = [stroke for line in seen.coils.values() for stroke in polyline(line, 0.5)]
         assert not any(crosses(stroke, placed.box) for placed in seen.labels for stroke in turns)
 
 

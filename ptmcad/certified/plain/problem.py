@@ -259,7 +259,7 @@ def _with_springs(problem: Problem, slice: Slice, system: CompiledSystem, ring: 
 def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[str, Expression, Vector]]:
     """Name, K and d of each spring with a free length; of those side by side as of one."""
     found: list[tuple[str, Expression, Vector]] = []
-    for spring in system.springs:
+    for spring in system.kinked:
         pull = constant_of(system.values([spring.pull], ring)[0])
         if not pull.numerator:
             continue

@@ -85,7 +85,7 @@ def _with_numbers(scalar: Scalar, numbers: Mapping[str, Fraction]) -> Scalar:
     except ExpressionError:
         return scalar
     for name, number in numbers.items():
-        other = replaced(other, name, Number(number))
+        other = replaced(other, {name: Number(number)})
     return scalar if other is tree else Scalar(_simplest(other), scalar.place)
 
 

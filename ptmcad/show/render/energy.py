@@ -20,7 +20,7 @@ from ptmcad.exact.models.potential import elements_of, system_from
 from ptmcad.exact.models.system import polynomial_at
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
-from ptmcad.model.evaluate import value_at
+from ptmcad.model.evaluate import Assignment
 from ptmcad.model.work import moments_at
 from ptmcad.show.render.view import Floats
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -81,23 +81,21 @@ def energy_of(model: Model, parameters: Mapping[str, Fraction]) -> Energy:
     assert system.potential is not None
     exact = {m: to_fraction(c) for m, c in polynomial_at(system, system.potential, values).items()}
     offset = exact.pop((0,) * system.ring.width, Fraction(0))
-    moments = moments_at(model, parameters)
-    sizes = [abs(c) for c in (*exact.values(), *moments.values())]
+    known = compiled(model)
+    given = Assignment(dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters), Fraction)
+    moments = known.values(tuple(known.acting.values()), given)
+    sizes = [abs(c) for c in (*exact.values(), *moments)]
     unit = Fraction(10) ** magnitude(max(sizes, default=Fraction(1)))
     roots = []
-    mechanism = model.drawable
-    squares = elements_of(model, [spring.square for spring in compiled(model).springs])
-    springs = () if mechanism is None else zip(mechanism.springs, squares, strict=True)
-    for spring, square in springs:
-        free = value_at(spring.free, dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters))
-        pull = value_at(spring.stiffness, parameters) * free
+    for spring in known.kinked:
+        pull, collapsed = known.values((spring.pull, spring.collapsed), given)
         if pull:
-            offset += pull * free / 2
+            offset += collapsed
+            (square,) = elements_of(model, [spring.square])
             square_terms = polynomial_at(system, square, values)
             roots.append((float(-pull / unit), tuple((m, float(to_fraction(c))) for m, c in square_terms.items())))
     terms = tuple((m, float(c / unit)) for m, c in sorted(exact.items()))
-    names = (*model.angles, *model.reals)
-    slopes = tuple((k, float(-moments[name] / unit)) for k, name in enumerate(names) if name in moments)
+    slopes = tuple((k, float(-moment / unit)) for k, moment in zip(known.acting, moments, strict=True) if moment)
     return Energy(len(model.angles), offset, unit, terms, tuple(roots), slopes)
 
 

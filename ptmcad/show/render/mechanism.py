@@ -55,13 +55,9 @@ def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> N
         kind = number if few else 0
         width = bar_width(seen.mechanism, number)
         _line(axes, (start, end), style.bars[kind], width, f"{prefix}bar-{''.join(names)}", 2 + kind)
-    for number, points in enumerate(seen.springs):
+    for name, points in seen.coils.items():
         _line(axes, points, "white", 2.4, "", 4)
-        _line(axes, points, style.spring, 0.95, f"{prefix}spring-{number + 1}", 5)
-    for number, wound in enumerate(seen.spirals):
-        if wound is not None:
-            _line(axes, wound, "white", 2.2, "", 4)
-            _line(axes, wound, style.spring, 0.95, f"{prefix}torsion-{number + 1}", 5)
+        _line(axes, points, style.spring, 0.95, f"{prefix}{name}", 5)
     for name, (x, y) in seen.nodes.items():
         axes.add_artist(_pin(x, y, style.base, f"{prefix}node-{name}"))
     for name, start, end in seen.arrows:
@@ -151,22 +147,6 @@ _SMALL_SPIRAL = 6.8
 """In points, the radius in a legend, whose lines are no higher."""
 
 
-def torsion_mark() -> Mark:
-    """A torsion spring in a legend, about its joint."""
-
-    def mark(figure: Any, left: float, middle: float) -> None:
-        x, y = (left + SWATCH / 2) * 72, middle * 72
-        line = Line2D(
-            *zip(*spiral((x, y), (x + 1, y), SPIRAL[0] - 0.4, _SMALL_SPIRAL), strict=True), color=STRONG.spring,
-            linewidth=0.95, solid_capstyle="round", solid_joinstyle="round",
-        )  # fmt: skip
-        for artist in (line, _pin(x, y, STRONG.base)):
-            artist.set_transform(_points(figure))
-            figure.add_artist(artist)
-
-    return mark
-
-
 def _line_mark(points: Sequence[Position], colour: str, width: float) -> Mark:
     def mark(figure: Any, left: float, middle: float) -> None:
         u, v = zip(*((left + x, middle + y) for x, y in points), strict=True)
@@ -181,7 +161,7 @@ def _line_mark(points: Sequence[Position], colour: str, width: float) -> Mark:
 
 
 def symbol_mark(kind: str) -> Mark:
-    """The support, the slider or a load's arrow in a legend."""
+    """The support, the slider, a load's arrow, or a spiral about its joint in a legend."""
 
     def mark(figure: Any, left: float, middle: float) -> None:
         x, y = (left + SWATCH / 2) * 72, middle * 72
@@ -192,6 +172,13 @@ def symbol_mark(kind: str) -> Mark:
                 _slider(x, y, STRONG.base), _pin(x, y, STRONG.base),
             ],
             "load": lambda: [_arrow((x - 9, y), (x + 9, y), STRONG.load)],
+            "spiral": lambda: [
+                Line2D(
+                    *zip(*spiral((x, y), (x + 1, y), SPIRAL[0] - 0.4, _SMALL_SPIRAL), strict=True),
+                    color=STRONG.spring, linewidth=0.95, solid_capstyle="round", solid_joinstyle="round",
+                ),
+                _pin(x, y, STRONG.base),
+            ],
         }[kind]()  # fmt: skip
         for artist in artists:
             artist.set_transform(_points(figure))

@@ -28,7 +28,7 @@ from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.inches import axes_at, stroke, write, write_lines
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
-from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark, torsion_mark
+from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, PanelFrame, Scene, arrow_lengths, components, frame_of
 from ptmcad.show.style import Size
@@ -288,7 +288,7 @@ def torsion_legend(mechanism: Mechanism) -> Iterator[Entry]:
     springs = [(with_symbols(to_text(spring.angle)), joint) for spring, joint in torsion_springs(mechanism)]
     drawn = [f"{angle} at {symbol(joint.point)}" for angle, joint in springs if joint is not None]
     others = [angle for angle, joint in springs if joint is None]
-    for texts, end, mark in ((drawn, "", torsion_mark()), (others, "; not drawn", None)):
+    for texts, end, mark in ((drawn, "", symbol_mark("spiral")), (others, "; not drawn", None)):
         if texts:
             each = ", ".join(text.replace(" ", "\N{NO-BREAK SPACE}") for text in texts)
             words = f"torsion spring{'s' * (len(texts) > 1)} on {each}{end}"

@@ -78,16 +78,14 @@ class Sketch:
     ----------
     rails : what sliders slide on: a telescopic base from a fixed support at their height, else a short one.
     bars : in the order of the mechanism's.
-    springs : polylines in the order of the mechanism's.
-    spirals : of torsion springs, in their order, from the joint outwards; None for one whose joint is not known.
+    coils : the springs' polylines by their names in a picture: zigzags, and spirals from the joint outwards.
     """
 
     mechanism: Mechanism
     nodes: Mapping[str, Position]
     rails: tuple[tuple[Position, Position], ...]
     bars: tuple[tuple[Position, Position], ...]
-    springs: tuple[tuple[Position, ...], ...]
-    spirals: tuple[tuple[Position, ...] | None, ...]
+    coils: Mapping[str, tuple[Position, ...]]
     arrows: tuple[Arrow, ...]
     labels: tuple[Placed, ...]
 
@@ -169,14 +167,14 @@ def sketched(
     """
     bars = tuple((nodes[a], nodes[b]) for a, b in mechanism.bars)
     drawn = [Stroke(a, b, bar_width(mechanism, number) / 2) for number, (a, b) in enumerate(bars)]
-    springs = []
-    for start, end in mechanism.spring_ends:
-        line = _spring(nodes[start], nodes[end], drawn, turns)
-        springs.append(line)
+    coils = {}
+    for number, (start, end) in enumerate(mechanism.spring_ends, 1):
+        coils[f"spring-{number}"] = line = _spring(nodes[start], nodes[end], drawn, turns)
         drawn += polyline(line, 0.5)
-    wound = spirals(joints_of(mechanism), nodes, *SPIRAL, SPIRAL_GAP)
-    for line in filter(None, wound):
-        drawn += polyline(line, 0.5)
+    for number, wound in enumerate(spirals(joints_of(mechanism), nodes, *SPIRAL, SPIRAL_GAP), 1):
+        if wound is not None:
+            coils[f"torsion-{number}"] = wound
+            drawn += polyline(wound, 0.5)
     placed_arrows = tuple(_arrows(mechanism.loads, nodes, arrows))
     rails = tuple(_rails(mechanism, nodes))
     strokes = [*drawn, *(Stroke(a, b, 1.0) for a, b in rails)]
@@ -184,7 +182,7 @@ def sketched(
     placed = place(
         (labels or _labels)(nodes), strokes, _symbols(mechanism, nodes), (2.0, 2.0, sides[0] - 2.0, sides[1] - 2.0)
     )
-    return Sketch(mechanism, nodes, rails, bars, tuple(springs), tuple(wound), placed_arrows, tuple(placed))
+    return Sketch(mechanism, nodes, rails, bars, coils, placed_arrows, tuple(placed))
 
 
 def _rails(mechanism: Mechanism, nodes: Mapping[str, Position]) -> Iterator[tuple[Position, Position]]:

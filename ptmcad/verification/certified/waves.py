@@ -278,7 +278,7 @@ def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Ite
     everything = range(len(ring.unknowns))
     sides: list[_Side] = []
     for spring in true.pulling:
-        pull = ring.waves(spring.stiffness * spring.free)
+        pull = ring.waves(spring.pull)
         vector = ring.vector(spring.vector)
         if all(map(parameters.vanishes, pull.values())) or not any(_by(d, k) for d in vector for k in everything):
             continue
