@@ -96,7 +96,7 @@ def energy_of(model: Model, parameters: Mapping[str, Fraction]) -> Energy:
             square_terms = polynomial_at(system, square, values)
             roots.append((float(-pull / unit), tuple((m, float(to_fraction(c))) for m, c in square_terms.items())))
     terms = tuple((m, float(c / unit)) for m, c in sorted(exact.items()))
-    names = (*model.angles, *model.reals)
+    names = model.sorted_unknowns
     slopes = tuple((k, float(-moments[name] / unit)) for k, name in enumerate(names) if name in moments)
     return Energy(len(model.angles), offset, unit, terms, tuple(roots), slopes)
 
