@@ -235,7 +235,7 @@ class Model:
         """What the names ``P.x`` and ``P.y`` of its points stand for."""
         return {}
 
-    @cached_property
+    @property
     def conditions(self) -> Mapping[str, Tree]:
         """What is positive at solutions that count, by the keys of the description."""
         return {}
@@ -456,7 +456,7 @@ class System(Model):
         """Whether it is known what a stable solution is."""
         return self.has_potential or bool(self.stability)
 
-    @cached_property
+    @property
     def conditions(self) -> Mapping[str, Tree]:
         return _numbered("positive", self.inequalities)
 
