@@ -141,7 +141,7 @@ class PlainCounter:
         """
         counts = counts_of_signs([s.signs for s in found.solutions], True, len(self.problem.unknowns))
         index = counts.index or ()
-        smooth = not (self.problem.has_springs or self.problem.reals or self.problem.inequalities)
+        smooth = all(self.problem.is_angle) and not (self.problem.has_springs or self.problem.inequalities)
         if smooth and sum((-1) ** k * number for k, number in enumerate(index)):
             raise ArithmeticError(f"critical points of a function on the torus by index {[*index]} at ({x}, {y})")
         cones = 0 if smooth else None

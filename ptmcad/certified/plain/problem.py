@@ -97,7 +97,7 @@ class Problem:
     Attributes
     ----------
     unknowns : names in the description's order; variables 2, 3 ... of formulas.
-    reals : those that are no angles.
+    is_angle : of each, whether it is one.
     equations : the derivatives of a potential V by the unknowns, less the moments; or a system's.
     is_gradient : whether they are near each configuration the derivatives of one function; then the Jacobian is a
         Hessian. With a moment that depends on another unknown than its own they are not.
@@ -116,7 +116,7 @@ class Problem:
     """
 
     unknowns: tuple[str, ...]
-    reals: tuple[str, ...]
+    is_angle: tuple[bool, ...]
     equations: tuple[TrigonometricPolynomial, ...]
     cones: tuple[SpringCone, ...]
     is_gradient: bool
@@ -128,11 +128,6 @@ class Problem:
     where: str = ""
     further: tuple[Condition, ...] = ()
     covering: tuple[tuple[int, ...], ...] = ()
-
-    @property
-    def is_angle(self) -> tuple[bool, ...]:
-        """Of each unknown, whether it is an angle."""
-        return tuple(name not in self.reals for name in self.unknowns)
 
     @property
     def has_springs(self) -> bool:
@@ -187,7 +182,8 @@ def _equations(slice: Slice, ring: Harmonics) -> Problem:
     """The problem but for what is asked of stable solutions beyond the model's conditions."""
     model = slice.model
     system, inequalities = compiled(model), _conditions(_margins(model.conditions), ring)
-    problem = Problem(ring.unknowns, ring.reals, (), (), system.has_index, inequalities)
+    is_angle = tuple(kind.turns for kind in model.unknowns.values())
+    problem = Problem(ring.unknowns, is_angle, (), (), system.has_index, inequalities)
     if slice.has_free_lengths and system.tangent:
         return _with_springs(_of_loops(problem, system, ring), slice, system, ring)
     if system.are_slopes:

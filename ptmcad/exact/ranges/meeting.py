@@ -299,7 +299,9 @@ def _symmetries(family: LineSystem, line: Line, group: Sequence[_Member], after:
         places = [coordinates_of(m.shifted, family.angles) for m in group]
         found = _reflections(family, line, group, places, after)
         kinds = line.model.unknowns
-        ordered = [list(kinds).index(name) for name in line.model.sorted_unknowns]
+        ordered = [
+            k for name in (*line.model.angles, *line.model.reals) for k, known in enumerate(kinds) if name == known
+        ]
         for change in involutions(line.model, line.parameters):
             coordinates = change.coordinates(tuple(kinds.values()))
             images = _images(group, places, [[sign * place[k] for k, sign in coordinates] for place in places])
