@@ -221,4 +221,4 @@ def test_a_pose_that_comes_to_a_condition_leaves_and_none_falls_beyond() -> None
     falls = result.animate("b=9/10:-9/10,c=1/4", frames=20)
     assert falls.end == "at b = -0.3849, c = 0.25 the pose vanishes, and no other was reached from there"
     leaves = result.animate("b=-1/10:-9/10,c=6/5", frames=20)
-    assert leaves.end == f"at b = {-(1.2**3) + 1.2:.6g}, c = 1.2 the pose leaves what the conditions allow"
+    assert leaves.end == f"at b = {-(1.2**3) + 1.2:.6g}, c = 1.2 the pose leaves what the inequalities allow"

@@ -182,7 +182,7 @@ def _walked(
             if done >= until:
                 break
             if leaves:
-                return steps, falls, f"at {_where(walk, done)} the pose leaves what the conditions allow"
+                return steps, falls, f"at {_where(walk, done)} the pose leaves what the inequalities allow"
             beyond = min(done + MIN_STEP, until)
             before, after = (walk.cell(walk.course.at(Fraction(share))) for share in (done, beyond))
             if before == after != NONE:
