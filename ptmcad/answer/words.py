@@ -72,7 +72,7 @@ def assignments(
     model: Model, angles: Iterable[str], reals: Iterable[str], named: Callable[[str], str] = str
 ) -> list[str]:
     """The unknowns with their values, which are given as texts."""
-    names = map(named, (*model.angles, *model.reals))
+    names = map(named, model.sorted_unknowns)
     return [f"{name} = {value}" for name, value in zip(names, (*angles, *reals), strict=True)]
 
 

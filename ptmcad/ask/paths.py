@@ -148,7 +148,9 @@ class _Walker:
         for value, ahead in self._values(origin.value, side):
             change = ahead or passed
             share = float((value - origin.value) / (edge - origin.value))
-            at, further = followed(track, current.at, done, share, 0)
+            at, further, leaves = followed(track, current.at, done, share, 0)
+            if leaves:
+                return reached, replace(self._undecided(current, change), fate=Fate.EXCLUDED)
             if further < share:
                 return reached, self._ended(track, current, (at, share), value, change)
             sample = self.line.at(value)
@@ -195,7 +197,7 @@ class _Walker:
         before = self.line.at(current.value)
         for pose in () if before is None else before.poses:
             if pose.stable and self._apart(current.at, pose) > SAME:
-                at, further = followed(track, unknowns_of(pose), done, share, 0)
+                at, further, _ = followed(track, unknowns_of(pose), done, share, 0)
                 if further == share and self._apart(at, beyond) < SAME:
                     return True
         return False

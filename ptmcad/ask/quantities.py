@@ -14,7 +14,6 @@ from ptmcad.answer.poses import Pose
 from ptmcad.answer.words import listed
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, Model
-from ptmcad.model.elements import UnknownKind
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.syntax import did_you_mean
@@ -109,7 +108,7 @@ def quantities(model: Model) -> dict[str, Quantity]:
     ['th1', 'th2', 'energy', 'stiffness', 'force:A1A4', 'force:A2A3', 'force:A3A4', 'force:k1', 'force:k2', \
 'force:k3', 'length:A1A4', 'length:A2A3', 'length:A3A4', 'length:k1', 'length:k2', 'length:k3']
     """
-    found = [unknown(model, name) for name in (*model.angles, *model.reals)]
+    found = [unknown(model, name) for name in model.sorted_unknowns]
     found += [_of_energy(model, QuantityKind(kind), OPTION) for kind in model.criterion.numbers]
     mechanism = open_chain(model)
     if mechanism is not None:
@@ -146,12 +145,11 @@ def of_pose(quantity: Quantity, pose: Pose) -> Enclosure | None:
 
 def unknown(model: Model, name: str) -> Quantity | None:
     """The unknown of this name, an angle in degrees; None where there is none."""
-    names = (*model.angles, *model.reals)
+    names = model.sorted_unknowns
     if name not in names:
         return None
     kind = QuantityKind.ANGLE if name in model.angles else QuantityKind.REAL
-    unit = {UnknownKind.ANGLE: "degrees", UnknownKind.LENGTH: "length", UnknownKind.REAL: ""}[model.unknowns[name]]
-    return Quantity(name, kind, unit, number=names.index(name))
+    return Quantity(name, kind, "".join(model.unit_of(name)), number=names.index(name))
 
 
 def _of_energy(model: Model, kind: QuantityKind, key: str) -> Quantity:

@@ -29,16 +29,17 @@ def system_text(model: Model, has_free_lengths: bool = False) -> System:
     equations. What is positive at solutions is there as the record says it.
     """
     unknowns, own, mechanism = tuple(model.unknowns), equations_in(model), model.whole
+    conditions = tuple(map(to_text, model.conditions.values()))
     if own is not None and not has_free_lengths:
         potential = "" if own.potential is None else to_text(own.potential)
-        texts = [tuple(map(to_text, trees)) for trees in (own.equations, own.inequalities, own.stability)]
-        return System(unknowns, (), potential, texts[0], (), *texts[1:])
+        equations, stability = (tuple(map(to_text, trees)) for trees in (own.equations, own.stability))
+        return System(unknowns, (), potential, equations, (), conditions, stability)
     assert mechanism is not None
     relations = () if own is None else tuple(map(to_text, own.equations[:-1]))
     moments = split_moments(mechanism)
     beside = {moment.unknown: to_text(moment.value) for moment in moments.coupled}
     stated = tuple(beside.get(unknown, "0") for unknown in unknowns if beside)
-    return System(unknowns, relations, energy_text(mechanism, moments), (), (), moments=stated)
+    return System(unknowns, relations, energy_text(mechanism, moments), (), (), conditions, moments=stated)
 
 
 def energy_text(mechanism: Mechanism, moments: Split) -> str:

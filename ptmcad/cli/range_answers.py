@@ -205,7 +205,7 @@ def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOn
     model = found.model
     if len(model.unknowns) > MAX_UNKNOWNS or "stable" not in model.criterion.counts:
         return draw_paths(slice, found)
-    unknowns = (*model.angles, *model.reals)
+    unknowns = model.sorted_unknowns
     known = None if line is None else line()
     diagram = branch_diagram(slice, found.along.name, found.at, unknowns, line=known)
     return draw_paths_and_branches(slice, found, diagram)

@@ -300,7 +300,7 @@ def compiled(model: Model) -> CompiledSystem:
 
 @lru_cache(maxsize=8)  # by both, as closed mechanisms are equal where their equations are
 def _compiled(model: Model, mechanism: Mechanism | None) -> CompiledSystem:
-    graph, names = Graph(), [*model.variables, *model.angles, *model.reals]
+    graph, names = Graph(), [*model.variables, *model.sorted_unknowns]
     if mechanism is not None:
         names += mechanism.followers
     return compiled_with(model, {name: graph.variable(k) for k, name in enumerate(names)})
@@ -377,7 +377,7 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         loads=tuple(loads),
         smooth=sum((*(spring.smooth for spring in springs), *others), start=ring.constant(Fraction(0))),
         others=tuple(others),
-        moments=tuple(steady[name] for name in (*mechanism.angles, *mechanism.reals)),
+        moments=tuple(steady[name] for name in mechanism.sorted_unknowns),
         heights=() if mechanism.closing or followers else tuple(points[name][1] for name in mechanism.rising),
         has_energy=not mechanism.coupled,
     )
@@ -385,11 +385,11 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
 
 def _with_equations(known: CompiledSystem, model: Model, ring: _Ring) -> CompiledSystem:
     """What is zero, and what is positive, at solutions."""
+    known = replace(known, inequalities=ring.of(model.conditions.values()))
     if isinstance(model, System):
         known = replace(
             known,
             equations=ring.of(model.equations),
-            inequalities=ring.of(model.inequalities),
             stability=ring.of(model.stability),
         )
         if isinstance(model, ClosedMechanism):

@@ -45,7 +45,7 @@ def without_xjoints(mechanism: Mechanism) -> ClosedMechanism:
         equations, positive = _equations(mechanism)
     except ExpressionError as error:
         raise ConfigError(f"with x-joints {error.message}", key="x-joint") from None
-    unknowns = (*mechanism.angles, *mechanism.reals)
+    unknowns = mechanism.sorted_unknowns
     rows = [[e.derivative(u) for u in unknowns] for e in equations]
     most = prod(max(len(entry.terms) for entry in row) for row in rows)
     if sum(len(e.terms) for e in equations) > MAX_TERMS or most > MAX_MINOR:
@@ -79,7 +79,7 @@ def _equations(mechanism: Mechanism) -> tuple[list[Polynomial], list[Polynomial]
         below = _times(below, second[2], powers[joint.angle])
     steady = {m.unknown: points.value(m.value) for m in moments.beside}
     equations = []
-    for unknown in (*mechanism.angles, *mechanism.reals):
+    for unknown in mechanism.sorted_unknowns:
         slope = energy.derivative(unknown)
         if unknown in steady:
             slope -= steady[unknown] * below

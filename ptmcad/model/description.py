@@ -124,12 +124,17 @@ class Model:
     @cached_property
     def angles(self) -> tuple[str, ...]:
         """The unknowns on the circle."""
-        return tuple(name for name, kind in self.unknowns.items() if kind is UnknownKind.ANGLE)
+        return tuple(name for name, kind in self.unknowns.items() if kind.turns)
 
     @cached_property
     def reals(self) -> tuple[str, ...]:
         """The unknowns on the line."""
-        return tuple(name for name, kind in self.unknowns.items() if kind is not UnknownKind.ANGLE)
+        return tuple(name for name, kind in self.unknowns.items() if not kind.turns)
+
+    @cached_property
+    def sorted_unknowns(self) -> tuple[str, ...]:
+        """The unknowns as answers list them: angles first."""
+        return self.angles + self.reals
 
     @cached_property
     def variables(self) -> tuple[str, ...]:
@@ -199,7 +204,9 @@ class Model:
         return self.parameters[name].kind
 
     def unit_of(self, name: str) -> Unit:
-        """What a parameter is measured in; empty of a number, and of what is no parameter."""
+        """What a parameter or an unknown is measured in; empty of a number, and of what is neither."""
+        if name in self.unknowns:
+            return self.unknowns[name].unit
         return _UNITS.get(self.kind(name), ()) if name in self.parameters else ()
 
     @cached_property
@@ -226,6 +233,11 @@ class Model:
     @cached_property
     def coordinates(self) -> Mapping[str, Tree]:
         """What the names ``P.x`` and ``P.y`` of its points stand for."""
+        return {}
+
+    @property
+    def conditions(self) -> Mapping[str, Tree]:
+        """What is positive at solutions that count, by the keys of the description."""
         return {}
 
     @cached_property
@@ -460,10 +472,14 @@ class System(Model):
             return by_hessian(len(self.unknowns))
         return self._by_conditions if self.stability else NOTHING
 
+    @property
+    def conditions(self) -> Mapping[str, Tree]:
+        return _numbered("positive", self.inequalities)
+
     @cached_property
     def polynomials(self) -> Mapping[str, tuple[Tree, ...]]:
-        lists = {"equations": self.equations, "positive": self.inequalities, "stable": self.stability}
-        found = {key: (tree,) for name, trees in lists.items() for key, tree in _numbered(name, trees).items()}
+        lists = _numbered("equations", self.equations), self.conditions, _numbered("stable", self.stability)
+        found = {key: (tree,) for trees in lists for key, tree in trees.items()}
         return found if self.potential is None else {**found, "potential": (self.potential,)}
 
 

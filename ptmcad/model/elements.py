@@ -69,14 +69,27 @@ class Kind(Enum):
 
 
 class UnknownKind(Enum):
-    """Where an unknown lives."""
+    """Where an unknown lives: the word of records, then what others ask of it.
 
-    ANGLE = "angle"
-    """on the circle"""
-    LENGTH = "length"
-    """on the line"""
-    REAL = "real"
-    """on the line, and no length"""
+    Attributes
+    ----------
+    where : in words.
+    turns : whether it is the circle; all others are on the line.
+    unit : what it is measured in.
+    """
+
+    ANGLE = "angle", "on the circle", True, ("degrees",)
+    LENGTH = "length", "on the line", False, ("length",)
+    REAL = "real", "on the line, and no length"
+
+    where: str
+    turns: bool
+    unit: tuple[str, ...]
+
+    def __new__(cls, word: str, where: str, turns: bool = False, unit: tuple[str, ...] = ()) -> UnknownKind:
+        kind = object.__new__(cls)
+        kind._value_, kind.where, kind.turns, kind.unit = word, where, turns, unit
+        return kind
 
 
 class Support(Enum):

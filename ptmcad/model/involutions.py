@@ -94,7 +94,7 @@ class Involution:
         ----------
         kinds : of the model's unknowns.
         """
-        angles = [k for k, kind in enumerate(kinds) if kind is UnknownKind.ANGLE]
+        angles = [k for k, kind in enumerate(kinds) if kind.turns]
         reals = [k for k in range(len(kinds)) if k not in angles]
         found = []
         for k in angles:
@@ -201,7 +201,7 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
         roots = () if whole is None else (element.root for element in whole.elements.values() if element.root)
         if any(evaluate(root.pull, ring).terms for root in roots):
             raise ExpressionError("free lengths are in none of a closed loop's equations")
-        kept = [values(own.inequalities), values(own.stability)]
+        kept = [values(own.stability)]
         if own.potential is not None:
             kept.append(felt_by_unknowns(evaluate(own.potential, ring)))
         equations = values(own.equations)
@@ -215,6 +215,7 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
             for root, number in lengths.items()
         ]
         kept = [felt_by_unknowns(energy), [marked({f"d {u}": p for u, p in work.items()})], pulling]
+    kept.append(values(model.conditions.values()))
     yield from (_Part(f, images) for images in kept for f in images)
 
 
@@ -238,7 +239,7 @@ class _Change(NamedTuple):
         found: dict[int, int] = {}
         for k, (kind, j) in enumerate(zip(kinds, self.images, strict=True)):
             cosine, sine = 2 << 2 * k, 4 << 2 * k
-            if j < k or kind is not UnknownKind.ANGLE:
+            if j < k or not kind.turns:
                 found[cosine.bit_length()] = cosine
             if j < k or (with_axes and self.names[k] in _AXES):
                 found[sine.bit_length()] = sine

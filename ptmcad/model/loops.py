@@ -115,7 +115,7 @@ def equations_of_loops(model: Mechanism) -> Model:
     if model.xjoints:
         return without_xjoints(model)
     conditions = [_condition(model, closing) for closing in model.closing]
-    names = (*model.angles, *model.reals)
+    names = model.sorted_unknowns
     forces = _forces(model, names)
     further: dict[str, UnknownKind] = {}
     tangent: tuple[Tree, ...] = ()

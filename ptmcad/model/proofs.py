@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model.description import Mechanism, Model
-from ptmcad.model.elements import NAMES, UnknownKind, squared_distance
+from ptmcad.model.elements import NAMES, squared_distance
 from ptmcad.model.evaluate import Named, evaluated, multiples, value_at
 from ptmcad.model.trees import ZERO
 from ptmcad.text.tree import Name, Tree, names_of, replaced
@@ -195,7 +195,7 @@ def check_unknowns(mechanism: Mechanism, faults: Faults) -> None:
     for unknown, kind in mechanism.unknowns.items():
         with faults:
             if unknown not in held:
-                motion = "turns" if kind is UnknownKind.ANGLE else "moves"
+                motion = "turns" if kind.turns else "moves"
                 raise ConfigError(
                     f"no equation holds this unknown: no spring or load feels how it {motion}",
                     key=f"unknowns.{unknown}",

@@ -138,7 +138,7 @@ DEFINITIONS: dict[str, Mapping[str, Any]] = {
     },
     "unknowns": {
         **by_names(_UNKNOWN.schema, MAX_UNKNOWNS), "minProperties": 1,
-        "description": "Names to where they live: angle on the circle; length and real on the line.",
+        "description": f"Names to where they live: {'; '.join(f'{kind.value} {kind.where}' for kind in UnknownKind)}.",
     },
 }  # fmt: skip
 """Schemas of what mechanisms and systems have."""
@@ -170,7 +170,7 @@ class Context:
     @cached_property
     def moving(self) -> _Names:
         """The names of which what unknowns move is made."""
-        angles = [name for name, kind in self.unknowns.items() if kind is UnknownKind.ANGLE]
+        angles = [name for name, kind in self.unknowns.items() if kind.turns]
         lengths = [name for name in self.unknowns if name not in angles or name in self._doubtful]
         return _Names((*self.parameters, *lengths), (*angles, *self.second), (), self._doubtful)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ptmcad.model import Model
-from ptmcad.model.elements import Unit, UnknownKind
+from ptmcad.model.elements import Unit
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import parse
@@ -73,8 +73,7 @@ def declared_units(model: Model, units: Mapping[str, str]) -> dict[str, str]:
 
 def unit_of_unknown(model: Model, name: str, units: Mapping[str, str]) -> str:
     """The unit of an unknown: degrees of an angle, and none of a number."""
-    kind = model.unknowns[name]
-    return {UnknownKind.ANGLE: "degrees", UnknownKind.LENGTH: units.get("length", "length")}.get(kind, "")
+    return "".join(units.get(part, part) for part in model.unit_of(name))
 
 
 def with_unit(name: str, unit: str) -> str:

@@ -210,3 +210,15 @@ def test_a_path_goes_evenly_through_its_corners() -> None:
         (Fraction(1, 2) + Fraction(k, 4), Fraction(1, 2)) if k <= 2 else (1, Fraction(1, 2) + Fraction(k - 2, 4))
         for k in range(7)
     ]
+
+
+def test_a_pose_that_comes_to_a_condition_leaves_and_none_falls_beyond() -> None:
+    record = {
+        "system": {"unknowns": {"x": "real"}, "potential": "x^4/4 - x^2/2 - b*x", "positive": ["x + c"]},
+        "axes": {"b": [-1, 1], "c": [0, 2]},
+    }
+    result = ptmcad.classify(ptmcad.slice_from_mapping(record))
+    falls = result.animate("b=9/10:-9/10,c=1/4", frames=20)
+    assert falls.end == "at b = -0.3849, c = 0.25 the pose vanishes, and no other was reached from there"
+    leaves = result.animate("b=-1/10:-9/10,c=6/5", frames=20)
+    assert leaves.end == f"at b = {-(1.2**3) + 1.2:.6g}, c = 1.2 the pose leaves what the inequalities allow"

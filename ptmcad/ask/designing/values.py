@@ -205,7 +205,7 @@ def _expression_of(design: Design) -> Evaluate:
     if quantity is not None:
         return _quantity_of(design, quantity)
     tree = _tree(design)
-    needs_pose = bool({*names_of(tree)} & {*model.angles, *model.reals})
+    needs_pose = bool(model.unknowns.keys() & set(names_of(tree)))
 
     def evaluate(values: Mapping[str, Fraction]) -> Value | None:
         poses = _poses(design, values)
@@ -217,7 +217,7 @@ def _expression_of(design: Design) -> Evaluate:
             if number is None:
                 return None
             pose = poses.equilibria[number]
-            known |= dict(zip((*model.angles, *model.reals), (*pose.angles, *pose.reals), strict=True))
+            known |= dict(zip(model.sorted_unknowns, (*pose.angles, *pose.reals), strict=True))
         enclosed = _enclosed(tree, known)
         return None if enclosed is None else Value(enclosed)
 
@@ -236,7 +236,7 @@ def _quantity_of(design: Design, quantity: Quantity) -> Evaluate:
 
 def _tree(design: Design) -> Tree:
     model = design.model
-    known = (*model.angles, *model.reals, *model.parameters, *(axis.name for axis in design.over))
+    known = (*model.sorted_unknowns, *model.parameters, *(axis.name for axis in design.over))
     try:
         tree = parse(design.maximise)
     except ExpressionError as error:

@@ -151,9 +151,7 @@ class PixelSolver:
     def _right_kinds(self, rows: Labels, columns: Labels, at: Floats, empty: Flags) -> Flags:
         """Whether the solutions count, and as many have each index as the map says."""
         state = self.state(rows, columns, np.nan_to_num(at))
-        good: Flags = np.ones(at.shape[1], dtype=np.bool_)
-        for condition in state.conditions:
-            good &= ((condition > 0) | empty).all(axis=1)
+        good = np.asarray((state.counts | empty).all(axis=1))
         if state.hessian is None:
             return np.asarray(good & ((determinant(state.jacobian) != 0) | empty).all(axis=1))
         negative = state.negatives

@@ -45,6 +45,11 @@ class ModelState(NamedTuple):
     work: Floats | None = None
 
     @property
+    def counts(self) -> NDArray[np.bool_]:
+        """Where all conditions hold, shape S; one for all where there is no condition."""
+        return np.asarray(np.all([condition > 0 for condition in self.conditions], axis=0))
+
+    @property
     def known_energy(self) -> Floats:
         """Of a model that has one."""
         assert self.energy is not None

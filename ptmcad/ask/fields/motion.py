@@ -177,9 +177,11 @@ def _walked(
             progress("motion: step", number, len(stops))
         done, until = float(last[0]), float(stop[0])
         while True:
-            at, done = followed(walk, at, done, until, own)
+            at, done, leaves = followed(walk, at, done, until, own)
             if done >= until:
                 break
+            if leaves:
+                return steps, falls, f"at {_where(walk, done)} the pose leaves what the inequalities allow"
             beyond = min(done + MIN_STEP, until)
             before, after = (walk.cell(walk.course.at(Fraction(share))) for share in (done, beyond))
             if before == after != NONE:
@@ -187,7 +189,7 @@ def _walked(
             if end := _no_fall(walk, own, done):
                 return steps, falls, end
             way = descent(lambda point, share=beyond: walk.at(share, point), at)  # type: ignore[misc]
-            if way is None or len(falls) == MAX_FALLS:
+            if way is None or len(falls) == MAX_FALLS or not walk.at(beyond, way[-1][:, None]).counts.all():
                 return steps, falls, f"at {_where(walk, done)} the pose vanishes, and no other was reached from there"
             if _length(way) > SLIP:
                 fallen = _fallen(walk, beyond, way, fall_frames)

@@ -80,7 +80,7 @@ def _values(quantity: Quantity) -> Values:
 
 def _expression(text: str, slice: Slice) -> Valued:
     model = slice.model
-    known = (*model.angles, *model.reals, *slice.axis_names, *slice.parameters)
+    known = (*model.sorted_unknowns, *slice.axis_names, *slice.parameters)
     try:
         tree = parse(text)
         for name in names_of(tree):
@@ -101,7 +101,7 @@ def _expression(text: str, slice: Slice) -> Valued:
         raise ConfigError(f"{text[:60]!r} has a number beyond doubles, 1.8e308", key=OPTION) from error
 
     def values(_state: ModelState, at: Floats, given: Mapping[str, Any]) -> Floats:
-        unknowns = dict(zip((*model.angles, *model.reals), at, strict=True))
+        unknowns = dict(zip(model.sorted_unknowns, at, strict=True))
         with np.errstate(all="ignore"):
             found = interpret(tree, _Arrays({**given, **unknowns}))
             value = np.where(np.isfinite(found.value), found.value, np.nan)  # else the expression has no value there

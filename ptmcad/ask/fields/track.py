@@ -39,8 +39,9 @@ class Track:
         return solution(lambda at: self.at(share, at), start)
 
 
-def followed(track: Track, at: Floats, done: float, to: float, own: int) -> tuple[Floats, float]:
-    """The solution further along the course, and how far: to where it should go, or to where it vanishes.
+def followed(track: Track, at: Floats, done: float, to: float, own: int) -> tuple[Floats, float, bool]:
+    """The solution further along the course, and how far: to where it should go, or to where it vanishes or, as the
+    last entry says, goes on as one that does not count.
 
     Parameters
     ----------
@@ -50,10 +51,11 @@ def followed(track: Track, at: Floats, done: float, to: float, own: int) -> tupl
     while done < to:
         further = to if to - done <= step * (1 + 1e-9) else done + step
         found = track.solved(further, at)
-        if found and int(found[1].negatives[0]) == own and np.linalg.norm(found[0] - at) < ALONG:
+        same = found and int(found[1].negatives[0]) == own and np.linalg.norm(found[0] - at) < ALONG
+        if found and same and found[1].counts.all():
             at, done, step = found[0], further, step * 2
         elif further - done <= MIN_STEP * 1.001:
-            return at, done
+            return at, done, bool(same)
         else:
             step = max((further - done) / 2, MIN_STEP)
-    return at, done
+    return at, done, False

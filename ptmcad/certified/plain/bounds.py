@@ -93,10 +93,10 @@ class _BoundSearch:
         """The range of each unknown; infinite where no bound of it was found."""
         problem = self.problem
         found = [
-            TURN if name not in problem.reals else (0.0, inf) if self._is_positive(k) else (-inf, inf)
-            for k, name in enumerate(problem.unknowns)
+            TURN if is_angle else (0.0, inf) if self._is_positive(k) else (-inf, inf)
+            for k, is_angle in enumerate(problem.is_angle)
         ]
-        reals = [k for k, name in enumerate(problem.unknowns) if name in problem.reals]
+        reals = [k for k, is_angle in enumerate(problem.is_angle) if not is_angle]
         if not reals:
             return tuple(found)
         alone = self._alone()

@@ -109,10 +109,9 @@ def in_description(
     """Counts of a problem with their solutions in the description's unknowns; undecided where these are too near."""
     if not problem.covering:
         return counts
-    is_angle = [name not in problem.reals for name in problem.unknowns]
     found = []
     for solution in counts.solutions:
-        placed = _within_a_turn(*located(problem, equations, point, solution, PRECISIONS[0]), is_angle)
+        placed = _within_a_turn(*located(problem, equations, point, solution, PRECISIONS[0]), problem.is_angle)
         if placed is None:
             return PointCount()
         found.append(placed)

@@ -226,10 +226,9 @@ def _far(search: _CurveSearch, at: SpringChart) -> list[Formula]:
 
 def _distance(search: _CurveSearch, at: SpringChart, mirror: MirrorFrame) -> Formula:
     """Of a configuration from its image, squared."""
-    angles = [name not in search.problem.reals for name in search.problem.unknowns]
     unknowns = [
         Angle(u.graph, {u: 1}) if isinstance(u, Formula) and is_angle else u
-        for u, is_angle in zip(at.unknowns, angles, strict=True)
+        for u, is_angle in zip(at.unknowns, search.problem.is_angle, strict=True)
     ]
     return mirror.distance(unknowns)
 

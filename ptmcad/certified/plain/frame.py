@@ -88,8 +88,8 @@ class MirrorFrame:
         odds : angles, and formulas of what is none; none on the component itself.
         """
         found: list[Unknown] = []
-        for name, place in zip(self.problem.unknowns, self.places, strict=True):
-            if name in self.problem.reals:
+        for is_angle, place in zip(self.problem.is_angle, self.places, strict=True):
+            if not is_angle:
                 total = graph.constant(0)
                 if place.even >= 0:
                     total = total + place.even_sign * evens[place.even]
@@ -132,7 +132,7 @@ class MirrorFrame:
 
 def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Iterator[MirrorFrame]:
     """One for each component of the fixed points; together their odd coordinates reach all configurations."""
-    angles = [name not in problem.reals for name in problem.unknowns]
+    angles = problem.is_angle
     alone = [k for k, j in enumerate(change.images) if j == k and change.signs[k] < 0 and angles[k]]
     squares = tuple(square_of(cone.difference) for cone in problem.cones)
     for sides in product((0, 2), repeat=len(alone)):

@@ -37,9 +37,10 @@ def _is_short_where_fixed(problem: Problem, change: Involution) -> bool:
     for the single unknown of a crease."""
     if change.odd < max(len(problem.unknowns), 2):
         return False
-    kinds = [name in problem.reals for name in problem.unknowns]
     # in quarter turns; real unknowns are 0
-    choices = [(0,) if is_real else (half, half + 2) for is_real, half in zip(kinds, change.halves, strict=True)]
+    choices = [
+        (half, half + 2) if is_angle else (0,) for is_angle, half in zip(problem.is_angle, change.halves, strict=True)
+    ]
     return any(
         all(_vanishes(f, quarters) for f in cone.difference) for quarters in product(*choices) for cone in problem.cones
     )

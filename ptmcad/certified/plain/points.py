@@ -142,7 +142,7 @@ class PlainCounter:
         """
         counts = counts_of_signs([s.signs for s in found.solutions], by_hessian(len(self.problem.unknowns)))
         index = counts.index or ()
-        smooth = not (self.problem.has_springs or self.problem.reals or self.problem.inequalities)
+        smooth = all(self.problem.is_angle) and not (self.problem.has_springs or self.problem.inequalities)
         if smooth and euler_sum(index):
             raise ArithmeticError(f"critical points of a function on the torus by index {[*index]} at ({x}, {y})")
         cones = 0 if smooth else None
@@ -223,7 +223,6 @@ class PlainCounter:
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
         low, high = zip(*self.ranges, strict=True)
         start = np.array([[x_low, y_low, *low, x_high, y_high, *high]])
-        variables = 2 + len(low)
         arguments = (self.stable if stable else self.all).arguments()
         for finest in MIN_BOX_WIDTHS if thorough else MIN_BOX_WIDTHS[:1]:
             found = self._isolated(arguments, start, finest, thorough)
@@ -231,9 +230,7 @@ class PlainCounter:
                 break
         if thorough and 0 < len(found.small) <= MAX_OPEN_BOXES and not len(found.waiting):
             found = self._with_more_digits(x, y, stable, found)
-        periods = np.zeros(variables)
-        for k, name in enumerate(self.problem.unknowns, FIRST):
-            periods[k] = 0.0 if name in self.problem.reals else FULL_TURN
+        periods = np.array([0.0] * FIRST + [FULL_TURN * is_angle for is_angle in self.problem.is_angle])
         kept = distinct(found.unique, found.narrow, FIRST, periods)
         if kept is None:
             return Zeros(none, none, len(found.left()) + len(found.unique))

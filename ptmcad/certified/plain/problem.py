@@ -9,7 +9,7 @@ d apart has the energy k |d|^2/2 - k l0 |d| + k l0^2/2, so that K = k l0.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
@@ -20,7 +20,6 @@ from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynom
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Formula, Graph, length
 from ptmcad.model.compile import CompiledSystem, compiled
-from ptmcad.model.description import equations_in
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.fourbars import closed_by, flat_everywhere
 from ptmcad.model.mechanisms import title_of
@@ -98,7 +97,7 @@ class Problem:
     Attributes
     ----------
     unknowns : names in the description's order; variables 2, 3 ... of formulas.
-    reals : those that are no angles.
+    is_angle : of each, whether it is one.
     equations : the derivatives of a potential V by the unknowns, less the moments; or a system's.
     is_gradient : whether they are near each configuration the derivatives of one function; then the Jacobian is a
         Hessian. With a moment that depends on another unknown than its own they are not.
@@ -117,7 +116,7 @@ class Problem:
     """
 
     unknowns: tuple[str, ...]
-    reals: tuple[str, ...]
+    is_angle: tuple[bool, ...]
     equations: tuple[TrigonometricPolynomial, ...]
     cones: tuple[SpringCone, ...]
     is_gradient: bool
@@ -181,14 +180,15 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
 
 def _equations(slice: Slice, ring: Harmonics) -> Problem:
     """The problem but for what is asked of stable solutions beyond the model's conditions."""
-    system, own = compiled(slice.model), equations_in(slice.model)
-    inequalities = _conditions(_listed("positive", () if own is None else own.inequalities), ring)
-    problem = Problem(ring.unknowns, ring.reals, (), (), system.potential() is not None, inequalities)
+    model = slice.model
+    system, inequalities = compiled(model), _conditions(_margins(model.conditions), ring)
+    is_angle = tuple(kind.turns for kind in model.unknowns.values())
+    problem = Problem(ring.unknowns, is_angle, (), (), system.potential() is not None, inequalities)
     if slice.has_free_lengths and system.tangent:
         return _with_springs(_of_loops(problem, system, ring), slice, system, ring)
     if system.are_slopes:
         return _with_springs(_of_slopes(problem, system, ring), slice, system, ring)
-    stability = _conditions(_listed("stable", () if own is None else own.stability), ring)
+    stability = _conditions(_margins({f"stable.{n}": tree for n, tree in enumerate(model.stability, 1)}), ring)
     # an unknown that is not zero where solutions count is no factor of an equation: without this, the solutions at
     # which it is zero, say those where a species is extinct, would be undecided all over the window
     nonzero = [k for k in range(len(ring.unknowns)) if any(_is_multiple(c.value, k) for c in inequalities)]
@@ -280,10 +280,10 @@ def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[
     return found
 
 
-def _listed(key: str, trees: Sequence[Tree]) -> Iterator[tuple[str, Margin]]:
-    """A system's conditions, with the key of each in the record."""
-    for n, tree in enumerate(trees, 1):
-        yield f"{key}.{n}", Margin(to_text(tree), tree)
+def _margins(trees: Mapping[str, Tree]) -> Iterator[tuple[str, Margin]]:
+    """A model's conditions, with the key of each in the record."""
+    for key, tree in trees.items():
+        yield key, Margin(to_text(tree), tree)
 
 
 def _conditions(margins: Iterable[tuple[str, Margin]], ring: Harmonics) -> tuple[Condition, ...]:

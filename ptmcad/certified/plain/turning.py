@@ -83,7 +83,7 @@ def turns(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Turn, ...]:
     found = []
     for weights in product((0, 1, -1), repeat=len(problem.unknowns)):
         lead = next((w for w in weights if w), 0)
-        angles = all(problem.unknowns[i] not in problem.reals for i, w in enumerate(weights) if w)
+        angles = all(is_angle for is_angle, w in zip(problem.is_angle, weights, strict=True) if w)
         if lead > 0 and sum(map(abs, weights)) > 1 and angles:
             gain = _gain(problem, weights)
             if gain > 0:

@@ -45,7 +45,7 @@ def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) ->
         if marker in occurring:
             entries.append(Entry(lines, point_mark(color=INK, marker=marker, fillstyle="none", markersize=6)))
     entries += further
-    unknowns = (*model.angles, *model.reals)
+    unknowns = model.sorted_unknowns
     names = [with_unit(symbol(name), unit_of_unknown(model, name, slice.units)) for name in unknowns]
     kind = "Unknowns" if model.reals else "Angles"
     words = f"{kind} of {len(found.paths)} {followed(model)}s along {found.along.name}."

@@ -64,7 +64,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     polynomial = result.cover is None and result.system.unknowns == coordinates(model)
     potential = potential_at(result.system, values) if polynomial and result.system.potential else None
     drawn = (
-        (polynomial or result.system.unknowns == (*model.angles, *model.reals))
+        (polynomial or result.system.unknowns == model.sorted_unknowns)
         and all(name in values for name in model.without_free_lengths)
         and all(abs(v) < MAX_DRAWN for v in (*values.values(), *(potential or {}).values()))
     )

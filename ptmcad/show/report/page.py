@@ -19,7 +19,6 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words, moments_work, untold
 from ptmcad.errors import ConfigError
 from ptmcad.model import Model, Support
-from ptmcad.model.elements import UnknownKind
 from ptmcad.model.joints import torsion_springs
 from ptmcad.model.work import split_moments
 from ptmcad.question.slice import Slice
@@ -151,7 +150,7 @@ def harmless(data: object) -> str:
 
 def drawing_of(model: Model) -> dict[str, Any]:
     """What the script draws of a mechanism, by the numbers of its points; of a system only the unknowns' names."""
-    unknowns = {"unknowns": [symbol(name) for name in (*model.angles, *model.reals)]}
+    unknowns = {"unknowns": [symbol(name) for name in model.sorted_unknowns]}
     mechanism = model.drawable
     if mechanism is None:
         empty = ("points", "rods", "springs", "loaded", "moving", "pinned", "sliding", "rising")
@@ -192,14 +191,10 @@ def _declared(slice: Slice) -> dict[str, Any]:
     """The units that the record declares of lengths, forces and energies, and of each unknown."""
     if slice.model.drawable is None:
         return {}
-    of_length = {UnknownKind.LENGTH: slice.units.get("length", "")}
-    unknowns = [of_length.get(slice.model.unknowns[name], "") for name in _unknowns(slice.model)]
+    unknowns = [
+        "".join(slice.units.get(part, "") for part in slice.model.unit_of(name)) for name in slice.model.sorted_unknowns
+    ]
     return {**declared_units(slice.model, slice.units), "unknowns": unknowns}
-
-
-def _unknowns(model: Model) -> tuple[str, ...]:
-    """In the order of all tables."""
-    return (*model.angles, *model.reals)
 
 
 def _data(result: RegionMap, drawn: MapPictures) -> dict[str, Any]:
