@@ -20,6 +20,7 @@ from ptmcad.cli.pictures import picture
 from ptmcad.cli.values import palettes
 from ptmcad.errors import ConfigError, blamed
 from ptmcad.process.output import Writer, text_writer
+from ptmcad.show import render
 from ptmcad.show.style import DEFAULT, LINES, PALETTES, PRESETS, LegendPlace, PictureStyle, styled
 from ptmcad.text.parsing import share_for
 
@@ -78,14 +79,11 @@ class DrawingOptions(NamedTuple):
         return found
 
     def _picture(self, result: Any, name: str, _boundaries: Callable[[], Any], path: Path) -> None:
-        from ptmcad.show.render import draw  # brings matplotlib
-
+        how = {"dpi": self.dpi, "style": self.style, "overlay": self.overlay}
         if self.poses:
-            from ptmcad.show.render.plotting import draw_with_poses
-
-            missing = draw_with_poses(result, self.poses, path, self.dpi, self.style, self.overlay)
+            missing = render.draw_with_poses(result, self.poses, path, **how)
         else:
-            missing = draw(result, path, samples=self.samples, dpi=self.dpi, style=self.style, overlay=self.overlay)
+            missing = render.draw(result, path, samples=self.samples, **how)
         if missing:
             click.echo(f"note: {name} has no room for {' and '.join(missing)}, which a larger --size has", err=True)
 
@@ -144,18 +142,9 @@ def _style(
     except ConfigError as error:
         raise ConfigError(error.message, key=f"--{(error.key or 'style').replace('_', '-')}") from error
     if made.font_family:
-        _check_fonts(made.font_family)
+        with blamed("--font-family"):
+            render.check_families(made.font_family)
     return made
-
-
-def _check_fonts(families: tuple[str, ...]) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
-    from ptmcad.show.render.fonts import check_families
-
-    with blamed("--font-family"):
-        check_families(families)
 
 
 def style_options(command: F) -> F:

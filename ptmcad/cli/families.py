@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,13 +14,14 @@ from ptmcad.answer.changes import TOLERANCE, Changes
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, names_of
-from ptmcad.cli.pictures import picture
+from ptmcad.cli.pictures import figure
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import read_other, read_result
 from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import Family, fault_of_member
+from ptmcad.show import render
 from ptmcad.show.document.family import FORMAT, read_family, write_family
 from ptmcad.text.numerals import text_of
 
@@ -180,9 +180,12 @@ def picture_writers(
     """
     found = {}
     for kind in formats:
-        for end, draw in (("", _draw_multiples), (SOLID, partial(_draw_solid, surface))):
+        for end, make in (
+            ("", lambda: render.multiples_figure(result, drawing.dpi, drawing.style)),
+            (SOLID, lambda: render.solid_figure(result, drawing.dpi, drawing.style, surface)),
+        ):
             for file in names_of(f"{stem}{end}", (kind,)):
-                found[file] = picture(file, partial(draw, result, drawing))
+                found[file] = figure(file, make, dpi=drawing.dpi, style=drawing.style)
     return found
 
 
@@ -191,18 +194,6 @@ def mesh_writers(surface: BoundarySurface, stem: str, formats: tuple[str, ...]) 
     from ptmcad.show.export.mesh import MESHES as KNOWN
 
     return {f"{stem}.{kind}": text_writer(KNOWN[kind](surface)) for kind in formats}
-
-
-def _draw_multiples(result: FamilyMap, drawing: DrawingOptions, path: Path) -> None:
-    from ptmcad.show.render.multiples import draw_multiples  # brings matplotlib
-
-    draw_multiples(result, path, drawing.dpi, drawing.style)
-
-
-def _draw_solid(surface: BoundarySurface | None, result: FamilyMap, drawing: DrawingOptions, path: Path) -> None:
-    from ptmcad.show.render.solid import draw_solid  # brings matplotlib
-
-    draw_solid(result, path, drawing.dpi, drawing.style, surface)
 
 
 def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:

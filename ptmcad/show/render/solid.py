@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from ptmcad.show.render.inches import Box, write_lines
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type
 from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, title_of, titles_and_rows, value_text
 from ptmcad.show.render.painting import Paint, paint_of
-from ptmcad.show.render.printing import save, settings
+from ptmcad.show.render.printing import settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
 from ptmcad.show.render.textwidth import text_width
@@ -35,13 +34,6 @@ _BOX_DIAGONAL = 1.7
 """Of the box's side: how much the picture's width or height shows, about; widths of lines on a surface rest on it."""
 MAX_FLOORS = 7
 """Of filled maps: more would hide each other."""
-
-
-def draw_solid(
-    family: FamilyMap, path: Path, dpi: int, style: PictureStyle, surface: BoundarySurface | None = None
-) -> None:
-    """Write the picture, as `ptmcad.show.render.printing.save` does."""
-    save(solid_figure(family, dpi, style, surface), path, dpi=dpi, style=style)
 
 
 def solid_figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundarySurface | None = None) -> Figure:
