@@ -31,7 +31,7 @@ from ptmcad.question.config import load, slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Point
 from ptmcad.show.render.axes import scale_of
 from ptmcad.show.report import page
-from ptmcad.show.report.bounds import cosine_sine, decimal_text, degrees, exactly, power, square_root, times
+from ptmcad.show.report.bounds import Bounds, cosine_sine, decimal_text, degrees, exactly, square_root
 from ptmcad.show.report.equilibria import at_sample
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.show.report.frame import ticks
@@ -293,7 +293,7 @@ def test_angles_contain_the_true_one(degree: int, slack: int) -> None:
     with mpmath.workdps(40):
         c, s = (Fraction(str(f(mpmath.mpf(degree) * mpmath.pi / 180))) for f in (mpmath.cos, mpmath.sin))
     radius = Fraction(1, 10**slack) if slack else Fraction(1, 10**20)
-    found = degrees((c - radius, c + radius), (s - radius, s + radius))
+    found = degrees(Bounds((c - radius, c + radius)), Bounds((s - radius, s + radius)))
     assert found is not None
     turns = min((degree, degree - 360, degree + 360), key=lambda t: abs(t - found[0]))
     assert found[0] <= turns <= found[1]
@@ -305,7 +305,7 @@ def test_cosines_and_sines_of_bounds_contain_the_true_ones(middle: Fraction, sla
     import mpmath
 
     radius = Fraction(1, 10**slack) if slack else Fraction(0)
-    found = cosine_sine((middle - radius, middle + radius))
+    found = cosine_sine(Bounds((middle - radius, middle + radius)))
     with mpmath.workdps(60):
         for end in (middle - radius, middle, middle + radius):
             angle = mpmath.mpf(end.numerator) / end.denominator
@@ -347,7 +347,7 @@ def test_boxes_of_angles_that_are_none_are_refused(solution: Solution) -> None:
 
 
 def test_boxes_that_tell_no_angle() -> None:
-    assert degrees((Fraction(-1), Fraction(1)), (Fraction(-1), Fraction(1))) is None
+    assert degrees(*[Bounds((Fraction(-1), Fraction(1)))] * 2) is None
     assert degrees(exactly(0), exactly(0)) is None
 
 
@@ -356,8 +356,8 @@ def test_square_roots_are_bounded_from_both_sides(value: Fraction) -> None:
     low, high = square_root(exactly(value))
     assert low * low <= value <= high * high
     assert high - low <= max(high, Fraction(1)) / 2**60
-    assert times(exactly(-2), (low, high)) == (-2 * high, -2 * low)
-    assert power((Fraction(-1), Fraction(2)), 2) == (0, 4)
+    assert exactly(-2) * Bounds((low, high)) == (-2 * high, -2 * low)
+    assert Bounds((Fraction(-1), Fraction(2))) ** 2 == (0, 4)
 
 
 def unit_of(text: str) -> float:

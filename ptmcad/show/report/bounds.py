@@ -8,49 +8,53 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import atan2
+from typing import Any
 
 from ptmcad.text.balls import rational_bounds
 from ptmcad.text.bounds import nearest_multiple
 from ptmcad.text.numerals import integer_text, magnitude
-
-Bounds = tuple[Fraction, Fraction]
 
 _PI = (Fraction(3141592653589793238, 10**18), Fraction(3141592653589793239, 10**18))
 _MAX_PLAIN_PLACES = 12
 """Places before or after the point from which the form with an exponent is used."""
 
 
+class Bounds(tuple[Fraction, Fraction]):
+    """Rational bounds of a real number, and their arithmetic."""
+
+    def __neg__(self) -> Bounds:
+        return Bounds((-self[1], -self[0]))
+
+    def __add__(self, other: Any) -> Bounds:
+        return Bounds((self[0] + other[0], self[1] + other[1]))
+
+    def __sub__(self, other: Any) -> Bounds:
+        return Bounds((self[0] - other[1], self[1] - other[0]))
+
+    def __mul__(self, other: Any) -> Bounds:
+        if other is self:
+            return Bounds.__pow__(self, 2)
+        ends = self[:1] if self[0] == self[1] else self
+        corners = [x * y for x in ends for y in other]
+        return Bounds((min(corners), max(corners)))
+
+    def __pow__(self, exponent: int) -> Bounds:
+        """A natural power; an even one is not negative."""
+        if exponent == 1:
+            return self
+        low, high = sorted(x**exponent for x in self)
+        return Bounds((Fraction(0) if exponent and exponent % 2 == 0 and self[0] < 0 < self[1] else low, high))
+
+
 def exactly(value: Fraction | int) -> Bounds:
     """The bounds of a rational number."""
-    return Fraction(value), Fraction(value)
-
-
-def plus(*terms: Bounds) -> Bounds:
-    """The sum."""
-    return sum((t[0] for t in terms), Fraction(0)), sum((t[1] for t in terms), Fraction(0))
-
-
-def times(a: Bounds, b: Bounds) -> Bounds:
-    """The product."""
-    if a[0] == a[1]:
-        low, high = a[0] * b[0], a[0] * b[1]
-        return (low, high) if low <= high else (high, low)
-    corners = [x * y for x in a for y in b]
-    return min(corners), max(corners)
-
-
-def power(a: Bounds, exponent: int) -> Bounds:
-    """A natural power; an even one is not negative."""
-    if exponent == 1:
-        return a
-    ends = sorted(x**exponent for x in a)
-    return (Fraction(0), ends[1]) if exponent and exponent % 2 == 0 and a[0] < 0 < a[1] else (ends[0], ends[1])
+    return Bounds((Fraction(value), Fraction(value)))
 
 
 def square_root(a: Bounds) -> Bounds:
     """The square root of a number that is not negative, though its lower bound may be."""
     low, high = (rational_bounds(lambda ball: ball.sqrt(), max(end, Fraction(0))) for end in a)
-    return low[0], high[1]
+    return Bounds((low[0], high[1]))
 
 
 def degrees(cosine: Bounds, sine: Bounds) -> Bounds | None:
@@ -60,26 +64,28 @@ def degrees(cosine: Bounds, sine: Bounds) -> Bounds | None:
     """
     guess = Fraction(round(atan2(float(sum(sine)), float(sum(cosine))) * 2**60), 2**60)
     c, s = _cosine_sine(guess)
-    across = plus(times(sine, c), times(cosine, (-s[1], -s[0])))  # sin(angle - guess)
-    along = plus(times(cosine, c), times(sine, s))  # cos(angle - guess)
+    across = sine * c - cosine * s  # sin(angle - guess)
+    along = cosine * c + sine * s  # cos(angle - guess)
     widest = max(abs(across[0]), abs(across[1]))
     if along[0] <= 0 or widest > Fraction(1, 1000):
         return None
     # |arcsin d - d| <= |d|^3 where |d| < 1/2
-    angle = (guess + across[0] - widest**3, guess + across[1] + widest**3)
-    return times(times(angle, exactly(180)), (1 / _PI[1], 1 / _PI[0]))
+    angle = Bounds((guess + across[0] - widest**3, guess + across[1] + widest**3))
+    return angle * exactly(180) * (1 / _PI[1], 1 / _PI[0])
 
 
 def cosine_sine(angle: Bounds) -> tuple[Bounds, Bounds]:
     """Cosine and sine of an angle in radians: those at the middle of its bounds, which nothing leaves faster than the
     angle itself."""
     slack = (angle[1] - angle[0]) / 2
-    cosine, sine = ((low - slack, high + slack) for low, high in _cosine_sine((angle[0] + angle[1]) / 2))
-    return cosine, sine
+    cosine, sine = _cosine_sine((angle[0] + angle[1]) / 2)
+    around = Bounds((-slack, slack))
+    return cosine + around, sine + around
 
 
 def _cosine_sine(angle: Fraction) -> tuple[Bounds, Bounds]:
-    return rational_bounds(lambda ball: ball.cos(), angle), rational_bounds(lambda ball: ball.sin(), angle)
+    cosine, sine = rational_bounds(lambda ball: ball.cos(), angle), rational_bounds(lambda ball: ball.sin(), angle)
+    return Bounds(cosine), Bounds(sine)
 
 
 def decimal_text(a: Bounds, exponent: int) -> str:

@@ -27,10 +27,7 @@ from ptmcad.show.report.bounds import (
     degrees,
     exactly,
     last_place,
-    plus,
-    power,
     square_root,
-    times,
 )
 from ptmcad.show.report.potential import Potential, energy, potential_at
 from ptmcad.text.numerals import shortest_text, text_of
@@ -228,26 +225,10 @@ def _box(solution: Solution, model: Model, polynomial: bool) -> tuple[Bounds, ..
     center, radius = solution.center, solution.radius
     if len(center) != len(most) or not 0 <= radius < widest or any(map(gt, map(abs, center), most)):
         raise ConfigError(f"a stored solution is no box around {kind}; check it with ptmcad verify")
-    ends = [(c - radius, c + radius) for c in center]
+    ends = [Bounds((c - radius, c + radius)) for c in center]
     if polynomial:
         return tuple(ends)
     return (*(bounds for end in ends[:angles] for bounds in cosine_sine(end)), *ends[angles:])
-
-
-class _Bounded(tuple[Fraction, Fraction]):
-    """Bounds as a number."""
-
-    def __neg__(self) -> _Bounded:
-        return _Bounded(times(exactly(-1), self))
-
-    def __add__(self, other: Any) -> _Bounded:
-        return _Bounded(plus(self, other))
-
-    def __sub__(self, other: Any) -> _Bounded:
-        return self.__add__(-other)
-
-    def __mul__(self, other: Any) -> _Bounded:
-        return _Bounded(power(self, 2) if self is other else times(self, other))
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,19 +239,19 @@ class _Within:
     values: Mapping[str, Fraction]
     box: tuple[Bounds, ...] = ()
 
-    def constant(self, value: Fraction) -> _Bounded:
-        return _Bounded(exactly(value))
+    def constant(self, value: Fraction) -> Bounds:
+        return exactly(value)
 
-    def variable(self, number: int) -> _Bounded:
+    def variable(self, number: int) -> Bounds:
         if number in self.system.reals:
-            return _Bounded(self.box[2 * len(self.system.angles) + self.system.reals.index(number)])
+            return self.box[2 * len(self.system.angles) + self.system.reals.index(number)]
         return self.constant(self.values[self.system.names[number]])
 
-    def cos(self, number: int) -> _Bounded:
-        return _Bounded(self.box[2 * self.system.angles.index(number)])
+    def cos(self, number: int) -> Bounds:
+        return self.box[2 * self.system.angles.index(number)]
 
-    def sin(self, number: int) -> _Bounded:
-        return _Bounded(self.box[2 * self.system.angles.index(number) + 1])
+    def sin(self, number: int) -> Bounds:
+        return self.box[2 * self.system.angles.index(number) + 1]
 
-    def length(self, x: _Bounded, y: _Bounded) -> _Bounded:
-        return _Bounded(square_root(x * x + y * y))
+    def length(self, x: Bounds, y: Bounds) -> Bounds:
+        return square_root(x * x + y * y)

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from ptmcad.answer.regionmap import System
 from ptmcad.errors import ConfigError
-from ptmcad.show.report.bounds import Bounds, exactly, plus, power, times
+from ptmcad.show.report.bounds import Bounds, exactly
 from ptmcad.text.numerals import fraction_of
 
 Potential = Mapping[tuple[int, ...], Fraction]
@@ -67,6 +67,6 @@ def energy(potential: Potential, unknowns: tuple[Bounds, ...]) -> Bounds:
     for exponents, coefficient in potential.items():
         term = exactly(coefficient)
         for value, exponent in zip(unknowns, exponents, strict=True):
-            term = times(term, power(value, exponent)) if exponent else term
-        total = plus(total, term)
+            term = term * value**exponent if exponent else term
+        total = total + term
     return total
