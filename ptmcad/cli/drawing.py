@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from ptmcad.cli.formats import format_option
-from ptmcad.cli.gathering import F, gathered
+from ptmcad.cli.gathering import F, gathered, reading
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.values import palettes
 from ptmcad.errors import ConfigError, blamed
@@ -103,22 +103,20 @@ class DrawingOptions(NamedTuple):
         path.write_bytes(npz_bytes(result, boundaries(), result.grid(*self.pixels)))
 
 
-def share_of(_context: click.Context, parameter: click.Parameter, value: str | None) -> Fraction | None:
-    """A share between 0 and 1, where one is given."""
-    if value is None:
-        return None
-    return share_for(parameter.opts[0], value)
+share_of = reading(share_for)
+"""A share between 0 and 1, where one is given."""
 
 
-def pixels_of(_context: click.Context, parameter: click.Parameter, value: str) -> tuple[int, int]:
+def _pixels(key: str, value: str) -> tuple[int, int]:
     """Columns and rows, such as 400 or 400x300."""
     match = re.fullmatch(r"(\d{1,6})(?:x(\d{1,6}))?", value.strip(), re.ASCII)
     sides = (int(match[1]), int(match[2] or match[1])) if match else (0, 0)
     if not all(1 <= side <= MAX_SIDE for side in sides):
-        raise ConfigError(
-            f"{value!r} is not a size such as 400 or 400x300, of 1 to {MAX_SIDE} each", key=parameter.opts[0]
-        )
+        raise ConfigError(f"{value!r} is not a size such as 400 or 400x300, of 1 to {MAX_SIDE} each", key=key)
     return sides
+
+
+pixels_of = reading(_pixels)
 
 
 def _drawing(

@@ -52,21 +52,12 @@ class FamilyOutput(NamedTuple):
     surface: bool = False
 
     @property
-    def meshes(self) -> tuple[str, ...]:
-        return tuple(kind for kind in self.formats if kind in MESHES)
-
-    @property
     def needs_surface(self) -> bool:
-        return bool(self.meshes) or (self.surface and bool(self.pictures))
+        return bool(self.among(MESHES)) or (self.surface and bool(self.among(PICTURES)))
 
-    @property
-    def pictures(self) -> tuple[str, ...]:
-        return tuple(kind for kind in self.formats if kind in PICTURES)
-
-    @property
-    def of_members(self) -> tuple[str, ...]:
-        """The formats of files that each member has of its own."""
-        return tuple(kind for kind in self.formats if kind in DATA)
+    def among(self, known: tuple[str, ...]) -> tuple[str, ...]:
+        """The formats that are of one kind: pictures, meshes, or data, of which each member has files of its own."""
+        return tuple(kind for kind in self.formats if kind in known)
 
 
 def family_to_files(family: Family, options: Options, wanted: FamilyOutput) -> tuple[FamilyMap, BoundarySurface | None]:
@@ -139,14 +130,14 @@ def _at(error: PtmcadError, place: str) -> PtmcadError:
 
 def names_of_family(name: str, wanted: FamilyOutput) -> tuple[str, ...]:
     """The family's own files."""
-    names = [f"{name}{end}.{kind}" for kind in wanted.pictures for end in ("", SOLID)]
-    names += [f"{name}.{kind}" for kind in wanted.meshes]
+    names = [f"{name}{end}.{kind}" for kind in wanted.among(PICTURES) for end in ("", SOLID)]
+    names += [f"{name}.{kind}" for kind in wanted.among(MESHES)]
     return (*names, f"{name}.json") if "json" in wanted.formats else tuple(names)
 
 
 def _write_member(found: RegionMap, wanted: FamilyOutput) -> None:
     name = found.slice.name
-    writers = wanted.drawing.writers(found, name, wanted.of_members)
+    writers = wanted.drawing.writers(found, name, wanted.among(DATA))
     if "json" in wanted.formats:
         writers[f"{name}.json"] = text_writer(found.to_json(timings=not wanted.no_timings))
     if writers:
@@ -156,9 +147,9 @@ def _write_member(found: RegionMap, wanted: FamilyOutput) -> None:
 def _writers(result: FamilyMap, surface: BoundarySurface | None, wanted: FamilyOutput) -> dict[str, Writer]:
     name = result.name
     shown = surface if wanted.surface else None
-    writers = picture_writers(result, name, wanted.pictures, wanted.drawing, shown)
+    writers = picture_writers(result, name, wanted.among(PICTURES), wanted.drawing, shown)
     if surface is not None:
-        writers |= mesh_writers(surface, name, wanted.meshes)
+        writers |= mesh_writers(surface, name, wanted.among(MESHES))
     if "json" in wanted.formats:
         files = [f"{member.slice.name}.json" for member in result.members]
         writers[f"{name}.json"] = text_writer(write_family(result, files))

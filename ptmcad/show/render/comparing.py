@@ -162,7 +162,7 @@ def _panels(comparison: Comparison, first: Shapes, style: PictureStyle, sides: S
         marks = marks_of(seen, sides, dpi, type.detail)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
         paint = replace(paint, thin_walls=thin)
-        told = entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined))
+        told = list(entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined)))
         title = whole_title(result) if style.title is None else own
         found.append((seen, paint, f"{letter}: {title}" if title else letter, told, {}, marks))
     fills = _fills(comparison, style)

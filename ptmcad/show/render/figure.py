@@ -19,7 +19,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import heading_of
 from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.layout import GAP, LEFT, SIDE
-from ptmcad.show.render.legend import INK, Entry, draw_legend, height
+from ptmcad.show.render.legend import INK, Entry, Type, draw_legend
 from ptmcad.show.render.mechanism import spring_mark, symbol_mark
 from ptmcad.show.render.poses import (
     BELOW,
@@ -75,7 +75,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     panels = _LINE * len(head) + 0.1
     if frame is not None:
         panels += len(shown) * (HEAD + frame.height / 72 + below + 0.06)
-    key = height(entries) + 0.35
+    key = Type().height(entries) + 0.35
     with settings():
         # what the parts mean stands below the map's legend, unless that is long or insets are there
         figure = MapDrawing(result, dpi=_DPI).figure(FreeSpace(wide + _GAP + _RIM, panels))
@@ -99,7 +99,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
                 top -= HEAD + frame.height / 72
                 panel(figure, Scene(mechanism, frame, arrows), pose, number, (left, top))
                 top -= below + 0.06
-            scale_bar(figure, frame, (place[0], place[1] - height(entries) - 0.16), result.slice.units)
+            scale_bar(figure, frame, (place[0], place[1] - Type().height(entries) - 0.16), result.slice.units)
         draw_legend(figure, entries, *place)
     return figure
 

@@ -82,7 +82,7 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundaryS
                 _floor(axes, result, float(value), paint, _least(result))
             inches = min(box[2] * wide, box[3] * tall) / _BOX_DIAGONAL
             add_sheets(axes, surface, colours, _curves(family), 0.6 * paint.strong / 72 / inches)
-    axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
+    _limit(axes, family)
     write_lines(figure, (0.6 * em, tall - em), titles, font, 1.5 * em, fontweight="bold", color=INK)
     draw_flowed(figure, lines, em, type)
     return figure
@@ -99,7 +99,7 @@ def _axes(figure: Figure, box: Box, family: FamilyMap, font: float) -> Any:
     axes.set_proj_type("ortho")
     axes.view_init(elev=22, azim=-62)
     axes.computed_zorder = False
-    axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
+    _limit(axes, family)
     how = {"fontsize": 0.95 * font, "labelpad": 0.3 * font}
     axes.set_xlabel(axis_name(slice, 0), **how)
     axes.set_ylabel(axis_name(slice, 1), **how)
@@ -150,6 +150,10 @@ def _lowest(family: FamilyMap) -> list[tuple[Fraction, RegionMap]]:
 def _curves(family: FamilyMap) -> list[Any]:
     """The members' curves at which counts change, at their heights."""
     return [line for value, result in family for line in _lifted(result, float(value))]
+
+
+def _limit(axes: Any, family: FamilyMap) -> None:
+    axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
 
 
 def _ends(axis: Any) -> tuple[float, float]:
