@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import partial
 from math import degrees, remainder
 from pathlib import Path
 
@@ -16,7 +15,7 @@ from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map, tolerance_option
 from ptmcad.cli.paths import name_option, out_option
-from ptmcad.cli.pictures import figure, report_written
+from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_of
 from ptmcad.cli.slices import SliceOptions, slice_options
@@ -28,6 +27,7 @@ from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import file_name
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Slice
+from ptmcad.show import render
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.style import PictureStyle, styled
 
@@ -93,7 +93,8 @@ def command(
 
         with stored_in(asked.config if stored else None):
             motion = motion_of(result, path, pose, frames, progress)
-            write_files(out, {each: figure(each, partial(_draw, motion, style, fps, dpi)) for each in names})
+            film = {each: picture(each, lambda path: render.save_film(motion, path, style, fps, dpi)) for each in names}
+            write_files(out, film)
     click.echo(f"{question_of(result.slice)}\n{summary(motion)}")
     report_written(out, names)
 
@@ -104,12 +105,6 @@ def _slice(asked: SliceOptions) -> Slice:
     if slice.model.drawable is None:
         raise ConfigError(no_drawing(slice.model))
     return slice
-
-
-def _draw(motion: Motion, style: PictureStyle, fps: int, dpi: int, path: Path) -> None:
-    from ptmcad.show.render.film import save_film
-
-    save_film(motion, path, style, fps, dpi)
 
 
 def summary(motion: Motion) -> str:

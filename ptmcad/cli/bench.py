@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.gathering import reading
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import report_written
 from ptmcad.cli.progress import ProgressBar
@@ -21,9 +22,9 @@ METHODS = ("exact", "certified", "companion", "multistart", "qepcad", "singular"
 DEFAULT = "fig4"
 
 
-def _seconds(_context: click.Context, parameter: click.Parameter, value: float) -> float:
+def _seconds(key: str, value: float) -> float:
     if not 0 < value < 1e9:
-        raise ConfigError(f"{value} is not a positive number of seconds", key=parameter.opts[0])
+        raise ConfigError(f"{value} is not a positive number of seconds", key=key)
     return value
 
 
@@ -41,7 +42,7 @@ def _seconds(_context: click.Context, parameter: click.Parameter, value: float) 
               help="Runs of each job that takes less than 2 seconds; others are run once.")  # fmt: skip
 @click.option("--seed", type=click.IntRange(0, 2**31), default=1, show_default=True,
               help="Of the order of the methods.")  # fmt: skip
-@click.option("--time-limit", type=float, default=60.0, show_default=True, callback=_seconds, metavar="S",
+@click.option("--time-limit", type=float, default=60.0, show_default=True, callback=reading(_seconds), metavar="S",
               help="Seconds for each method on each slice; what does not fit is left out, and reported.")  # fmt: skip
 @click.option("--quick", is_flag=True, help="Fewer and coarser settings.")
 @click.option("--page", is_flag=True, help="Write error-time.md too, a page of all studies in the folder.")

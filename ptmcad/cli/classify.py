@@ -14,7 +14,7 @@ import click
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.timings import with_compilation
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, drawing_options, names_of, share_of
-from ptmcad.cli.gathering import gathered
+from ptmcad.cli.gathering import gathered, reading
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
 from ptmcad.cli.paths import file_option, out_option
@@ -208,16 +208,16 @@ def warn(slice: Slice, options: Options) -> None:
         click.echo(f"note: {text}", err=True)
 
 
-def _names_of_savings(_context: click.Context, parameter: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
-    with blamed(parameter.opts[0]):
+def _names_of_savings(key: str, names: tuple[str, ...]) -> tuple[str, ...]:
+    with blamed(key):
         check_names(names)
     return names
 
 
-def _one(_context: click.Context, parameter: click.Parameter, given: tuple[str, ...]) -> str | None:
+def _one(key: str, given: tuple[str, ...]) -> str | None:
     """An option that is given once, where it is; of more than one the last would count and nobody be told."""
     if len(given) > 1:
-        raise ConfigError("a family has one free parameter: `ptmcad sweep` goes through several", key=parameter.opts[0])
+        raise ConfigError("a family has one free parameter: `ptmcad sweep` goes through several", key=key)
     return given[0] if given else None
 
 
@@ -280,7 +280,7 @@ def _classify_family(
 
 @click.command("classify")
 @slice_options
-@click.option("--free", multiple=True, callback=_one, metavar="NAME=LO:HI",
+@click.option("--free", multiple=True, callback=reading(_one), metavar="NAME=LO:HI",
               help="A third parameter: a map for each member of a family.")  # fmt: skip
 @click.option("--members", metavar="VALUE,..|N|between",
               help="Values of the free parameter, how many, or one between each two neighbouring changes.  "
@@ -299,8 +299,8 @@ def _classify_family(
 @engine_option
 @out_option
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
-@click.option("--without", multiple=True, callback=_names_of_savings, hidden=True)  # for the ablation study
-@click.option("--keep", multiple=True, callback=_names_of_savings, hidden=True)  # the older name of --without
+@click.option("--without", multiple=True, callback=reading(_names_of_savings), hidden=True)  # for the ablation study
+@click.option("--keep", multiple=True, callback=reading(_names_of_savings), hidden=True)  # the older name of --without
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),

@@ -24,6 +24,7 @@ from ptmcad.question.config import file_name
 from ptmcad.question.config.designed import Design
 from ptmcad.question.config.designs import design_from_options
 from ptmcad.question.examples import FIRST, SECOND
+from ptmcad.show import render
 
 FORMATS = ("json", "png", "svg", "pdf")
 SEED, BOXES = 1, 100_000
@@ -139,11 +140,6 @@ def command(
 def _save(found: BestDesign, wanted: tuple[str, ...], folder: Path) -> None:
     """Write the pictures and, last, the JSON."""
 
-    def draw(path: Path) -> None:
-        from ptmcad.show.render.design import draw_design
-
-        draw_design(found, path)
-
-    pictures = {name: figure(name, draw) for name in wanted if not name.endswith(".json")}
+    pictures = {name: figure(name, lambda: render.figure_of_design(found)) for name in wanted if name[-5:] != ".json"}
     file = next((name for name in wanted if name not in pictures), "")
     write_result(folder, pictures, file, found.to_json() if file else "")

@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from ptmcad.cli.formats import format_option
-from ptmcad.cli.gathering import F, gathered
+from ptmcad.cli.gathering import F, gathered, reading
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.values import palettes
 from ptmcad.errors import ConfigError, blamed
 from ptmcad.process.output import Writer, text_writer
+from ptmcad.show import render
 from ptmcad.show.style import DEFAULT, LINES, PALETTES, PRESETS, LegendPlace, PictureStyle, styled
 from ptmcad.text.parsing import share_for
 
@@ -78,14 +79,11 @@ class DrawingOptions(NamedTuple):
         return found
 
     def _picture(self, result: Any, name: str, _boundaries: Callable[[], Any], path: Path) -> None:
-        from ptmcad.show.render import draw  # brings matplotlib
-
+        how = {"dpi": self.dpi, "style": self.style, "overlay": self.overlay}
         if self.poses:
-            from ptmcad.show.render.plotting import draw_with_poses
-
-            missing = draw_with_poses(result, self.poses, path, self.dpi, self.style, self.overlay)
+            missing = render.draw_with_poses(result, self.poses, path, **how)
         else:
-            missing = draw(result, path, samples=self.samples, dpi=self.dpi, style=self.style, overlay=self.overlay)
+            missing = render.draw(result, path, samples=self.samples, **how)
         if missing:
             click.echo(f"note: {name} has no room for {' and '.join(missing)}, which a larger --size has", err=True)
 
@@ -105,22 +103,20 @@ class DrawingOptions(NamedTuple):
         path.write_bytes(npz_bytes(result, boundaries(), result.grid(*self.pixels)))
 
 
-def share_of(_context: click.Context, parameter: click.Parameter, value: str | None) -> Fraction | None:
-    """A share between 0 and 1, where one is given."""
-    if value is None:
-        return None
-    return share_for(parameter.opts[0], value)
+share_of = reading(share_for)
+"""A share between 0 and 1, where one is given."""
 
 
-def pixels_of(_context: click.Context, parameter: click.Parameter, value: str) -> tuple[int, int]:
+def _pixels(key: str, value: str) -> tuple[int, int]:
     """Columns and rows, such as 400 or 400x300."""
     match = re.fullmatch(r"(\d{1,6})(?:x(\d{1,6}))?", value.strip(), re.ASCII)
     sides = (int(match[1]), int(match[2] or match[1])) if match else (0, 0)
     if not all(1 <= side <= MAX_SIDE for side in sides):
-        raise ConfigError(
-            f"{value!r} is not a size such as 400 or 400x300, of 1 to {MAX_SIDE} each", key=parameter.opts[0]
-        )
+        raise ConfigError(f"{value!r} is not a size such as 400 or 400x300, of 1 to {MAX_SIDE} each", key=key)
     return sides
+
+
+pixels_of = reading(_pixels)
 
 
 def _drawing(
@@ -144,18 +140,9 @@ def _style(
     except ConfigError as error:
         raise ConfigError(error.message, key=f"--{(error.key or 'style').replace('_', '-')}") from error
     if made.font_family:
-        _check_fonts(made.font_family)
+        with blamed("--font-family"):
+            render.check_families(made.font_family)
     return made
-
-
-def _check_fonts(families: tuple[str, ...]) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
-    from ptmcad.show.render.fonts import check_families
-
-    with blamed("--font-family"):
-        check_families(families)
 
 
 def style_options(command: F) -> F:

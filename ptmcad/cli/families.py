@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,13 +14,14 @@ from ptmcad.answer.changes import TOLERANCE, Changes
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, names_of
-from ptmcad.cli.pictures import picture
+from ptmcad.cli.pictures import figure
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import read_other, read_result
 from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import Family, fault_of_member
+from ptmcad.show import render
 from ptmcad.show.document.family import FORMAT, read_family, write_family
 from ptmcad.text.numerals import text_of
 
@@ -52,21 +52,12 @@ class FamilyOutput(NamedTuple):
     surface: bool = False
 
     @property
-    def meshes(self) -> tuple[str, ...]:
-        return tuple(kind for kind in self.formats if kind in MESHES)
-
-    @property
     def needs_surface(self) -> bool:
-        return bool(self.meshes) or (self.surface and bool(self.pictures))
+        return bool(self.among(MESHES)) or (self.surface and bool(self.among(PICTURES)))
 
-    @property
-    def pictures(self) -> tuple[str, ...]:
-        return tuple(kind for kind in self.formats if kind in PICTURES)
-
-    @property
-    def of_members(self) -> tuple[str, ...]:
-        """The formats of files that each member has of its own."""
-        return tuple(kind for kind in self.formats if kind in DATA)
+    def among(self, known: tuple[str, ...]) -> tuple[str, ...]:
+        """The formats that are of one kind: pictures, meshes, or data, of which each member has files of its own."""
+        return tuple(kind for kind in self.formats if kind in known)
 
 
 def family_to_files(family: Family, options: Options, wanted: FamilyOutput) -> tuple[FamilyMap, BoundarySurface | None]:
@@ -139,14 +130,14 @@ def _at(error: PtmcadError, place: str) -> PtmcadError:
 
 def names_of_family(name: str, wanted: FamilyOutput) -> tuple[str, ...]:
     """The family's own files."""
-    names = [f"{name}{end}.{kind}" for kind in wanted.pictures for end in ("", SOLID)]
-    names += [f"{name}.{kind}" for kind in wanted.meshes]
+    names = [f"{name}{end}.{kind}" for kind in wanted.among(PICTURES) for end in ("", SOLID)]
+    names += [f"{name}.{kind}" for kind in wanted.among(MESHES)]
     return (*names, f"{name}.json") if "json" in wanted.formats else tuple(names)
 
 
 def _write_member(found: RegionMap, wanted: FamilyOutput) -> None:
     name = found.slice.name
-    writers = wanted.drawing.writers(found, name, wanted.of_members)
+    writers = wanted.drawing.writers(found, name, wanted.among(DATA))
     if "json" in wanted.formats:
         writers[f"{name}.json"] = text_writer(found.to_json(timings=not wanted.no_timings))
     if writers:
@@ -156,9 +147,9 @@ def _write_member(found: RegionMap, wanted: FamilyOutput) -> None:
 def _writers(result: FamilyMap, surface: BoundarySurface | None, wanted: FamilyOutput) -> dict[str, Writer]:
     name = result.name
     shown = surface if wanted.surface else None
-    writers = picture_writers(result, name, wanted.pictures, wanted.drawing, shown)
+    writers = picture_writers(result, name, wanted.among(PICTURES), wanted.drawing, shown)
     if surface is not None:
-        writers |= mesh_writers(surface, name, wanted.meshes)
+        writers |= mesh_writers(surface, name, wanted.among(MESHES))
     if "json" in wanted.formats:
         files = [f"{member.slice.name}.json" for member in result.members]
         writers[f"{name}.json"] = text_writer(write_family(result, files))
@@ -180,9 +171,12 @@ def picture_writers(
     """
     found = {}
     for kind in formats:
-        for end, draw in (("", _draw_multiples), (SOLID, partial(_draw_solid, surface))):
+        for end, make in (
+            ("", lambda: render.multiples_figure(result, drawing.dpi, drawing.style)),
+            (SOLID, lambda: render.solid_figure(result, drawing.dpi, drawing.style, surface)),
+        ):
             for file in names_of(f"{stem}{end}", (kind,)):
-                found[file] = picture(file, partial(draw, result, drawing))
+                found[file] = figure(file, make, dpi=drawing.dpi, style=drawing.style)
     return found
 
 
@@ -191,18 +185,6 @@ def mesh_writers(surface: BoundarySurface, stem: str, formats: tuple[str, ...]) 
     from ptmcad.show.export.mesh import MESHES as KNOWN
 
     return {f"{stem}.{kind}": text_writer(KNOWN[kind](surface)) for kind in formats}
-
-
-def _draw_multiples(result: FamilyMap, drawing: DrawingOptions, path: Path) -> None:
-    from ptmcad.show.render.multiples import draw_multiples  # brings matplotlib
-
-    draw_multiples(result, path, drawing.dpi, drawing.style)
-
-
-def _draw_solid(surface: BoundarySurface | None, result: FamilyMap, drawing: DrawingOptions, path: Path) -> None:
-    from ptmcad.show.render.solid import draw_solid  # brings matplotlib
-
-    draw_solid(result, path, drawing.dpi, drawing.style, surface)
 
 
 def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:

@@ -10,7 +10,14 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any, TypeVar
 
+import click
+
 F = TypeVar("F", bound=Callable[..., Any])
+
+
+def reading(read: Callable[[str, Any], Any], absent: Any = None) -> Callable[[Any, click.Parameter, Any], Any]:
+    """What click calls with an option's value: a function of the option's name and its value, where one is given."""
+    return lambda _context, parameter, value: absent if value is None else read(parameter.opts[0], value)
 
 
 def gathered(**kinds: Callable[..., Any]) -> Callable[[F], F]:

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import click
 
-from ptmcad.cli.gathering import F, gathered
+from ptmcad.cli.gathering import F, gathered, reading
 from ptmcad.errors import ConfigError
 from ptmcad.options import Progress
 from ptmcad.process.handover import Topic, send, watched
@@ -32,8 +32,8 @@ _SIZE = re.compile(r"([0-9]{1,12}(?:\.[0-9]{1,12})?)\s*([KMGT])(?:I?B)?", re.IGN
 _UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 
-def _seconds(_context: click.Context, _parameter: click.Parameter, value: float | None) -> float | None:
-    if value is not None and not 0 < value < 1e9:
+def _seconds(_key: str, value: float) -> float:
+    if not 0 < value < 1e9:
         raise click.BadParameter(f"{value} is not a positive number of seconds")
     return value
 
@@ -75,10 +75,6 @@ def default_bound() -> Bound:
     return Bound(size, f"{size / (1 << 30):.3g}G, nine tenths of this {whose}'s (--max-memory sets another),")
 
 
-def _bound(_context: click.Context, _parameter: click.Parameter, value: str | None) -> Bound | None:
-    return None if value is None else bound_of(value)
-
-
 class ResourceLimits(NamedTuple):
     """Seconds and memory that a command may take, None for no limit of its own."""
 
@@ -89,11 +85,11 @@ class ResourceLimits(NamedTuple):
 def limit_options(command: F) -> F:
     """Add ``--timeout`` and ``--max-memory``, which the command gets as ``limits``."""
     command = gathered(limits=ResourceLimits)(command)
-    command = click.option("--max-memory", callback=_bound, metavar="SIZE",
+    command = click.option("--max-memory", callback=reading(lambda _, text: bound_of(text)), metavar="SIZE",
                            help="Stop before using more memory, such as 500M or 2G (exit status 3; 2 when it is "
                                 "too little to start with).  "
                                 "[default: 9/10 of the machine's]")(command)  # fmt: skip
-    return click.option("--timeout", type=float, callback=_seconds, metavar="S",
+    return click.option("--timeout", type=float, callback=reading(_seconds), metavar="S",
                         help="Stop after S seconds (exit status 3); loading the certified engine, and compiling it, "
                              "once for a machine, is no part of them.")(command)  # fmt: skip
 

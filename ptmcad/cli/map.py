@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import click
 
@@ -18,8 +18,7 @@ from ptmcad.cli.idle import idle_style, report_idle
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map, tolerance_option
 from ptmcad.cli.paths import out_option
-from ptmcad.cli.pictures import figure as figure_of
-from ptmcad.cli.pictures import picture
+from ptmcad.cli.pictures import figure, picture
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_of
 from ptmcad.cli.slices import SliceOptions, slice_options
@@ -27,21 +26,14 @@ from ptmcad.cli.stored import stored_in
 from ptmcad.cli.values import poses, quantity_names
 from ptmcad.errors import ConfigError, PtmcadError, shown_path
 from ptmcad.options import Options
-from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.process.output import check_writable, text_writer, write_files
+from ptmcad.show import render
 from ptmcad.show.style import LegendPlace, PictureStyle
 
 PICTURES, DATA = ("png", "svg", "pdf"), ("csv", "npz")
 FORMATS = (*PICTURES, *DATA)
 MAX_DIFFERENCE = 1e-6
 """From exact poses, as a share of the largest value: more is a fault of the continuation, which is said."""
-
-
-class Figure(NamedTuple):
-    """How a map is drawn."""
-
-    contours: int
-    style: PictureStyle
-    dpi: int
 
 
 class DifferenceError(PtmcadError):
@@ -119,7 +111,18 @@ def command(
         with stored_in(asked.config if stored else None):
             field = field_of(result, request, *pixels, checks=checks, progress=progress)
             _expect_values(field)
-            written = write_files(out, _writers(result, field, names, Figure(contours, style, dpi)))
+            boundaries = cache(result.boundaries)
+
+            def make() -> Any:
+                return render.field_figure(result, field, boundaries(), contours, dpi, style)
+
+            writers = {
+                name: picture(name, partial(_tabulate, field))
+                if name.endswith(DATA)
+                else figure(name, make, dpi=dpi, style=style)
+                for name in names
+            }
+            written = write_files(out, writers)
     click.echo(question_of(slice))
     for path in written:
         click.echo(shown_path(path))
@@ -148,26 +151,13 @@ def _slug(text: str) -> str:
     return re.sub(r"[^A-Za-z0-9]+", "-", text).strip("-")[:60] or "value"
 
 
-def _writers(result: Any, field: Field, names: tuple[str, ...], figure: Figure) -> dict[str, Writer]:
-    boundaries = cache(result.boundaries)
+def _tabulate(field: Field, path: Path) -> None:
+    from ptmcad.show.data import field_csv, field_npz
 
-    def draw(path: Path) -> None:
-        from ptmcad.show.render.field import field_figure
-        from ptmcad.show.render.printing import save, settings
-
-        with settings(figure.style):
-            drawn = field_figure(result, field, boundaries(), figure.contours, figure.dpi, figure.style)
-        save(drawn, path, dpi=figure.dpi, style=figure.style)
-
-    def tabulate(path: Path) -> None:
-        from ptmcad.show.data import field_csv, field_npz
-
-        if path.suffix == ".csv":
-            text_writer(field_csv(field))(path)
-        else:
-            path.write_bytes(field_npz(field))
-
-    return {name: picture(name, tabulate) if name.endswith(DATA) else figure_of(name, draw) for name in names}
+    if path.suffix == ".csv":
+        text_writer(field_csv(field))(path)
+    else:
+        path.write_bytes(field_npz(field))
 
 
 def _expect_values(field: Field) -> None:

@@ -6,13 +6,15 @@ picture and where the result is, and the exit status is 2.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 import click
 
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown_path
 from ptmcad.process.output import Writer, save_stopped, text_writer, write_files
+from ptmcad.show import render
 from ptmcad.show.style import PictureStyle
 
 
@@ -40,16 +42,9 @@ def picture(name: str, draw: Writer) -> Writer:
     return write
 
 
-def figure(name: str, draw: Writer) -> Writer:
-    """The same of what takes matplotlib, which is loaded first."""
-
-    def load_and_draw(path: Path) -> None:
-        from ptmcad.show.render.backend import load_matplotlib
-
-        load_matplotlib()
-        draw(path)
-
-    return picture(name, load_and_draw)
+def figure(name: str, make: Callable[[], Any], **printing: Any) -> Writer:
+    """The same of a figure that a function makes, printed as by `ptmcad.show.render.printing.save`."""
+    return picture(name, lambda path: render.save(make(), path, **printing))
 
 
 def _reason(error: Exception) -> str:

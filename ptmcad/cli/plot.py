@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,13 +17,14 @@ from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.paths import file_option, result_argument
-from ptmcad.cli.pictures import picture
+from ptmcad.cli.pictures import figure
 from ptmcad.cli.points import disagreements, measured, places, poses_at
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import kind_of, read_result, stored_in
 from ptmcad.errors import ConfigError, blamed, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import portable_file
+from ptmcad.show import render
 from ptmcad.show.style import LegendPlace, PictureStyle
 
 
@@ -87,7 +87,6 @@ def _compared(
         With the file of the map that cannot be read or contradicts itself.
     """
     from ptmcad.ask.comparison import compare
-    from ptmcad.show.render.backend import load_matplotlib
 
     second = read_result(other)
     try:
@@ -97,19 +96,14 @@ def _compared(
         if blamed is not None:
             raise ConfigError(error.message, file=str(blamed)) from error
         raise ConfigError(error.message, key="--compare") from error
-    load_matplotlib()
-    from ptmcad.show.render.comparing import LETTERS, draw_comparison, in_words, traced
-
     for path, each in ((result, stored), (other, second)):
         with stored_in(path):
-            traced(each)  # so that of two maps the one that contradicts itself is named
-    click.echo(
-        "; ".join(f"{letter} is {shown_path(path)}" for letter, path in zip(LETTERS, (result, other), strict=True))
-    )
-    for line in in_words(found):
+            render.traced(each)  # so that of two maps the one that contradicts itself is named
+    click.echo(f"A is {shown_path(result)}; B is {shown_path(other)}")
+    for line in render.difference_words(found):
         click.echo(line)
-    names = names_of(stem, formats)
-    return {n: picture(n, partial(draw_comparison, found, dpi=drawing.dpi, style=drawing.style)) for n in names}
+    how = {"dpi": drawing.dpi, "style": drawing.style}
+    return {n: figure(n, lambda: render.comparison_figure(found, **how), **how) for n in names_of(stem, formats)}
 
 
 def _plot_family(result: Path, folder: Path, formats: tuple[str, ...], drawing: DrawingOptions, added: Added) -> None:

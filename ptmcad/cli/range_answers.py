@@ -5,16 +5,16 @@ Guarantee: only the engine that a question needs is loaded.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, partial
-from pathlib import Path
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_of
 from ptmcad.question.slice import Slice
+from ptmcad.show import render
 
 if TYPE_CHECKING:
     from ptmcad.ask.branches import SolutionsOnLine
@@ -60,15 +60,11 @@ def request_codec() -> Codec[RangeRequest]:
 
 @dataclass(frozen=True, slots=True)
 class RangeAnswer:
-    """What was found, for the terminal, the JSON and the pictures."""
+    """What was found, for the terminal, the JSON and the pictures, these by the ends of their names."""
 
     text: str
     parts: Mapping[str, Any]
-    pictures: Mapping[str, Callable[[Path], None]]
-
-    def added(self, text: str, part: Mapping[str, Any], end: str, picture: Callable[[Path], None]) -> RangeAnswer:
-        """The same with one more table, part of the JSON, and picture under the end of its name."""
-        return RangeAnswer(f"{self.text}\n\n{text}", {**self.parts, **part}, {**self.pictures, end: picture})
+    pictures: Mapping[str, Callable[[], Any]]
 
 
 def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
@@ -79,27 +75,77 @@ def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
     PtmcadError
         Of any kind.
     """
-    from ptmcad.ask import ranges
-    from ptmcad.exact.ranges.strips import refuse_free_lengths
-    from ptmcad.show.ranges import document, table
+    from ptmcad.show.ranges import document
 
-    known = RangeAnswer(question_of(slice), {}, {})
-    if is_enclosed(slice, request):
-        known = _enclosed(slice, request) if request.at else known
-        known = _with_bands(known, slice, request) if request.over else known
-        return _with_poses(known, slice, request)
-    if request.over:
+    texts, parts, pictures = [question_of(slice)], dict[str, Any](), dict[str, Callable[[], Any]]()
+    for found, text, end, make in _answers(slice, request):
+        texts.append(text)
+        parts |= document.part(found, request.digits)
+        pictures[end] = make
+    return RangeAnswer("\n\n".join(texts), parts, pictures)
+
+
+def _answers(slice: Slice, request: RangeRequest) -> Iterator[tuple[Any, str, str, Callable[[], Any]]]:
+    """Whatever is asked for, with its table, the end of its picture's name, and what draws that."""
+    from ptmcad.show.ranges import branches, certified, table
+
+    along, at, digits = request.along, request.at, request.digits
+    enclosed = is_enclosed(slice, request)
+    if request.over and not enclosed:
+        from ptmcad.exact.ranges.strips import refuse_free_lengths
+
         refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
-    digits = request.digits
-    if request.at:
-        found = ranges.intervals(slice, request.along, request.at)
-        text, part = table.table(found, digits), document.part(found, digits)
-        known = known.added(text, part, "", partial(_picture, "line", slice, found))
+    if at and enclosed:
+        from ptmcad.certified.intervals import certified_intervals
+
+        ends = certified_intervals(slice, along, at, digits)
+        yield ends, certified.table(ends, digits), "", lambda: None  # of which there is no picture
+    elif at:
+        from ptmcad.ask.ranges import intervals
+
+        found = intervals(slice, along, at)
+        yield found, table.table(found, digits), "", lambda: render.draw_range(slice, found)
     if request.over:
-        widths = ranges.operation_widths(slice, request.along, request.rows)
-        text, part = table.width_table(widths, digits), document.part(widths, digits)
-        known = known.added(text, part, "-over", partial(_picture, "over", slice, widths))
-    return _with_poses(known, slice, request)
+        widths, text = (_bands if enclosed else _widths)(slice, request)
+        yield widths, text, "-over", lambda: render.draw_widths(slice, widths)
+
+    @cache
+    def line() -> SolutionsOnLine:  # a picture of the paths shows branches too: those of the same solutions
+        from ptmcad.ask.branches import solutions_on_line
+
+        return solutions_on_line(slice, along, at)
+
+    if request.start is not None:
+        from ptmcad.ask.ranges import pose_paths
+
+        with ProgressBar() as progress:
+            paths = pose_paths(slice, along, at, request.start, request.pose, progress)
+        yield paths, table.path_table(paths, min(digits, 10)), "-path", lambda: _paths_and_branches(slice, paths, line)
+    if request.quantities:
+        from ptmcad.ask.branches import branch_diagram
+
+        with ProgressBar() as progress:
+            diagram = branch_diagram(slice, along, at, request.quantities, progress, line())
+        yield diagram, branches.table(diagram), "-branches", lambda: render.draw_branches(slice, diagram)
+
+
+def _widths(slice: Slice, request: RangeRequest) -> tuple[Any, str]:
+    """The operation ranges over the other axis, and their table."""
+    from ptmcad.ask.ranges import operation_widths
+    from ptmcad.show.ranges.table import width_table
+
+    found = operation_widths(slice, request.along, request.rows)
+    return found, width_table(found, request.digits)
+
+
+def _bands(slice: Slice, request: RangeRequest) -> tuple[Any, str]:
+    """The same where springs have free lengths."""
+    from ptmcad.ask.bands import certified_widths
+    from ptmcad.show.ranges.certified import width_table
+
+    with ProgressBar() as progress:
+        found = certified_widths(slice, request.along, request.rows, request.digits, progress)
+    return found, width_table(found, request.digits)
 
 
 def is_enclosed(slice: Slice, request: RangeRequest) -> bool:
@@ -111,101 +157,15 @@ def is_enclosed(slice: Slice, request: RangeRequest) -> bool:
     return has_free_lengths(slice, request.along, request.at)
 
 
-def _with_bands(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
-    """The answer with the operation ranges over the other axis, where springs have free lengths."""
-    from ptmcad.ask.bands import certified_widths
-    from ptmcad.show.ranges import certified, document
-
-    with ProgressBar() as progress:
-        widths = certified_widths(slice, request.along, request.rows, request.digits, progress)
-    text, part = certified.width_table(widths, request.digits), document.part(widths, request.digits)
-    return found.added(text, part, "-over", partial(_picture, "over", slice, widths))
-
-
-def _with_poses(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
-    """The answer with the paths of stable poses and the branches of quantities that were asked for."""
-
-    @cache
-    def line() -> SolutionsOnLine:  # a picture of the paths shows branches too: those of the same solutions
-        from ptmcad.ask.branches import solutions_on_line
-
-        return solutions_on_line(slice, request.along, request.at)
-
-    return _with_branches(_with_paths(found, slice, request, line), slice, request, line)
-
-
-def _with_paths(
-    found: RangeAnswer, slice: Slice, request: RangeRequest, line: Callable[[], SolutionsOnLine]
-) -> RangeAnswer:
-    """The answer with the paths of stable poses, where they were asked for."""
-    if request.start is None:
-        return found
-    from ptmcad.ask.ranges import pose_paths
-    from ptmcad.show.ranges import document, table
-
-    with ProgressBar() as progress:
-        paths = pose_paths(slice, request.along, request.at, request.start, request.pose, progress)
-    text, part = table.path_table(paths, min(request.digits, 10)), document.part(paths, request.digits)
-    return found.added(text, part, "-path", partial(_picture, "path", slice, paths, line=line))
-
-
-def _with_branches(
-    found: RangeAnswer, slice: Slice, request: RangeRequest, line: Callable[[], SolutionsOnLine]
-) -> RangeAnswer:
-    """The answer with the branches of the quantities that were asked for."""
-    if not request.quantities:
-        return found
-    from ptmcad.ask.branches import branch_diagram
-    from ptmcad.show.ranges import branches, document
-
-    with ProgressBar() as progress:
-        diagram = branch_diagram(slice, request.along, request.at, request.quantities, progress, line())
-    text, part = branches.table(diagram), document.part(diagram, request.digits)
-    return found.added(text, part, "-branches", partial(_picture, "branches", slice, diagram))
-
-
-def _enclosed(slice: Slice, request: RangeRequest) -> RangeAnswer:
-    """The answer where springs have free lengths."""
-    from ptmcad.certified.intervals import certified_intervals
-    from ptmcad.show.ranges import certified, document
-
-    line = certified_intervals(slice, request.along, request.at, request.digits)
-    text = f"{question_of(slice)}\n\n{certified.table(line, request.digits)}"
-    return RangeAnswer(text, document.part(line, request.digits), {})
-
-
-def _picture(
-    kind: str, slice: Slice, found: Any, path: Path, line: Callable[[], SolutionsOnLine] | None = None
-) -> None:
-    from ptmcad.show.render import ranges as pictures
-    from ptmcad.show.render.printing import save
-
-    if kind == "line":
-        figure = pictures.draw_range(slice, found)
-    elif kind == "over":
-        figure = pictures.draw_widths(slice, found)
-    elif kind == "branches":
-        from ptmcad.show.render.branches import draw_branches
-
-        figure = draw_branches(slice, found)
-    else:
-        figure = _paths_and_branches(slice, found, line)
-    save(figure, path)
-
-
 MAX_UNKNOWNS = 2
 """Of a model of which a picture of paths shows the unstable branches unasked: of others they take minutes."""
 
 
-def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOnLine] | None) -> Any:
+def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOnLine]) -> Any:
     from ptmcad.ask.branches import branch_diagram
-    from ptmcad.show.render.branches import draw_paths_and_branches
-    from ptmcad.show.render.paths import draw_paths
 
     model = found.model
     if len(model.unknowns) > MAX_UNKNOWNS or "stable" not in model.criterion.counts:
-        return draw_paths(slice, found)
-    unknowns = model.sorted_unknowns
-    known = None if line is None else line()
-    diagram = branch_diagram(slice, found.along.name, found.at, unknowns, line=known)
-    return draw_paths_and_branches(slice, found, diagram)
+        return render.draw_paths(slice, found)
+    diagram = branch_diagram(slice, found.along.name, found.at, model.sorted_unknowns, line=line())
+    return render.draw_paths_and_branches(slice, found, diagram)

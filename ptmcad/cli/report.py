@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.gathering import reading
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.paths import result_argument
 from ptmcad.cli.progress import ProgressBar
@@ -15,14 +16,16 @@ from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, portable_file
 
 
-def _file_name(_context: click.Context, _parameter: click.Parameter, value: str | None) -> str | None:
-    return None if value is None else file_name(value.removesuffix(".html"), "--name")
+def _file_name(key: str, value: str) -> str:
+    return file_name(value.removesuffix(".html"), key)
 
 
 @click.command("report")
 @result_argument
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the page.  [default: that of RESULT]")
-@click.option("--name", callback=_file_name, metavar="NAME", help="Name of the page.  [default: that of RESULT]")
+@click.option(
+    "--name", callback=reading(_file_name), metavar="NAME", help="Name of the page.  [default: that of RESULT]"
+)
 @click.option("--bench", type=click.Path(path_type=Path), metavar="FILE",
               help="A measurement of error against time to show.  "
                    "[default: NAME.error-time.json beside RESULT, if there is one]")  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -24,6 +25,7 @@ from ptmcad.model import Model
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name, point_from_options, units_of
 from ptmcad.question.examples import POINT
+from ptmcad.show import render
 from ptmcad.show.drawable import no_drawing, no_landscape
 
 FORMATS = ("table", "json", "png", "svg", "pdf")
@@ -67,17 +69,13 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
     """
     landscape = f"{name}-landscape."
     pictures = [file for file in names if not file.endswith(".json")]
-    writers = {file: figure(file, partial(_write_picture, file.startswith(landscape), poses)) for file in pictures}
+
+    def make(file: str) -> Any:
+        return (render.draw_landscape if file.startswith(landscape) else render.draw_poses)(poses)
+
+    writers = {file: figure(file, partial(make, file)) for file in pictures}
     file = next((file for file in names if file not in writers), "")
     write_result(folder, writers, file, poses.to_json() if file else "")
-
-
-def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
-    from ptmcad.show.render.landscape import draw_landscape
-    from ptmcad.show.render.poses import draw_poses
-    from ptmcad.show.render.printing import save as save_figure
-
-    save_figure((draw_landscape if landscape else draw_poses)(poses), path)
 
 
 @click.command("solve")

@@ -6,7 +6,7 @@ from functools import partial
 from math import inf
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -45,18 +45,17 @@ def save(found: Row, folder: Path, formats: tuple[str, ...]) -> tuple[str, ...]:
         if suffix in texts:
             writers[f"{name}.{suffix}"] = text_writer(texts[suffix](found))
         elif suffix not in ("table", "json"):
-            writers[f"{name}.{suffix}"] = figure(f"{name}.{suffix}", partial(_draw, found))
+            writers[f"{name}.{suffix}"] = figure(f"{name}.{suffix}", partial(_drawn, found))
     file = f"{name}.json" if "json" in formats else ""
     if writers or file:
         write_result(folder, writers, file, to_json(found) if file else "")
     return (*writers, file) if file else tuple(writers)
 
 
-def _draw(found: Row, path: Path) -> None:
-    from ptmcad.show.render.printing import save as save_figure
+def _drawn(found: Row) -> Any:
     from ptmcad.studies.stress.picture import draw_stress
 
-    save_figure(draw_stress(found["cases"]), path)
+    return draw_stress(found["cases"])
 
 
 @click.command("stress")

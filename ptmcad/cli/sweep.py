@@ -27,6 +27,7 @@ from ptmcad.extras import Extra, require, require_ffmpeg
 from ptmcad.process.handover import Topic, send
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config.sweeps import Sweeping, load_sweep
+from ptmcad.show import render
 from ptmcad.show.style import DEFAULT
 
 FORMATS = ("csv", "html", "gif", "mp4")
@@ -159,11 +160,6 @@ def _atlas(sweep: Sweep, jobs: int | None, progress: ProgressBar, path: Path) ->
 
 
 def _film(sweep: Sweep, fps: int, progress: ProgressBar, path: Path) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
-    from ptmcad.show.render.sweepfilm import save_sweep_film
-
     done = [member for member in sweep if member.state is State.DONE]
     every = -(-len(done) // MAX_FRAMES)
     shown = done[::every]
@@ -173,7 +169,7 @@ def _film(sweep: Sweep, fps: int, progress: ProgressBar, path: Path) -> None:
         return sweep.result(shown[number].number)
 
     _some(sweep)
-    save_sweep_film(seen, [member.parameters for member in shown], path, DEFAULT, fps)
+    render.save_sweep_film(seen, [member.parameters for member in shown], path, DEFAULT, fps)
 
 
 def _some(sweep: Sweep) -> RegionMap:

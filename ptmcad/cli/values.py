@@ -41,25 +41,33 @@ def _begun(names: Iterable[str], typed: str) -> list[CompletionItem]:
     return [_item(name) for name in names if name.startswith(typed)]
 
 
-def formats(known: Iterable[str]) -> Complete:
-    """The formats that a list, separated by commas, does not have yet."""
+def proposing(known: Callable[[click.Context], Iterable[str]], after: str = "", listed: bool = False) -> Complete:
+    """Names, each with a sign after it if there is one; of a list, separated by commas, those that it does not have."""
 
-    def propose(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
-        return _next_of_list(typed, known)
+    def propose(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
+        before, comma, last = typed.rpartition(",") if listed else ("", "", typed)
+        if after and after in last:
+            return []
+        given = {part.partition("=")[0].strip() for part in before.split(",")}
+        return _begun((f"{before}{comma}{name}{after}" for name in known(context) if name not in given), typed)
 
     return propose
 
 
-def palettes(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
+def formats(known: Iterable[str]) -> Complete:
+    """The formats that a list does not have yet."""
+    return proposing(lambda _: known, listed=True)
+
+
+def palettes(context: click.Context, parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """A palette, or colours by name."""
     from ptmcad.show.style import NAMED, PALETTES
 
-    return [*_begun(PALETTES, typed), *(_next_of_list(typed, NAMED) if typed else [])]
+    return [*_begun(PALETTES, typed), *(formats(NAMED)(context, parameter, typed) if typed else [])]
 
 
-def poses(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
-    """KIND:, of which the number is for the user to say."""
-    return _begun(("stable:", "unstable:", "saddle:", "maximum:", "pose:"), typed)
+poses = proposing(lambda _: ("stable:", "unstable:", "saddle:", "maximum:", "pose:"))
+"""KIND:, of which the number is for the user to say."""
 
 
 def mechanisms(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
@@ -90,32 +98,10 @@ def files(*suffixes: str) -> Complete:
     return propose
 
 
-def names(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
-    """An axis or a parameter of the question's model."""
-    return _begun(_names(context), typed)
-
-
-def pair_of_names(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
+def pair_of_names(context: click.Context, parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """Two axes, such as rho,L2."""
-    if typed.count(",") > 1:
-        return []
-    return [item if typed.count(",") else _item(f"{item.value},")
-            for item in _next_of_list(typed, _names(context))]  # fmt: skip
-
-
-def settings(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
-    """NAME=, of which the value is for the user to say."""
-    return _begun((f"{name}=" for name in _names(context)), typed) if "=" not in typed else []
-
-
-def point(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
-    """NAME=VALUE,NAME=VALUE, as far as names go."""
-    before, comma, last = typed.rpartition(",")
-    if "=" in last:
-        return []
-    given = {part.partition("=")[0].strip() for part in before.split(",")}
-    return [_item(f"{before}{comma}{name}=") for name in _names(context)
-            if name.startswith(last) and name not in given]  # fmt: skip
+    found = proposing(_names, listed=True)(context, parameter, typed) if typed.count(",") < 2 else []
+    return found if "," in typed else [_item(f"{item.value},") for item in found]
 
 
 def quantity_names(context: click.Context, parameter: click.Parameter, typed: str) -> list[CompletionItem]:
@@ -131,12 +117,6 @@ def quantity_names(context: click.Context, parameter: click.Parameter, typed: st
         return []
     further = model.criterion.differences if "--value" in parameter.opts else ()
     return _begun((*quantities(model), *further), typed)
-
-
-def _next_of_list(typed: str, known: Iterable[str]) -> list[CompletionItem]:
-    before, comma, last = typed.rpartition(",")
-    given = set(before.split(","))
-    return [_item(f"{before}{comma}{name}") for name in known if name.startswith(last) and name not in given]
 
 
 def _names(context: click.Context) -> tuple[str, ...]:
@@ -191,3 +171,13 @@ def _names_of_question(config: Path | None, mechanism: str | None) -> tuple[str,
     if mechanism in NAMES:
         return tuple(model_of(read_text(starter_text(mechanism))).parameters)
     return tuple(ptm().parameters) if mechanism is None else ()
+
+
+names = proposing(_names)
+"""An axis or a parameter of the question's model."""
+
+settings = proposing(_names, after="=")
+"""NAME=, of which the value is for the user to say."""
+
+point = proposing(_names, after="=", listed=True)
+"""NAME=VALUE,NAME=VALUE, as far as names go."""

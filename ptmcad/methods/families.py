@@ -51,16 +51,13 @@ def _family_plot(
     ConfigError
         For an unknown style or option, or what does not fit into the size.
     """
+    from ptmcad.show import render
     from ptmcad.show.style import styled
 
     made = styled(style, **options)
     if solid or surface is not None:
-        from ptmcad.show.render.solid import solid_figure
-
-        return solid_figure(self, dpi, made, surface)
-    from ptmcad.show.render.multiples import multiples_figure
-
-    return multiples_figure(self, dpi, made)
+        return render.solid_figure(self, dpi, made, surface)
+    return render.multiples_figure(self, dpi, made)
 
 
 def _family_boundary_surface(
@@ -171,12 +168,9 @@ def _design_save(self: BestDesign, path: Any) -> None:
     """Draw the values and bounds over one or two parameters, as PNG, SVG or PDF."""
     from pathlib import Path
 
-    from ptmcad.show.render.backend import load_matplotlib
+    from ptmcad.show import render
 
-    load_matplotlib()
-    from ptmcad.show.render.design import draw_design
-
-    draw_design(self, Path(path))
+    render.save(render.figure_of_design(self), Path(path))
 
 
 def _design_repr_html(self: BestDesign) -> str:

@@ -201,13 +201,10 @@ def _motion_save(
     """
     from pathlib import Path
 
-    from ptmcad.show.render.backend import load_matplotlib
+    from ptmcad.show import render
     from ptmcad.show.style import styled
 
-    load_matplotlib()
-    from ptmcad.show.render.film import save_film
-
-    save_film(self, Path(path), styled("default", size=size, palette=palette, title=title), fps, dpi)
+    render.save_film(self, Path(path), styled("default", size=size, palette=palette, title=title), fps, dpi)
 
 
 def _motion_repr_html(self: Motion) -> str:

@@ -8,12 +8,12 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.motion import Motion
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.show.render.backend import load_matplotlib
+from ptmcad.show import render
 from ptmcad.show.style import DEFAULT
 from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, count_text, index_heading
 from ptmcad.text.enclosure import Enclosure
@@ -37,13 +37,8 @@ def picture(result: RegionMap, kind: str) -> bytes | None:
     """The map's picture as the content of a PNG or SVG; None where there is nothing to draw yet."""
     if not result.cells:
         return None
-    load_matplotlib()
-    from ptmcad.show.render.printing import content, settings
-    from ptmcad.show.render.regionmap import figure_of
-
-    with settings():
-        figure = figure_of(result, samples=False, dpi=MAP_DPI)
-    return content(figure, kind, dpi=MAP_DPI)
+    image: bytes = render.content(render.plot(result, None, DEFAULT, False, MAP_DPI, {}), kind, dpi=MAP_DPI)
+    return image
 
 
 def map_html(result: RegionMap) -> str:
@@ -82,19 +77,19 @@ def poses_html(poses: Poses) -> str:
 
 def comparison_html(comparison: Comparison) -> str:
     """Both maps and their difference, and how large that is."""
-    load_matplotlib()
-    from ptmcad.show.render.comparing import comparison_figure, in_words
-    from ptmcad.show.render.printing import content, settings
-
-    with settings():
-        figure = comparison_figure(comparison, PAGE_DPI, DEFAULT)
-    words = "".join(f"<div>{escape(line)}</div>" for line in in_words(comparison))
-    return f"{_image(content(figure, 'png', dpi=PAGE_DPI), repr(comparison))}{words}"
+    figure = render.comparison_figure(comparison, PAGE_DPI, DEFAULT)
+    words = "".join(f"<div>{escape(line)}</div>" for line in render.difference_words(comparison))
+    return f"{_image(_png(figure), repr(comparison))}{words}"
 
 
 def image_html(data: bytes, what: str, words: str) -> str:
     """A picture in place, with what it is for those who do not see it, and words below."""
     return f"{_image(data, what)}<div>{escape(words)}</div>"
+
+
+def _png(figure: Any) -> bytes:
+    image: bytes = render.content(figure, "png", dpi=PAGE_DPI)
+    return image
 
 
 def _image(data: bytes, what: str, kind: str = "png") -> str:
@@ -105,35 +100,26 @@ def _image(data: bytes, what: str, kind: str = "png") -> str:
 
 def grid_png(grid: Grid) -> bytes:
     """The grid's pixels as the content of a PNG."""
-    load_matplotlib()
-    from ptmcad.show.render import pixelmap
-
-    return pixelmap.grid_png(grid, PAGE_DPI)
+    image: bytes = render.grid_png(grid, PAGE_DPI)
+    return image
 
 
 def field_png(field: Field) -> bytes:
     """The field's pixels as the content of a PNG."""
-    load_matplotlib()
-    from ptmcad.show.render import pixelmap
-
-    return pixelmap.field_png(field, PAGE_DPI)
+    image: bytes = render.field_png(field, PAGE_DPI)
+    return image
 
 
 def field_words(field: Field) -> str:
     """What of the field is known."""
-    from ptmcad.show.render.field import description
-
     missed = f" {field.missed} pixels have such a solution that was not found." if field.missed else ""
-    return f"{description(field)} {field.checked} pixels agree with exact poses to {field.difference:.1g}.{missed}"
+    agreeing = f"{field.checked} pixels agree with exact poses to {field.difference:.1g}"
+    return f"{render.description(field)} {agreeing}.{missed}"
 
 
 def family_png(family: FamilyMap) -> bytes:
     """The members' maps side by side as the content of a PNG."""
-    load_matplotlib()
-    from ptmcad.show.render.multiples import multiples_figure
-    from ptmcad.show.render.printing import content
-
-    return content(multiples_figure(family, PAGE_DPI, DEFAULT), "png", dpi=PAGE_DPI)
+    return _png(render.multiples_figure(family, PAGE_DPI, DEFAULT))
 
 
 def family_html(family: FamilyMap) -> str:
@@ -143,21 +129,14 @@ def family_html(family: FamilyMap) -> str:
 
 def design_html(found: BestDesign) -> str:
     """The picture of the values and bounds, and the answer in words."""
-    load_matplotlib()
-    from ptmcad.show.render.design import figure_of_design
-    from ptmcad.show.render.printing import content
-
-    return _image(content(figure_of_design(found), "png", dpi=PAGE_DPI), repr(found)) + text_html(found.table())
+    return _image(_png(render.figure_of_design(found)), repr(found)) + text_html(found.table())
 
 
 def motion_html(motion: Motion) -> str:
     """The film, in place; in words where it cannot be drawn."""
     if motion.result.slice.model.drawable is None:
         return text_html(repr(motion))
-    load_matplotlib()
-    from ptmcad.show.render.film import gif_bytes
-
-    return _image(gif_bytes(motion, DEFAULT, FPS, DPI), repr(motion), "gif")
+    return _image(render.gif_bytes(motion, DEFAULT, FPS, DPI), repr(motion), "gif")
 
 
 def text_html(text: str) -> str:

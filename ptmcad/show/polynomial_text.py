@@ -8,10 +8,10 @@ different.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from enum import Enum
 from functools import partial
-from keyword import iskeyword
+from keyword import kwlist
 
 from ptmcad.text.numerals import integer_text
 from ptmcad.text.plane import PlanePolynomial
@@ -36,7 +36,7 @@ _PRODUCTS = {Style.QEPCAD: " ", Style.LATEX: " "}
 
 _MAX_PYTHON_NUMBER = 4000
 """Digits; Python refuses decimal numbers of more than 4300 digits in a program, but takes hexadecimal ones."""
-_PYTHON_TAKEN = frozenset({"sympy", "variety"})
+_PYTHON_TAKEN = re.compile("|".join((*kwlist, "sympy", "variety")))
 _MAPLE_TAKEN = re.compile(
     "and|assuming|break|by|catch|description|do|done|elif|else|end|error|export|fi|finally|for|from|global|if|implies|in|"
     "intersect|local|minus|mod|module|next|not|od|option|options|or|proc|quit|read|return|save|stop|subset|then|to|try|"
@@ -46,7 +46,7 @@ _MAPLE_TAKEN = re.compile(
 """Keywords, constants and variables of the system's own."""
 _MATHEMATICA_TAKEN = re.compile(r"[CDEIKNO]|[A-Z][A-Za-z]+\d*|variety")
 """The system's own symbols start with a capital letter; those with one letter are seven."""
-_QEPCAD_TAKEN = frozenset({"true", "false", "TRUE", "FALSE"})
+_QEPCAD_TAKEN = re.compile("true|false|TRUE|FALSE")
 _GREEK = re.compile(
     "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|upsilon|phi|chi|psi|omega|"
     "Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Upsilon|Phi|Psi|Omega"
@@ -119,22 +119,10 @@ def _number(natural: int, style: Style) -> str:
     return hex(natural) if style is Style.SYMPY and len(digits) > _MAX_PYTHON_NUMBER else digits
 
 
-def _python(name: str) -> str:
-    return f"{name}_" if iskeyword(name) or name in _PYTHON_TAKEN else name
-
-
-def _maple(name: str) -> str:
-    return f"{name}_" if _MAPLE_TAKEN.fullmatch(name) else name
-
-
-def _mathematica(name: str) -> str:
-    symbol = name.replace("_", "$")  # an underscore is a pattern there
-    return f"{symbol}$" if _MATHEMATICA_TAKEN.fullmatch(symbol) else symbol
-
-
-def _qepcad(name: str) -> str:
-    symbol = name.replace("_", "")  # letters and digits only
-    return f"{symbol}1" if symbol in _QEPCAD_TAKEN else symbol
+def _spelled(name: str, underscore: str, taken: re.Pattern[str], end: str) -> str:
+    """A name with another sign for its underscores, and one more at its end where the language has the name already."""
+    symbol = name.replace("_", underscore)
+    return f"{symbol}{end}" if taken.fullmatch(symbol) else symbol
 
 
 def _latex(name: str) -> str:
@@ -150,10 +138,12 @@ def _latex(name: str) -> str:
     return symbol if index is None else f"{symbol}_{{{index.replace('_', ',')}}}"
 
 
-_SPELLINGS = {
-    Style.SYMPY: _python,
-    Style.MAPLE: _maple,
-    Style.MATHEMATICA: _mathematica,
-    Style.QEPCAD: _qepcad,
+_SPELLINGS: Mapping[Style, Callable[[str], str]] = {
+    Style.SYMPY: partial(_spelled, underscore="_", taken=_PYTHON_TAKEN, end="_"),
+    Style.MAPLE: partial(_spelled, underscore="_", taken=_MAPLE_TAKEN, end="_"),
+    # an underscore is a pattern there
+    Style.MATHEMATICA: partial(_spelled, underscore="$", taken=_MATHEMATICA_TAKEN, end="$"),
+    # letters and digits only
+    Style.QEPCAD: partial(_spelled, underscore="", taken=_QEPCAD_TAKEN, end="1"),
     Style.LATEX: _latex,
 }

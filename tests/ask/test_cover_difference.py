@@ -23,7 +23,7 @@ from ptmcad.cli import run
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.colours import UNDETERMINED
-from ptmcad.show.render.comparing import comparison_figure, in_words
+from ptmcad.show.render.comparing import comparison_figure, difference_words
 from ptmcad.show.render.printing import settings as printing_settings
 from ptmcad.show.style import styled
 
@@ -162,7 +162,7 @@ def test_a_map_differs_from_itself_nowhere_but_where_it_is_undetermined() -> Non
     x, y = result.slice.axes
     assert found.changes == () and found.area[0] == 0
     assert found.area[1] == found.undetermined == result.undetermined * (x.high - x.low) * (y.high - y.low)
-    (said,) = in_words(found)
+    (said,) = difference_words(found)
     assert said.startswith("The maps have the same counts everywhere where both are determined; ")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 
 import pytest
@@ -12,7 +13,7 @@ import ptmcad
 from ptmcad.answer.comparison import Change, Comparison
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.notebook import map_html
-from ptmcad.show.render.comparing import comparison_figure, in_words
+from ptmcad.show.render.comparing import comparison_figure, difference_words
 from ptmcad.show.render.legend import Entry, entries
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import description
@@ -33,7 +34,7 @@ def certified() -> RegionMap:
     return circle(7)
 
 
-def words(legend: tuple[Entry, ...]) -> str:
+def words(legend: Iterable[Entry]) -> str:
     return "\n".join(line for entry in legend for line in entry.lines)
 
 
@@ -80,7 +81,7 @@ def test_a_comparison_says_its_share_at_the_prompt_as_in_words() -> None:
     found = Comparison(*[shipped("fig4")] * 3, (Change(0, 1, 0, (Fraction("1.559386"), Fraction("1.559387"))),))
     assert share_text(found.share, False) == "38.98 %"
     assert "38.98 % differ" in repr(found)
-    assert "38.98 % of the window" in in_words(found)[0]
+    assert "38.98 % of the window" in difference_words(found)[0]
 
 
 @pytest.mark.parametrize(

@@ -15,11 +15,12 @@ import ptmcad
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.multiples import draw_multiples
+from ptmcad.show.render.multiples import multiples_figure
+from ptmcad.show.render.printing import content, save
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import MAX_SIDE, camera_of, halved
-from ptmcad.show.render.solid import MAX_FLOORS, draw_solid
-from ptmcad.show.style import styled
+from ptmcad.show.render.solid import MAX_FLOORS, solid_figure
+from ptmcad.show.style import DEFAULT
 
 RECORD: dict[str, Any] = {
     "name": "cubic",
@@ -63,11 +64,9 @@ def test_what_does_not_fit_is_refused(family: FamilyMap) -> None:
 
 
 @pytest.mark.slow
-def test_the_same_bytes_twice(family: FamilyMap, tmp_path: Path) -> None:
-    for draw in (draw_multiples, draw_solid):
-        for name in ("a.svg", "b.svg"):
-            draw(family, tmp_path / name, 100, styled())
-        assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+def test_the_same_bytes_twice(family: FamilyMap) -> None:
+    for make in (multiples_figure, solid_figure):
+        assert content(make(family, 100, DEFAULT), "svg") == content(make(family, 100, DEFAULT), "svg")
 
 
 def test_of_many_maps_a_few_are_filled_and_of_the_others_there_are_curves(family: FamilyMap) -> None:
@@ -108,7 +107,7 @@ def test_a_boundary_surface_is_drawn_with_the_members_curves_and_says_what_it_is
     # of the maps there is the lowest member's, on the floor
     assert len(axes.patches) == len(found.members[0].regions)
     for name in ("a.svg", "b.svg"):
-        draw_solid(found, tmp_path / name, 100, styled(), surface)
+        save(solid_figure(found, 100, DEFAULT, surface), tmp_path / name)
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
     assert "exact members" in (tmp_path / "a.svg").read_text()
 
@@ -119,7 +118,7 @@ def test_a_surface_of_many_pieces_is_an_image_in_a_vector_picture(
 ) -> None:
     monkeypatch.setattr("ptmcad.show.render.sheets.MAX_PIECES", 100)
     found, surface = solid
-    draw_solid(found, tmp_path / "a.svg", 100, styled(), surface)
+    save(solid_figure(found, 100, DEFAULT, surface), tmp_path / "a.svg")
     assert (tmp_path / "a.svg").read_text().count("<image") == 1
 
 

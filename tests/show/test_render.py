@@ -29,7 +29,7 @@ from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of, fill_of_index
 from ptmcad.show.render.labels import place
 from ptmcad.show.render.outline import outline
-from ptmcad.show.render.regionmap import figure_of
+from ptmcad.show.render.regionmap import MapDrawing
 from ptmcad.show.render.slivers import thin_regions, zooms
 from ptmcad.show.render.view import View
 from ptmcad.show.units import unit
@@ -233,7 +233,7 @@ def test_every_region_can_be_zoomed() -> None:
 def test_labels_and_texts_do_not_overlap() -> None:
     heights = [Fraction(k // 2 + 1, 17) + (k % 2) * Fraction(1, 10**5) for k in range(14)]
     with matplotlib.rc_context({"text.parse_math": False, "font.family": ["DejaVu Sans"]}):
-        figure = figure_of(bands(heights, title="word " * 50), samples=False, dpi=100)
+        figure = MapDrawing(bands(heights, title="word " * 50), dpi=100).figure()
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
         renderer = canvas.get_renderer()
@@ -285,7 +285,7 @@ def pixels_of(image: np.ndarray, colour: tuple[float, float, float]) -> int:
 def test_no_seams_between_the_cells_of_a_region(tmp_path: Path) -> None:
     """Within a region every pixel away from walls has exactly its colour."""
     result = classified("fig4", "stable")
-    figure = figure_of(result, samples=False, dpi=100)
+    figure = MapDrawing(result, dpi=100).figure()
     for label in figure.axes[0].texts:
         label.set_visible(False)
     canvas = FigureCanvasAgg(figure)

@@ -29,7 +29,7 @@ from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED, fi
 from ptmcad.show.render.coveroutline import TOLERANCE
 from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
 from ptmcad.show.render.legend import CORE, RIM
-from ptmcad.show.render.regionmap import _zoomed, figure_of
+from ptmcad.show.render.regionmap import MapDrawing, _zoomed
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.simplification import simplified, simplified_polygons
 from ptmcad.show.render.view import Floats, View
@@ -106,7 +106,7 @@ def test_a_wide_strip_is_as_wide_as_it_is(dpi: int, tmp_path: Path) -> None:
 
 def test_the_legend_tells_the_undetermined_share(tmp_path: Path) -> None:
     result = tube(0.25, 0.25 + 2**-11)  # 1/2048 of the window
-    texts = [text.get_text() for text in figure_of(result, False, 100).texts]
+    texts = [text.get_text() for text in MapDrawing(result, dpi=100).figure().texts]
     assert "undetermined 0.049 %" in texts
     assert "the count changes" not in texts
     draw(result, tmp_path / "map.svg")
@@ -116,7 +116,7 @@ def test_the_legend_tells_the_undetermined_share(tmp_path: Path) -> None:
 def test_admissible_counts_have_colours_and_a_legend() -> None:
     made = circle(6)
     result = replace(made, slice=replace(made.slice, count=Count.ADMISSIBLE))
-    texts = [text.get_text() for text in figure_of(result, False, 100).texts]
+    texts = [text.get_text() for text in MapDrawing(result, dpi=100).figure().texts]
     assert "Stable, all springs taut" in texts
     assert "3   of 8 equilibria" in texts
 
@@ -140,7 +140,7 @@ def test_the_svg_of_many_rectangles_is_small(tmp_path: Path) -> None:
 
 def test_a_thin_region_is_marked_and_zoomed() -> None:
     cover = Cover(STEPS, ((STEPS // 2, STEPS // 2 + 64, 0, STEPS), (STEPS // 2 + 2000, STEPS // 2 + 2064, 0, STEPS)))
-    figure = figure_of(certified(cover, lambda x, y: 3 if 0.5 < x < 0.502 else 1), False, 150)
+    figure = MapDrawing(certified(cover, lambda x, y: 3 if 0.5 < x < 0.502 else 1)).figure()
     assert [axes.get_gid() for axes in figure.axes] == ["map", "sliver-2"]
 
 

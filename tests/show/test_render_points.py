@@ -23,7 +23,7 @@ from ptmcad.show.render.clearance import Stroke, crosses
 from ptmcad.show.render.leaders import Berth, meet, routed
 from ptmcad.show.render.overlay import Agreement
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import figure_of
+from ptmcad.show.render.regionmap import MapDrawing
 from ptmcad.show.style import MIN_FONT, PAGE_HEIGHT, PictureStyle, styled
 
 AT = ("rho=1,L2=3/2", "rho=3/2,L2=1/2", "rho=0.1,L2=1.8", "rho=1/4,L2=1/4")
@@ -150,7 +150,7 @@ def test_measured_points_are_compared_with_the_map(tmp_path: Path) -> None:
     assert [point.label for point in found] == ["a", "b", ""]
     assert found[0].at == (Fraction(7, 10), Fraction(3, 2)) and outside == 1
     with settings():
-        made = figure_of(shipped("fig4"), False, 100, style=styled(size="6x4in"), overlay=found)
+        made = MapDrawing(shipped("fig4"), styled(size="6x4in"), 100, overlay=found).figure()
     said = [t.get_text() for t in made.texts]
     assert {"measured point", "measured, another count", "1 point"} <= set(said)
     marks = {a.get_gid(): a for a in made.axes[0].findobj(Line2D) if str(a.get_gid()).startswith("measured")}

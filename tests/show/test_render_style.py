@@ -32,8 +32,7 @@ from ptmcad.show.render.fitting import rewrapped
 from ptmcad.show.render.layout import BOTTOM, INSET_ABOVE, INSET_BELOW, INSET_LEFT, LEFT, WIDEST, flowing
 from ptmcad.show.render.legend import Entry, Type, entries
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import draw_parts, figure_of, fit, left_out
-from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.regionmap import MapDrawing, left_out
 from ptmcad.show.render.slivers import told_apart
 from ptmcad.show.style import MIN_FONT, PRESETS, LegendPlace, PictureStyle, styled
 from ptmcad.show.table import area_text
@@ -59,7 +58,7 @@ PAGES = [
 
 def figure(result: RegionMap, style: PictureStyle) -> Figure:
     with settings(style):
-        made = figure_of(result, samples=True, dpi=100, style=style)
+        made = MapDrawing(result, style, 100, samples=True).figure()
         FigureCanvasAgg(made).draw()
     return made
 
@@ -85,7 +84,7 @@ def test_everything_is_on_the_page_apart_and_legible(legend: str | None, preset:
     if legend == "below" and style.size is not None:
         style = style._replace(size=(style.size[0], 1.5 * style.size[1]))
     with settings(style):
-        made = figure_of(MAPS[name](), samples=True, dpi=100, style=style)
+        made = MapDrawing(MAPS[name](), style, 100, samples=True).figure()
         canvas = FigureCanvasAgg(made)
         canvas.draw()
         renderer = canvas.get_renderer()
@@ -189,8 +188,8 @@ def test_what_does_not_fit_is_refused_with_the_least_size_that_does() -> None:
 def test_a_title_of_ones_own_or_none() -> None:
     assert "My title" in legend_of(figure(shipped("fig4"), styled("ieee", title="My title")))
     with settings():
-        assert figure_of(shipped("fig4"), False, 100).texts[0].get_text().startswith("Equal loads")
-        untitled = figure_of(shipped("fig4"), False, 100, style=styled(title=""))
+        assert MapDrawing(shipped("fig4"), dpi=100).figure().texts[0].get_text().startswith("Equal loads")
+        untitled = MapDrawing(shipped("fig4"), styled(title=""), 100).figure()
     assert "Equal loads" not in legend_of(untitled)
 
 
@@ -315,16 +314,16 @@ def test_what_no_inset_shows_is_named_on_the_map_and_the_legend_has_its_curve() 
 
 def test_a_line_in_the_legend_has_something_to_show_and_what_is_shown_has_a_line() -> None:
     result = shipped("fig4")
-    whole = shapes(result)
     thin = replace(result, slice=replace(result.slice, count=Count.TOTAL))
     plain = figure(thin, styled(size="6x4in", font_size=9))
     assert "another curve" not in legend_of(plain) and not thin_curves(plain)
     # where the part's label has no room either, the curve's trace at the frame is left out, and that is said
-    seen, layout = fit(result, whole, False, 100, styled("ieee"))
+    drawing = MapDrawing(result, styled("ieee"), 100)
+    seen, layout = drawing.fit()
     bare = replace(seen, views=(), thin_lines=False, unnamed=1)
     page = Figure(figsize=layout.size)
     with settings():
-        draw_parts(page, bare, layout, styled("ieee"), False)
+        drawing.draw_parts(page, bare, layout)
     assert not thin_curves(page)
     assert left_out(bare, layout) == (
         "1 zoomed view of parts that are too thin to be seen", "labels of such parts, in which unstable ones differ"
@@ -342,7 +341,7 @@ def test_what_has_no_room_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert run(["plot", str(path), "--format", "pdf"]) == 0
     assert not capsys.readouterr().err
     with settings():
-        assert left_out(*fit(shipped("fig4"), shapes(shipped("fig4")), False, 100, styled(size="3x1.6in"))) == (
+        assert left_out(*MapDrawing(shipped("fig4"), styled(size="3x1.6in"), 100).fit()) == (
             "1 zoomed view of parts that are too thin to be seen", "the areas in the legend"
         )  # fmt: skip
 
@@ -392,6 +391,6 @@ def test_a_heading_of_two_lines_is_in_one_size() -> None:
     chain = ptmcad.load(CONFIGS / "mechanisms" / "three-bar-chain.yaml")
     result = replace(shipped("fig2"), slice=replace(chain, count=Count.INDEX))
     with settings():
-        told = entries(result, False, False, 0)[0]
+        told = next(entries(result, False, False, 0))
         assert len(told.lines) == told.heads == 2
         assert rewrapped(told, 3.0, Type()).heads == len(rewrapped(told, 3.0, Type()).lines)

@@ -1,23 +1,36 @@
 """Pictures of results; but for those of the studies the only importer of matplotlib, loaded when the first is drawn."""
 
-from __future__ import annotations
+from importlib import import_module
+from typing import Any
 
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from ptmcad.show.render.plotting import plot
-    from ptmcad.show.render.regionmap import draw
-
-__all__ = ["draw", "plot"]
+_FUNCTIONS = {
+    "branches": ("draw_branches", "draw_paths_and_branches"),
+    "comparing": ("comparison_figure", "difference_words", "traced"),
+    "design": ("figure_of_design",),
+    "field": ("description", "field_figure"),
+    "film": ("gif_bytes", "save_film"),
+    "fonts": ("check_families",),
+    "landscape": ("draw_landscape",),
+    "multiples": ("multiples_figure",),
+    "paths": ("draw_paths",),
+    "pixelmap": ("field_png", "grid_png"),
+    "plotting": ("draw_with_poses", "plot"),
+    "poses": ("draw_poses",),
+    "printing": ("content", "save"),
+    "ranges": ("draw_range", "draw_widths"),
+    "regionmap": ("draw",),
+    "solid": ("solid_figure",),
+    "sweepfilm": ("save_sweep_film",),
+}
+"""What other rooms draw with, by the modules that have it: the report needs outlines and colours only."""
+_MODULES = {function: module for module, functions in _FUNCTIONS.items() for function in functions}
 
 
 def __getattr__(name: str) -> Any:
-    """`draw` and `plot`, when they are first used: the report needs outlines and colours only."""
-    if name in __all__:
-        from ptmcad.show.render.backend import load_matplotlib
+    """One of these functions, matplotlib being loaded when the first is asked for."""
+    if name not in _MODULES:
+        raise AttributeError(f"module 'ptmcad.show.render' has no attribute {name!r}")
+    from ptmcad.show.render.backend import load_matplotlib
 
-        load_matplotlib()
-        from ptmcad.show.render import plotting, regionmap
-
-        return {"draw": regionmap.draw, "plot": plotting.plot}[name]
-    raise AttributeError(f"module 'ptmcad.show.render' has no attribute {name!r}")
+    load_matplotlib()
+    return getattr(import_module(f"ptmcad.show.render.{_MODULES[name]}"), name)

@@ -16,7 +16,6 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from ptmcad.answer.poses import Poses
-from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.blocks import GAP, Block, BlockColumn, Slot, arranged, sized
@@ -26,10 +25,8 @@ from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.leaders import Course, routed
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.mechanism import STRONG, draw_sketch
-from ptmcad.show.render.overlay import Overlay
 from ptmcad.show.render.poses import pose_axes
-from ptmcad.show.render.regionmap import draw_parts, fit, left_out
-from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.regionmap import MapDrawing, left_out
 from ptmcad.show.render.sketch import PanelFrame, Scene, arrow_lengths
 from ptmcad.show.render.view import Point
 from ptmcad.show.style import MAX_SIDE, PictureStyle, Size, styled
@@ -41,9 +38,7 @@ _STEPS, _STEP = 60, 1.05
 """How sizes are tried that would do."""
 
 
-def draw_around(
-    result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle, dpi: int, overlay: Overlay = ()
-) -> DrawnMap:
+def draw_around(drawing: MapDrawing, points: Sequence[tuple[Point, Poses]]) -> DrawnMap:
     """The map in the middle and poses at its sides; within `ptmcad.show.render.printing.settings`.
 
     Parameters
@@ -59,18 +54,20 @@ def draw_around(
     ConfigError
         For a system without points to draw, too many points, or a size in which poses have no room.
     """
-    if result.slice.model.whole is None:
-        raise ConfigError(no_drawing(result.slice.model), key="at")
+    model = drawing.result.slice.model
+    if model.whole is None:
+        raise ConfigError(no_drawing(model), key="at")
     if len(points) > MAX_POINTS:
         raise ConfigError(f"poses of at most {MAX_POINTS} points fit around a map", key="at")
     try:
-        return _drawn(result, points, style, dpi, overlay)
+        return _drawn(drawing, points)
     except ConfigError as error:
-        raise ConfigError(f"{error.message}: {_remedy(result, points, style, dpi)}", key=error.key) from error
+        raise ConfigError(f"{error.message}: {_remedy(drawing, points)}", key=error.key) from error
 
 
-def _remedy(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle, dpi: int) -> str:
+def _remedy(drawing: MapDrawing, points: Sequence[tuple[Point, Poses]]) -> str:
     """The least size of the same shape in which poses have room, of a page that is given whole."""
+    style = drawing.style
     if style.size is None or style.wide is not None:
         return "give fewer points, or a size of your own"
     wide, tall = style.size
@@ -79,16 +76,15 @@ def _remedy(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Pic
         if larger is None or larger.size is None:
             break
         try:
-            _map_beside(result, sized(arranged(result, points, larger), larger, len(points))[2], dpi)
+            inner = sized(arranged(drawing.result, points, larger), larger, len(points))[2]
+            _map_beside(drawing._replace(style=inner, overlay=()))
         except ConfigError:
             continue
         return f"give a size such as {larger.size[0] + 0.005:.2f}x{larger.size[1] + 0.005:.2f}in, or fewer points"
     return "give a larger size, or fewer points"
 
 
-def _drawn(
-    result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle, dpi: int, overlay: Overlay
-) -> DrawnMap:
+def _drawn(drawing: MapDrawing, points: Sequence[tuple[Point, Poses]]) -> DrawnMap:
     """The figure, and what of the map had no room.
 
     Raises
@@ -96,14 +92,16 @@ def _drawn(
     ConfigError
         When poses, or the map beside them, have no room.
     """
+    style = drawing.style
     em = style.base_font / 72
-    plan = arranged(result, points, style)
+    plan = arranged(drawing.result, points, style)
     page, frame, blocks = plan.page, plan.frame, plan.blocks
     size, taken, inner_style = sized(plan, style, len(points))
-    seen, layout = _map_beside(result, inner_style, dpi, overlay)
-    figure = Figure(figsize=size, dpi=dpi, facecolor="white")
+    inner = drawing._replace(style=inner_style)
+    seen, layout = _map_beside(inner)
+    figure = Figure(figsize=size, dpi=drawing.dpi, facecolor="white")
     moved = _moved(layout, taken[0], size)
-    axes = draw_parts(figure, seen, moved, inner_style, False, overlay)
+    axes = inner.draw_parts(figure, seen, moved)
     texts = [*_texts(figure), *_legend_boxes(moved)]
     for before, side, number in zip((True, False), plan.sides, plan.most, strict=True):
         wide = number * page.panel / 72
@@ -118,10 +116,10 @@ def _drawn(
     return figure, left_out(seen, layout)
 
 
-def _map_beside(result: RegionMap, style: PictureStyle, dpi: int, overlay: Overlay = ()) -> tuple[Any, Layout]:
-    """What `fit` finds for the map between the poses."""
+def _map_beside(drawing: MapDrawing) -> tuple[Any, Layout]:
+    """What is found to fit for the map between the poses."""
     try:
-        return fit(result, shapes(result), False, dpi, style, overlay)
+        return drawing.fit()
     except ConfigError as error:
         raise ConfigError("the map and its legend have no room beside the poses", key=error.key) from error
 

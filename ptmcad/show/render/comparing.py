@@ -9,7 +9,6 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -24,7 +23,7 @@ from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang, rewrapped
 from ptmcad.show.render.inches import Box, axes_at, write_lines
 from ptmcad.show.render.legend import INK, Entry, Type, Wording, draw_legend, entries, hidden_words
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
-from ptmcad.show.render.printing import save, settings
+from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import seen_thin_walls
@@ -60,19 +59,6 @@ class _MapPanel:
     marks: Marks = NO_MARKS
 
 
-def draw_comparison(comparison: Comparison, path: Path, dpi: int, style: PictureStyle) -> None:
-    """Write the picture, as `ptmcad.show.render.printing.save` does.
-
-    Raises
-    ------
-    ConfigError
-        When it does not fit into the style's size.
-    """
-    with settings(style):
-        figure = comparison_figure(comparison, dpi, style)
-    save(figure, path, dpi=dpi, style=style)
-
-
 def traced(result: RegionMap) -> None:
     """Make ready what the picture takes of a map.
 
@@ -87,7 +73,7 @@ def traced(result: RegionMap) -> None:
     deque(seen.walls(), maxlen=0)
 
 
-def in_words(comparison: Comparison) -> list[str]:
+def difference_words(comparison: Comparison) -> list[str]:
     """The areas of all changes, and of each kind, as sentences."""
     open_part = _undetermined(comparison)
     if not comparison.changes:
@@ -122,7 +108,18 @@ def change_text(comparison: Comparison, change: Change) -> str:
 
 
 def comparison_figure(comparison: Comparison, dpi: int, style: PictureStyle) -> Figure:
-    """The picture; within `ptmcad.show.render.printing.settings`."""
+    """The picture.
+
+    Raises
+    ------
+    ConfigError
+        When it does not fit into the style's size.
+    """
+    with settings(style):
+        return _figure(comparison, dpi, style)
+
+
+def _figure(comparison: Comparison, dpi: int, style: PictureStyle) -> Figure:
     font = style.base_font
     em = font / 72
     type = Type.of(style)
@@ -151,7 +148,7 @@ def comparison_figure(comparison: Comparison, dpi: int, style: PictureStyle) -> 
         _draw(figure, panel, box, how, font)
         draw_legend(figure, panel.legend, box[0], box[1] - below - 0.8 * em, type)
     title = f"{whole_title(comparison.first)} and {whole_title(comparison.second)}"
-    figure.set_label(f"{title}\n{' '.join(in_words(comparison))}")
+    figure.set_label(f"{title}\n{' '.join(difference_words(comparison))}")
     return figure
 
 
@@ -165,7 +162,7 @@ def _panels(comparison: Comparison, first: Shapes, style: PictureStyle, sides: S
         marks = marks_of(seen, sides, dpi, type.detail)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
         paint = replace(paint, thin_walls=thin)
-        told = entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined))
+        told = list(entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined)))
         title = whole_title(result) if style.title is None else own
         found.append((seen, paint, f"{letter}: {title}" if title else letter, told, {}, marks))
     fills = _fills(comparison, style)

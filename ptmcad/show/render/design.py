@@ -8,7 +8,6 @@ Not guaranteed: anything that only the picture shows. It is drawn in floating po
 from __future__ import annotations
 
 import textwrap
-from pathlib import Path
 from typing import Any
 
 from matplotlib.cm import ScalarMappable
@@ -23,7 +22,7 @@ from ptmcad.show.designtable import design_table, value_text
 from ptmcad.show.render.axes import scale_of, symbol
 from ptmcad.show.render.inches import write_lines
 from ptmcad.show.render.legend import INK
-from ptmcad.show.render.printing import save, settings
+from ptmcad.show.render.printing import settings
 from ptmcad.show.render.rangeplate import LEFT, RIGHT, SIZE, WIDE, axes_in, figure_of, scaled
 
 TALL = 3.6
@@ -34,13 +33,8 @@ COLOURS = "viridis"
 _COLUMNS = 96
 
 
-def draw_design(found: BestDesign, path: Path) -> None:
-    """Draw the values over the design parameters, with the bounds and the best one, into a file."""
-    save(figure_of_design(found), path)
-
-
 def figure_of_design(found: BestDesign) -> Figure:
-    """The values over one parameter, or over the first two."""
+    """The values over one design parameter, or over the first two, with the bounds and the best one."""
     words = [*_words(found), *design_table(found).splitlines()[-2:-1]]
     lines = [part for line in words for part in textwrap.wrap(line, _COLUMNS)]
     foot = 0.6 + 0.2 * len(lines)

@@ -27,6 +27,7 @@ from ptmcad.show.render.fieldlines import branch_edges, contour_lines
 from ptmcad.show.render.fitting import MIN_SIDE, beside, dressed
 from ptmcad.show.render.inches import Box
 from ptmcad.show.render.legend import INK, RIM_INK, STRONG, Entry, Type, draw_rows, in_rows, line_mark
+from ptmcad.show.render.printing import settings
 from ptmcad.show.render.textwidth import text_width, wrapped
 from ptmcad.show.render.view import Floats, View
 from ptmcad.show.style import DEFAULT, MIN_FONT, LegendPlace, PictureStyle, Size
@@ -72,13 +73,20 @@ def field_figure(
     dpi: int,
     style: PictureStyle = DEFAULT,
 ) -> Figure:
-    """The picture, to be called within `settings`.
+    """The picture.
 
     Raises
     ------
     ConfigError
         When it does not fit into the style's size.
     """
+    with settings(style):
+        return _figure(result, field, boundaries, contours, dpi, style)
+
+
+def _figure(
+    result: RegionMap, field: Field, boundaries: Sequence[Boundary], contours: int, dpi: int, style: PictureStyle
+) -> Figure:
     figure = Figure(figsize=style.size or (6.0, 6.0), dpi=dpi, facecolor="white")
     font = style.base_font
     axes: Any = figure.add_axes((0.2, 0.2, 0.5, 0.5))

@@ -16,11 +16,10 @@ from matplotlib.lines import Line2D
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.slice import Slice
-from ptmcad.show.render import regionmap
 from ptmcad.show.render.axes import heading_of
 from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.layout import GAP, LEFT, SIDE
-from ptmcad.show.render.legend import INK, Entry, draw_legend, height
+from ptmcad.show.render.legend import INK, Entry, Type, draw_legend
 from ptmcad.show.render.mechanism import spring_mark, symbol_mark
 from ptmcad.show.render.poses import (
     BELOW,
@@ -34,7 +33,7 @@ from ptmcad.show.render.poses import (
     value_text,
 )
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import FreeSpace
+from ptmcad.show.render.regionmap import FreeSpace, MapDrawing, description
 from ptmcad.show.render.sketch import Scene, arrow_lengths, frame_of
 from ptmcad.show.render.view import Point, View
 
@@ -76,22 +75,22 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     panels = _LINE * len(head) + 0.1
     if frame is not None:
         panels += len(shown) * (HEAD + frame.height / 72 + below + 0.06)
-    key = height(entries) + 0.35
+    key = Type().height(entries) + 0.35
     with settings():
         # what the parts mean stands below the map's legend, unless that is long or insets are there
-        figure = regionmap.figure_of(result, False, _DPI, FreeSpace(wide + _GAP + _RIM, panels))
+        figure = MapDrawing(result, dpi=_DPI).figure(FreeSpace(wide + _GAP + _RIM, panels))
         lowest = min(text.get_position()[1] for text in figure.texts)
         chart: Any = figure.axes[0]
         width, tall = (float(side) for side in figure.get_size_inches())
         bottom = chart.get_position().y0 * tall
         left, place = width - wide - _RIM, (LEFT + SIDE + GAP, bottom + key)
         if len(figure.axes) > 1 or lowest - 0.3 < bottom + key:
-            figure = regionmap.figure_of(result, False, _DPI, FreeSpace(wide + _GAP + _RIM, panels + key))
+            figure = MapDrawing(result, dpi=_DPI).figure(FreeSpace(wide + _GAP + _RIM, panels + key))
             chart = figure.axes[0]
             tall = float(figure.get_size_inches()[1])
             place = (left, chart.get_position().y1 * tall - panels)
         top = chart.get_position().y1 * tall
-        figure.set_label(f"{heading_of(result.slice)}\n{regionmap.description(result)} Beside it: {describe(poses)}")
+        figure.set_label(f"{heading_of(result.slice)}\n{description(result)} Beside it: {describe(poses)}")
         _mark(chart, result, (x, y))
         _write_head(figure, head, left, top)
         top -= _LINE * len(head) + 0.1
@@ -100,7 +99,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
                 top -= HEAD + frame.height / 72
                 panel(figure, Scene(mechanism, frame, arrows), pose, number, (left, top))
                 top -= below + 0.06
-            scale_bar(figure, frame, (place[0], place[1] - height(entries) - 0.16), result.slice.units)
+            scale_bar(figure, frame, (place[0], place[1] - Type().height(entries) - 0.16), result.slice.units)
         draw_legend(figure, entries, *place)
     return figure
 

@@ -83,6 +83,10 @@ class Type:
         """Of a legend, in inches."""
         return sum(self.entry_height(entry) for entry in legend)
 
+    def width(self, legend: Iterable[Entry]) -> float:
+        """Of a legend, in inches, in the family that is set."""
+        return max(map(self.entry_width, legend), default=0.0)
+
     def entry_height(self, entry: Entry) -> float:
         """Of an entry, in inches, with the space below."""
         return self.line * len(entry.lines) + 0.07 * self.scale
@@ -113,7 +117,7 @@ def head_of(slice: Slice) -> tuple[str, ...]:
 
 def entries(
     result: RegionMap, thin: bool, samples: bool, hidden: int, wording: Wording | None = None
-) -> tuple[Entry, ...]:
+) -> Iterator[Entry]:
     """The legend's entries, from above.
 
     Parameters
@@ -122,11 +126,7 @@ def entries(
     hidden : number of regions that are too thin to be seen and have neither inset nor label.
     """
     count = result.slice.count
-    return tuple(_entries(result, thin, samples, hidden, wording or Wording(lambda region: fill_of(region, count))))
-
-
-def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording: Wording) -> Iterator[Entry]:
-    count = result.slice.count
+    wording = wording or Wording(lambda region: fill_of(region, count))
     groups: dict[str, list[Region]] = {}
     for region in sorted(result.regions, key=lambda r: (counted_by(r, count), -r.area[0])):
         groups.setdefault(count_text(region, count), []).append(region)
@@ -204,16 +204,6 @@ def _areas(result: RegionMap, text: str, regions: list[Region]) -> list[str]:
         return textwrap.wrap(f"{number} regions, areas {areas}", COLUMNS)
     together = area_text(result, area_by_count(result)[text])
     return textwrap.wrap(f"area {together}" if number == 1 else f"{number} regions, in all {together}", COLUMNS)
-
-
-def height(legend: tuple[Entry, ...]) -> float:
-    """In inches, at the sizes of `Type`."""
-    return Type().height(legend)
-
-
-def width(legend: Iterable[Entry]) -> float:
-    """In inches, at the sizes of `Type`, in the family that is set."""
-    return max(map(Type().entry_width, legend), default=0.0)
 
 
 Rows = list[list[tuple[float, Entry]]]

@@ -9,7 +9,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -33,7 +32,7 @@ from ptmcad.show.render.legend import (
     thin_entry,
 )
 from ptmcad.show.render.painting import Paint, fills_by_count, paint_map, paint_of
-from ptmcad.show.render.printing import save, settings
+from ptmcad.show.render.printing import settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import wrapped
@@ -44,17 +43,6 @@ from ptmcad.text.numerals import shortest_text
 SIDE = 1.75
 """Inches of a chart in 9 points, in a picture that grows with what it shows."""
 _MAX_COLUMNS = 6
-
-
-def draw_multiples(family: FamilyMap, path: Path, dpi: int, style: PictureStyle) -> None:
-    """Write the picture, as `ptmcad.show.render.printing.save` does.
-
-    Raises
-    ------
-    ConfigError
-        When it does not fit into the style's size.
-    """
-    save(multiples_figure(family, dpi, style), path, dpi=dpi, style=style)
 
 
 def title_of(family: FamilyMap) -> str:

@@ -21,7 +21,7 @@ from ptmcad.show.render.overlay import Overlay
 from ptmcad.show.render.painting import fills_by_count, paint_map, paint_of
 from ptmcad.show.render.poses import describe
 from ptmcad.show.render.printing import save, settings
-from ptmcad.show.render.regionmap import description, figure_of, whole_title
+from ptmcad.show.render.regionmap import MapDrawing, description, whole_title
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Point
 from ptmcad.show.style import LegendPlace, PictureStyle, styled
@@ -45,7 +45,7 @@ def plot(
         draw_on(ax, result, samples, made)
         return ax
     with settings(made):
-        return figure_of(result, samples, dpi, style=made)
+        return MapDrawing(result, made, dpi, samples).figure()
 
 
 def draw_on(axes: Any, result: RegionMap, samples: bool, style: PictureStyle) -> None:
@@ -102,7 +102,7 @@ def draw_with_poses(
     """
     told = " ".join(f"At point {n}: {describe(poses)}" for n, (_, poses) in enumerate(points, 1))
     with settings(style):
-        figure, missing = draw_around(result, points, style, dpi, overlay)
+        figure, missing = draw_around(MapDrawing(result, style, dpi, overlay=overlay), points)
     figure.set_label(f"{whole_title(result)}\n{description(result)} {told}")
     save(figure, path, dpi=dpi, style=style)
     return missing

@@ -27,7 +27,7 @@ from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.inches import axes_at, stroke, write, write_lines
-from ptmcad.show.render.legend import INK, Entry, draw_legend, height
+from ptmcad.show.render.legend import INK, Entry, Type, draw_legend
 from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, PanelFrame, Scene, arrow_lengths, components, frame_of
@@ -72,7 +72,7 @@ def draw_poses(poses: Poses) -> Figure:
     wide, tall = frame.width / 72, frame.height / 72
     row = HEAD + tall + below_panel(shown[0], poses.model)
     entries = tuple(legend(poses, arrows))
-    below = max(rows * row + (rows - 1) * GAP, height(entries) + _SCALE_ROOM)
+    below = max(rows * row + (rows - 1) * GAP, Type().height(entries) + _SCALE_ROOM)
     width = 2 * MARGIN + columns * (wide + GAP) + KEY
     title = heading(poses, round(12.4 * (width - 2 * MARGIN)))
     top = below + MARGIN
@@ -86,7 +86,7 @@ def draw_poses(poses: Poses) -> Figure:
             panel(figure, scene, pose, number + 1, corner)
         left = MARGIN + columns * (wide + GAP) + 0.1
         draw_legend(figure, entries, left, top)
-        scale_bar(figure, frame, (left, top - height(entries) - 0.12), poses.units)
+        scale_bar(figure, frame, (left, top - Type().height(entries) - 0.12), poses.units)
     return figure
 
 

@@ -14,7 +14,7 @@ from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.inches import Box, axes_at, write_lines
-from ptmcad.show.render.legend import Entry, Type, draw_legend, width
+from ptmcad.show.render.legend import Entry, Type, draw_legend
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.style import Size
 from ptmcad.show.units import unit, with_unit
@@ -65,7 +65,7 @@ def panelled(
     """A figure with a legend beside panels one below the other, for what has these names; and the panels' axes."""
     last = len(names) - 1
     tall = max((last + 1) * PANEL + last * GAP + FOOT, Type().height(entries) + 0.2)
-    figure = beside(heading(slice, found.at), width(entries), tall, words)
+    figure = beside(heading(slice, found.at), Type().width(entries), tall, words)
     scale = scale_of(found.along.low, found.along.high)
     panels = []
     for number, name in enumerate(names):

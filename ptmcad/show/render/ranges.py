@@ -28,7 +28,7 @@ from ptmcad.show.ranges.table import maximum_text, operation_name, working_text
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.colours import fill_of_counts, fill_of_index
 from ptmcad.show.render.inches import write, write_lines
-from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
+from ptmcad.show.render.legend import INK, Entry, Type, draw_legend
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.rangeplate import (
     LEFT,
@@ -59,9 +59,9 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
     space = 0.95 if upright else LABELS
     legend = tuple(_bar_legend(found))
     below = ROOM + 0.35 + space
-    tall = max(below + BAR + 0.45, height(legend) + 0.2)
+    tall = max(below + BAR + 0.45, Type().height(legend) + 0.2)
     with settings():
-        figure = beside(heading(slice, found.at), width(legend), tall, _words(found))
+        figure = beside(heading(slice, found.at), Type().width(legend), tall, _words(found))
         axes = axes_in(figure, (LEFT, below, WIDE, BAR))
         scale = scale_of(found.along.low, found.along.high)
         for i in found.intervals:

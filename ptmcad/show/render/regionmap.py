@@ -13,7 +13,7 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -83,7 +83,7 @@ def draw(
     if that has room.
     """
     with settings(style):
-        figure, missing = _figure(result, samples, dpi, NO_ROOM, style, overlay)
+        figure, missing = MapDrawing(result, style, dpi, samples, overlay).drawn()
     save(figure, path, dpi=dpi, style=style)
     return missing
 
@@ -156,34 +156,113 @@ class FreeSpace:
 NO_ROOM = FreeSpace()
 
 
-def figure_of(
-    result: RegionMap,
-    samples: bool,
-    dpi: int,
-    room: FreeSpace = NO_ROOM,
-    style: PictureStyle = DEFAULT,
-    overlay: Overlay = (),
-) -> Figure:
-    """The picture, to be called within `settings`."""
-    return _figure(result, samples, dpi, room, style, overlay)[0]
+class MapDrawing(NamedTuple):
+    """A map and what it is to look like; to be drawn within `settings`.
 
+    Attributes
+    ----------
+    dpi : resolution of a PNG, which says what is too thin to be seen.
+    samples : whether the cells' sample points are drawn.
+    overlay : further points.
+    """
 
-def _figure(
-    result: RegionMap, samples: bool, dpi: int, room: FreeSpace, style: PictureStyle, overlay: Overlay
-) -> tuple[Figure, tuple[str, ...]]:
-    """The picture, and what it leaves out."""
-    whole = shapes(result)
-    if style.flows:
-        seen = _seen(whole, (SIDE, SIDE), dpi)
-        type = Type(strong=style.strong, thin=style.strong * THIN / STRONG, thin_lines=style.thin_lines)
-        legend = _legend(result, seen, samples, style, overlay)[0]
-        layout = flowing(_title_lines(result, style), legend, type, len(seen.views), room.beside, room.tallest)
-    else:
-        seen, layout = fit(result, whole, samples, dpi, style, overlay)
-    figure = Figure(figsize=layout.size, dpi=dpi, facecolor="white")
-    figure.set_label(f"{' '.join(_title(result))}\n{description(result)}")
-    draw_parts(figure, seen, layout, style, samples, overlay)
-    return figure, left_out(seen, layout)
+    result: RegionMap
+    style: PictureStyle = DEFAULT
+    dpi: int = 150
+    samples: bool = False
+    overlay: Overlay = ()
+
+    def figure(self, room: FreeSpace = NO_ROOM) -> Figure:
+        """The picture."""
+        return self.drawn(room)[0]
+
+    def drawn(self, room: FreeSpace = NO_ROOM) -> tuple[Figure, tuple[str, ...]]:
+        """The picture, and what it leaves out."""
+        result, style = self.result, self.style
+        if style.flows:
+            seen = _seen(shapes(result), (SIDE, SIDE), self.dpi)
+            type = Type(strong=style.strong, thin=style.strong * THIN / STRONG, thin_lines=style.thin_lines)
+            legend = self.legend(seen)[0]
+            layout = flowing(_title_lines(result, style), legend, type, len(seen.views), room.beside, room.tallest)
+        else:
+            seen, layout = self.fit()
+        figure = Figure(figsize=layout.size, dpi=self.dpi, facecolor="white")
+        figure.set_label(f"{' '.join(_title(result))}\n{description(result)}")
+        self.draw_parts(figure, seen, layout)
+        return figure, left_out(seen, layout)
+
+    def fit(self) -> tuple[_Seen, Layout]:
+        """What is to be drawn on a page of a given size, and where.
+
+        What is thin follows from the map's size, which follows from what has to be told about thin regions.
+        """
+        result, style, whole = self.result, self.style, shapes(self.result)
+        wide, tall = style.size or (8.4, 5.7)
+        seen, tries = _seen(whole, (wide / 2, tall / 2), self.dpi), 3
+        while True:
+            parts = PageParts(
+                result.slice,
+                whole_title(result) if style.title is None else style.title,
+                self.legend(seen),
+                (whole.view, *(zoom.outline.view for zoom in seen.views)),
+            )
+            try:
+                layout = fitted(parts, style, style.size or _natural(style, parts))
+            except ConfigError:
+                if not seen.hidden:
+                    raise
+                # a small picture rather has no word on the thin regions without a label, which it shows all the same
+                untold = replace(parts, legend=self.legend(seen, told=False))
+                layout = fitted(untold, style, style.size or _natural(style, untold))
+            if seen.views and not layout.insets:
+                # what no inset shows is named by a label that an arrow leads to it, if that has room
+                sides = (72 * layout.chart[2], 72 * layout.chart[3])
+                bare = seen.with_room(sides, layout.texts.arrow)
+                if bare is not seen:
+                    seen, tries = bare, 1
+                    continue
+            again = _seen(whole, (layout.chart[2], layout.chart[3]), self.dpi, seen)
+            tries -= 1
+            if again is seen or not tries:
+                return seen, layout
+            seen = again
+
+    def legend(self, seen: _Seen, told: bool = True) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
+        """The legend with areas and without; ``told`` says whether it tells how many thin regions have no label."""
+        if self.style.legend is LegendPlace.NONE:
+            return (), ()
+        paint, hidden = paint_of(self.style, self.result), seen.hidden * told
+        further = overlay_entries(self.overlay)
+        with_areas, without = (
+            entries(self.result, seen.thin_lines, self.samples, hidden, Wording(paint.fill, paint.undetermined, areas))
+            for areas in (True, False)
+        )
+        return (*with_areas, *further), (*without, *further)
+
+    def draw_parts(self, figure: Figure, seen: _Seen, layout: Layout) -> Any:
+        """Everything in its place; the map's axes."""
+        result, paint = self.result, paint_of(self.style, self.result)
+        on_map = replace(paint, thin_walls=seen.thin_lines)
+        write_lines(figure, layout.title_at, layout.title, layout.texts.title, layout.title_line)
+        axes = axes_at(figure, layout.chart, "map")
+        paint_map(axes, seen.whole, "", on_map)
+        if self.samples:
+            points = np.array([seen.whole.view.approximate_position(c.sample) for c in result.cells])
+            axes.plot(
+                *points.T, "o", markersize=2.5 * paint.scale, color=INK, transform=axes.transAxes, gid="samples",
+                clip_on=False,
+            )  # fmt: skip
+        dress(axes, result.slice, seen.whole.view.x, seen.whole.view.y, layout.axes)
+        for corner, part in layout.legend:
+            draw_legend(figure, part, *corner, layout.type)
+        marked = seen.marked if layout.insets else seen.ranked
+        names = [_name_of(result, s, k if len(marked) > 1 and layout.insets else None) for k, s in enumerate(marked)]
+        rest = iter(names)
+        for zoom, box in zip(seen.views, layout.insets, strict=False):
+            _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
+        _mark(axes, seen, marked, names, layout, paint)
+        draw_overlay(axes, seen.whole.view, self.overlay, paint.scale, layout.texts.arrow)
+        return axes
 
 
 def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
@@ -199,44 +278,6 @@ def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
     return tuple(found)
 
 
-def fit(
-    result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: PictureStyle, overlay: Overlay = ()
-) -> tuple[_Seen, Layout]:
-    """What is to be drawn on a page of a given size, and where.
-
-    What is thin follows from the map's size, which follows from what has to be told about thin regions.
-    """
-    wide, tall = style.size or (8.4, 5.7)
-    seen, tries = _seen(whole, (wide / 2, tall / 2), dpi), 3
-    while True:
-        parts = PageParts(
-            result.slice,
-            whole_title(result) if style.title is None else style.title,
-            _legend(result, seen, samples, style, overlay),
-            (whole.view, *(zoom.outline.view for zoom in seen.views)),
-        )
-        try:
-            layout = fitted(parts, style, style.size or _natural(style, parts))
-        except ConfigError:
-            if not seen.hidden:
-                raise
-            # a small picture rather has no word on the thin regions without a label, which it shows all the same
-            untold = replace(parts, legend=_legend(result, seen, samples, style, overlay, told=False))
-            layout = fitted(untold, style, style.size or _natural(style, untold))
-        if seen.views and not layout.insets:
-            # what no inset shows is named by a label that an arrow leads to it, if that has room
-            sides = (72 * layout.chart[2], 72 * layout.chart[3])
-            bare = seen.with_room(sides, layout.texts.arrow)
-            if bare is not seen:
-                seen, tries = bare, 1
-                continue
-        again = _seen(whole, (layout.chart[2], layout.chart[3]), dpi, seen)
-        tries -= 1
-        if again is seen or not tries:
-            return seen, layout
-        seen = again
-
-
 def _natural(style: PictureStyle, parts: PageParts) -> Size:
     """A size for a map as large as in a picture that grows with what it shows, in proportion to the text."""
     scale = style.base_font / 9
@@ -244,49 +285,6 @@ def _natural(style: PictureStyle, parts: PageParts) -> Size:
     wide = {LegendPlace.RIGHT: 8.4, None: 8.4, LegendPlace.BELOW: 6.0, LegendPlace.NONE: 5.7}[style.legend]
     tall = 5.7 + (0.1 * lines if style.legend is LegendPlace.BELOW else 0.0)
     return wide * scale, tall * scale
-
-
-def _legend(
-    result: RegionMap, seen: _Seen, samples: bool, style: PictureStyle, overlay: Overlay = (), told: bool = True
-) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
-    """The legend with areas and without; ``told`` says whether it tells how many thin regions have no label."""
-    if style.legend is LegendPlace.NONE:
-        return (), ()
-    paint = paint_of(style, result)
-    with_areas, without = (
-        entries(result, seen.thin_lines, samples, seen.hidden * told, Wording(paint.fill, paint.undetermined, areas))
-        for areas in (True, False)
-    )
-    further = overlay_entries(overlay)
-    return (*with_areas, *further), (*without, *further)
-
-
-def draw_parts(
-    figure: Figure, seen: _Seen, layout: Layout, style: PictureStyle, samples: bool, overlay: Overlay = ()
-) -> Any:
-    """Everything in its place; the map's axes."""
-    result, paint = seen.whole.result, paint_of(style, seen.whole.result)
-    on_map = replace(paint, thin_walls=seen.thin_lines)
-    write_lines(figure, layout.title_at, layout.title, layout.texts.title, layout.title_line)
-    axes = axes_at(figure, layout.chart, "map")
-    paint_map(axes, seen.whole, "", on_map)
-    if samples:
-        points = np.array([seen.whole.view.approximate_position(c.sample) for c in result.cells])
-        axes.plot(
-            *points.T, "o", markersize=2.5 * paint.scale, color=INK, transform=axes.transAxes, gid="samples",
-            clip_on=False,
-        )  # fmt: skip
-    dress(axes, result.slice, seen.whole.view.x, seen.whole.view.y, layout.axes)
-    for corner, part in layout.legend:
-        draw_legend(figure, part, *corner, layout.type)
-    marked = seen.marked if layout.insets else seen.ranked
-    names = [_name_of(result, s, k if len(marked) > 1 and layout.insets else None) for k, s in enumerate(marked)]
-    rest = iter(names)
-    for zoom, box in zip(seen.views, layout.insets, strict=False):
-        _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
-    _mark(axes, seen, marked, names, layout, paint)
-    draw_overlay(axes, seen.whole.view, overlay, paint.scale, layout.texts.arrow)
-    return axes
 
 
 def whole_title(result: RegionMap) -> str:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from ptmcad.show.render.inches import Box, write_lines
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type
 from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, title_of, titles_and_rows, value_text
 from ptmcad.show.render.painting import Paint, paint_of
-from ptmcad.show.render.printing import save, settings
+from ptmcad.show.render.printing import settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
 from ptmcad.show.render.textwidth import text_width
@@ -35,13 +34,6 @@ _BOX_DIAGONAL = 1.7
 """Of the box's side: how much the picture's width or height shows, about; widths of lines on a surface rest on it."""
 MAX_FLOORS = 7
 """Of filled maps: more would hide each other."""
-
-
-def draw_solid(
-    family: FamilyMap, path: Path, dpi: int, style: PictureStyle, surface: BoundarySurface | None = None
-) -> None:
-    """Write the picture, as `ptmcad.show.render.printing.save` does."""
-    save(solid_figure(family, dpi, style, surface), path, dpi=dpi, style=style)
 
 
 def solid_figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundarySurface | None = None) -> Figure:
@@ -90,7 +82,7 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundaryS
                 _floor(axes, result, float(value), paint, _least(result))
             inches = min(box[2] * wide, box[3] * tall) / _BOX_DIAGONAL
             add_sheets(axes, surface, colours, _curves(family), 0.6 * paint.strong / 72 / inches)
-    axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
+    _limit(axes, family)
     write_lines(figure, (0.6 * em, tall - em), titles, font, 1.5 * em, fontweight="bold", color=INK)
     draw_flowed(figure, lines, em, type)
     return figure
@@ -107,7 +99,7 @@ def _axes(figure: Figure, box: Box, family: FamilyMap, font: float) -> Any:
     axes.set_proj_type("ortho")
     axes.view_init(elev=22, azim=-62)
     axes.computed_zorder = False
-    axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
+    _limit(axes, family)
     how = {"fontsize": 0.95 * font, "labelpad": 0.3 * font}
     axes.set_xlabel(axis_name(slice, 0), **how)
     axes.set_ylabel(axis_name(slice, 1), **how)
@@ -158,6 +150,10 @@ def _lowest(family: FamilyMap) -> list[tuple[Fraction, RegionMap]]:
 def _curves(family: FamilyMap) -> list[Any]:
     """The members' curves at which counts change, at their heights."""
     return [line for value, result in family for line in _lifted(result, float(value))]
+
+
+def _limit(axes: Any, family: FamilyMap) -> None:
+    axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
 
 
 def _ends(axis: Any) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from math import ceil
 
 from ptmcad.show.render.axes import Scale, fixed, scale_of, symbol
 from ptmcad.show.render.view import Interval, Shapes
-from ptmcad.show.units import unit
+from ptmcad.show.units import unit, with_unit
 from ptmcad.text.numerals import magnitude, shortest_text
 
 SIDE, RIM = 600, 24
@@ -85,7 +85,7 @@ def frame(seen: Shapes, room: Margins) -> Iterator[str]:
         name = slice.axes[number].name
         text = scale.name(symbol(name if len(name) <= _MAX_NAME else name[: _MAX_NAME - 1] + "…"))
         known = unit(slice, number)
-        text = escape(f"{text} ({known})" if known else text)
+        text = escape(with_unit(text, known))
         if number == 0:
             yield f'<text class="name" x="{SIDE / 2}" y="{SIDE + room.bottom - 16}">{text}</text>'
         else:

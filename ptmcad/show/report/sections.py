@@ -210,12 +210,8 @@ def left_out(result: RegionMap) -> str:
     return "".join(parts) or "<p>The result holds no plan.</p>"
 
 
-def times_and_precision(result: RegionMap, timings: bool) -> str:
+def times_and_precision(result: RegionMap, timings: bool) -> Iterator[str]:
     """Seconds by stage, the bits that were needed, and versions."""
-    return "".join(_times_and_precision(result, timings))
-
-
-def _times_and_precision(result: RegionMap, timings: bool) -> Iterator[str]:
     if timings and result.timings:
         rows = [(escape(name), f"{seconds:.4f}") for name, seconds in result.timings.items()]
         yield table(("stage", "seconds"), rows, "Times")
@@ -227,12 +223,8 @@ def _times_and_precision(result: RegionMap, timings: bool) -> Iterator[str]:
         yield f"<p>Computed with {escape(versions)}.</p>"
 
 
-def again(result: RegionMap) -> str:
+def again(result: RegionMap) -> Iterator[str]:
     """How to compute the result anew and how to check it."""
-    return "".join(_again(result))
-
-
-def _again(result: RegionMap) -> Iterator[str]:
     name = result.slice.name
     record, command = reproduction(result.slice)
     if record is None:
