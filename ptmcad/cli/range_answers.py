@@ -66,9 +66,22 @@ class RangeAnswer:
     parts: Mapping[str, Any]
     pictures: Mapping[str, Callable[[Path], None]]
 
-    def added(self, text: str, part: Mapping[str, Any], end: str, picture: Callable[[Path], None]) -> RangeAnswer:
-        """The same with one more table, part of the JSON, and picture under the end of its name."""
-        return RangeAnswer(f"{self.text}\n\n{text}", {**self.parts, **part}, {**self.pictures, end: picture})
+    def added(
+        self, text: str, found: Any, digits: int, end: str = "", draw: Callable[[], Any] | None = None
+    ) -> RangeAnswer:
+        """The same with one more table, part of the JSON and, where it is drawn, picture under the end of its name."""
+        from ptmcad.show.ranges.document import part
+
+        pictures = dict(self.pictures)
+        if draw is not None:
+            pictures[end] = partial(_save, draw)
+        return RangeAnswer(f"{self.text}\n\n{text}", {**self.parts, **part(found, digits)}, pictures)
+
+
+def _save(draw: Callable[[], Any], path: Path) -> None:
+    from ptmcad.show.render.printing import save
+
+    save(draw(), path)
 
 
 def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
@@ -79,27 +92,47 @@ def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
     PtmcadError
         Of any kind.
     """
-    from ptmcad.ask import ranges
-    from ptmcad.exact.ranges.strips import refuse_free_lengths
-    from ptmcad.show.ranges import document, table
+    known, enclosed = RangeAnswer(question_of(slice), {}, {}), is_enclosed(slice, request)
+    if request.over and not enclosed:
+        from ptmcad.exact.ranges.strips import refuse_free_lengths
 
-    known = RangeAnswer(question_of(slice), {}, {})
-    if is_enclosed(slice, request):
-        known = _enclosed(slice, request) if request.at else known
-        known = _with_bands(known, slice, request) if request.over else known
-        return _with_poses(known, slice, request)
-    if request.over:
         refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
-    digits = request.digits
     if request.at:
-        found = ranges.intervals(slice, request.along, request.at)
-        text, part = table.table(found, digits), document.part(found, digits)
-        known = known.added(text, part, "", partial(_picture, "line", slice, found))
+        known = (_enclosed if enclosed else _with_line)(known, slice, request)
     if request.over:
-        widths = ranges.operation_widths(slice, request.along, request.rows)
-        text, part = table.width_table(widths, digits), document.part(widths, digits)
-        known = known.added(text, part, "-over", partial(_picture, "over", slice, widths))
+        known = (_with_bands if enclosed else _with_widths)(known, slice, request)
     return _with_poses(known, slice, request)
+
+
+def _with_line(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
+    """The answer with the intervals along the line."""
+    from ptmcad.ask.ranges import intervals
+    from ptmcad.show.ranges.table import table
+
+    line = intervals(slice, request.along, request.at)
+
+    def draw() -> Any:
+        from ptmcad.show.render.ranges import draw_range
+
+        return draw_range(slice, line)
+
+    return found.added(table(line, request.digits), line, request.digits, "", draw)
+
+
+def _with_widths(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
+    """The answer with the operation ranges over the other axis."""
+    from ptmcad.ask.ranges import operation_widths
+    from ptmcad.show.ranges.table import width_table
+
+    widths = operation_widths(slice, request.along, request.rows)
+    text = width_table(widths, request.digits)
+    return found.added(text, widths, request.digits, "-over", partial(_draw_widths, slice, widths))
+
+
+def _draw_widths(slice: Slice, found: Any) -> Any:
+    from ptmcad.show.render.ranges import draw_widths
+
+    return draw_widths(slice, found)
 
 
 def is_enclosed(slice: Slice, request: RangeRequest) -> bool:
@@ -114,12 +147,12 @@ def is_enclosed(slice: Slice, request: RangeRequest) -> bool:
 def _with_bands(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
     """The answer with the operation ranges over the other axis, where springs have free lengths."""
     from ptmcad.ask.bands import certified_widths
-    from ptmcad.show.ranges import certified, document
+    from ptmcad.show.ranges.certified import width_table
 
     with ProgressBar() as progress:
         widths = certified_widths(slice, request.along, request.rows, request.digits, progress)
-    text, part = certified.width_table(widths, request.digits), document.part(widths, request.digits)
-    return found.added(text, part, "-over", partial(_picture, "over", slice, widths))
+    text = width_table(widths, request.digits)
+    return found.added(text, widths, request.digits, "-over", partial(_draw_widths, slice, widths))
 
 
 def _with_poses(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
@@ -141,12 +174,12 @@ def _with_paths(
     if request.start is None:
         return found
     from ptmcad.ask.ranges import pose_paths
-    from ptmcad.show.ranges import document, table
+    from ptmcad.show.ranges.table import path_table
 
     with ProgressBar() as progress:
         paths = pose_paths(slice, request.along, request.at, request.start, request.pose, progress)
-    text, part = table.path_table(paths, min(request.digits, 10)), document.part(paths, request.digits)
-    return found.added(text, part, "-path", partial(_picture, "path", slice, paths, line=line))
+    text = path_table(paths, min(request.digits, 10))
+    return found.added(text, paths, request.digits, "-path", partial(_draw_paths, slice, paths, line))
 
 
 def _with_branches(
@@ -156,48 +189,34 @@ def _with_branches(
     if not request.quantities:
         return found
     from ptmcad.ask.branches import branch_diagram
-    from ptmcad.show.ranges import branches, document
+    from ptmcad.show.ranges.branches import table
 
     with ProgressBar() as progress:
         diagram = branch_diagram(slice, request.along, request.at, request.quantities, progress, line())
-    text, part = branches.table(diagram), document.part(diagram, request.digits)
-    return found.added(text, part, "-branches", partial(_picture, "branches", slice, diagram))
 
-
-def _enclosed(slice: Slice, request: RangeRequest) -> RangeAnswer:
-    """The answer where springs have free lengths."""
-    from ptmcad.certified.intervals import certified_intervals
-    from ptmcad.show.ranges import certified, document
-
-    line = certified_intervals(slice, request.along, request.at, request.digits)
-    text = f"{question_of(slice)}\n\n{certified.table(line, request.digits)}"
-    return RangeAnswer(text, document.part(line, request.digits), {})
-
-
-def _picture(
-    kind: str, slice: Slice, found: Any, path: Path, line: Callable[[], SolutionsOnLine] | None = None
-) -> None:
-    from ptmcad.show.render import ranges as pictures
-    from ptmcad.show.render.printing import save
-
-    if kind == "line":
-        figure = pictures.draw_range(slice, found)
-    elif kind == "over":
-        figure = pictures.draw_widths(slice, found)
-    elif kind == "branches":
+    def draw() -> Any:
         from ptmcad.show.render.branches import draw_branches
 
-        figure = draw_branches(slice, found)
-    else:
-        figure = _paths_and_branches(slice, found, line)
-    save(figure, path)
+        return draw_branches(slice, diagram)
+
+    return found.added(table(diagram), diagram, request.digits, "-branches", draw)
+
+
+def _enclosed(found: RangeAnswer, slice: Slice, request: RangeRequest) -> RangeAnswer:
+    """The answer with the intervals along the line, where springs have free lengths."""
+    from ptmcad.certified.intervals import certified_intervals
+    from ptmcad.show.ranges.certified import table
+
+    line = certified_intervals(slice, request.along, request.at, request.digits)
+    return found.added(table(line, request.digits), line, request.digits)
 
 
 MAX_UNKNOWNS = 2
 """Of a model of which a picture of paths shows the unstable branches unasked: of others they take minutes."""
 
 
-def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOnLine] | None) -> Any:
+def _draw_paths(slice: Slice, found: Any, line: Callable[[], SolutionsOnLine]) -> Any:
+    """The paths, and behind them the branches that no path follows."""
     from ptmcad.ask.branches import branch_diagram
     from ptmcad.show.render.branches import draw_paths_and_branches
     from ptmcad.show.render.paths import draw_paths
@@ -206,6 +225,5 @@ def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOn
     if len(model.unknowns) > MAX_UNKNOWNS or "stable" not in model.criterion.counts:
         return draw_paths(slice, found)
     unknowns = (*model.angles, *model.reals)
-    known = None if line is None else line()
-    diagram = branch_diagram(slice, found.along.name, found.at, unknowns, line=known)
+    diagram = branch_diagram(slice, found.along.name, found.at, unknowns, line=line())
     return draw_paths_and_branches(slice, found, diagram)
