@@ -21,9 +21,9 @@ from ptmcad.answer.paths import PathPoint, Target
 from ptmcad.certified.arb_isolation import Box, newton, refined
 from ptmcad.certified.continuation import BranchEquations, ProvedPoint, branches, carried, located, over
 from ptmcad.certified.parameters import parameter_formulas
-from ptmcad.certified.plain.chart import determinant
 from ptmcad.certified.system import EquationSystem, system
 from ptmcad.formulas.balls import run_arb
+from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Graph
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import Mechanism

@@ -12,6 +12,7 @@ from ptmcad.answer.regionmap import PlanStep, System
 from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plan import beforehand
 from ptmcad.model import Mechanism, Model
+from ptmcad.model.closed import conditions_of
 from ptmcad.model.description import equations_in
 from ptmcad.model.elements import factor
 from ptmcad.model.involutions import Involution
@@ -29,12 +30,11 @@ def system_text(model: Model, has_free_lengths: bool = False) -> System:
     equations. What is positive at solutions is there as the record says it.
     """
     unknowns, own, mechanism = tuple(model.unknowns), equations_in(model), model.whole
-    if own is not None and not has_free_lengths:
-        potential = "" if own.potential is None else to_text(own.potential)
-        texts = [tuple(map(to_text, trees)) for trees in (own.equations, own.inequalities, own.stability)]
+    texts = [tuple(map(to_text, trees)) for trees in conditions_of(model)]
+    if mechanism is None or (texts[0] and not has_free_lengths):
+        potential = "" if own is None or own.potential is None else to_text(own.potential)
         return System(unknowns, (), potential, texts[0], (), *texts[1:])
-    assert mechanism is not None
-    relations = () if own is None else tuple(map(to_text, own.equations[:-1]))
+    relations = texts[0][:-1]
     moments = split_moments(mechanism)
     if mechanism.has_potential:
         return System(unknowns, relations, energy_text(mechanism, moments), (), ())

@@ -89,14 +89,15 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, m
 
 def _vanishing(given: Model, known: CompiledSystem, solutions: Sequence[ExactSolution]) -> Iterator[str]:
     """The conditions for stability that are zero at a solution, which counts as unstable, in words."""
-    for k, condition in enumerate(given.stability):
+    for k in range(len(known.stability)):
         if numbers := [n for n, s in enumerate(solutions, 1) if s.stability[k].is_zero]:
             several = len(numbers) > 1
             what = f"{noun(given, len(numbers))} {', '.join(map(str, numbers))}"
             if known.definite:  # the condition is a determinant, pages long
                 yield f"{what} {'are' if several else 'is'} degenerate: poses meet there, or the loop is flat"
                 continue
-            yield f"{text_of(condition)} is zero at {what}, which {'count' if several else 'counts'} as unstable"
+            condition = text_of(given.stability[k])
+            yield f"{condition} is zero at {what}, which {'count' if several else 'counts'} as unstable"
 
 
 def _remark(found: FibrePoints) -> str:

@@ -14,110 +14,21 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
-from typing import Generic, NamedTuple, TypeVar
+from typing import TypeVar
 
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.formulas.values import values
-from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System
+from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.formulas.values import ByNames, values
+from ptmcad.model import crossed, loops
+from ptmcad.model.crossed import Follower
+from ptmcad.model.description import Mechanism, Model, equations_in
 from ptmcad.model.elements import second_bar
 from ptmcad.model.evaluate import Element, Ring, evaluate, evaluated
+from ptmcad.model.springs import AngularSpring, LinearSpring, Vector
 from ptmcad.model.work import split_moments
 from ptmcad.text.tree import Tree
 
-Vector = tuple[Formula, Formula]
 E = TypeVar("E", bound=Element)
-
-
-class LinearSpring(NamedTuple):
-    """A spring between two points: its energy is stiffness (|difference| - free)^2/2.
-
-    Attributes
-    ----------
-    difference : from its start to its end.
-    """
-
-    name: str
-    start: str
-    end: str
-    stiffness: Formula
-    free: Formula
-    difference: Vector
-
-    @property
-    def pull(self) -> Formula:
-        """What the energy lacks for each unit of length: stiffness times free length."""
-        return self.stiffness * self.free
-
-    @property
-    def square(self) -> Formula:
-        """Of its length."""
-        x, y = self.difference
-        return x * x + y * y
-
-    @property
-    def length(self) -> Formula:
-        return length(*self.difference)
-
-    @property
-    def force(self) -> Formula:
-        """Positive where it pulls."""
-        return self.stiffness * (self.length - self.free)
-
-    @property
-    def quantities(self) -> dict[str, Formula]:
-        """What poses say of it."""
-        return {"length": self.length, "force": self.force}
-
-    @property
-    def relaxed_energy(self) -> Formula:
-        """As if its free length were zero."""
-        return self.stiffness * self.square / 2
-
-    @property
-    def energy(self) -> Formula:
-        """Where the free length is the number zero without the length, so that short springs are nothing singular."""
-        if self.free.value == 0:
-            return self.relaxed_energy
-        return self.stiffness * (self.length - self.free).squared() / 2
-
-
-class AngularSpring(NamedTuple):
-    """A torsion spring: its energy is stiffness (1 - cos deflection), its moment stiffness sin deflection.
-
-    Attributes
-    ----------
-    cosine, sine : of its deflection, the angle less the one at rest.
-    """
-
-    name: str
-    stiffness: Formula
-    cosine: Formula
-    sine: Formula
-
-    @property
-    def moment(self) -> Formula:
-        return self.stiffness * self.sine
-
-    @property
-    def quantities(self) -> dict[str, Formula]:
-        """What poses say of it."""
-        return {"deflection.cos": self.cosine, "deflection.sin": self.sine, "moment": self.moment}
-
-
-class Follower(NamedTuple):
-    """An angle that follows from an unknown one: that of an X-joint's second bar.
-
-    Attributes
-    ----------
-    variable : its number.
-    cosine, sine, below : numerators and the common denominator, positive, in parameters and the unknown angle.
-    """
-
-    variable: int
-    cosine: Formula
-    sine: Formula
-    below: Formula
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,6 +102,13 @@ class CompiledSystem:
         return {k: moment for k, moment in enumerate(self.moments) if moment.value != 0 and self.are_slopes}
 
     @property
+    def forces(self) -> tuple[Formula, ...]:
+        """The smooth energy's slopes by the unknowns, less the moments."""
+        assert self.smooth is not None
+        slopes = (self.graph.derivative(self.smooth, k) for k in self.unknowns)
+        return tuple(slope - moment for slope, moment in zip(slopes, self.moments, strict=True))
+
+    @property
     def work(self) -> Formula:
         """Of the moments."""
         parts = (self.graph.variable(self.unknowns[k]) * moment for k, moment in self.acting.items())
@@ -241,29 +159,10 @@ class CompiledSystem:
 
     def values(self, formulas: Sequence[Formula], ring: Ring[E]) -> list[E]:
         """The formulas' values in a ring that has the parameters and unknowns by their names."""
-        return values(formulas, _ByNames(self.names, ring))
+        return values(formulas, ByNames(self.names, ring))
 
 
-@dataclass(frozen=True, slots=True)
-class _ByNames(Generic[E]):
-    """A ring as an arithmetic for formulas."""
-
-    names: tuple[str, ...]
-    ring: Ring[E]
-
-    def constant(self, value: Fraction) -> E:
-        return self.ring.constant(value)
-
-    def variable(self, number: int) -> E:
-        return self.ring.parameter(self.names[number])
-
-    def cos(self, number: int) -> E:
-        return self.ring.cos(self.names[number])
-
-    def sin(self, number: int) -> E:
-        return self.ring.sin(self.names[number])
-
-
+@lru_cache(maxsize=8)
 def compiled(model: Model) -> CompiledSystem:
     """The formulas of a description.
 
@@ -272,14 +171,9 @@ def compiled(model: Model) -> CompiledSystem:
     ExpressionError
         When a moment that depends on its unknown is too large to be multiplied out.
     """
-    return _compiled(model, model.whole)
-
-
-@lru_cache(maxsize=8)  # by both, as closed mechanisms are equal where their equations are
-def _compiled(model: Model, mechanism: Mechanism | None) -> CompiledSystem:
     graph, names = Graph(), [*model.variables, *model.angles, *model.reals]
-    if mechanism is not None:
-        names += mechanism.followers
+    if model.whole is not None:
+        names += model.whole.followers
     return compiled_with(model, {name: graph.variable(k) for k, name in enumerate(names)})
 
 
@@ -294,9 +188,17 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
     ring = _Ring(graph, variables, {*model.angles, *followers})
     angles, reals = (tuple(variables[name].variable for name in some) for some in (model.angles, model.reals))
     known = CompiledSystem(graph, tuple(variables), angles, reals)
-    if mechanism is not None:
-        known = _with_mechanism(known, mechanism, ring)
-    return _with_equations(known, model, ring)
+    if mechanism is None:
+        return _of_system(known, model, ring)
+    known = _with_mechanism(known, mechanism, ring)
+    if mechanism is model:
+        return _of_slopes(known, mechanism.has_potential)
+    if not mechanism.xjoints:
+        return _with_loops(known, mechanism, ring)
+    assert known.smooth is not None
+    moments = dict(zip((*mechanism.angles, *mechanism.reals), known.moments, strict=True))
+    found = crossed.conditions(known.smooth, known.followers, moments, variables)
+    return replace(known, **found._asdict(), definite=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -348,7 +250,8 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
     for joint in mechanism.xjoints:
         bars, base = ring.of((joint.bars, joint.length))
         turned_by = second_bar(bars, base, ring.cos(joint.angle), ring.sin(joint.angle))
-        followers.append(Follower(ring.variables[joint.other].variable, *turned_by))
+        first, second = (ring.variables[angle].variable for angle in (joint.angle, joint.other))
+        followers.append(Follower(first, second, *turned_by))
     return replace(
         known,
         followers=tuple(followers),
@@ -364,25 +267,35 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
     )
 
 
-def _with_equations(known: CompiledSystem, model: Model, ring: _Ring) -> CompiledSystem:
-    """What is zero, and what is positive, at solutions."""
-    if isinstance(model, System):
-        known = replace(
-            known,
-            equations=ring.of(model.equations),
-            inequalities=ring.of(model.inequalities),
-            stability=ring.of(model.stability),
-        )
-        if isinstance(model, ClosedMechanism):
-            known = replace(known, tangent=ring.of(model.tangent), definite=True)
-        if model.potential is not None:
-            moments = (ring.constant(Fraction(0)),) * len(known.unknowns)
-            energy = evaluate(model.potential, ring)
-            known = replace(known, smooth=energy, others=(energy,), moments=moments, has_energy=True)
-    known = replace(known, has_index=model.has_potential)
-    if known.equations:
+def _of_system(known: CompiledSystem, model: Model, ring: _Ring) -> CompiledSystem:
+    """What is zero, and what is positive, at solutions of a system."""
+    own = equations_in(model)
+    assert own is not None
+    known = replace(
+        known,
+        equations=ring.of(own.equations),
+        inequalities=ring.of(own.inequalities),
+        stability=ring.of(own.stability),
+    )
+    if own.potential is None:
         return known
-    assert known.smooth is not None
-    slopes = [known.graph.derivative(known.smooth, k) for k in known.unknowns]
-    equations = tuple(slope - moment for slope, moment in zip(slopes, known.moments, strict=True))
-    return replace(known, equations=equations, are_slopes=True)
+    moments = (ring.constant(Fraction(0)),) * len(known.unknowns)
+    energy = evaluate(own.potential, ring)
+    return _of_slopes(replace(known, smooth=energy, others=(energy,), moments=moments, has_energy=True), True)
+
+
+def _of_slopes(known: CompiledSystem, has_index: bool) -> CompiledSystem:
+    """Solutions are where the energy's slopes are the moments."""
+    return replace(known, equations=known.forces, are_slopes=True, has_index=has_index)
+
+
+def _with_loops(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> CompiledSystem:
+    """Solutions are where loops are closed and balanced."""
+    closing = []
+    for bar in mechanism.closing:
+        (x0, y0), (x1, y1) = known.points[bar.start], known.points[bar.end]
+        closing.append((x1 - x0).squared() + (y1 - y0).squared() - evaluate(bar.length, ring).squared())
+    own = len(known.unknowns) - len(mechanism.force_densities)
+    tensions = tuple(map(known.graph.variable, known.unknowns[own:]))
+    found = loops.conditions(tuple(closing), known.forces[:own], known.unknowns[:own], tensions)
+    return replace(known, **found._asdict(), definite=True)

@@ -44,10 +44,15 @@ def coordinates_of(model: Model) -> tuple[str, ...]:
 
 def has_index(model: Model) -> bool:
     """Whether solutions are critical points, near each of a function: then the matrix of derivatives is a Hessian."""
-    if isinstance(model, System):
-        return model.potential is not None
-    assert isinstance(model, Mechanism)
-    return not _has_moments_apart(model)
+    if (mechanism := model.whole) is not None:
+        return not (_is_closed(mechanism) or _has_moments_apart(mechanism))
+    assert isinstance(model, System)
+    return model.potential is not None
+
+
+def _is_closed(mechanism: Mechanism) -> bool:
+    """Whether conditions for stability stand in the place of a Hessian."""
+    return bool(mechanism.closing or mechanism.xjoints)
 
 
 def _has_moments_apart(mechanism: Mechanism) -> bool:
@@ -61,7 +66,8 @@ def _has_moments_apart(mechanism: Mechanism) -> bool:
 
 def tells_stability(model: Model) -> bool:
     """Whether it is known what a stable solution is."""
-    return has_index(model) or bool(model.stability)
+    mechanism = model.whole
+    return has_index(model) or bool(model.stability if mechanism is None else _is_closed(mechanism))
 
 
 def kinds_of_count(model: Model) -> set[Count]:

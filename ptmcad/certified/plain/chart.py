@@ -23,9 +23,10 @@ from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.cones import ConeFormulas, Matrix
 from ptmcad.certified.plain.geometry import FactoredProblem
-from ptmcad.certified.plain.minors import Bent, bent, determinant
+from ptmcad.certified.plain.minors import Bent, bent
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.turning import Turn
+from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula, Graph, length
 
 
@@ -246,6 +247,3 @@ def principal_minors(hessian: Matrix, *, whole: bool = False) -> list[Formula]:
         for order in range(1, size + whole)
         for chosen in combinations(range(size), order)
     ]
-
-
-__all__ = ["Matrix", "SpringChart", "chart", "determinant", "principal_minors"]

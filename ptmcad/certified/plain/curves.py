@@ -16,7 +16,7 @@ import numpy as np
 from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plain.angle import Angle
 from ptmcad.certified.plain.bounds import TURN, Range, ranges
-from ptmcad.certified.plain.chart import SpringChart, chart, determinant, principal_minors
+from ptmcad.certified.plain.chart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.frame import MirrorFrame, frames
 from ptmcad.certified.plain.geometry import FactoredProblem, geometry
 from ptmcad.certified.plain.involution import mirrors, square_of
@@ -26,6 +26,7 @@ from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.scales import TURNING_WEIGHT, short_lengths, variable_weights
 from ptmcad.certified.solved import Quotient, quotients
 from ptmcad.certified.system import system
+from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.model.involutions import Involution
 from ptmcad.question.counts import Count

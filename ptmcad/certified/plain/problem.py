@@ -19,8 +19,8 @@ from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Formula, Graph, length
+from ptmcad.model.closed import conditions_of
 from ptmcad.model.compile import CompiledSystem, compiled
-from ptmcad.model.description import equations_in
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.fourbars import closed_by, flat_everywhere
 from ptmcad.model.mechanisms import title_of
@@ -181,14 +181,15 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
 
 def _equations(slice: Slice, ring: Harmonics) -> Problem:
     """The problem but for what is asked of stable solutions beyond the model's conditions."""
-    system, own = compiled(slice.model), equations_in(slice.model)
-    inequalities = _conditions(_listed("positive", () if own is None else own.inequalities), ring)
+    system = compiled(slice.model)
+    _, positive, stable = conditions_of(slice.model)
+    inequalities = _conditions(_listed("positive", positive), ring)
     problem = Problem(ring.unknowns, ring.reals, (), (), system.has_index, inequalities)
     if slice.has_free_lengths and system.tangent:
         return _with_springs(_of_loops(problem, system, ring), slice, system, ring)
     if system.are_slopes:
         return _with_springs(_of_slopes(problem, system, ring), slice, system, ring)
-    stability = _conditions(_listed("stable", () if own is None else own.stability), ring)
+    stability = _conditions(_listed("stable", stable), ring)
     # an unknown that is not zero where solutions count is no factor of an equation: without this, the solutions at
     # which it is zero, say those where a species is extinct, would be undecided all over the window
     nonzero = [k for k in range(len(ring.unknowns)) if any(_is_multiple(c.value, k) for c in inequalities)]
