@@ -6,11 +6,14 @@ Guarantee: each saving that is named is made in the computation that the plan ac
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from ptmcad.answer.regionmap import PlanStep
-from ptmcad.model.involutions import Involution
 from ptmcad.question.savings import BY_NAME, GENERAL_SAVING
 from ptmcad.question.slice import Slice
+
+if TYPE_CHECKING:
+    from ptmcad.model.involutions import Involution
 
 KEPT = "kept, as asked for"
 """The reason for a step that a saving would have left out."""

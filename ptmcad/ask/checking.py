@@ -31,7 +31,7 @@ from ptmcad.exact.stages import SliceProblem, problem_of, prove_regular
 from ptmcad.exact.survey import Survey, survey
 from ptmcad.exact.witness import SHARES, points
 from ptmcad.model import ptm
-from ptmcad.model.sizes import terms_of
+from ptmcad.model.closed import terms_of
 from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.flint_numbers import from_fraction

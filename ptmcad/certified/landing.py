@@ -15,15 +15,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import arb, arb_mat, ctx, fmpq
+from flint import arb, ctx, fmpq
 
 from ptmcad.answer.paths import PathPoint, Target
-from ptmcad.certified.arb_isolation import Box, newton, refined
-from ptmcad.certified.continuation import BranchEquations, ProvedPoint, branches, carried, located, over
+from ptmcad.certified.arb_isolation import Box, approached, newton, refined
+from ptmcad.certified.continuation import BranchEquations, ProvedPoint, carried, located, over
 from ptmcad.certified.parameters import parameter_formulas
-from ptmcad.certified.plain.chart import determinant
 from ptmcad.certified.system import EquationSystem, system
 from ptmcad.formulas.balls import run_arb
+from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Graph
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import Mechanism
@@ -78,7 +78,7 @@ def line_of(slice: Slice, mechanism: Mechanism, varying: int, fixed: Fraction) -
     variables = [v.variable for v in unknowns.values()]
     hessian = tuple(tuple(graph.derivative(f, k) for k in variables) for f in slopes)
     folds = system([*slopes, determinant(hessian)], [varying, *variables])
-    return LineFormulas(branches(slopes, varying, fixed), folds, numbers)
+    return LineFormulas(BranchEquations(system(slopes, variables), varying, fixed), folds, numbers)
 
 
 def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> BranchEnd | None:
@@ -158,26 +158,18 @@ def _limit(line: LineFormulas, at: Enclosure, place: ProvedPoint) -> arb:
 def _fold(line: LineFormulas, at: Enclosure, place: ProvedPoint) -> Box | None:
     """The degenerate pose at a critical value that Newton's method finds from a place beside; None without proof."""
     folds, varying = line.folds, line.equations.varying
-    variables, size = [int(k) for k in folds.unknowns], len(folds.unknowns)
-    box = list(line.equations.box(ball_of(at.center), place.unknowns))
-    for _ in range(_PASSES):
-        for k in variables:
-            box[k] = box[k].mid()
-        values = run_arb(folds.tape, box, ctx.prec)
-        jacobian = arb_mat(size, size, [values[int(place)].mid() for place in folds.jacobian.flat])
-        try:
-            move = jacobian.solve(arb_mat(size, 1, [values[int(place)].mid() for place in folds.equations]))
-        except ZeroDivisionError:
-            return None
-        for n, k in enumerate(variables):
-            box[k] = box[k] - move[n, 0]
+    variables = [int(k) for k in folds.unknowns]
+    found = approached(folds, line.equations.box(ball_of(at.center), place.unknowns), _PASSES)
+    if found is None:
+        return None
+    box = list(found)
     for k in variables:
         box[k] = arb(box[k].mid(), arb(fmpq(1, 2 ** (ctx.prec // 3))))
     step = newton(folds, tuple(box), ctx.prec) if all(box[k].is_finite() for k in variables) else None
     if step is None or not step[1]:
         return None
-    found = refined(folds, tuple(box), ctx.prec)
-    return found if found[varying].overlaps(ball_of(at.low).union(ball_of(at.high))) else None
+    fold = refined(folds, tuple(box), ctx.prec)
+    return fold if fold[varying].overlaps(ball_of(at.low).union(ball_of(at.high))) else None
 
 
 def _numbers(line: LineFormulas, value: arb, unknowns: tuple[arb, ...]) -> list[arb]:

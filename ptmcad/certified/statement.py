@@ -12,6 +12,7 @@ from ptmcad.answer.regionmap import PlanStep, System
 from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.plan import beforehand
 from ptmcad.model import Mechanism, Model
+from ptmcad.model.closed import conditions_of
 from ptmcad.model.description import equations_in
 from ptmcad.model.elements import factor
 from ptmcad.model.involutions import Involution
@@ -29,13 +30,12 @@ def system_text(model: Model, has_free_lengths: bool = False) -> System:
     equations. What is positive at solutions is there as the record says it.
     """
     unknowns, own, mechanism = tuple(model.unknowns), equations_in(model), model.whole
-    conditions = tuple(map(to_text, model.conditions.values()))
-    if own is not None and not has_free_lengths:
-        potential = "" if own.potential is None else to_text(own.potential)
-        equations, stability = (tuple(map(to_text, trees)) for trees in (own.equations, own.stability))
-        return System(unknowns, (), potential, equations, (), conditions, stability)
-    assert mechanism is not None
-    relations = () if own is None else tuple(map(to_text, own.equations[:-1]))
+    equations, positive, stable = conditions_of(model)
+    relations, conditions, stability = (tuple(map(to_text, some)) for some in (equations, positive.values(), stable))
+    if mechanism is None or (relations and not has_free_lengths):
+        potential = "" if own is None or own.potential is None else to_text(own.potential)
+        return System(unknowns, (), potential, relations, (), conditions, stability)
+    relations = relations[:-1]
     moments = split_moments(mechanism)
     beside = {moment.unknown: to_text(moment.value) for moment in moments.coupled}
     stated = tuple(beside.get(unknown, "0") for unknown in unknowns if beside)

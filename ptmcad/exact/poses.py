@@ -88,10 +88,11 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, m
 
 def _vanishing(given: Model, known: CompiledSystem, solutions: Sequence[ExactSolution]) -> Iterator[str]:
     """The conditions for stability that are zero at a solution, which counts as unstable, in words."""
-    for k, condition in enumerate(given.stability):
+    conditions = given.stability or (None,) * len(known.stability)
+    for k in range(len(known.stability)):
         if numbers := [n for n, s in enumerate(solutions, 1) if s.stability[k].is_zero]:
             what = f"{noun(given, len(numbers))} {', '.join(map(str, numbers))}"
-            yield known.criterion.at_zero(what, len(numbers), condition)
+            yield known.criterion.at_zero(what, len(numbers), conditions[k])
 
 
 def _remark(found: FibrePoints) -> str:

@@ -28,20 +28,4 @@ __all__ = [
     "read_mechanism",
     "read_system",
     "recognised",
-    "without_loops",
 ]
-
-
-def without_loops(model: Mechanism) -> Model:
-    """The mechanism itself, or with closed loops or X-joints the equations of its equilibria.
-
-    Raises
-    ------
-    ConfigError
-        When these may have too many terms.
-    """
-    if not (model.closing or model.xjoints):
-        return model
-    from ptmcad.model.loops import equations_of_loops  # with all that only loops need
-
-    return equations_of_loops(model)

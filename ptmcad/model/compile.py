@@ -14,122 +14,22 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import Generic, NamedTuple, TypeVar
+from typing import TypeVar
 
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.formulas.values import values
+from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.formulas.values import ByNames, values
+from ptmcad.model import crossed, loops
 from ptmcad.model.criterion import Criterion
-from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System
-from ptmcad.model.elements import Law, Spring, second_bar
-from ptmcad.model.evaluate import Assignment, Element, Ring, evaluate, evaluated, value_among
+from ptmcad.model.crossed import Follower
+from ptmcad.model.description import Mechanism, Model, equations_in
+from ptmcad.model.elements import second_bar
+from ptmcad.model.evaluate import Element, Ring, evaluate, evaluated
+from ptmcad.model.springs import AngularSpring, ElasticLine, Vector
 from ptmcad.model.work import split_moments
 from ptmcad.text.tree import Tree
 
-Vector = tuple[Formula, Formula]
 E = TypeVar("E", bound=Element)
-
-
-class ElasticLine(NamedTuple):
-    """A spring between two points, by its law.
-
-    Attributes
-    ----------
-    difference, square : from its start to its end, and the square of its length.
-    smooth, density : its energy, and its force for each unit of length, as if its free length were zero.
-    pull : what its energy with the free length lacks for each unit of length.
-    """
-
-    name: str
-    start: str
-    end: str
-    law: Law
-    stiffness: Formula
-    free: Formula
-    difference: Vector
-    square: Formula
-    smooth: Formula
-    pull: Formula
-    density: Formula
-
-    @classmethod
-    def of(cls, spring: Spring, points: Mapping[str, Vector], ring: _Ring) -> ElasticLine:
-        (x0, y0), (x1, y1) = points[spring.start], points[spring.end]
-        x, y = x1 - x0, y1 - y0
-        stiffness, free = ring.of((spring.stiffness, spring.free))
-        names = {"k": stiffness, "f": free, "q": x * x + y * y}
-        law = spring.law
-        formulas = Assignment(names, ring.constant)
-        of_law = evaluated((law.smooth, law.pull, law.density), formulas)
-        return cls(spring.name, spring.start, spring.end, law, stiffness, free, (x, y), names["q"], *of_law)
-
-    @property
-    def length(self) -> Formula:
-        return length(*self.difference)
-
-    @property
-    def force(self) -> Formula:
-        """Positive where it pulls."""
-        return self._at(self.law.force, self.length, self.square)
-
-    @property
-    def quantities(self) -> dict[str, Formula]:
-        """What poses say of it."""
-        return {"length": self.length, "force": self.force}
-
-    @property
-    def energy(self) -> Formula:
-        """Where the free length is the number zero without the length, so that short springs are nothing singular."""
-        return self.smooth if self.free.value == 0 else self._at(self.law.energy, self.length, self.square)
-
-    @property
-    def collapsed(self) -> Formula:
-        """The energy where it has no length."""
-        nothing = self.stiffness.graph.constant(0)
-        return self._at(self.law.energy, nothing, nothing)
-
-    def _at(self, tree: Tree, extent: Formula, square: Formula) -> Formula:
-        """A formula of the law at a length."""
-        names = {"k": self.stiffness, "f": self.free, "l": extent, "q": square}
-        return value_among(tree, names, self.stiffness.graph.constant)
-
-
-class AngularSpring(NamedTuple):
-    """A torsion spring: its energy is stiffness (1 - cos deflection), its moment stiffness sin deflection.
-
-    Attributes
-    ----------
-    cosine, sine : of its deflection, the angle less the one at rest.
-    """
-
-    name: str
-    stiffness: Formula
-    cosine: Formula
-    sine: Formula
-
-    @property
-    def moment(self) -> Formula:
-        return self.stiffness * self.sine
-
-    @property
-    def quantities(self) -> dict[str, Formula]:
-        """What poses say of it."""
-        return {"deflection.cos": self.cosine, "deflection.sin": self.sine, "moment": self.moment}
-
-
-class Follower(NamedTuple):
-    """An angle that follows from an unknown one: that of an X-joint's second bar.
-
-    Attributes
-    ----------
-    variable : its number.
-    cosine, sine, below : numerators and the common denominator, positive, in parameters and the unknown angle.
-    """
-
-    variable: int
-    cosine: Formula
-    sine: Formula
-    below: Formula
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,6 +111,13 @@ class CompiledSystem:
         return {k: moment for k, moment in enumerate(self.moments) if moment.value != 0 and self.are_slopes}
 
     @property
+    def forces(self) -> tuple[Formula, ...]:
+        """The smooth energy's slopes by the unknowns, less the moments."""
+        assert self.smooth is not None
+        slopes = (self.graph.derivative(self.smooth, k) for k in self.unknowns)
+        return tuple(slope - moment for slope, moment in zip(slopes, self.moments, strict=True))
+
+    @property
     def work(self) -> Formula:
         """Of the moments."""
         parts = (self.graph.variable(self.unknowns[k]) * moment for k, moment in self.acting.items())
@@ -264,29 +171,10 @@ class CompiledSystem:
 
     def values(self, formulas: Sequence[Formula], ring: Ring[E]) -> list[E]:
         """The formulas' values in a ring that has the parameters and unknowns by their names."""
-        return values(formulas, _ByNames(self.names, ring))
+        return values(formulas, ByNames(self.names, ring))
 
 
-@dataclass(frozen=True, slots=True)
-class _ByNames(Generic[E]):
-    """A ring as an arithmetic for formulas."""
-
-    names: tuple[str, ...]
-    ring: Ring[E]
-
-    def constant(self, value: Fraction) -> E:
-        return self.ring.constant(value)
-
-    def variable(self, number: int) -> E:
-        return self.ring.parameter(self.names[number])
-
-    def cos(self, number: int) -> E:
-        return self.ring.cos(self.names[number])
-
-    def sin(self, number: int) -> E:
-        return self.ring.sin(self.names[number])
-
-
+@lru_cache(maxsize=8)
 def compiled(model: Model) -> CompiledSystem:
     """The formulas of a description.
 
@@ -295,14 +183,9 @@ def compiled(model: Model) -> CompiledSystem:
     ExpressionError
         When a moment that depends on its unknown is too large to be multiplied out.
     """
-    return _compiled(model, model.whole)
-
-
-@lru_cache(maxsize=8)  # by both, as closed mechanisms are equal where their equations are
-def _compiled(model: Model, mechanism: Mechanism | None) -> CompiledSystem:
     graph, names = Graph(), [*model.variables, *model.sorted_unknowns]
-    if mechanism is not None:
-        names += mechanism.followers
+    if model.whole is not None:
+        names += model.whole.followers
     return compiled_with(model, {name: graph.variable(k) for k, name in enumerate(names)})
 
 
@@ -316,10 +199,19 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
     graph = next((formula.graph for formula in variables.values()), Graph())
     ring = _Ring(graph, variables, {*model.angles, *followers})
     angles, reals = (tuple(variables[name].variable for name in some) for some in (model.angles, model.reals))
-    known = CompiledSystem(graph, tuple(variables), angles, reals, criterion=model.criterion)
-    if mechanism is not None:
-        known = _with_mechanism(known, mechanism, ring)
-    return _with_equations(known, model, ring)
+    conditions = ring.of(model.conditions.values())
+    known = CompiledSystem(graph, tuple(variables), angles, reals, inequalities=conditions, criterion=model.criterion)
+    if mechanism is None:
+        return _of_system(known, model, ring)
+    known = _with_mechanism(known, mechanism, ring)
+    if mechanism is model:
+        return _of_slopes(known)
+    if not mechanism.xjoints:
+        return _with_loops(known, mechanism, ring)
+    assert known.smooth is not None
+    moments = dict(zip(mechanism.sorted_unknowns, known.moments, strict=True))
+    found = crossed.conditions(known.smooth, known.followers, moments, variables)
+    return replace(known, **found._asdict())
 
 
 @dataclass(frozen=True, slots=True)
@@ -367,7 +259,8 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
     for joint in mechanism.xjoints:
         bars, base = ring.of((joint.bars, joint.length))
         turned_by = second_bar(bars, base, ring.cos(joint.angle), ring.sin(joint.angle))
-        followers.append(Follower(ring.variables[joint.other].variable, *turned_by))
+        first, second = (ring.variables[angle].variable for angle in (joint.angle, joint.other))
+        followers.append(Follower(first, second, *turned_by))
     return replace(
         known,
         followers=tuple(followers),
@@ -383,24 +276,30 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
     )
 
 
-def _with_equations(known: CompiledSystem, model: Model, ring: _Ring) -> CompiledSystem:
-    """What is zero, and what is positive, at solutions."""
-    known = replace(known, inequalities=ring.of(model.conditions.values()))
-    if isinstance(model, System):
-        known = replace(
-            known,
-            equations=ring.of(model.equations),
-            stability=ring.of(model.stability),
-        )
-        if isinstance(model, ClosedMechanism):
-            known = replace(known, tangent=ring.of(model.tangent))
-        if model.potential is not None:
-            moments = (ring.constant(Fraction(0)),) * len(known.unknowns)
-            energy = evaluate(model.potential, ring)
-            known = replace(known, smooth=energy, others=(energy,), moments=moments, has_energy=True)
-    if known.equations:
+def _of_system(known: CompiledSystem, model: Model, ring: _Ring) -> CompiledSystem:
+    """What is zero, and what is positive, at solutions of a system."""
+    own = equations_in(model)
+    assert own is not None
+    known = replace(known, equations=ring.of(own.equations), stability=ring.of(own.stability))
+    if own.potential is None:
         return known
-    assert known.smooth is not None
-    slopes = [known.graph.derivative(known.smooth, k) for k in known.unknowns]
-    equations = tuple(slope - moment for slope, moment in zip(slopes, known.moments, strict=True))
-    return replace(known, equations=equations, are_slopes=True)
+    moments = (ring.constant(Fraction(0)),) * len(known.unknowns)
+    energy = evaluate(own.potential, ring)
+    return _of_slopes(replace(known, smooth=energy, others=(energy,), moments=moments, has_energy=True))
+
+
+def _of_slopes(known: CompiledSystem) -> CompiledSystem:
+    """Solutions are where the energy's slopes are the moments."""
+    return replace(known, equations=known.forces, are_slopes=True)
+
+
+def _with_loops(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> CompiledSystem:
+    """Solutions are where loops are closed and balanced."""
+    closing = []
+    for bar in mechanism.closing:
+        (x0, y0), (x1, y1) = known.points[bar.start], known.points[bar.end]
+        closing.append((x1 - x0).squared() + (y1 - y0).squared() - evaluate(bar.length, ring).squared())
+    own = len(known.unknowns) - len(mechanism.force_densities)
+    tensions = tuple(map(known.graph.variable, known.unknowns[own:]))
+    found = loops.conditions(tuple(closing), known.forces[:own], known.unknowns[:own], tensions)
+    return replace(known, **found._asdict())

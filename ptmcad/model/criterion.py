@@ -124,10 +124,11 @@ class Criterion:
         """Those of the conditions for stability off whose zeros no solution loses it."""
         return conditions[-1:] if self.is_definite else conditions
 
-    def at_zero(self, what: str, number: int, condition: Tree) -> str:
-        """What it means that a condition for stability vanishes at some solutions."""
+    def at_zero(self, what: str, number: int, condition: Tree | None) -> str:
+        """What it means that a condition for stability, None of what is multiplied out, vanishes at some solutions."""
         if self.is_definite:
             return f"{what} {'are' if number > 1 else 'is'} degenerate: poses meet there, or the loop is flat"
+        assert condition is not None
         return f"{to_text(condition)} is zero at {what}, which {'count' if number > 1 else 'counts'} as unstable"
 
 

@@ -1,10 +1,11 @@
-"""Mechanisms with X-joints, as the equations of their equilibria in the first bars' angles alone.
+"""Equilibria with angles that follow from unknown ones, as those of X-joints' second bars do, in the unknowns alone.
 
 Guarantee: the real solutions are the equilibria, and the stable ones the strict minima of the energy; complex solutions
 at which some D is zero, where the energy has no value, are excluded by inequalities that every real one satisfies.
 
-With the second bars' cosines and sines, rational functions of the first ones', the energy is N/D_1^m_1 ... D_n^m_n, N a
-polynomial and each D_i positive. Its derivative by the angle of joint i, times these powers and D_i, is the polynomial
+With the followers' cosines and sines, rational functions of the angles th_i that they follow, the energy is
+N/D_1^m_1 ... D_n^m_n, N a polynomial and each D_i positive. Its derivative by th_i, times these powers and D_i, is the
+polynomial
 
     e_i = D_i dN/dth_i - m_i N dD_i/dth_i,
 
@@ -18,14 +19,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import prod
+from typing import NamedTuple
 
-from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.model.description import ClosedMechanism, Mechanism
-from ptmcad.model.elements import second_bar
-from ptmcad.model.proofs import Points, Polynomial, Ring
+from ptmcad.errors import ExpressionError
+from ptmcad.formulas.determinants import determinant
+from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.values import ByNames, values
+from ptmcad.model.identities import Polynomial, Ring
 from ptmcad.model.sizes import MAX_TERMS, TOO_LARGE
-from ptmcad.model.trees import determinant
-from ptmcad.model.work import split_moments, tree_of
 
 MAX_PRODUCTS = 2_000_000
 """Products of terms while the energy is made: some seconds. Two joints with symbolic lengths take a tenth of that."""
@@ -33,61 +34,106 @@ MAX_MINOR = 20 * MAX_TERMS
 """Of a condition for stability, multiplied out by the engine."""
 
 
-def without_xjoints(mechanism: Mechanism) -> ClosedMechanism:
-    """The equations of the equilibria of a mechanism with X-joints.
+class Follower(NamedTuple):
+    """An angle that follows from an unknown one: that of an X-joint's second bar.
+
+    Attributes
+    ----------
+    leader, variable : numbers of the unknown angle, and of its own.
+    cosine, sine, below : numerators and the common denominator, positive, in parameters and the unknown angle.
+    """
+
+    leader: int
+    variable: int
+    cosine: Formula
+    sine: Formula
+    below: Formula
+
+
+class AngleConditions(NamedTuple):
+    """What holds in the unknowns alone.
+
+    Attributes
+    ----------
+    equations : e_i, for each unknown.
+    inequalities, stability : positive at all solutions, and at stable ones.
+    """
+
+    equations: tuple[Formula, ...]
+    inequalities: tuple[Formula, ...]
+    stability: tuple[Formula, ...]
+
+
+def conditions(
+    energy: Formula, followers: Sequence[Follower], moments: Mapping[str, Formula], variables: Mapping[str, Formula]
+) -> AngleConditions:
+    """What holds at equilibria, multiplied out.
+
+    Parameters
+    ----------
+    energy : by unknowns and followers.
+    moments : of all unknowns; they depend on none.
+    variables : all, in their order.
 
     Raises
     ------
-    ConfigError
-        When these may have too many terms.
+    ExpressionError
+        When the equations may have too many terms.
     """
-    try:
-        equations, positive = _equations(mechanism)
-    except ExpressionError as error:
-        raise ConfigError(f"with x-joints {error.message}", key="x-joint") from None
-    unknowns = mechanism.sorted_unknowns
-    rows = [[e.derivative(u) for u in unknowns] for e in equations]
+    names = tuple(variables)
+    expanded = ByNames(names, Ring(MAX_PRODUCTS))
+    left, *steady = values([energy, *moments.values()], expanded)
+    bars = [_SecondBar(names[f.leader], names[f.variable], *values(f[2:], expanded)) for f in followers]
+    equations = _equations(left, bars, dict(zip(moments, steady, strict=True)))
+    rows = [[e.derivative(name) for name in moments] for e in equations]
     most = prod(max(len(entry.terms) for entry in row) for row in rows)
     if sum(len(e.terms) for e in equations) > MAX_TERMS or most > MAX_MINOR:
-        raise ConfigError(f"with x-joints {TOO_LARGE}; numbers for lengths make it smaller", key="x-joint")
-    trees = [[tree_of(entry, mechanism.angles) for entry in row] for row in rows]
-    return ClosedMechanism.of(
-        mechanism,
-        {},
-        equations=tuple(tree_of(e, mechanism.angles) for e in equations),
-        inequalities=tuple(tree_of(d, mechanism.angles) for d in positive) if len(positive) > 1 else (),
-        stability=tuple(determinant([row[:k] for row in trees[:k]]) for k in range(1, len(rows) + 1)),
-        tangent=(),
+        raise ExpressionError(f"{TOO_LARGE}; numbers for lengths make it smaller")
+    hessian = [tuple(_formula(entry, variables) for entry in row) for row in rows]
+    return AngleConditions(
+        tuple(_formula(e, variables) for e in equations),
+        tuple(follower.below for follower in followers) if len(followers) > 1 else (),
+        tuple(determinant([row[:k] for row in hessian[:k]]) for k in range(1, len(hessian) + 1)),
     )
 
 
-def _equations(mechanism: Mechanism) -> tuple[list[Polynomial], list[Polynomial]]:
-    """The polynomials e_i by the unknowns, and each joint's D."""
-    ring = Ring(MAX_PRODUCTS)
-    points, energy, below = Points(mechanism, ring), ring.constant(Fraction(0)), ring.constant(Fraction(1))
-    moments = split_moments(mechanism)
-    energies = (tree for trees in mechanism.polynomials.values() for tree in trees)
-    for tree in (*energies, *moments.energies):  # with the second bars' angles as angles of their own
-        energy += points.value(tree)
-    far: dict[str, Polynomial] = {}
-    powers = {joint.angle: _degree(energy, joint.other) for joint in mechanism.xjoints}
-    for joint in mechanism.xjoints:
-        length, bars = points.value(joint.length), points.value(joint.bars)
-        second = second_bar(bars, length, ring.cos(joint.angle), ring.sin(joint.angle))
-        energy = _substituted(energy, joint.other, second, powers[joint.angle])
-        far[joint.angle] = second[2]
-        below = _times(below, second[2], powers[joint.angle])
-    steady = {m.unknown: points.value(m.value) for m in moments.beside}
-    equations = []
-    for unknown in mechanism.sorted_unknowns:
-        slope = energy.derivative(unknown)
-        if unknown in steady:
-            slope -= steady[unknown] * below
-        if power := powers.get(unknown):
-            own = far[unknown]
-            slope = own * slope - ring.constant(Fraction(power)) * energy * own.derivative(unknown)
-        equations.append(slope)
-    return equations, list(far.values())
+class _SecondBar(NamedTuple):
+    """A `Follower` multiplied out."""
+
+    leader: str
+    angle: str
+    cosine: Polynomial
+    sine: Polynomial
+    below: Polynomial
+
+
+def _equations(energy: Polynomial, bars: Sequence[_SecondBar], moments: Mapping[str, Polynomial]) -> list[Polynomial]:
+    """The e_i."""
+    below, powers = energy.ring.constant(Fraction(1)), [_degree(energy, bar.angle) for bar in bars]
+    for bar, power in zip(bars, powers, strict=True):
+        energy = _substituted(energy, bar, power)
+        below = _times(below, bar.below, power)
+    slopes = {unknown: energy.derivative(unknown) - moment * below for unknown, moment in moments.items()}
+    for bar, power in zip(bars, powers, strict=True):
+        if power:
+            turned = energy.ring.constant(Fraction(power)) * energy * bar.below.derivative(bar.leader)
+            slopes[bar.leader] = bar.below * slopes[bar.leader] - turned
+    return list(slopes.values())
+
+
+def _formula(p: Polynomial, variables: Mapping[str, Formula]) -> Formula:
+    """A polynomial as a sum of products."""
+    total = next(iter(variables.values())).graph.constant(0)
+    for monomial, c in sorted(p.terms.items()):
+        term = total.graph.constant(c)
+        for name, e in monomial:
+            function, _, own = name.rpartition(" ")
+            variable = variables[own]
+            factor = variable.cos() if function == "cos" else variable.sin() if function else variable
+            for _ in range(e):
+                term = term * factor
+        total = total + term
+    return total
 
 
 def _degree(p: Polynomial, angle: str) -> int:
@@ -95,18 +141,17 @@ def _degree(p: Polynomial, angle: str) -> int:
     return max((sum(e for v, e in m if v in (f"cos {angle}", f"sin {angle}")) for m in p.terms), default=0)
 
 
-def _substituted(p: Polynomial, angle: str, bar: Sequence[Polynomial], power: int) -> Polynomial:
-    """p with cosine and sine of an angle as quotients with one denominator, times a power of this."""
+def _substituted(p: Polynomial, bar: _SecondBar, power: int) -> Polynomial:
+    """p with cosine and sine of the bar's angle as quotients, times a power of their denominator."""
     parts: dict[tuple[int, int], Polynomial] = {}
     for monomial, c in p.terms.items():
-        exponents: Mapping[str, int] = dict(monomial)
-        key = exponents.get(f"cos {angle}", 0), exponents.get(f"sin {angle}", 0)
-        rest = tuple((v, e) for v, e in monomial if v not in (f"cos {angle}", f"sin {angle}"))
-        parts.setdefault(key, Polynomial(p.ring, {})).terms[rest] = c
+        exponents = dict(monomial)
+        key = exponents.pop(f"cos {bar.angle}", 0), exponents.pop(f"sin {bar.angle}", 0)
+        parts.setdefault(key, Polynomial(p.ring, {})).terms[tuple(exponents.items())] = c
     found = Polynomial(p.ring, {})
     for (cosine, sine), part in parts.items():
-        factor = _times(_times(part, bar[0], cosine), bar[1], sine)
-        found = found + _times(factor, bar[2], power - cosine - sine)
+        factor = _times(_times(part, bar.cosine, cosine), bar.sine, sine)
+        found += _times(factor, bar.below, power - cosine - sine)
     return found
 
 

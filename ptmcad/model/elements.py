@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from ptmcad.errors import shown
 from ptmcad.model.evaluate import multiples
-from ptmcad.model.trees import ONE, ZERO, cosine_and_sine, derivative, negative, product, total
+from ptmcad.model.trees import ONE, ZERO, cosine_and_sine, negative, product, total
 from ptmcad.text.numerals import text_of as value_text
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Chain, Name, Negative, Number, Power, Step, Tree, replaced
@@ -225,20 +225,16 @@ class Law(Enum):
     unit : of the stiffness.
     energy : smooth - pull*l, but for what has no length in it.
     smooth : the energy without a free length: a polynomial in q.
+    density : twice its slope by q, the force for each unit of length.
     pull : what the energy lacks for each unit of length; without lengths, and zero without a free length.
     force : the energy's slope by the length, positive where the spring pulls.
     """
 
-    LINEAR = (("force", "/", "length"), "1/2*k*(l - f)^2", "1/2*k*q", "k*f", "k*(l - f)")
+    LINEAR = (("force", "/", "length"), "1/2*k*(l - f)^2", "1/2*k*q", "k", "k*f", "k*(l - f)")
 
     def __init__(self, unit: Unit, *formulas: str) -> None:
         self.unit = unit
-        self.energy, self.smooth, self.pull, self.force = map(parse, formulas)
-
-    @property
-    def density(self) -> Tree:
-        """The force for each unit of length without a free length."""
-        return product(_TWO, derivative(self.smooth, "q"))
+        self.energy, self.smooth, self.density, self.pull, self.force = map(parse, formulas)
 
 
 class Spring(NamedTuple):

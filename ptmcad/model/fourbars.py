@@ -21,8 +21,8 @@ from itertools import combinations
 from ptmcad.errors import ExpressionError
 from ptmcad.model.description import Mechanism
 from ptmcad.model.elements import Closing
+from ptmcad.model.identities import Points
 from ptmcad.model.involutions import SliceRing
-from ptmcad.model.proofs import Points
 from ptmcad.text.expressions import Expression
 
 IN_TWO_WAYS = (

@@ -14,6 +14,7 @@ axes the signs with which all polynomials are kept are the solutions of linear e
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -21,12 +22,12 @@ from itertools import permutations
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.model.description import Model, equations_in
+from ptmcad.formulas.graph import Formula
+from ptmcad.model.compile import compiled
 from ptmcad.model.elements import UnknownKind
-from ptmcad.model.evaluate import evaluate
-from ptmcad.model.proofs import Monomial, Points, Polynomial, Ring, felt
+from ptmcad.model.identities import Monomial, Polynomial, Ring
+from ptmcad.model.parametric import Model
 from ptmcad.text.expressions import Expression, constant
-from ptmcad.text.tree import Tree
 
 MAX_WORK = 100_000
 """Products of terms, about half a second; the bars and springs of shipped mechanisms take some hundred."""
@@ -185,38 +186,36 @@ class SliceRing(Ring):
 
 def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
     """What an involution has to keep, but for the order."""
+    system = compiled(model)
     unknowns = {name for u in model.unknowns for name in (u, f"cos {u}", f"sin {u}")}
-
-    def felt_by_unknowns(p: Polynomial) -> list[_Terms]:
-        return [{m: c for m, c in p.terms.items() if any(v in unknowns for v, _ in m)}]
 
     def marked(parts: Mapping[str, Polynomial]) -> _Terms:
         return {tuple(sorted(((mark, 1), *m))): c for mark, p in parts.items() for m, c in p.terms.items()}
 
-    def values(trees: Iterable[Tree]) -> list[_Terms]:
-        return [evaluate(tree, ring).terms for tree in trees]
+    def values(formulas: Iterable[Formula]) -> list[Polynomial]:
+        return system.values(tuple(formulas), ring)
 
-    whole, own = model.whole, equations_in(model)
-    if own is not None:
-        roots = () if whole is None else (element.root for element in whole.elements.values() if element.root)
-        if any(evaluate(root.pull, ring).terms for root in roots):
-            raise ExpressionError("free lengths are in none of a closed loop's equations")
-        kept = [values(own.stability)]
-        if own.potential is not None:
-            kept.append(felt_by_unknowns(evaluate(own.potential, ring)))
-        equations = values(own.equations)
-        yield from (_Part(f, equations, True) for f in equations)
-    else:
-        assert whole is not None
-        energy, lengths, work = felt(Points(whole, ring))
-        # how many are the same is said in their polynomial
-        pulling = [
-            marked({f"root {n}": p for n, p in enumerate((*root, ring.constant(Fraction(number))))})
-            for root, number in lengths.items()
-        ]
-        kept = [felt_by_unknowns(energy), [marked({f"d {u}": p for u, p in work.items()})], pulling]
-    kept.append(values(model.conditions.values()))
+    # how many are the same is said in their polynomial
+    pulls, squares = values(s.pull for s in system.springs), values(s.square for s in system.springs)
+    springs = Counter(zip(pulls, squares, strict=True))
+    lengths = [
+        marked({"pull": pull, "square": square, "number": ring.constant(Fraction(number))})
+        for (pull, square), number in springs.items()
+        if pull.terms
+    ]
+    kept: list[list[_Terms]] = [[p.terms for p in values(some)] for some in (system.inequalities, system.stability)]
+    if system.are_slopes:
+        assert system.smooth is not None
+        (energy,) = values([system.smooth])
+        moments = zip((f"d {system.names[k]}" for k in system.unknowns), values(system.moments), strict=True)
+        felt = {m: c for m, c in energy.terms.items() if any(v in unknowns for v, _ in m)}
+        kept += [[felt], [marked(dict(moments))], lengths]
+    elif lengths:
+        raise ExpressionError("free lengths are in none of a closed loop's equations")
     yield from (_Part(f, images) for images in kept for f in images)
+    if not system.are_slopes:
+        equations = [p.terms for p in values(system.equations)]
+        yield from (_Part(f, equations, True) for f in equations)
 
 
 class _Change(NamedTuple):

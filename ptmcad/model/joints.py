@@ -22,7 +22,7 @@ from ptmcad.errors import ExpressionError
 from ptmcad.model.description import Mechanism
 from ptmcad.model.elements import Support, TorsionSpring
 from ptmcad.model.evaluate import multiples
-from ptmcad.model.proofs import Points, Ring
+from ptmcad.model.identities import Points, Ring
 
 MAX_WORK = 20_000
 """Products of terms for all the points' coordinates; larger ones have no derived joints."""

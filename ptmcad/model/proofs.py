@@ -1,143 +1,29 @@
-"""What a description of a mechanism has to satisfy and no single entry shows: rigid bars, no loose unknown, symmetries.
+"""What a description of a mechanism has to satisfy and no single entry shows: rigid bars, no loose unknown, symmetries,
+and loops that are computed.
 
-Guarantee: exact; decided in Q[parameters, lengths][cos, sin], reduced by cos^2 + sin^2 = 1. A bar is accepted only when
-its length was proved constant, a symmetry only when it was proved to be one; an unknown is refused only when its
-equation was proved to vanish identically.
-
-The ring is a small one of its own: readers and checkers load no algebra.
+Guarantee: exact; decided by identities of polynomials. A bar is accepted only when its length was proved constant, a
+symmetry only when it was proved to be one; an unknown is refused only when its equation was proved to vanish
+identically.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.elements import NAMES, squared_distance
-from ptmcad.model.evaluate import Named, evaluated, multiples, value_at
+from ptmcad.model.evaluate import multiples, value_at
+from ptmcad.model.identities import Points, Polynomial
 from ptmcad.model.trees import ZERO
-from ptmcad.text.tree import Name, Tree, names_of, replaced
+from ptmcad.text.tree import Name, names_of
 
-MAX_WORK = 12_000
-"""Products of terms for one question, a fraction of a second; two bars and a spring take some hundred."""
-
-Monomial = tuple[tuple[str, int], ...]
-"""Variables with their exponents, in order; the cosine of an angle is ``cos NAME``, its exponent at most 1."""
-
-
-class Polynomial:
-    """An element of the ring; it changes only while it is made."""
-
-    __slots__ = ("ring", "terms")
-
-    def __init__(self, ring: Ring, terms: dict[Monomial, Fraction]):
-        self.ring = ring
-        self.terms = terms
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Polynomial) and self.terms == other.terms
-
-    def __hash__(self) -> int:
-        return hash(frozenset(self.terms.items()))
-
-    def __add__(self, other: Polynomial) -> Polynomial:
-        return self._plus(other, 1)
-
-    def __sub__(self, other: Polynomial) -> Polynomial:
-        return self._plus(other, -1)
-
-    def _plus(self, other: Polynomial, sign: int) -> Polynomial:
-        terms = dict(self.terms)
-        for monomial, c in other.terms.items():
-            total = terms.get(monomial, 0) + sign * c
-            if total:
-                terms[monomial] = Fraction(total)
-            else:
-                terms.pop(monomial, None)
-        return Polynomial(self.ring, terms)
-
-    def __mul__(self, other: Polynomial) -> Polynomial:
-        self.ring.spend(len(self.terms) * len(other.terms))
-        terms: dict[Monomial, Fraction] = {}
-        for one, a in self.terms.items():
-            for two, b in other.terms.items():
-                for monomial, sign in _product(one, two):
-                    terms[monomial] = terms.get(monomial, Fraction(0)) + sign * a * b
-        return Polynomial(self.ring, {m: c for m, c in terms.items() if c})
-
-    def derivative(self, unknown: str) -> Polynomial:
-        """By an unknown, on the line or on the circle."""
-        cosine, sine = f"cos {unknown}", f"sin {unknown}"
-        total = Polynomial(self.ring, {})
-        for monomial, c in self.terms.items():
-            for variable, e in monomial:
-                if variable not in (unknown, cosine, sine):
-                    continue
-                rest = Polynomial(self.ring, {_with(monomial, variable, e - 1): e * c})
-                if variable == cosine:
-                    total -= rest * self.ring.variable(sine)
-                else:
-                    total += rest if variable == unknown else rest * self.ring.variable(cosine)
-        return total
-
-
-class Ring:
-    """Q[parameters, lengths][cos, sin], as a ring in which trees have values; it stops after so much work."""
-
-    def __init__(self, most: int = MAX_WORK) -> None:
-        self.work = 0
-        self.most = most
-
-    def spend(self, work: int) -> None:
-        """Note work.
-
-        Raises
-        ------
-        ExpressionError
-            When it is too much.
-        """
-        self.work += work
-        if self.work > self.most:
-            raise ExpressionError("the expressions are too large to be multiplied out")
-
-    def constant(self, value: Fraction) -> Polynomial:
-        return Polynomial(self, {(): value} if value else {})
-
-    def variable(self, name: str) -> Polynomial:
-        return Polynomial(self, {((name, 1),): Fraction(1)})
-
-    parameter = variable
-
-    def cos(self, angle: str) -> Polynomial:
-        return self.variable(f"cos {angle}")
-
-    def sin(self, angle: str) -> Polynomial:
-        return self.variable(f"sin {angle}")
-
-
-def _with(monomial: Monomial, variable: str, exponent: int) -> Monomial:
-    """The monomial with another exponent of a variable that it has."""
-    return tuple((v, exponent if v == variable else e) for v, e in monomial if v != variable or exponent)
-
-
-def _product(one: Monomial, two: Monomial) -> Iterator[tuple[Monomial, int]]:
-    """The product of two monomials, as terms with cosines to the power of at most 1."""
-    exponents = dict(one)
-    for variable, e in two:
-        exponents[variable] = exponents.get(variable, 0) + e
-    found: list[tuple[dict[str, int], int]] = [(exponents, 1)]
-    for cosine in [v for v, e in exponents.items() if e > 1 and v.startswith("cos ")]:
-        sine = f"sin {cosine[4:]}"
-        split = []
-        for powers, sign in found:  # cos^2 = 1 - sin^2
-            rest = {v: e for v, e in powers.items() if v != cosine}
-            split += [(rest, sign), ({**rest, sine: rest.get(sine, 0) + 2}, -sign)]
-        found = split
-    for powers, sign in found:
-        yield tuple(sorted(powers.items())), sign
+MAX_BORDERED = 8
+"""Rows of the bordered matrix of closed loops with several degrees of freedom: the number of terms of its minors grows
+with the factorial."""
 
 
 def check_bars(mechanism: Mechanism, faults: Faults) -> None:
@@ -259,63 +145,68 @@ def felt(points: Points) -> Felt:
     return Felt(energy, roots, work)
 
 
-class Points:
-    """The coordinates of a mechanism's points, each computed once, and what is made of them.
+def check_loops(mechanism: Mechanism, faults: Faults) -> None:
+    """Note what is not computed with closed loops, or with X-joints, by its key."""
+    roots = [f"{key}.free" for key, element in mechanism.elements.items() if element.root is not None]
+    of_loops = _limits_of_loops(mechanism, roots) if mechanism.closing else ()
+    of_xjoints = _limits_of_xjoints(mechanism, roots) if mechanism.xjoints else ()
+    for key, problem in (*of_loops, *of_xjoints):
+        with faults:
+            raise ConfigError(problem, key=key)
 
-    Parameters
-    ----------
-    images : trees in place of names.
-    """
 
-    def __init__(self, mechanism: Mechanism, ring: Ring | None = None, images: Mapping[str, Tree] | None = None):
-        self.mechanism = mechanism
-        self.ring = ring or Ring()
-        self.images = images or {}
-        self.placed = Named(
-            self.ring, {name: replaced(tree, self.images) for name, tree in mechanism.coordinates.items()}
+def _limits_of_loops(mechanism: Mechanism, roots: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """What is not computed with closed loops: keys and problems."""
+    count, bars = len(mechanism.unknowns), len(mechanism.closing)
+    free = count - bars
+    if free < 1:
+        yield "closing", "no degree of freedom is left: there have to be more unknowns than closing bars"
+    if free > 1 and mechanism.coupled:
+        yield (
+            "moments",
+            "a moment depends on another unknown than its own: then closed loops are computed where they leave one "
+            f"degree of freedom, not {free}",
+        )
+    for key in roots if free > 1 else ():
+        yield key, f"free lengths in closed loops are computed where these leave one degree of freedom, not {free}"
+    if mechanism.symmetries:
+        yield "symmetries", "symmetries are not used in closed loops: leave them out"
+    taken = {*mechanism.parameters, *mechanism.unknowns}
+    for name in mechanism.force_densities:
+        if name in taken:
+            yield "closing", f"'{name}' is the name of a closing bar's force density: choose another name"
+    if free > 1 and count + bars > MAX_BORDERED:
+        yield (
+            "closing",
+            f"{count} unknowns and {bars} closing bars: with several degrees of freedom left they may be "
+            f"{MAX_BORDERED} in all",
         )
 
-    def value(self, tree: Tree) -> Polynomial:
-        """Of an expression, in which coordinates are names ``P.x``."""
-        return self.values((tree,))[0]
 
-    def values(self, trees: Iterable[Tree]) -> tuple[Polynomial, ...]:
-        """The same of several ones, of which parts that they share are evaluated once."""
-        return evaluated([replaced(tree, self.images) for tree in trees], self.placed)
+def _limits_of_xjoints(mechanism: Mechanism, roots: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """The same with X-joints."""
+    if mechanism.closing:
+        yield "closing", "closing bars beside x-joints are not computed yet"
+    if mechanism.symmetries:
+        yield "symmetries", "symmetries are not used with x-joints: leave them out"
+    if mechanism.coupled:
+        yield "moments", "a moment beside x-joints depends on no unknown but its own"
+    for key in roots:
+        yield key, "free lengths are not computed with x-joints yet"
 
-    def at(self, name: str) -> tuple[Polynomial, Polynomial]:
-        return self.placed.parameter(f"{name}.x"), self.placed.parameter(f"{name}.y")
 
-    def squared(self, start: str, end: str) -> Polynomial:
-        """The square of a distance."""
-        return self.value(squared_distance(NAMES, start, end))
-
-    def varies(self, tree: Tree) -> bool:
-        """Whether an expression changes with an unknown; also where that is too much to be multiplied out."""
-        unknowns = {*self.mechanism.unknowns, *self.mechanism.followers}
-        names = {name for part in names_of(tree) for name in names_of(self.placed.trees.get(part, Name(part)))}
-        if not names & unknowns:
-            return False
-        try:
-            value = self.value(tree)
-            return any(value.derivative(u).terms for u in unknowns)
-        except ExpressionError:
-            return True
-
-    def turning(self, start: str, end: str) -> dict[str, Fraction] | None:
-        """By how much the way from one point to another, (x, y), turns with each unknown u, in turns of u: n, where
-        dx/du = -n y and dy/du = n x; None where it is no rigid one, or no way at all."""
-        (x0, y0), (x1, y1) = self.at(start), self.at(end)
-        x, y = x1 - x0, y1 - y0
-        if not (x.terms or y.terms):
-            return None
-        term, c = next(iter((x.terms or y.terms).items()))
-        found = {}
-        for unknown in (*self.mechanism.unknowns, *self.mechanism.followers):
-            dx, dy = x.derivative(unknown), y.derivative(unknown)
-            n = dy.terms.get(term, Fraction(0)) / c if x.terms else -dx.terms.get(term, Fraction(0)) / c
-            times = self.ring.constant(n)
-            if (dy - times * x).terms or (dx + times * y).terms:
-                return None
-            found[unknown] = n
-        return found
+def check_closing(mechanism: Mechanism, faults: Faults) -> None:
+    """Note each closing bar between points whose distance no unknown changes, and one that is listed twice."""
+    points = Points(mechanism)
+    known: dict[frozenset[str], int] = {}
+    for n, closing in enumerate(mechanism.closing, 1):
+        with faults:
+            first = known.setdefault(frozenset((closing.start, closing.end)), n)
+            if first < n:
+                raise ConfigError(f"number {first} is a bar between the same points", key=f"closing.{n}.between")
+            if not points.varies(squared_distance(NAMES, closing.start, closing.end)):
+                raise ConfigError(
+                    f"the distance of {closing.start} and {closing.end} is constant, so that a bar between them closes "
+                    "no loop",
+                    key=f"closing.{n}.between",
+                )

@@ -15,7 +15,15 @@ from ptmcad.model.bodies import bodies, second_angles, xjoints
 from ptmcad.model.description import Mechanism
 from ptmcad.model.elements import Closing, Load, Moment, Spring, Support, TorsionSpring
 from ptmcad.model.evaluate import value_at
-from ptmcad.model.proofs import check_bars, check_elements, check_numbers, check_symmetries, check_unknowns
+from ptmcad.model.proofs import (
+    check_bars,
+    check_closing,
+    check_elements,
+    check_loops,
+    check_numbers,
+    check_symmetries,
+    check_unknowns,
+)
 from ptmcad.model.reading import NAME_SCHEMA, NUMBER, POINTS, VALUE, Context, constant, new_name, two
 from ptmcad.model.sizes import check_sizes
 from ptmcad.model.trees import ONE, ZERO, angle_name
@@ -221,8 +229,6 @@ def _prove(found: Mechanism, faults: Faults) -> None:
     if not faulty & _SHAPE:
         check_bars(found, faults)
         if found.closing and "closing" not in faulty:
-            from ptmcad.model.loops import check_closing
-
             check_closing(found, faults)
         if "springs" not in faulty and "torsion" not in faulty:
             check_elements(found, faults)
@@ -230,10 +236,7 @@ def _prove(found: Mechanism, faults: Faults) -> None:
         check_unknowns(found, faults)
         check_symmetries(found, faults)
         check_moments(found, faults)
-        if found.closing or found.xjoints:  # most mechanisms have neither, and do not wait for what reads them
-            from ptmcad.model.loops import check_loops
-
-            check_loops(found, faults)
+        check_loops(found, faults)
 
 
 def check_moments(mechanism: Mechanism, faults: Faults) -> None:

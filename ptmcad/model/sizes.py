@@ -34,6 +34,9 @@ class Size:
 
     __sub__ = __add__
 
+    def __neg__(self) -> Size:
+        return self
+
     def __mul__(self, other: Size) -> Size:
         return _bounded(self.degree + other.degree, self.variables | other.variables, self.terms * other.terms)
 
@@ -60,17 +63,6 @@ class Sizes:
 
     def sin(self, angle: str) -> Size:
         return Size(1, frozenset({f"sin {angle}"}), 1)
-
-
-def terms_of(model: Model) -> int:
-    """A bound of the number of terms of a model's equations, or of its energy.
-
-    Raises
-    ------
-    ConfigError
-        With the key of the part with which they may have too many.
-    """
-    return sum(terms for _, terms in _terms(model))
 
 
 def check_sizes(model: Model, faults: Faults) -> None:

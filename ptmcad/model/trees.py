@@ -1,6 +1,6 @@
-"""Trees that are made of trees: sums, products, derivatives, determinants, and angles without quarter turns.
+"""Trees that are made of trees: sums, products, and angles without quarter turns.
 
-Divisors are constants, as in coordinates. Quarter turns may be added to angles, ``phi - th + pi/2``: their cosine and
+Quarter turns may be added to angles, ``phi - th + pi/2``: their cosine and
 sine are whole numbers, so that what `split_angle` and `without_quarter_turns` return has no pi in it.
 
 Guarantee: exact. What is zero at sight is left out, and no more is simplified: values are expanded where they are made.
@@ -8,61 +8,15 @@ Guarantee: exact. What is zero at sight is left out, and no more is simplified: 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError
-from ptmcad.model.evaluate import FIXED_ANGLE, multiples, multiples_with_positions, value_at
-from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, mapped, names_of
+from ptmcad.model.evaluate import FIXED_ANGLE, multiples, multiples_with_positions
+from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Step, Tree, mapped, names_of
 
 PI = "pi"
 ZERO: Tree = Number(Fraction(0))
 ONE: Tree = Number(Fraction(1))
-
-
-def derivative(tree: Tree, name: str) -> Tree:
-    """The derivative of a tree by a name, an unknown angle or one on the line."""
-    match tree:
-        case Name():
-            return ONE if tree.name == name else ZERO
-        case Number():
-            return ZERO
-        case Negative(operand):
-            return negative(derivative(operand, name))
-        case Call(function, argument):
-            inner = derivative(argument, name)
-            if function == "cos":
-                return negative(product(inner, Call("sin", argument)))
-            return product(inner, Call("cos", argument))
-        case Power(base, exponent):
-            n = int(value_at(exponent, {}))
-            if n == 0:
-                return ZERO
-            lower = (ONE, base)[n - 1] if n < 3 else Power(base, Number(Fraction(n - 1)))
-            return product(Number(Fraction(n)), lower, derivative(base, name))
-        case Chain(first, steps):
-            return _of_sum(tree, name) if tree.is_sum else _of_product(first, steps, name)
-
-
-def _of_sum(chain: Chain, name: str) -> Tree:
-    parts = [derivative(chain.first, name)]
-    for step in chain.steps:
-        by = derivative(step.operand, name)
-        parts.append(by if step.operator == "+" else negative(by))
-    return total(*parts)
-
-
-def _of_product(first: Tree, steps: Sequence[Step], name: str) -> Tree:
-    """Divisors are constants, so that they only go along."""
-    factors = [Step("*", first), *steps]
-    parts = []
-    for k, factor in enumerate(factors):
-        if factor.operator == "*" and (by := derivative(factor.operand, name)) != ZERO:
-            others = [*factors[:k], *factors[k + 1 :]]
-            whole = product(by, *(step.operand for step in others if step.operator == "*"))
-            divisors = tuple(step for step in others if step.operator == "/")
-            parts.append(Chain(whole, divisors) if divisors else whole)
-    return total(*parts)
 
 
 def total(*trees: Tree) -> Tree:
@@ -102,27 +56,6 @@ def product(*trees: Tree) -> Tree:
         factors.insert(0, Number(abs(number)))
     whole = factors[0] if len(factors) == 1 else Chain(factors[0], tuple(Step("*", tree) for tree in factors[1:]))
     return Negative(whole) if number < 0 else whole
-
-
-def determinant(rows: Sequence[Sequence[Tree]]) -> Tree:
-    """The determinant of a square matrix, by its last row."""
-    if not rows:
-        return ONE
-    return total(*(product(entry, c) for entry, c in zip(rows[-1], cofactors(rows[:-1]), strict=True)))
-
-
-def cofactors(rows: Sequence[Sequence[Tree]]) -> tuple[Tree, ...]:
-    """What a further row's entries are multiplied by in the determinant: a vector at right angles to all rows.
-
-    Parameters
-    ----------
-    rows : one fewer than columns.
-    """
-    found = []
-    for k in range(len(rows) + 1):
-        minor = determinant([[*row[:k], *row[k + 1 :]] for row in rows])
-        found.append(minor if (len(rows) + k) % 2 == 0 else negative(minor))
-    return tuple(found)
 
 
 def split_angle(tree: Tree) -> tuple[Tree, int]:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.elements import Moment
 from ptmcad.model.evaluate import evaluate, value_at
-from ptmcad.model.proofs import Monomial, Polynomial, Ring
+from ptmcad.model.identities import Monomial, Polynomial, Ring
 from ptmcad.model.trees import product, total
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, names_of
 

@@ -45,11 +45,14 @@ def coordinates_of(model: Model) -> tuple[str, ...]:
 
 def meaning_of(model: Model) -> SignMeaning:
     """What is known of a model's solutions: by an index where they are critical points, near each of a function."""
-    if isinstance(model, System):
-        has_index = model.potential is not None
+    mechanism = model.whole
+    if mechanism is not None and (mechanism.closing or mechanism.xjoints):
+        return SignMeaning((Count.TOTAL, Count.STABLE))  # conditions for stability stand in the place of a Hessian
+    if mechanism is not None:
+        has_index = not _has_moments_apart(mechanism)
     else:
-        assert isinstance(model, Mechanism)
-        has_index = not _has_moments_apart(model)
+        assert isinstance(model, System)
+        has_index = model.potential is not None
     if has_index:
         return of_eigenvalues(len(model.unknowns))
     return SignMeaning((Count.TOTAL, Count.STABLE) if model.stability else (Count.TOTAL,))

@@ -360,8 +360,8 @@ def test_polynomials_far_away_are_those_of_the_unknowns_inverse() -> None:
     graph = Graph()
     unknowns = [graph.variable(k) for k in (2, 3, 4, 5)]
     far = scaled_together(polynomials, {0: 2, 1: 1})
-    found = evaluated([f.formula(graph, unknowns) for f in far], [0.7, -1.3, 0.4, 0.5])
-    at = evaluated([f.formula(graph, unknowns[:3]) for f in polynomials], [0.7 / 0.25, -1.3 / 0.5, 0.4, 0.5])
+    found = evaluated([f.formula(unknowns) for f in far], [0.7, -1.3, 0.4, 0.5])
+    at = evaluated([f.formula(unknowns[:3]) for f in polynomials], [0.7 / 0.25, -1.3 / 0.5, 0.4, 0.5])
     assert found == pytest.approx([value * 0.5**7 for value in at])
 
 

@@ -10,7 +10,7 @@ import ptmcad
 from ptmcad.errors import ConfigError
 from ptmcad.model import described, described_system
 from ptmcad.model.evaluate import evaluate
-from ptmcad.model.proofs import Ring
+from ptmcad.model.identities import Ring
 from ptmcad.model.trees import split_angle
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import to_text

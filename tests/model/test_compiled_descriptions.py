@@ -36,7 +36,7 @@ EQUATIONS = {"equations", "potential", "inequalities", "stability"}
     [
         (Mechanism, NAMES | DRAWN | READ),
         (System, NAMES | EQUATIONS),
-        (ClosedMechanism, NAMES | EQUATIONS | {"mechanism", "tangent", "multipliers"}),
+        (ClosedMechanism, NAMES | {"mechanism"}),
     ],
 )
 def test_all_that_a_description_has_is_compiled(kind: type, known: set[str]) -> None:

@@ -18,7 +18,8 @@ from ptmcad import RegionMap, classify, slice_from_mapping
 from ptmcad.errors import MAX_FAULTS, ConfigError, Faults
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models.potential import system_from
-from ptmcad.model import Mechanism, described, described_system, ptm, recognised, without_loops, work
+from ptmcad.model import Mechanism, described, described_system, ptm, recognised, work
+from ptmcad.model.closed import without_loops
 from ptmcad.model.mechanisms import RECORD
 from ptmcad.model.proofs import check_bars, check_unknowns
 

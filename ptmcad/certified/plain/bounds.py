@@ -133,8 +133,8 @@ class _BoundSearch:
         at = chart(geometry(problem))
         graph = at.equations[0].graph
         unknowns = [graph.variable(j) for j in problem.variables]
-        inequalities = [c.value.formula(graph, unknowns) for c in problem.inequalities]
-        return record([[*at.equations, *(f.formula(graph, unknowns) for f in self.vanishing)], inequalities])
+        inequalities = [c.value.formula(unknowns) for c in problem.inequalities]
+        return record([[*at.equations, *(f.formula(unknowns) for f in self.vanishing)], inequalities])
 
     def _range(self, tape: Tape, found: Sequence[Range], k: int) -> _Found | None:
         """The range of one unknown, whatever those without a range are; each end is a power of two, or it is known."""
@@ -175,7 +175,7 @@ class _BoundSearch:
         unknowns = [graph.variable(j) for j in (*self.problem.variables, FIRST + len(self.problem.unknowns))]
 
         def formulas(polynomials: Iterable[TrigonometricPolynomial]) -> list[Formula]:
-            return [scaled_together([f], weights)[0].formula(graph, unknowns) for f in polynomials]
+            return [scaled_together([f], weights)[0].formula(unknowns) for f in polynomials]
 
         inequalities = formulas(c.value for c in self.problem.inequalities)
         tape = record([formulas(self.vanishing), [*inequalities, *self._balances(weights, unknowns)]])
@@ -200,7 +200,7 @@ class _BoundSearch:
         for k, equation in enumerate(problem.equations if problem.has_springs else ()):
             parts = [equation, *(w for cone in problem.cones for w in cone.weights[k])]
             parts += [push.weights[k] for push in problem.pushes]
-            rest, *others = (f.formula(graph, unknowns) for f in scaled_together(parts, weights))
+            rest, *others = (f.formula(unknowns) for f in scaled_together(parts, weights))
             ends, held = others[: 2 * len(problem.cones)], others[2 * len(problem.cones) :]
             reach = graph.constant(0)
             for cone, x, y in zip(problem.cones, ends[::2], ends[1::2], strict=True):

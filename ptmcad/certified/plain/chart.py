@@ -23,9 +23,10 @@ from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.cones import ConeFormulas, Matrix
 from ptmcad.certified.plain.geometry import FactoredProblem
-from ptmcad.certified.plain.minors import Bent, bent, determinant
+from ptmcad.certified.plain.minors import Bent, bent
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.turning import Turn
+from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula, Graph, length
 
 
@@ -153,16 +154,16 @@ def chart(exact: FactoredProblem, short: int | None = None, unknowns: Sequence[U
     graph = unknowns[0].graph if unknowns else Graph()
     unknowns = unknowns or [graph.variable(k) for k in exact.problem.variables]
     size = range(len(unknowns))
-    smooth = [f.formula(graph, unknowns) for f in exact.equations]
+    smooth = [f.formula(unknowns) for f in exact.equations]
     scales = tuple(expression_formula(graph, g) for g in exact.factors)
     phi = None if short is None else graph.variable(FIRST + len(size))
     springs = tuple(s.spring(graph, unknowns, phi if k == short else None) for k, s in enumerate(exact.shapes))
-    slopes = [[f.formula(graph, unknowns) for f in row] for row in exact.slopes]
+    slopes = [[f.formula(unknowns) for f in row] for row in exact.slopes]
     for push in exact.pushes:
         strength = push.strength(graph)
         for i, w in enumerate(push.weights):
-            smooth[i] = smooth[i] - strength * w.formula(graph, unknowns)
-            slopes[i] = [f - strength * w.derivative(j).formula(graph, unknowns) for j, f in enumerate(slopes[i])]
+            smooth[i] = smooth[i] - strength * w.formula(unknowns)
+            slopes[i] = [f - strength * w.derivative(j).formula(unknowns) for j, f in enumerate(slopes[i])]
     # a rest is put together without its spring: taken off again, its part would leave an interval's width behind
     rests = [_without(smooth, [t for t in springs if t is not at]) for at in springs]
     anywhere = tuple(at.products() for at in springs)
@@ -246,6 +247,3 @@ def principal_minors(hessian: Matrix, *, whole: bool = False) -> list[Formula]:
         for order in range(1, size + whole)
         for chosen in combinations(range(size), order)
     ]
-
-
-__all__ = ["Matrix", "SpringChart", "chart", "determinant", "principal_minors"]

@@ -119,7 +119,7 @@ class ConeShape:
         """
 
         def written(f: TrigonometricPolynomial) -> Formula:
-            return f.formula(graph, unknowns)
+            return f.formula(unknowns)
 
         x, y = self.difference
         dx, dy = written(x), written(y)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from ptmcad.certified.plain.cones import ConeShape, shape
 from ptmcad.certified.plain.problem import Problem, Push
-from ptmcad.certified.plain.scaling import common_factors, over
+from ptmcad.certified.plain.scaling import common_factor, over
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.certified.plain.turning import Turn, turns
 from ptmcad.question.slice import Axis
@@ -62,4 +62,19 @@ def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Factore
             replace(push, weights=tuple(over(w, g) for w, g in zip(push.weights, factors, strict=True)))
             for push in problem.pushes
         ),
+    )
+
+
+def common_factors(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Expression, ...]:
+    """Of each equation and the slopes of its springs' ends: a positive common factor, 1 where none is proved to be."""
+    return tuple(
+        common_factor(
+            [
+                f,
+                *(d.derivative(i) for cone in problem.cones for d in cone.difference),
+                *(push.weights[i] for push in problem.pushes),
+            ],
+            axes,
+        )
+        for i, f in enumerate(problem.equations)
     )

@@ -11,6 +11,7 @@ from itertools import combinations
 from typing import NamedTuple
 
 from ptmcad.certified.plain.cones import ConeFormulas, Matrix
+from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula
 
 
@@ -23,17 +24,6 @@ class Bent(NamedTuple):
     factor: Formula
     products: Matrix
     spring: ConeFormulas
-
-
-def determinant(matrix: Matrix) -> Formula:
-    """By Laplace's expansion; for the few rows that there are."""
-    if len(matrix) == 1:
-        return matrix[0][0]
-    total = matrix[0][0].graph.constant(0)
-    for j, entry in enumerate(matrix[0]):
-        minor = determinant(tuple(row[:j] + row[j + 1 :] for row in matrix[1:]))
-        total = total + entry * minor if j % 2 == 0 else total - entry * minor
-    return total
 
 
 def bent(

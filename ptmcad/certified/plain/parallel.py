@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ptmcad.certified.plain.divisors import lowest_terms
+from ptmcad.certified.plain.scaling import absolute
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
-from ptmcad.question.positivity import Need, decide
-from ptmcad.question.signs import PROVED
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 
@@ -28,7 +27,7 @@ def shares(d: Vector, other: Vector, axes: tuple[Axis, Axis]) -> tuple[Expressio
     c = _ratio(other, d)
     if c is None:
         return None
-    above, below = (_size(Expression(terms), axes) for terms in (c.numerator, c.denominator))
+    above, below = (absolute(Expression(terms), axes) for terms in (c.numerator, c.denominator))
     if above is None or below is None:
         return None
     unit = constant(1)
@@ -44,13 +43,6 @@ def _ratio(d: Vector, other: Vector) -> Expression | None:
     if c is None or not c.numerator:
         return None
     return None if any((f - g.scaled(c)).terms for f, g in zip(d, other, strict=True)) else lowest_terms(c)
-
-
-def _size(polynomial: Expression, axes: tuple[Axis, Axis]) -> Expression | None:
-    """The absolute value of a polynomial that is proved to be zero nowhere in the window."""
-    x, y = ((axis.low + axis.high) / 2 for axis in axes)
-    found = polynomial if polynomial.evaluate(x, y) > 0 else -polynomial
-    return found if decide(found, axes, Need.POSITIVE) is PROVED else None
 
 
 def _degree(d: Vector) -> int:

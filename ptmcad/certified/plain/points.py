@@ -390,8 +390,7 @@ def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -
     vanishing = (at.dependent, at.balances)
     unknowns = [at.equations[0].graph.variable(k) for k in problem.variables]
     inequalities, stability, further = (
-        [c.value.formula(at.equations[0].graph, unknowns) for c in some]
-        for some in (problem.inequalities, problem.stability, problem.further)
+        [c.value.formula(unknowns) for c in some] for some in (problem.inequalities, problem.stability, problem.further)
     )
     if problem.closing:
         stability = [at.determinant()]

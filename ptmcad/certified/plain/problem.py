@@ -19,6 +19,7 @@ from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Formula, Graph, length
+from ptmcad.model.closed import conditions_of
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.fourbars import closed_by, flat_everywhere
@@ -181,14 +182,15 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
 def _equations(slice: Slice, ring: Harmonics) -> Problem:
     """The problem but for what is asked of stable solutions beyond the model's conditions."""
     model = slice.model
-    system, inequalities = compiled(model), _conditions(_margins(model.conditions), ring)
+    system, (_, positive, stable) = compiled(model), conditions_of(model)
+    inequalities = _conditions(_margins(positive), ring)
     is_angle = tuple(kind.turns for kind in model.unknowns.values())
     problem = Problem(ring.unknowns, is_angle, (), (), system.potential() is not None, inequalities)
     if slice.has_free_lengths and system.tangent:
         return _with_springs(_of_loops(problem, system, ring), slice, system, ring)
     if system.are_slopes:
         return _with_springs(_of_slopes(problem, system, ring), slice, system, ring)
-    stability = _conditions(_margins({f"stable.{n}": tree for n, tree in enumerate(model.stability, 1)}), ring)
+    stability = _conditions(_margins({f"stable.{n}": tree for n, tree in enumerate(stable, 1)}), ring)
     # an unknown that is not zero where solutions count is no factor of an equation: without this, the solutions at
     # which it is zero, say those where a species is extinct, would be undecided all over the window
     nonzero = [k for k in range(len(ring.unknowns)) if any(_is_multiple(c.value, k) for c in inequalities)]

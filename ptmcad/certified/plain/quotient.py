@@ -22,11 +22,12 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from ptmcad.certified.plain.bounds import Range
-from ptmcad.certified.plain.chart import SpringChart, chart, determinant, principal_minors
+from ptmcad.certified.plain.chart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.cones import Matrix
 from ptmcad.certified.plain.frame import MirrorFrame
 from ptmcad.certified.plain.geometry import FactoredProblem
 from ptmcad.certified.plain.opening import Coordinates, UnfoldedEnergy, coordinates, opening, stiffness
+from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula
 
 NEAR = Fraction(1, 1024)

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ptmcad.certified.plain.divisors import common_divisor, quotient
-from ptmcad.certified.plain.problem import Problem
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.question.positivity import Need, decide
 from ptmcad.question.signs import PROVED
@@ -20,30 +19,17 @@ from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 
 
-def common_factors(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Expression, ...]:
-    """Of each equation and the slopes of its springs' ends: a positive common factor, 1 where none is proved to be."""
-    return tuple(
-        common_factor(
-            [
-                f,
-                *(d.derivative(i) for cone in problem.cones for d in cone.difference),
-                *(push.weights[i] for push in problem.pushes),
-            ],
-            axes,
-        )
-        for i, f in enumerate(problem.equations)
-    )
-
-
 def common_factor(polynomials: Iterable[TrigonometricPolynomial], axes: tuple[Axis, Axis]) -> Expression:
     """A positive polynomial in the axes that divides all coefficients' numerators; 1 in case of doubt."""
     factor = largest_factor(polynomials)
-    if factor.is_constant:
-        return factor
-    for candidate in (factor, -factor):
-        if decide(candidate, axes, Need.POSITIVE) == PROVED:
-            return candidate
-    return constant(1)
+    return factor if factor.is_constant else absolute(factor, axes) or constant(1)
+
+
+def absolute(polynomial: Expression, axes: tuple[Axis, Axis]) -> Expression | None:
+    """The absolute value of a polynomial that is proved to be zero nowhere in the open window; None without a proof."""
+    x, y = ((axis.low + axis.high) / 2 for axis in axes)
+    found = polynomial if polynomial.evaluate(x, y) > 0 else -polynomial
+    return found if decide(found, axes, Need.POSITIVE) is PROVED else None
 
 
 def largest_factor(polynomials: Iterable[TrigonometricPolynomial]) -> Expression:

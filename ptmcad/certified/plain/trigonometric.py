@@ -19,7 +19,7 @@ from typing import Any
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.formulas.graph import Formula
 from ptmcad.text.expressions import Expression, constant
 
 Vector = tuple["TrigonometricPolynomial", "TrigonometricPolynomial"]
@@ -110,21 +110,22 @@ class TrigonometricPolynomial:
             terms.append((key, (a * sign, b * sign)))
         return _collected(terms)
 
-    def formula(self, graph: Graph, unknowns: Sequence[Unknown]) -> Formula:
+    def formula(self, unknowns: Sequence[Unknown]) -> Formula:
         """The polynomial as a formula: by Horner's rule in each real unknown, over sums of harmonics.
 
         Parameters
         ----------
         unknowns : formulas, or of angles what sums of their multiples have a cosine and a sine of.
         """
-        return _horner(graph, unknowns, dict(self.terms), 0)
+        return _horner(unknowns, dict(self.terms), 0)
 
 
 _Terms = dict[tuple[Multi, Multi], tuple[Expression, Expression]]
 
 
-def _horner(graph: Graph, unknowns: Sequence[Unknown], terms: _Terms, unknown: int) -> Formula:
+def _horner(unknowns: Sequence[Unknown], terms: _Terms, unknown: int) -> Formula:
     """The terms' sum without the powers of earlier unknowns."""
+    graph = unknowns[0].graph
     if unknown == len(unknowns):
         total = graph.constant(0)
         for (m, _), (a, b) in sorted(terms.items(), key=lambda term: term[0]):
@@ -140,11 +141,11 @@ def _horner(graph: Graph, unknowns: Sequence[Unknown], terms: _Terms, unknown: i
     for (m, e), coefficients in terms.items():
         by_power.setdefault(e[unknown], {})[m, e] = coefficients
     most = max(by_power, default=0)
-    total = _horner(graph, unknowns, by_power.get(most, {}), unknown + 1)
+    total = _horner(unknowns, by_power.get(most, {}), unknown + 1)
     for power in range(most - 1, -1, -1):
         value = unknowns[unknown]
         assert isinstance(value, Formula)  # angles have no powers
-        total = total * value + _horner(graph, unknowns, by_power.get(power, {}), unknown + 1)
+        total = total * value + _horner(unknowns, by_power.get(power, {}), unknown + 1)
     return total
 
 

@@ -75,7 +75,7 @@ class Turn:
 
 def _written(pair: Pair, unknowns: Sequence[Unknown]) -> tuple[Formula, Formula]:
     first, second = pair
-    return first.formula(unknowns[0].graph, unknowns), second.formula(unknowns[0].graph, unknowns)
+    return first.formula(unknowns), second.formula(unknowns)
 
 
 def turns(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Turn, ...]:

@@ -20,8 +20,8 @@ from ptmcad.model import (
     read_mechanism,
     read_system,
     recognised,
-    without_loops,
 )
+from ptmcad.model.closed import without_loops
 from ptmcad.model.proofs import check_numbers
 from ptmcad.model.reading import faulty_entries
 from ptmcad.question.config.starters import mechanism_names, starter_mechanism

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError, Faults, Place
-from ptmcad.model import Kind, Model, System
+from ptmcad.model import Kind, Mechanism, Model
 from ptmcad.model.evaluate import value_at
 from ptmcad.question.config.names import resolved
 from ptmcad.question.config.record import Record, read_record, swept_names
@@ -135,7 +135,7 @@ def _note_unnamed_axes(record: Record, faults: Faults) -> None:
 
 def _needed_axes(record: Record) -> tuple[str, ...]:
     """The axes on which something has to depend: none of a published system, which may have fewer parameters."""
-    return () if isinstance(record.model, System) else tuple(record.axes)
+    return tuple(record.axes) if isinstance(record.model, Mechanism) else ()
 
 
 def refuse_free(name: str, window: Window) -> None:

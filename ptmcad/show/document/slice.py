@@ -10,7 +10,8 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.model import Model, built_in, described, described_system, known_of, recognised, without_loops
+from ptmcad.model import Model, built_in, described, described_system, known_of, recognised
+from ptmcad.model.closed import without_loops
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import MAX_UNIT, Axis, Slice
 from ptmcad.text.codec import DATA, RATIONAL, TEXT, Codec, Key, choice, converted, line, listed, named, record
