@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.model import Mechanism, Model
+from ptmcad.model import Model
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression
@@ -203,14 +203,11 @@ def _by(f: Waves, k: int) -> Waves:
 
 def form_of(slice: Slice) -> Form:
     """The form of a slice's model, with springs as one that are parallel all over the slice."""
-    return _form(slice.model, slice.model.whole, tuple(slice.parameters.items()), slice.axes)
+    return _form(slice.model, tuple(slice.parameters.items()), slice.axes)
 
 
 @lru_cache(maxsize=8)
-def _form(
-    model: Model, _mechanism: Mechanism | None, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis]
-) -> Form:
-    """Of models that are equal as systems the mechanisms may be different ones."""
+def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis]) -> Form:
     true = derivation_of(model)
     ring = _Exponentials(model, true.ring)
     unknowns = ring.unknowns
@@ -243,13 +240,9 @@ def _form(
     )
 
 
+@lru_cache(maxsize=8)
 def margins_of(model: Model, count: Count) -> tuple[Margin, ...]:
     """What a kind of count asks of stable solutions."""
-    return _margins(model, model.whole, count)
-
-
-@lru_cache(maxsize=8)
-def _margins(model: Model, _mechanism: Mechanism | None, count: Count) -> tuple[Margin, ...]:
     true = derivation_of(model)
     ring, found = _Exponentials(model, true.ring), []
     for value, spring in kind_of(count).margins(true):
