@@ -81,7 +81,7 @@ class Filling:
 
 def wanted_of(result: RegionMap, cell: Labels) -> PixelCounts:
     """What the exact map says of each pixel, by the numbers of their cells."""
-    only_stable = any(c.total is None or len(c.solutions) < c.total for c in result.cells if c.solutions)
+    only_stable = result.only_stable
     counts = [c.stable if only_stable else c.total for c in result.cells]
     table = np.array([*(NONE if v is None else v for v in counts), NONE], dtype=np.int64)
     return PixelCounts(table[cell], cell, tuple(c.index for c in result.cells), only_stable)
