@@ -222,7 +222,7 @@ def _draw_paths(slice: Slice, found: Any, line: Callable[[], SolutionsOnLine]) -
     from ptmcad.show.render.paths import draw_paths
 
     model = found.model
-    if len(model.unknowns) > MAX_UNKNOWNS or "stable" not in model.criterion.counts:
+    if len(model.unknowns) > MAX_UNKNOWNS or not model.criterion.is_told:
         return draw_paths(slice, found)
     unknowns = (*model.angles, *model.reals)
     diagram = branch_diagram(slice, found.along.name, found.at, unknowns, line=line())

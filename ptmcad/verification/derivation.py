@@ -144,9 +144,21 @@ class Derivation:
         return self.jacobian[: self.meaning.order]
 
     @property
+    def is_gradient(self) -> bool:
+        """Whether the equations are near each solution the slopes of one function."""
+        return bool(self.meaning.order)
+
+    @property
     def potential(self) -> fmpq_mpoly | None:
         """The energy where solutions are its critical points, less the work of moments; else None."""
-        return self.energy if self.meaning.order else None
+        return self.energy if self.is_gradient else None
+
+    @property
+    def has_minima(self) -> bool:
+        """Whether the equations are the slopes of a function on a torus, or there is one alone."""
+        if self.inequalities or (self.from_energy and self.moved) or len(self.ring.angles) < len(self.unknowns):
+            return False
+        return self.is_gradient or len(self.unknowns) == 1
 
     @property
     def coordinates(self) -> int:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.ask.fields.equations import Floats, ModelState, apart, determinant, newton, state_at
+from ptmcad.ask.fields.equations import Floats, ModelState, apart, determinant, eigenvalues, newton, state_at
 from ptmcad.model import Model
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.slice import Slice
@@ -154,12 +154,10 @@ class PixelSolver:
         good: Flags = np.ones(at.shape[1], dtype=np.bool_)
         for condition in state.conditions:
             good &= ((condition > 0) | empty).all(axis=1)
-        if state.hessian is None:
-            return np.asarray(good & ((determinant(state.jacobian) != 0) | empty).all(axis=1))
-        negative = state.negatives
         if self.wanted.only_stable:
-            return np.asarray(good & ((negative == 0) | empty).all(axis=1))
-        cells = self.wanted.cell[rows, columns]
+            return np.asarray(good & (state.stable | empty).all(axis=1))
+        good &= ((determinant(state.jacobian) != 0) | empty).all(axis=1)
+        negative, cells = (eigenvalues(state.hessian) < 0).sum(axis=0), self.wanted.cell[rows, columns]
         for cell in np.unique(cells):
             index = self.wanted.index[cell] if cell != NONE else None
             if index is not None:

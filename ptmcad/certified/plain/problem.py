@@ -183,7 +183,7 @@ def _equations(slice: Slice, ring: Harmonics) -> Problem:
     """The problem but for what is asked of stable solutions beyond the model's conditions."""
     system, own = compiled(slice.model), equations_in(slice.model)
     inequalities = _conditions(_listed("positive", () if own is None else own.inequalities), ring)
-    problem = Problem(ring.unknowns, ring.reals, (), (), system.potential() is not None, inequalities)
+    problem = Problem(ring.unknowns, ring.reals, (), (), system.is_gradient, inequalities)
     if slice.has_free_lengths and system.tangent:
         return _with_springs(_of_loops(problem, system, ring), slice, system, ring)
     if system.are_slopes:

@@ -10,8 +10,6 @@ from fractions import Fraction
 from math import atan2
 from typing import Any, NamedTuple
 
-from flint import arb
-
 from ptmcad.text.balls import rational_bounds
 from ptmcad.text.bounds import nearest_multiple
 from ptmcad.text.numerals import integer_text, magnitude
@@ -58,7 +56,7 @@ def exactly(value: Fraction | int) -> Bounds:
 
 def square_root(a: Bounds) -> Bounds:
     """The square root of a number that is not negative, though its lower bound may be."""
-    low, high = (rational_bounds(arb.sqrt, max(end, Fraction(0))) for end in a)
+    low, high = (rational_bounds(lambda ball: ball.sqrt(), max(end, Fraction(0))) for end in a)
     return Bounds(low[0], high[1])
 
 
@@ -86,7 +84,7 @@ def cosine_sine(angle: Bounds) -> tuple[Bounds, Bounds]:
 
 
 def _cosine_sine(angle: Fraction) -> tuple[Bounds, Bounds]:
-    cosine, sine = (rational_bounds(function, angle) for function in (arb.cos, arb.sin))
+    cosine, sine = rational_bounds(lambda ball: ball.cos(), angle), rational_bounds(lambda ball: ball.sin(), angle)
     return Bounds(*cosine), Bounds(*sine)
 
 

@@ -233,7 +233,7 @@ def _form(
     return Form(
         unknowns,
         tuple(name in model.angles for name in unknowns),
-        true.potential is not None,
+        true.is_gradient,
         tuple(equations),
         tuple(jacobian),
         cones,
