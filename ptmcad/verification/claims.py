@@ -19,9 +19,8 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.algebra import NotFinite
-from ptmcad.verification.derivation import meaning_of
+from ptmcad.verification.derivation import SignMeaning, meaning_of
 from ptmcad.verification.fibre import FibreAlgebra, fibre
-from ptmcad.verification.meaning import SignMeaning
 from ptmcad.verification.report import Violation
 from ptmcad.verification.roots import numbered_root
 from ptmcad.verification.sturm import ends_of, roots_between, roots_within

@@ -14,7 +14,7 @@ from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.regionmap import Cell, RegionMap
 from ptmcad.question.counts import Count
 from ptmcad.verification.certified.boxes import Box, Floats
-from ptmcad.verification.meaning import SignMeaning
+from ptmcad.verification.derivation import SignMeaning
 from ptmcad.verification.report import Violation
 
 NAMES = ("total", "stable", "index", "admissible")
