@@ -76,7 +76,7 @@ class Changes:
 
     def __repr__(self) -> str:
         known = "complete" if self.complete else "not proved complete"
-        return f"<Changes of {self.free.name} in [{self.free.low}, {self.free.high}]: {len(self)}, {known}>"
+        return f"<Changes of {self.free}: {len(self)}, {known}>"
 
     if TYPE_CHECKING:  # `ptmcad.methods` has it
 

@@ -78,7 +78,7 @@ class FamilyMap:
         return iter(zip(self.values, self.members, strict=True))
 
     def __repr__(self) -> str:
-        window = ", ".join(f"{a.name} in [{a.low}, {a.high}]" for a in (*self.axes, self.free))
+        window = ", ".join(map(str, (*self.axes, self.free)))
         return f"<FamilyMap {self.name}: {window}, {len(self.values)} members>"
 
     if TYPE_CHECKING:  # `ptmcad.methods` has it

@@ -351,6 +351,11 @@ class RegionMap:
         return self.table()
 
     @property
+    def only_stable(self) -> bool:
+        """Whether the stable solutions alone are known, as in certified maps that count these."""
+        return any(cell.total is None or len(cell.solutions) < cell.total for cell in self.cells if cell.solutions)
+
+    @property
     def continua(self) -> dict[int, Continuum]:
         """The components on which solutions are not isolated, by number."""
         return {n: c.continuum for n, c in enumerate(self.components) if c.continuum is not None}

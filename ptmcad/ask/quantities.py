@@ -153,7 +153,7 @@ def unknown(model: Model, name: str) -> Quantity | None:
 
 
 def _of_energy(model: Model, kind: QuantityKind, key: str) -> Quantity:
-    if not model.criterion.numbers:
+    if kind.value not in (*model.criterion.numbers, *model.criterion.differences):
         raise ConfigError(f"solutions of {model.name} have no energy{_there_are(tuple(quantities(model)))}", key=key)
     return Quantity(kind.value, kind, f"force{_TIMES}length" if model.whole else "")
 

@@ -165,7 +165,7 @@ def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOn
     from ptmcad.ask.branches import branch_diagram
 
     model = found.model
-    if len(model.unknowns) > MAX_UNKNOWNS or "stable" not in model.criterion.counts:
+    if len(model.unknowns) > MAX_UNKNOWNS or not model.criterion.is_told:
         return render.draw_paths(slice, found)
     diagram = branch_diagram(slice, found.along.name, found.at, model.sorted_unknowns, line=line())
     return render.draw_paths_and_branches(slice, found, diagram)

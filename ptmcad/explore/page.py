@@ -72,7 +72,7 @@ def _data(panel: SliderPanel, secret: str) -> dict[str, Any]:
         "name": record.name,
         "title": record.title or record.name,
         "drawable": model.drawable is not None,
-        "told": "stable" in model.criterion.counts,
+        "told": model.criterion.is_told,
         "mechanism": drawing_of(model),
         "axes": [
             {"name": name, "symbol": symbol(name), "low": float(low), "high": float(high)}

@@ -91,6 +91,11 @@ class CompiledSystem:
         return self.angles + self.reals
 
     @property
+    def is_gradient(self) -> bool:
+        """Whether the equations are near each solution the slopes of one function."""
+        return bool(self.criterion.order)
+
+    @property
     def stretches(self) -> tuple[tuple[Formula, Formula, Formula], ...]:
         """Of each spring its length, its free length, and its force, which is positive where it pulls."""
         return tuple((spring.length, spring.free, spring.force) for spring in self.springs)

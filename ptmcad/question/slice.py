@@ -33,6 +33,9 @@ class Axis:
     low: Fraction
     high: Fraction
 
+    def __str__(self) -> str:
+        return f"{self.name} in [{self.low}, {self.high}]"
+
 
 @dataclass(frozen=True, slots=True)
 class Slice:
@@ -76,7 +79,7 @@ class Slice:
         return self.model.name
 
     def __repr__(self) -> str:
-        window = ", ".join(f"{a.name} in [{a.low}, {a.high}]" for a in self.axes)
+        window = ", ".join(map(str, self.axes))
         return f"<Slice {self.name} of {self.mechanism}: {window}, counted by {self.count.value}>"
 
     @property

@@ -19,10 +19,9 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.algebra import NotFinite
-from ptmcad.verification.derivation import Derivation, derivation_at, derivation_of, meaning_of
+from ptmcad.verification.derivation import Derivation, SignMeaning, derivation_at, derivation_of, meaning_of
 from ptmcad.verification.fibre import FibreAlgebra, fibre_over
 from ptmcad.verification.kinds import kind_of
-from ptmcad.verification.meaning import SignMeaning
 from ptmcad.verification.report import Violation
 from ptmcad.verification.roots import numbered_root
 from ptmcad.verification.sturm import ends_of, roots_between, roots_within

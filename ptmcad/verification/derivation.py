@@ -7,11 +7,11 @@ are read by `coordinates`, and polynomials are differentiated here. Springs have
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from flint import fmpq, fmpq_mpoly
 
@@ -22,9 +22,9 @@ from ptmcad.text.tree import names_of
 from ptmcad.verification import xjoints
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
 from ptmcad.verification.loops import Loops
-from ptmcad.verification.meaning import SignMeaning, of_eigenvalues
 from ptmcad.verification.xjoints import CrossedBars
 
+T = TypeVar("T")
 Vector = tuple[fmpq_mpoly, fmpq_mpoly]
 
 
@@ -41,6 +41,65 @@ def shorthands_of(model: Model) -> tuple[str, ...]:
 def coordinates_of(model: Model) -> tuple[str, ...]:
     """The coordinates of the unknowns, as the exact engine names them: those of the angles come first."""
     return tuple(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin")) + model.reals
+
+
+@dataclass(frozen=True, slots=True)
+class SignMeaning:
+    """What the signs at a solution mean: those of conditions for stability, if there are any.
+
+    Attributes
+    ----------
+    kinds : what may be counted.
+    order : the number of rows of the Hessian; 0 where there is none.
+    with_all : the names of the counts of a certified map that counts all solutions.
+    solution, equation, entry, determinant : what they are called in messages.
+    in_box, at_solution : that stored signs are not the true ones.
+    """
+
+    kinds: tuple[Count, ...]
+    order: int = 0
+    with_all: frozenset[str] = frozenset({"total"})
+    solution: str = "a solution"
+    equation: str = "equation {}"
+    entry: str = "Jacobian's entry {},{}"
+    determinant: str = "the Jacobian's determinant"
+    in_box: str = "the list of conditions for stability at the solution in it has the signs {!r}, not {!r}"
+    at_solution: str = "the conditions for stability at the solution {} have the signs {!r}, not {!r}"
+
+    def place(self, row: int, column: int) -> tuple[int, int]:
+        """Which of the equal entries of the Jacobian stands for one."""
+        return (min(row, column), max(row, column)) if self.order else (row, column)
+
+    def index(self, signs: str) -> int | None:
+        """The number of negative eigenvalues of the Hessian."""
+        return signs.count("-") if self.order else None
+
+    def is_stable(self, signs: str) -> bool | None:
+        """Whether a solution is stable; None where nothing says so."""
+        return self.told(not {*signs} & {"-", "0"})
+
+    def told(self, what: T) -> T | None:
+        """Something about stability; None where nothing says what is stable."""
+        return what if Count.STABLE in self.kinds else None
+
+    def indices(self, negative: Sequence[int | None]) -> tuple[int, ...] | None:
+        """Numbers of solutions by the number of negative eigenvalues."""
+        return tuple(negative.count(k) for k in range(self.order + 1)) if self.order else None
+
+
+def of_eigenvalues(unknowns: int) -> SignMeaning:
+    """Solutions are critical points, near each of a function, and the Jacobian is its Hessian."""
+    return SignMeaning(
+        kinds=(Count.TOTAL, Count.STABLE, Count.INDEX),
+        order=unknowns,
+        with_all=frozenset({"total", "stable", "index"}),
+        solution="an equilibrium",
+        equation="gradient's entry {}",
+        entry="Hessian's entry {},{}",
+        determinant="det H",
+        in_box="the Hessian at the solution in it has eigenvalues of signs {!r}, not {!r}",
+        at_solution="the Hessian at the solution {} has eigenvalues of signs {}, not {!r}",
+    )
 
 
 def meaning_of(model: Model) -> SignMeaning:
@@ -164,9 +223,21 @@ class Derivation:
         return self.jacobian[: self.meaning.order]
 
     @property
+    def is_gradient(self) -> bool:
+        """Whether the equations are near each solution the slopes of one function."""
+        return bool(self.meaning.order)
+
+    @property
     def potential(self) -> fmpq_mpoly | None:
         """The energy where solutions are its critical points, less the work of moments; else None."""
-        return self.energy if self.meaning.order else None
+        return self.energy if self.is_gradient else None
+
+    @property
+    def has_minima(self) -> bool:
+        """Whether the equations are the slopes of a function on a torus, or there is one alone."""
+        if self.inequalities or (self.from_energy and self.moved) or len(self.ring.angles) < len(self.unknowns):
+            return False
+        return self.is_gradient or len(self.unknowns) == 1
 
     @property
     def coordinates(self) -> int:

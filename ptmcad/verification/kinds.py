@@ -13,8 +13,7 @@ from flint import fmpq_mpoly
 
 from ptmcad.model import Model
 from ptmcad.question.counts import Count
-from ptmcad.verification.derivation import Derivation, SpringVector, meaning_of
-from ptmcad.verification.meaning import SignMeaning
+from ptmcad.verification.derivation import Derivation, SignMeaning, SpringVector, meaning_of
 from ptmcad.verification.report import Violation
 
 

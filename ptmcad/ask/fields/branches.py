@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.ask.fields.equations import Floats, ModelState, apart, determinant, newton, state_at
+from ptmcad.ask.fields.equations import Floats, ModelState, apart, determinant, eigenvalues, newton, state_at
 from ptmcad.model import Model
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.slice import Slice
@@ -81,7 +81,7 @@ class Filling:
 
 def wanted_of(result: RegionMap, cell: Labels) -> PixelCounts:
     """What the exact map says of each pixel, by the numbers of their cells."""
-    only_stable = any(c.total is None or len(c.solutions) < c.total for c in result.cells if c.solutions)
+    only_stable = result.only_stable
     counts = [c.stable if only_stable else c.total for c in result.cells]
     table = np.array([*(NONE if v is None else v for v in counts), NONE], dtype=np.int64)
     return PixelCounts(table[cell], cell, tuple(c.index for c in result.cells), only_stable)
@@ -152,12 +152,10 @@ class PixelSolver:
         """Whether the solutions count, and as many have each index as the map says."""
         state = self.state(rows, columns, np.nan_to_num(at))
         good = np.asarray((state.counts | empty).all(axis=1))
-        if state.hessian is None:
-            return np.asarray(good & ((determinant(state.jacobian) != 0) | empty).all(axis=1))
-        negative = state.negatives
         if self.wanted.only_stable:
-            return np.asarray(good & ((negative == 0) | empty).all(axis=1))
-        cells = self.wanted.cell[rows, columns]
+            return np.asarray(good & (state.stable | empty).all(axis=1))
+        good &= ((determinant(state.jacobian) != 0) | empty).all(axis=1)
+        negative, cells = (eigenvalues(state.hessian) < 0).sum(axis=0), self.wanted.cell[rows, columns]
         for cell in np.unique(cells):
             index = self.wanted.index[cell] if cell != NONE else None
             if index is not None:

@@ -33,6 +33,7 @@ class ModelState(NamedTuple):
     points : of a mechanism without closed loops, by name.
     stretches : of its springs, in their order, length, free length and force, which is positive where the spring pulls.
     work : of moments, shape S; None where none works.
+    hessian : the Jacobian where solutions are critical points, else without rows.
     """
 
     residuals: Floats
@@ -43,6 +44,7 @@ class ModelState(NamedTuple):
     points: Mapping[str, tuple[Floats, Floats]] = MappingProxyType({})
     stretches: tuple[tuple[Floats, Floats, Floats], ...] = ()
     work: Floats | None = None
+    hessian: Floats = np.empty((0, 1))
 
     @property
     def counts(self) -> NDArray[np.bool_]:
@@ -61,15 +63,9 @@ class ModelState(NamedTuple):
         return self.energy if self.energy is None or self.work is None else self.energy - self.work
 
     @property
-    def hessian(self) -> Floats | None:
-        """The Jacobian where solutions are critical points; else None."""
-        return None if self.energy is None else self.jacobian
-
-    @property
     def stable(self) -> NDArray[np.bool_]:
         """Where solutions are stable, shape S; nowhere where nothing says which are."""
-        hessian = self.hessian
-        margins = self.stability if hessian is None else (eigenvalues(hessian)[0],)
+        margins = (*self.stability, *eigenvalues(self.hessian)[:1])
         if not margins:
             return np.zeros_like(self.residuals[0], dtype=np.bool_)
         return np.asarray(np.logical_and.reduce([margin > 0 for margin in margins]))
@@ -98,7 +94,8 @@ def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> ModelState:
     jacobian = np.stack([np.stack(row) for row in found["jacobian"]])
     if relaxed and system.tangent:  # along loops, of which the compiled conditions are without free lengths
         found["stability"] = (determinant(jacobian),)
-    return ModelState(**found | {"residuals": np.stack(found["residuals"]), "jacobian": jacobian})
+    found |= {"residuals": np.stack(found["residuals"]), "jacobian": jacobian}
+    return ModelState(**found, hessian=jacobian[: system.criterion.order])
 
 
 @lru_cache(maxsize=16)
@@ -140,9 +137,9 @@ def determinant(matrix: Floats) -> Floats:
 
 def eigenvalues(hessian: Floats) -> Floats:
     """Of symmetric matrices of shape (n, n, *S), the smallest first: shape (n, *S)."""
-    if len(hessian) == 1:
-        only: Floats = hessian[0]
-        return only
+    if len(hessian) < 2:
+        own: Floats = hessian[:, 0]
+        return own
     if len(hessian) == 2:
         half, spread = (hessian[0, 0] + hessian[1, 1]) / 2, (hessian[0, 0] - hessian[1, 1]) / 2
         root = np.hypot(spread, hessian[0, 1])

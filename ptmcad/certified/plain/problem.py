@@ -185,7 +185,7 @@ def _equations(slice: Slice, ring: Harmonics) -> Problem:
     system, (_, positive, stable) = compiled(model), conditions_of(model)
     inequalities = _conditions(_margins(positive), ring)
     is_angle = tuple(kind.turns for kind in model.unknowns.values())
-    problem = Problem(ring.unknowns, is_angle, (), (), system.potential() is not None, inequalities)
+    problem = Problem(ring.unknowns, is_angle, (), (), system.is_gradient, inequalities)
     if slice.has_free_lengths and system.tangent:
         return _with_springs(_of_loops(problem, system, ring), slice, system, ring)
     if system.are_slopes:

@@ -25,7 +25,7 @@ from ptmcad.algebra.polynomials import (
     ratio,
 )
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
-from ptmcad.model.criterion import NOTHING, Criterion
+from ptmcad.model.criterion import Criterion
 
 RationalPolynomial = dict[tuple[int, ...], fmpq]
 """A polynomial in the unknowns with rational coefficients: exponent vector -> coefficient."""
@@ -45,12 +45,12 @@ class ParametricSystem(NamedTuple):
     equation_terms, jacobian_terms : the same, sorted for evaluation at many points.
     potential : U, in units of force times length, without the work of constant moments, which are in the equations
         alone; None where equations are given, or a moment depends on another unknown than its own.
+    criterion : what is known of solutions.
     inequalities : a solution counts where all of them are positive.
     stability : where there is no potential a solution is stable where all of these are positive; of a potential what
         is asked of a stable solution besides, where a count is by a predicate.
     positive : parameters that must be positive (rod lengths and stiffnesses).
     nonnegative : parameters that must not be negative (the base length).
-    criterion : what is known of solutions.
     turns : the equations in other angles, `ptmcad.exact.models.turns.Turns`, where these are simpler.
     """
 
@@ -60,12 +60,12 @@ class ParametricSystem(NamedTuple):
     equation_terms: tuple[Terms, ...]
     jacobian_terms: tuple[tuple[Terms, ...], ...]
     potential: TrigonometricPolynomial | None
+    criterion: Criterion
     inequalities: tuple[TrigonometricPolynomial, ...] = ()
     stability: tuple[TrigonometricPolynomial, ...] = ()
     positive: tuple[str, ...] = ()
     nonnegative: tuple[str, ...] = ()
     turns: Any = None
-    criterion: Criterion = NOTHING
 
     @property
     def dimension(self) -> int:

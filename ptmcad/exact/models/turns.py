@@ -55,9 +55,8 @@ def with_turns(system: ParametricSystem) -> ParametricSystem:
             for sign in (1, -1):
                 step = [[int(k == m) + sign * int((k, m) == (i, j)) for m in range(count)] for k in range(count)]
                 images = _images(system.ring, step)
-                found = tuple(system.ring.reduce(e.compose(*images)) for e in equations)
-                if system.potential is not None:  # derivatives by the new angles
-                    found = tuple(e + sign * found[i] if k == j else e for k, e in enumerate(found))
+                reduced = [system.ring.reduce(e.compose(*images)) for e in equations]
+                found = system.criterion.turned(reduced, i, j, sign)
                 if (other := _cost(found)) < cost:
                     # the angle i is the new angle i and sign times the angle j
                     best = tuple((*r[:j], r[j] + sign * r[i], *r[j + 1 :]) for r in best)

@@ -58,7 +58,7 @@ class Family(NamedTuple):
         return self.record.model
 
     def __repr__(self) -> str:
-        window = ", ".join(f"{a.name} in [{a.low}, {a.high}]" for a in (*self.axes, self.free))
+        window = ", ".join(map(str, (*self.axes, self.free)))
         return f"<Family {self.name} of {self.model.name}: {window}, {len(self.values)} members>"
 
     def member(self, value: Fraction) -> Slice:

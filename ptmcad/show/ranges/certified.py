@@ -11,8 +11,8 @@ from fractions import Fraction
 from ptmcad.answer.intervals import CertifiedChange, CertifiedIntervals
 from ptmcad.answer.widths import Attainment, CertifiedRange, CertifiedRow, CertifiedWidths
 from ptmcad.show.columns import aligned
-from ptmcad.show.ranges.numbers import known, line_head
-from ptmcad.show.ranges.table import nowhere, width_rows, working_text
+from ptmcad.show.ranges.numbers import known
+from ptmcad.show.ranges.table import interval_rows, nowhere, width_rows, working_text
 from ptmcad.text.bounds import rounded
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
@@ -22,18 +22,14 @@ def table(found: CertifiedIntervals, digits: int) -> str:
     """One row for each interval, then what lies between them."""
     peaks = any(i.cones is not None for i in found.intervals)  # of the paper's mechanism only
     only_totals = all(i.index is None for i in found.intervals) and any(i.total is not None for i in found.intervals)
-    told = ["stable", "min-saddle-max" if peaks else "index", *["peaks"] * peaks]
-    if only_totals:
-        told = ["stable"] if any(i.stable is not None for i in found.intervals) else []
-    rows = [["from", "to", "total", *told, "sample"]]
-    for i in found.intervals:
-        counts = ["undecided" if i.total is None else str(i.total), *[""] * len(told)]
-        if i.stable is not None:
-            counts[1] = str(i.stable)
-        if i.index is not None:
-            counts = [str(sum(i.index)), str(i.index[0]), "-".join(map(str, i.index)), *[str(i.cones)] * peaks]
-        rows.append([_text(i.low, digits, up=True), _text(i.high, digits), *counts, shortest_text(i.sample)])
-    lines = [line_head(found.along, found.at), "", *aligned(rows)]
+    heads = {"total": "total", "stable": "stable"}
+    if not only_totals:
+        heads["index"] = "min-saddle-max" if peaks else "index"
+    elif all(i.stable is None for i in found.intervals):
+        del heads["stable"]
+    if peaks:
+        heads["cones"] = "peaks"
+    lines = interval_rows(found, heads, lambda i: (_text(i.low, digits, up=True), _text(i.high, digits)))
     if found.changes:
         changes = [["at", "what is met"]]
         for change in found.changes:

@@ -5,13 +5,14 @@ Guarantee: every digit that is shown is right.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
 from flint import arb, ctx
 
-from ptmcad.answer.intervals import CountIntervals, End, OperationSpan, Span
+from ptmcad.answer.counts import MorseIndex
+from ptmcad.answer.intervals import CertifiedIntervals, CountIntervals, End, OperationSpan, Span
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.widths import CertifiedWidths, Maximum, OperationWidths, WidthRow
 from ptmcad.answer.words import assignments, followed, listed, noun, sought, with_article
@@ -33,15 +34,12 @@ def table(found: CountIntervals, digits: int = 10) -> str:
     """One row for each interval, then what happens at their ends, then the operation range."""
     name = found.along.name
     first = found.intervals[0]
-    stable = ["stable"] * (first.stable is not None)
-    index = [] if first.index is None else [_INDEX_HEADS.get(len(first.index), "index")]
-    rows = [["from", "to", "total", *stable, *index, "sample"]]
-    for i in found.intervals:
-        counts = [str(i.total)]
-        counts += [str(i.stable)] if stable else []
-        counts += ["-".join(map(str, i.index))] if i.index is not None else []
-        rows.append([end_text(i.low, digits), end_text(i.high, digits), *counts, shortest_text(i.sample)])
-    lines = [line_head(found.along, found.at), "", *aligned(rows)]
+    heads = {"total": "total"}
+    if first.stable is not None:
+        heads["stable"] = "stable"
+    if first.index is not None:
+        heads["index"] = _INDEX_HEADS.get(len(first.index), "index")
+    lines = interval_rows(found, heads, lambda i: (end_text(i.low, digits), end_text(i.high, digits)))
     if found.changes:
         lines.append("")
         changes = [["at", f"as {name} increases", "root of"]]
@@ -53,6 +51,28 @@ def table(found: CountIntervals, digits: int = 10) -> str:
         lines.append(f"{range_name}: none, {nowhere(found.model, found.working)}")
     lines += [f"{range_name}: {_range_text(i, digits)}" for i in found.operation]
     return "\n".join(lines)
+
+
+def interval_rows(
+    found: CountIntervals | CertifiedIntervals, heads: Mapping[str, str], ends: Callable[[Any], Iterable[str]]
+) -> list[str]:
+    """A line for each interval, below what is fixed.
+
+    Parameters
+    ----------
+    heads : of the columns of counts, by the names of these.
+    """
+    rows = [["from", "to", *heads.values(), "sample"]]
+    for each in found.intervals:
+        counts = (_counted(name, getattr(each, name)) for name in heads)
+        rows.append([*ends(each), *counts, shortest_text(each.sample)])
+    return [line_head(found.along, found.at), "", *aligned(rows)]
+
+
+def _counted(name: str, count: int | MorseIndex | None) -> str:
+    if count is None:
+        return "undecided" if name == "total" else ""
+    return "-".join(map(str, count)) if isinstance(count, tuple) else str(count)
 
 
 _INDEX_HEADS = {2: "min-max", 3: "min-saddle-max"}

@@ -84,7 +84,7 @@ def cosine_sine(angle: Bounds) -> tuple[Bounds, Bounds]:
 
 
 def _cosine_sine(angle: Fraction) -> tuple[Bounds, Bounds]:
-    cosine, sine = (rational_bounds(function, angle) for function in (lambda ball: ball.cos(), lambda ball: ball.sin()))
+    cosine, sine = rational_bounds(lambda ball: ball.cos(), angle), rational_bounds(lambda ball: ball.sin(), angle)
     return Bounds(*cosine), Bounds(*sine)
 
 

@@ -115,7 +115,7 @@ def _solutions(
     system = compiled(model)
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
     drawn = system.shown
-    formulas = _Pose(None if polynomial else system.potential(), drawn.points, drawn.stretches, drawn.torsion)
+    formulas = _Pose(None if polynomial else system.potential(), drawn.points, drawn.stretches, drawn.elastic[1])
     poses: list[_Pose] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
     energies = [pose.energy for pose in poses] if potential is None else [energy(potential, box) for box in boxes]
     known = [bounds for bounds in energies if bounds is not None]

@@ -208,7 +208,7 @@ def _data(result: RegionMap, drawn: MapPictures) -> dict[str, Any]:
         "axes": [symbol(name) for name in names],
         "drawable": model.drawable is not None,
         "units": _declared(result.slice),
-        "told": "stable" in model.criterion.counts,
+        "told": model.criterion.is_told,
         "untold": untold(model),
         "work": _work(model),
         "landscape": len(model.angles) == model.criterion.order == 2,

@@ -52,7 +52,7 @@ def tape(result: RegionMap) -> dict[str, Any] | None:
         "unknowns": n,
         "window": [[float(axis.low), float(axis.high)] for axis in slice.axes],
         "kinds": ["stable", *(critical_point(k, n) for k in range(1, n + 1))],
-        "stableOnly": _only_stable(result),
+        "stableOnly": result.only_stable,
     }
 
 
@@ -87,8 +87,3 @@ def _fits(slice: Slice) -> bool:
     return all(name in slice.parameters for name in slice.model.without_free_lengths) and all(
         abs(value) < MAX_CONSTANT for value in (*coefficients, *ends)
     )
-
-
-def _only_stable(result: RegionMap) -> bool:
-    """Whether the stable solutions alone are known, as in certified maps that count these."""
-    return any(cell.total is None or len(cell.solutions) < cell.total for cell in result.cells if cell.solutions)

@@ -229,7 +229,7 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
     return Form(
         unknowns,
         tuple(name in model.angles for name in unknowns),
-        true.potential is not None,
+        true.is_gradient,
         tuple(equations),
         tuple(jacobian),
         cones,
