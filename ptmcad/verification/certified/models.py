@@ -29,7 +29,7 @@ from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
 from ptmcad.verification.certified.spectrum import inertia
 from ptmcad.verification.certified.terms import evaluated
-from ptmcad.verification.certified.waves import Form, Margin
+from ptmcad.verification.certified.waves import Form
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
@@ -50,15 +50,9 @@ MAX_REAL = 2**1000
 
 @dataclass(frozen=True, slots=True)
 class ModelCounting:
-    """Counts for one model, from the form that follows from its description.
-
-    Attributes
-    ----------
-    margins : of what is asked of stable solutions, where some of them are counted besides.
-    """
+    """Counts for one model, from the form that follows from its description."""
 
     form: Form
-    margins: tuple[Margin, ...] = ()
 
     def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> CountedPoint:
         """At a point of the window."""
@@ -99,7 +93,7 @@ class ModelCounting:
         counts, kind = counts_of(self.form, found, count), kind_of(count)
         if not kind.is_predicate:
             return counts
-        field = BallEquations(self.form, values, [margin.value for margin in self.margins])
+        field = BallEquations(self.form, values, ("margins",))
         stable = (zero for zero in found if "-" not in zero.signs)
         number = sum(_has_margins(field, zero, kind.undecided) for zero in stable)
         return replace(counts, further={count.value: number})
@@ -207,7 +201,7 @@ def _field(form: Form, values: Mapping[str, arb], count: Count | None, side: Sid
     if count is None:
         return BallEquations(form, values, sides=side)
     stable = count.is_of_stable
-    asked = form.inequalities + (form.stability if stable else ())
+    asked = ("inequalities", "stability") if stable else ("inequalities",)
     return BallEquations(form, values, asked, stable and bool(form.closing), side)
 
 

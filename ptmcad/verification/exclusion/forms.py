@@ -16,9 +16,7 @@ from __future__ import annotations
 from math import cos, inf, sin, sqrt
 from typing import Any
 
-from ptmcad.verification.exclusion.arithmetic import operation, outward, reach, times
-from ptmcad.verification.exclusion.compiled import compiled, inlined
-from ptmcad.verification.exclusion.formulas import (
+from ptmcad.verification.certified.formulas import (
     ADD,
     CONSTANT,
     COSINE,
@@ -32,6 +30,8 @@ from ptmcad.verification.exclusion.formulas import (
     SUBTRACT,
     VARIABLE,
 )
+from ptmcad.verification.exclusion.arithmetic import operation, outward, reach, times
+from ptmcad.verification.exclusion.compiled import compiled, inlined
 
 CENTER, ERROR, LOW, HIGH, WIDTH = range(MAX_VARIABLES, MAX_VARIABLES + 5)
 """Columns of a form after those of the slopes, and their number."""

@@ -19,10 +19,10 @@ from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Box, Floats, Unproved
 from ptmcad.verification.certified.counted import Where
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.exclusion.formulas import enclosing
 from ptmcad.verification.exclusion.pieces import Pieces, no_pieces
 from ptmcad.verification.exclusion.search import isolate
 from ptmcad.verification.exclusion.systems import CriticalSystem, halves_over, solutions_of, window_of
+from ptmcad.verification.exclusion.tapes import enclosing
 
 BUDGET = 16_000
 """Boxes that are looked at for one place and one choice of sides ..."""
