@@ -23,7 +23,7 @@ from ptmcad.certified.plain.problem import problem_of
 from ptmcad.model import Mechanism
 from ptmcad.options import Options
 from ptmcad.verification import verify
-from ptmcad.verification.certified.terms import monomials
+from ptmcad.verification.terms import monomials
 from ptmcad.verification.certified.waves import form_of
 
 Springs = list[dict[str, Any]]

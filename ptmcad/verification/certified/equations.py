@@ -17,8 +17,8 @@ from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.verification.certified.formulas import Formulas
 from ptmcad.verification.certified.kinks import Sides
 from ptmcad.verification.certified.lines import SpringLine
-from ptmcad.verification.certified.terms import monomials
 from ptmcad.verification.certified.waves import Form, Key, SpringCone, Waves
+from ptmcad.verification.terms import monomials
 
 Pair = tuple[int, int]
 

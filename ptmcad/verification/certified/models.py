@@ -27,12 +27,12 @@ from ptmcad.verification.certified.narrow import Function, judged, only
 from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
-from ptmcad.verification.certified.spectrum import inertia
-from ptmcad.verification.certified.terms import evaluated
 from ptmcad.verification.certified.waves import Form
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.inertia import inertia
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
+from ptmcad.verification.terms import evaluated
 
 PRECISIONS = ((53, MIN_HALF_WIDTH), (128, 2.0**-80))
 """Bits, and the share of all configurations below which boxes are not halved: a spring may be as short as that."""

@@ -17,13 +17,13 @@ from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.terms import evaluated, monomials, power
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import derivation_of
 from ptmcad.verification.parameters import auxiliary, written
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.signs import Sign, Window, has_no_pole, is_in_domain
+from ptmcad.verification.terms import evaluated, monomials, power
 
 
 def check_domain(claims: Claims) -> str:
