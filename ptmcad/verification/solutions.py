@@ -28,6 +28,7 @@ from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Derivation
 from ptmcad.verification.inertia import inertia
 from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.terms import ball
 
 _NARROWINGS = 4
 """Images of a box that a solution is proved to be in, until signs on it are certain."""
@@ -137,20 +138,7 @@ def check_disjoint(n: int, cell: Cell, model: Model) -> None:
 
 def _values(polynomials: Sequence[fmpq_mpoly], x: Sequence[arb]) -> list[arb]:
     """Values in balls at coordinates."""
-    powers = [[arb(1)] for _ in x]
-    found = []
-    for p in polynomials:
-        total = arb(0)
-        for exponents, c in p.terms():
-            term = arb(c)
-            for known, coordinate, e in zip(powers, x, exponents, strict=True):
-                while len(known) <= e:
-                    known.append(known[-1] * coordinate)
-                if e:
-                    term = term * known[int(e)]
-            total = total + term
-        found.append(total)
-    return found
+    return [ball(p, dict(zip(p.context().names(), x, strict=True))) for p in polynomials]
 
 
 def _tested(point: Derivation, solution: Solution) -> str | None:

@@ -30,7 +30,7 @@ from ptmcad.verification.certified.formulas import (
     SUBTRACT,
     VARIABLE,
 )
-from ptmcad.verification.exclusion.arithmetic import operation, outward, reach, times
+from ptmcad.verification.exclusion.arithmetic import operation, outward, reach
 from ptmcad.verification.exclusion.compiled import compiled, inlined
 
 CENTER, ERROR, LOW, HIGH, WIDTH = range(MAX_VARIABLES, MAX_VARIABLES + 5)
@@ -62,15 +62,7 @@ def evaluate(tape: Any, box: Any, forms: Any, start: int, end: int) -> None:
             forms[n, i if code == VARIABLE else ERROR] = wide
             continue
         a, b, c, d = forms[i, LOW], forms[i, HIGH], forms[j, LOW], forms[j, HIGH]
-        # the most frequent ones first, at once
-        if code == MULTIPLY:
-            a, b = times(a, b, c, d)
-        elif code == ADD:
-            a, b = outward(a + c, b + d)
-        elif code == SUBTRACT:
-            a, b = outward(a - d, b - c)
-        else:
-            a, b = operation(code, a, b, c, d)
+        a, b = operation(code, a, b, c, d)
         forms[n, LOW], forms[n, HIGH] = a, b
         if a == -inf or forms[i, ERROR] == inf or forms[j, ERROR] == inf:
             _flat(forms, n)
