@@ -93,7 +93,7 @@ class _FormFormulas:
 
     Attributes
     ----------
-    squared : of each spring |d|^2; parts : K u.w_i for each equation.
+    squared : of each spring |d|^2.
     bends : negative where the Hessian has a negative eigenvalue, wherever a short spring has a length.
     steady : the operations in which no unknown is.
     """
@@ -108,7 +108,6 @@ class _FormFormulas:
         self.jacobian = [entry for row in rows for entry in row]
         self.determinant = [f.determinant([[row[k] for k in form.closing] for row in rows])] if form.closing else []
         self.squared = [f.dot(s.vector, s.vector) for s in m.cones]
-        self.parts = [[f.multiply(s.pull, f.dot(directions[k], w)) for w in s.weights] for k, s in enumerate(m.cones)]
         self.balances = [m.balances(k) for k in range(len(m.cones))]
         has_bends = form.is_gradient and form.size > 1
         self.bends = [[m.bend(k)] if has_bends else [] for k in range(len(m.cones))]
@@ -125,8 +124,7 @@ class _FormFormulas:
             if (code == VARIABLE and a < MAX_VARIABLES) or (code > VARIABLE and not self._moving.isdisjoint((a, b))):
                 self._moving.add(n)
         self.steady = self._in_order({n for n, (code, *_) in enumerate(f.rows) if code > VARIABLE} - self._moving)
-        weights = [x for s in m.cones for pair in s.weights for x in pair]
-        self._first = f.needed([*self.equations, *m.smooth, *self.squared, *weights])
+        self._first = f.needed([*self.equations, *self.squared])
         self.first = self._in_order(self._first & self._moving)
         self._known: dict[tuple[int, ...], list[_Step]] = {}
 
@@ -275,13 +273,7 @@ class BallEquations:
             known[n] = value
         _run(self._steps, known)
         short = [k for k in of.may_be_short if not known[of.squared[k]] > 0]
-        values = [known[n] for n in (of.model.smooth if short else of.equations)]
-        for k, s in enumerate(of.model.cones) if short else ():
-            for i, (part, (x, y)) in enumerate(zip(of.parts[k], s.weights, strict=True)):
-                # any unit vector times the weight
-                pulled = known[s.pull] * _ANY * size(known[x], known[y]) if k in short else known[part]
-                values[i] = values[i] - pulled
-        jet = BallJet(values, [known[n] for n in self._conditions], short, of, known)
+        jet = BallJet([known[n] for n in of.equations], [known[n] for n in self._conditions], short, of, known)
         if self._with_determinant:
             jet.conditions.extend([arb(0, inf)] if short else jet.evaluated(of.determinant))
         return jet
