@@ -97,7 +97,9 @@ class _Isolated:
         boxes = np.empty((MAX_LEFT, *self.system.start.shape))
         boxes[0] = self.system.start
         boxes[0, :2] = self.rectangle
-        left = isolate(self.system.over_place(self.smallest), self.system.tape, self.pieces, boxes, BUDGET)
+        left = isolate(
+            self.system.compiled(self.smallest, over_place=True), self.system.tape, self.pieces, boxes, BUDGET
+        )
         whole = tuple(self.system.start[2:, 1].tolist())
         return [_box(rows, whole) for rows in boxes[:left, 2:].tolist()]
 

@@ -103,22 +103,18 @@ class CriticalSystem:
         )
         return _of_formulas(self.name, self.formulas, zeros, signs, self.early, self.start)
 
-    def over_window(self, smallest: float) -> Compiled:
-        """In arrays, to be looked at over boxes of the window that are wider than a share of it."""
-        units = self.start[:, 1] - self.start[:, 0]
-        least = np.where(np.arange(len(units)) < 2, smallest * units, np.inf)
-        return self._compiled(self.measured, least, 0)
+    def compiled(self, smallest: float, over_place: bool = False) -> Compiled:
+        """In arrays, to be looked at over boxes of the window that are wider than a share of it.
 
-    def over_place(self, smallest: float) -> Compiled:
-        """The same over one box of the window, and boxes of the unknowns that are wider than a share of all."""
+        Parameters
+        ----------
+        over_place : of one box of the window, and boxes of the unknowns that are wider than a share of all.
+        """
         units = self.start[:, 1] - self.start[:, 0]
-        least = np.where(np.arange(len(units)) < 2, np.inf, smallest * units)
-        return self._compiled(self.measured - 1, least, 2)
-
-    def _compiled(self, measured: int, least: Any, halved: int) -> Compiled:
+        least = np.where((np.arange(len(units)) < 2) != over_place, smallest * units, np.inf)
         zero, not_negative = (np.array(some, dtype=np.int64) for some in (self.zero, self.not_negative))
-        units = self.start[:, 1] - self.start[:, 0]
-        return Compiled(zero, not_negative, zero[:measured], self.early, self.first, units, least, halved)
+        measured = zero[: self.measured - over_place]
+        return Compiled(zero, not_negative, measured, self.early, self.first, units, least, 2 * over_place)
 
 
 def _of_formulas(
