@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from hashlib import sha256
 
 from ptmcad.answer.design import BestDesign
 from ptmcad.answer.poses import Poses
@@ -15,7 +14,7 @@ from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.certified.checks import verify_certified
 from ptmcad.verification.certified.parameters import check_domain
-from ptmcad.verification.claims import Claims
+from ptmcad.verification.claims import Claims, fingerprint
 from ptmcad.verification.counts import check_counts
 from ptmcad.verification.designs import verify_design
 from ptmcad.verification.exclusion.check import EFFORT, check_free_area, places_of
@@ -109,7 +108,9 @@ def checks_of(result: RegionMap, seed: int | None) -> tuple[CheckOf, ...]:
     ----------
     seed : as for `verify`.
     """
-    drawn = fingerprint(result) if seed is None else str(seed)
+    names = result.slice.axis_names
+    curves = (f"{c.kind.value}: {c.polynomial.text(names)}" for c in result.components)
+    drawn = fingerprint(result, curves) if seed is None else str(seed)
     return (
         ("shape", "cross references", check_shape),
         ("parameters as written", "expressions compared", check_text),
@@ -123,11 +124,3 @@ def checks_of(result: RegionMap, seed: int | None) -> tuple[CheckOf, ...]:
         ("plan", "built once more", check_plan),
         *_SINCE_VARIETY,
     )
-
-
-def fingerprint(result: RegionMap) -> str:
-    """A hash of the slice's parameters and of the stored variety."""
-    names = result.slice.axis_names
-    claims = [f"{n}={e.to_text(names)}" for n, e in sorted(result.slice.parameters.items())]
-    claims += [f"{c.kind.value}: {c.polynomial.text(names)}" for c in result.components]
-    return sha256("\n".join(claims).encode()).hexdigest()[:16]

@@ -5,9 +5,11 @@ Guarantee: only the result's own data are used. ``u`` is the coordinate on the b
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from hashlib import sha256
 from math import gcd, lcm
 
 from flint import arb, ctx, fmpq, fmpz_poly
@@ -176,6 +178,13 @@ class Claims:
     def free(self, low: fmpq, high: fmpq, v: fmpq) -> PlaneCurve | None:
         """None when no curve meets the closed segment [low, high] x {v}, else one that does."""
         return next((c for c in self.curves if roots_within(c.along(v), low, high) > 0), None)
+
+
+def fingerprint(result: RegionMap, further: Iterable[str]) -> str:
+    """A hash of the slice's parameters and of further claims, from which random points are drawn: so none fit them."""
+    names = result.slice.axis_names
+    claims = [f"{n}={e.to_text(names)}" for n, e in sorted(result.slice.parameters.items())]
+    return sha256("\n".join([*claims, *further]).encode()).hexdigest()[:16]
 
 
 def polynomial(value: CriticalValue) -> fmpz_poly:

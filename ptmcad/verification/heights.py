@@ -27,7 +27,7 @@ from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.verification.claims import PlaneCurve, ball, is_root
 from ptmcad.verification.elimination import discriminant, resultant
 from ptmcad.verification.structure import points_over
-from ptmcad.verification.sturm import ends_of, isolated, parting, real_roots
+from ptmcad.verification.sturm import ball_chain, ends_of, isolated, parting, real_roots
 
 _BITS = (256, 1024, 4096)
 _FINEST = 512
@@ -101,31 +101,17 @@ class Heights:
 
     def _sequence(self, bits: int) -> list[arb_poly]:
         if bits not in self._sequences:
-            try:
-                self._sequences[bits] = self._made(bits)
-            except _Undecided:
-                self._sequences[bits] = None
+            self._sequences[bits] = self._made(bits)
         found = self._sequences[bits]
         if found is None:
             raise _Undecided
         return found
 
-    def _made(self, bits: int) -> list[arb_poly]:
-        """The Sturm sequence, without its last term where that is zero.
-
-        Raises
-        ------
-        _Undecided
-        """
+    def _made(self, bits: int) -> list[arb_poly] | None:
+        """The Sturm sequence, without its last term where that is zero; None where the precision is too low."""
         value = ball(self.value, fmpq(1, 1 << bits))
         product = prod((arb_poly([c(value) for c in curve.in_v]) for curve in self.curves), start=arb_poly([1]))
-        degree = sum(curve.degrees[1] for curve in self.curves)
-        sequence = [_exact_degree(product, degree), _exact_degree(product.derivative(), degree - 1)]
-        while sequence[-1].degree() > 1:
-            sequence.append(_exact_degree(-(sequence[-2] % sequence[-1]), sequence[-1].degree() - 1))
-        if degree > 1 and not self._has_multiple_root:
-            sequence.append(_exact_degree(-(sequence[-2] % sequence[-1]), 0))
-        return sequence
+        return ball_chain(product, sum(curve.degrees[1] for curve in self.curves), int(self._has_multiple_root))
 
     @cached_property
     def _has_multiple_root(self) -> bool:
@@ -138,17 +124,3 @@ class Heights:
     def _polynomial(self) -> fmpz_poly:
         """A polynomial in v among whose roots are all points."""
         return prod((points_over(c, self.value) for c in self.curves), start=fmpz_poly([1]))
-
-
-def _exact_degree(p: arb_poly, degree: int) -> arb_poly:
-    """The polynomial, of which a degree is expected.
-
-    Raises
-    ------
-    _Undecided
-        When the leading coefficient may be zero.
-    """
-    coefficients = p.coeffs()[: degree + 1]
-    if len(coefficients) <= degree or coefficients[-1].contains(0):
-        raise _Undecided
-    return arb_poly(coefficients)

@@ -1,17 +1,23 @@
-"""The inertia of symmetric matrices by the signs of their leading principal minors (Jacobi).
+"""The inertia of symmetric matrices, by leading principal minors (Jacobi) or by elementary symmetric functions.
 
 Guarantee: where no leading principal minor is zero, the number of negative eigenvalues is that of the changes of sign
 in the sequence that starts with 1 and goes on with the minors. `bases` gives others in which that is so: it is in
-almost every one.
+almost every one. Entries may be matrices of multiplication, which commute.
 
-Entries may be balls, or matrices of multiplication, which commute.
+Of balls the elementary symmetric functions, the sums of all principal minors of one size, are in their place: the
+characteristic polynomial has real roots only, so that Descartes' rule counts them exactly (`inertia`). What is said
+holds for every matrix within the balls.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import pairwise
+from itertools import combinations, pairwise, product
 from typing import Any
+
+from flint import arb
+
+from ptmcad.verification.terms import square
 
 Rows = Sequence[Sequence[Any]]
 
@@ -71,3 +77,29 @@ def determinant(rows: Rows) -> Any:
 def negative_eigenvalues(signs: Iterable[int]) -> int:
     """Their number, from the signs of the leading principal minors."""
     return sum(a != b for a, b in pairwise((1, *signs)))
+
+
+def inertia(h: Sequence[Sequence[arb]]) -> str | None:
+    """The signs of the eigenvalues of all symmetric matrices in the balls, positive ones first; None when undecided."""
+    n = len(h)
+    functions = [total(_principal_minors(h, size)) for size in range(1, n + 1)]
+    if functions[-1].contains(0):
+        return None
+    # of a function that may be zero no sign matters if both say the same
+    signs = ([sign for sign in (1, -1) if not sign * value < 0] for value in functions)
+    found = {negative_eigenvalues(chosen) for chosen in product(*signs)}
+    return "+" * (n - min(found)) + "-" * min(found) if len(found) == 1 else None
+
+
+def is_no_minimum(h: Sequence[Sequence[arb]]) -> bool:
+    """Whether a symmetric matrix has a negative eigenvalue, whatever it is within the balls."""
+    return any(minor < 0 for size in range(1, len(h) + 1) for minor in _principal_minors(h, size))
+
+
+def _principal_minors(h: Sequence[Sequence[arb]], size: int) -> Iterator[arb]:
+    for chosen in combinations(range(len(h)), size):
+        if size == 2:
+            i, j = chosen
+            yield h[i][i] * h[j][j] - square(h[i][j])
+        else:
+            yield determinant([[h[i][j] for j in chosen] for i in chosen])

@@ -1,7 +1,7 @@
 """Checks of the solutions: each stored box contains a solution that counts, with the stored signs.
 
 Each stored box, in the coordinates of the unknowns, is tested by Krawczyk's image (`certified.narrow`). Where it has
-one solution, the signs of the Hessian's leading minors, of inequalities and of conditions for stability are those on a
+one solution, the signs of the Hessian's eigenvalues, of inequalities and of conditions for stability are those on a
 narrower box, or precision is doubled. Where that shows nothing, as of a box much larger than the distance over which
 the equations bend, trace forms count the solutions in the box, and tell the signs.
 
@@ -15,7 +15,7 @@ the number of solutions at which one is, and in the other boxes it is not. A box
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations, islice
+from itertools import combinations
 
 from flint import arb, ctx, fmpq_mpoly
 
@@ -26,12 +26,12 @@ from ptmcad.verification.certified.field import Matrix
 from ptmcad.verification.certified.narrow import narrowed, precisions, tested
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Derivation
-from ptmcad.verification.inertia import bases, leading_minors, negative_eigenvalues
+from ptmcad.verification.inertia import inertia
 from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.terms import ball
 
 _NARROWINGS = 4
 """Images of a box that a solution is proved to be in, until signs on it are certain."""
-_BASES = 2
 
 
 def check_solutions(claims: Claims) -> str:
@@ -133,20 +133,7 @@ def check_disjoint(n: int, cell: Cell, model: Model) -> None:
 
 def _values(polynomials: Sequence[fmpq_mpoly], x: Sequence[arb]) -> list[arb]:
     """Values in balls at coordinates."""
-    powers = [[arb(1)] for _ in x]
-    found = []
-    for p in polynomials:
-        total = arb(0)
-        for exponents, c in p.terms():
-            term = arb(c)
-            for known, coordinate, e in zip(powers, x, exponents, strict=True):
-                while len(known) <= e:
-                    known.append(known[-1] * coordinate)
-                if e:
-                    term = term * known[int(e)]
-            total = total + term
-        found.append(total)
-    return found
+    return [ball(p, dict(zip(p.context().names(), x, strict=True))) for p in polynomials]
 
 
 def _tested(point: Derivation, solution: Solution) -> str | None:
@@ -168,21 +155,10 @@ def _tested(point: Derivation, solution: Solution) -> str | None:
         if all(p > 0 for p in _values(point.inequalities, found.within)):
             hessian = [_values(row, found.within) for row in point.hessian]
             conditions = _values(point.stability, found.within)
-            signs = _of_hessian(hessian) if hessian else _of_conditions(conditions, solution.signs)
+            signs = inertia(hessian) if hessian else _of_conditions(conditions, solution.signs)
             if signs is not None:
                 return signs
         found = narrowed(function, found)
-    return None
-
-
-def _of_hessian(hessian: Matrix) -> str | None:
-    """The signs of a symmetric matrix's eigenvalues, positive ones first; None when they are not certain."""
-    size = len(hessian)
-    for basis in islice(bases(size), _BASES):
-        minors = leading_minors(hessian, basis, size)
-        if not any(m.contains(0) for m in minors):
-            negative = negative_eigenvalues(1 if m > 0 else -1 for m in minors)
-            return "+" * (size - negative) + "-" * negative
     return None
 
 

@@ -114,17 +114,29 @@ def _ball_chain(coefficients: tuple[int, ...], bits: int) -> tuple[arb_poly, ...
     if p.gcd(p.derivative()).degree() > 0:
         return None
     with ctx.workprec(bits):
-        first, second = arb_poly(p), arb_poly(p.derivative())
-        chain = [second]
-        for d in range(int(p.degree()) - 1, 0, -1):
-            # the quotient is linear, the remainder has one coefficient less than the divisor
-            leading = first[d + 1] / second[d]
-            quotient = arb_poly([(first[d] - leading * second[d - 1]) / second[d], leading])
-            first, second = second, (quotient * second - first).truncate(d)
-            if second[d - 1].contains(0):
-                return ()
-            chain.append(second)
-    return tuple(chain)
+        chain = ball_chain(arb_poly(p), int(p.degree()), 0)
+    return () if chain is None else tuple(chain[1:])
+
+
+def ball_chain(p: arb_poly, degree: int, last: int) -> list[arb_poly] | None:
+    """A Sturm sequence in balls, each of the degree before less one, down to the last; None where one may be less.
+
+    Parameters
+    ----------
+    p : of that degree, if its leading coefficient is not zero.
+    """
+    chain = [p, p.derivative()]
+    if any(q[degree - k].contains(0) for k, q in enumerate(chain)):
+        return None
+    for d in range(degree - 1, last, -1):
+        # the quotient is linear, the remainder has one coefficient less than the divisor
+        first, second = chain[-2:]
+        leading = first[d + 1] / second[d]
+        quotient = arb_poly([(first[d] - leading * second[d - 1]) / second[d], leading])
+        chain.append((quotient * second - first).truncate(d))
+        if chain[-1][d - 1].contains(0):
+            return None
+    return chain
 
 
 def _ball_variations(p: fmpz_poly, chain: Sequence[arb_poly], at: fmpq) -> int | None:

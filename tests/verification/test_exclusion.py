@@ -25,15 +25,16 @@ pytest.importorskip("numba")
 
 import numpy as np
 
+from ptmcad.verification.certified.formulas import MAX_VARIABLES, Formulas
 from ptmcad.verification.exclusion import check, running
 from ptmcad.verification.exclusion.check import MAX_EFFORT, NUMBA_NEEDED, check_free_area
 from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate
-from ptmcad.verification.exclusion.formulas import MAX_VARIABLES, Formulas
 from ptmcad.verification.exclusion.holding import holds
 from ptmcad.verification.exclusion.pieces import no_pieces, pieces_of
 from ptmcad.verification.exclusion.running import Rest, search
 from ptmcad.verification.exclusion.search import look
 from ptmcad.verification.exclusion.systems import systems_of
+from ptmcad.verification.exclusion.tapes import tape_of
 
 ZEEMAN: dict[str, Any] = {
     "mechanism": {
@@ -246,7 +247,7 @@ def test_affine_forms_hold_the_values() -> None:
     rng, checked = random.Random(7), 0
     for _ in range(400):
         f = Formulas()
-        tape, _, (place,) = f.tape([], [some_formula(f, rng)])
+        tape, _, (place,) = tape_of(f, [], [some_formula(f, rng)])
         at = np.array([rng.uniform(-2, 2) for _ in range(MAX_VARIABLES)])
         half = np.array([10 ** rng.uniform(-9, 0) for _ in range(MAX_VARIABLES)])
         forms = np.empty((len(tape.code), WIDTH))
@@ -273,8 +274,8 @@ def test_a_shortened_tape_has_the_values_of_the_whole_one() -> None:
     for _ in range(40):
         f = Formulas()
         wanted = [some_formula(f, rng) for _ in range(4)]
-        tape, first, places = f.tape(wanted[:1], wanted[1:])
-        kept, still, where = f.tape(wanted[:1], wanted[3:])
+        tape, first, places = tape_of(f, wanted[:1], wanted[1:])
+        kept, still, where = tape_of(f, wanted[:1], wanted[3:])
         assert first == still <= len(kept.code) < len(tape.code)
         at = np.array([rng.uniform(-2, 2) for _ in range(MAX_VARIABLES)])
         box, forms = np.stack([at, at + 0.1], axis=1), [np.empty((len(t.code), WIDTH)) for t in (tape, kept)]

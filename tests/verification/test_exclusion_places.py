@@ -34,10 +34,10 @@ import numpy as np
 
 from ptmcad.verification.exclusion import check, places
 from ptmcad.verification.exclusion.check import places_of
-from ptmcad.verification.exclusion.equations import Equations
 from ptmcad.verification.exclusion.forms import CENTER, WIDTH, evaluate
 from ptmcad.verification.exclusion.places import SolutionPlaces
-from ptmcad.verification.exclusion.systems import halves_over, window_of
+from ptmcad.verification.exclusion.systems import halves_over, window_equations, window_of
+from ptmcad.verification.exclusion.tapes import tape_of
 
 PAPER: dict[str, Any] = {
     "mechanism": "ptm",
@@ -165,16 +165,16 @@ def inside(at: tuple[float, ...], box: Box) -> bool:
 @pytest.mark.parametrize(("name", "count"), CASES)
 @pytest.mark.slow_cases("paper-index", "paper-stable", "loop-total", "pair-index")
 def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
-    """Equations and Jacobian at random configurations, by compiled forms and by balls, which share the waves alone."""
+    """Equations and Jacobian at random configurations, compiled and in balls: they share the formulas."""
     claims, rng = CertifiedClaims(a_map(name, count)), random.Random(count)
     form, slice = form_of(claims.result.slice), claims.result.slice
     for side in sides(form):
-        equations = Equations(claims)
+        equations = window_equations(claims)
         equations.sides = side
         rows = equations.hessian(equations.directions())
         wanted = [*equations.equations(equations.directions()), *(entry for row in rows for entry in row)]
-        tape, _, places = equations.list.tape(wanted, [])
-        factors = [equations.list.tape([f], []) for f in equations.factors]
+        tape, _, places = tape_of(equations.list, wanted, [])
+        factors = [tape_of(equations.list, [f], []) for f in equations.factors]
         for _ in range(3):
             u, v = at_random(claims, rng)
             at = [rng.uniform(-2, 2) for _ in range(form.size)]

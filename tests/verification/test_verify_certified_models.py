@@ -39,12 +39,12 @@ from ptmcad.verification.certified.field import BallEquations
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import zeros
-from ptmcad.verification.certified.spectrum import inertia, is_no_minimum
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.terms import power
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.inertia import inertia, is_no_minimum
 from ptmcad.verification.report import Violation
+from ptmcad.verification.terms import power
 
 pytest.importorskip("numba")
 

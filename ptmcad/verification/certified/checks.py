@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
-from hashlib import sha256
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.options import Progress
@@ -15,6 +14,7 @@ from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
 from ptmcad.verification.certified.system import check_potential
+from ptmcad.verification.claims import fingerprint
 from ptmcad.verification.parameters import check_text
 from ptmcad.verification.report import Check, CheckProgress, VerifyReport, Violation, checked
 
@@ -46,7 +46,7 @@ def verify_certified(
     Solutions are looked for in balls where compiled code leaves places, if that is installed.
     """
     claims = CertifiedClaims(result)
-    drawn = fingerprint(result) if seed is None else str(seed)
+    drawn = fingerprint(result, _claims_of(result)) if seed is None else str(seed)
     number = BOXES if boxes is None else boxes
     headway = CheckProgress(progress)
     within = headway.within
@@ -93,11 +93,8 @@ def contradiction(result: RegionMap) -> str:
     return ""
 
 
-def fingerprint(result: RegionMap) -> str:
-    """A hash of the slice's parameters, of the cover and of the counts."""
-    names = result.slice.axis_names
-    claims = [f"{n}={e.to_text(names)}" for n, e in sorted(result.slice.parameters.items())]
-    claims += [f"{axis.name}: {text_of(axis.low)} to {text_of(axis.high)}" for axis in result.slice.axes]
-    claims += [f"{text_of(c.sample[0])}, {text_of(c.sample[1])}: {c.stable} {c.total}" for c in result.cells]
-    claims.append(repr(result.cover))
-    return sha256("\n".join(claims).encode()).hexdigest()[:16]
+def _claims_of(result: RegionMap) -> Iterator[str]:
+    """What a certified map says of its window, its cells and its cover."""
+    yield from (f"{axis.name}: {text_of(axis.low)} to {text_of(axis.high)}" for axis in result.slice.axes)
+    yield from (f"{text_of(c.sample[0])}, {text_of(c.sample[1])}: {c.stable} {c.total}" for c in result.cells)
+    yield repr(result.cover)

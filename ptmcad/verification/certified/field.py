@@ -3,159 +3,219 @@
 Guarantee: every ball contains the exact value at each configuration and for all parameters in the balls given. Where a
 spring with a free length may have no length, its direction is any unit vector, and nothing is said of the Jacobian.
 
-The potential is V - sum of K |d|. With u = d/|d|, slopes g_i of d by the unknowns, second derivatives g_ij, and
-c_i = u x g_i, a spring's part of the equations is -K u.g_i and of the Hessian -K (c_i c_j/|d| + u.g_ij). With closed
-loops other vectors w_i are in the place of the g_i: of the equations -K u.w_i, and -K ((u x w_i) c_j/|d| + u.w_ij).
-Where u is on a line that turns by n_j with the unknowns, c_j/|d| is n_j.
+What is evaluated are the formulas of `equations`. With u = d/|d|, slopes g_i of d by the unknowns, second derivatives
+g_ij, and c_i = u x g_i, a spring's part of the equations is -K u.g_i and of the Hessian -K (c_i c_j/|d| + u.g_ij). With
+closed loops other vectors w_i are in the place of the g_i: of the equations -K u.w_i, and
+-K ((u x w_i) c_j/|d| + u.w_ij). Where u is on a line that turns by n_j with the unknowns, c_j/|d| is n_j.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property, partial
-from itertools import chain, combinations
+import operator
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from math import inf
 from types import MappingProxyType
-from typing import NamedTuple
 
-from flint import arb, arb_mat
+from flint import arb
 
+from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Unproved
+from ptmcad.verification.certified.equations import Equations
+from ptmcad.verification.certified.formulas import (
+    ADD,
+    COSINE,
+    DIRECTION,
+    DIVIDE,
+    INVERSE_LENGTH,
+    LENGTH,
+    MAX_VARIABLES,
+    MULTIPLY,
+    SINE,
+    SQUARE,
+    SUBTRACT,
+    VARIABLE,
+    Formulas,
+)
 from ptmcad.verification.certified.kinks import Sides
-from ptmcad.verification.certified.terms import ball, power, square
-from ptmcad.verification.certified.waves import Form, Multi, SpringCone, Waves
-from ptmcad.verification.inertia import determinant
+from ptmcad.verification.certified.waves import Form
+from ptmcad.verification.terms import ball, power, square
 
 Matrix = list[list[arb]]
-Vector = tuple[arb, arb]
-_ANY = arb(0, 1)
+_ZERO, _ANY = arb(0), arb(0, 1)
+_POWER = LENGTH + 1
+"""A power: as a product of balls that have nothing to do with one another it would be enclosed poorly."""
+_Step = tuple[int, Callable[[arb, arb], arb], int, int]
+"""The number of a value, and of what operands."""
 
 
-class ConeBalls(NamedTuple):
-    """A spring with a free length, or several that are one, in balls.
+def _of_length(a: arb, b: arb) -> arb:
+    squared = square(a) + square(b)
+    return squared.sqrt() if squared > 0 else _ZERO.union(squared.abs_upper().sqrt())
+
+
+def _of_inverse_length(a: arb, b: arb) -> arb:
+    return (square(a) + square(b)).rsqrt()
+
+
+def _of_direction(a: arb, b: arb) -> arb:
+    squared = square(a) + square(b)
+    found = a * squared.rsqrt() if squared > 0 else _ANY
+    return found if found.rad() < 1 else _ANY
+
+
+_OPERATIONS: Mapping[int, Callable[[arb, arb], arb]] = {
+    ADD: operator.add,
+    SUBTRACT: operator.sub,
+    MULTIPLY: operator.mul,
+    SQUARE: lambda a, _: square(a),
+    DIVIDE: operator.truediv,
+    COSINE: lambda a, _: a.cos(),
+    SINE: lambda a, _: a.sin(),
+    DIRECTION: _of_direction,
+    INVERSE_LENGTH: _of_inverse_length,
+    LENGTH: _of_length,
+}
+
+
+class _PowerFormulas(Formulas):
+    """Formulas with powers as operations."""
+
+    def power(self, a: int, exponent: int) -> int:
+        if exponent < 2 or self.constant(a) is not None:
+            return super().power(a, exponent)
+        return self._new(_POWER, a, self.number(exponent))
+
+
+class _FormFormulas:
+    """The formulas of a form with springs on one line each on some sides, by their numbers in one list.
 
     Attributes
     ----------
-    number : its place among those that pull.
-    squared : |d|^2.
-    slopes : g_i.
-    weights : w_i, which are the g_i but with closed loops.
-    part : K u.w_i.
-    turns : the spring's direction and how the Jacobian follows from it; None where it may have no length.
-    shape : where its parts are not nothing.
+    squared : of each spring |d|^2.
+    bends : negative where the Hessian has a negative eigenvalue, wherever a short spring has a length.
+    steady : the operations in which no unknown is.
     """
 
-    number: int
-    pull: arb
-    squared: arb
-    slopes: tuple[Vector, ...]
-    weights: tuple[Vector, ...]
-    part: list[arb]
-    turns: _Turns | None
-    shape: _Shape
+    def __init__(self, form: Form, names: Sequence[str], sides: Sides):
+        f = self.list = _PowerFormulas()
+        m = self.model = Equations(form, f, {name: f.variable(MAX_VARIABLES + k) for k, name in enumerate(names)})
+        m.sides = sides
+        directions = m.directions()
+        self.equations = m.equations(directions)
+        rows = m.hessian(directions)
+        self.jacobian = [entry for row in rows for entry in row]
+        self.determinant = [f.determinant([[row[k] for k in form.closing] for row in rows])] if form.closing else []
+        self.squared = [f.dot(s.vector, s.vector) for s in m.cones]
+        self.balances = [m.balances(k) for k in range(len(m.cones))]
+        has_bends = form.is_gradient and form.size > 1
+        self.bends = [[m.bend(k)] if has_bends else [] for k in range(len(m.cones))]
+        self.may_be_short = [k for k, s in enumerate(m.cones) if s.name not in sides]
+        ahead = [m.ahead(k) for k, s in enumerate(m.cones) if s.name in sides]
+        self.conditions = {
+            "ahead": ahead,
+            "inequalities": list(map(m.waves, form.inequalities)),
+            "stability": list(map(m.waves, form.stability)),
+            "margins": [m.waves(margin.value) for margin in form.margins],
+        }
+        self._moving = set[int]()
+        for n, (code, a, b) in enumerate(f.rows):
+            if (code == VARIABLE and a < MAX_VARIABLES) or (code > VARIABLE and not self._moving.isdisjoint((a, b))):
+                self._moving.add(n)
+        self.steady = self._in_order({n for n, (code, *_) in enumerate(f.rows) if code > VARIABLE} - self._moving)
+        self._first = f.needed([*self.equations, *self.squared])
+        self.first = self._in_order(self._first & self._moving)
+        self._known: dict[tuple[int, ...], list[_Step]] = {}
 
-    @property
-    def length(self) -> arb:
-        """|d|; an upper bound where it may be nothing."""
-        return (self.squared if self.squared > 0 else self.squared.abs_upper()).sqrt()
+    def further(self, numbers: Sequence[int]) -> list[_Step]:
+        """The operations that some values need besides the first ones."""
+        key = (*numbers,)
+        if key not in self._known:
+            self._known[key] = self._in_order((self.list.needed(numbers) - self._first) & self._moving)
+        return self._known[key]
 
-    @property
-    def is_short(self) -> bool:
-        """Whether it may have no length."""
-        return self.turns is None
+    def _in_order(self, numbers: Collection[int]) -> list[_Step]:
+        return [step for n in sorted(numbers) if (step := self._step(n)) is not None]
+
+    def _step(self, n: int) -> _Step | None:
+        code, a, b = self.list.rows[n]
+        if code <= VARIABLE:
+            return None
+        if code == _POWER:
+            exponent = int(self.list.numbers[b])
+            return n, lambda x, _: power(x, exponent), a, a
+        return n, _OPERATIONS[code], a, b
 
 
-class _Shape(NamedTuple):
-    """Equations with a part of a spring, and entries of the Jacobian; in a symmetric one each pair once."""
+@lru_cache(maxsize=64)
+def _formulas_of(
+    form: Form, names: tuple[str, ...], sides: tuple[tuple[str, int], ...], pulling: tuple[str, ...]
+) -> _FormFormulas:
+    """Those with some of the springs."""
+    return _FormFormulas(replace(form, cones=tuple(c for c in form.cones if c.name in pulling)), names, dict(sides))
 
-    equations: tuple[int, ...]
-    entries: tuple[tuple[int, int], ...]
 
-
-class _Turns(NamedTuple):
-    """The direction u, 1/|d|, and on one line how fast that turns with the unknowns, then with 1 for 1/|d|."""
-
-    unit: Vector
-    inverse: arb
-    spins: list[arb] | None
+def _run(steps: Iterable[_Step], known: list[arb]) -> None:
+    for n, function, a, b in steps:
+        known[n] = function(known[a], known[b])
 
 
 @dataclass(frozen=True)
 class BallJet:
-    """The equations and their derivatives; these without the parts of springs that may have no length.
+    """The equations at all configurations in a box, and what is told of these besides when it is asked for.
 
     Attributes
     ----------
-    smooth : the equations without the springs' parts.
+    values : zero at solutions.
     conditions : what is positive at solutions that count.
-    derivatives : of `smooth`, row by row, and after them of each spring's weights by the unknowns, row by row.
+    short : the numbers of the springs that may have no length; if there are any, the Jacobian is not known.
     """
 
     values: list[arb]
-    smooth: list[arb]
-    cones: tuple[ConeBalls, ...]
     conditions: list[arb]
-    derivatives: Callable[[], list[arb]]
+    short: list[int]
+    formulas: _FormFormulas
+    known: list[arb]
 
-    @cached_property
-    def _derivatives(self) -> list[arb]:
-        return self.derivatives()
+    def evaluated(self, numbers: Sequence[int]) -> list[arb]:
+        """Some of the formulas."""
+        _run(self.formulas.further(numbers), self.known)
+        return [self.known[n] for n in numbers]
 
     @cached_property
     def jacobian(self) -> Matrix:
         """The derivatives, which points and most boxes that are discarded do without."""
-        n = len(self.values)
-        found = [self._derivatives[n * i : n * i + n] for i in range(n)]
-        for s in self.cones:
-            if s.turns is not None:
-                _take_off(found, s, s.turns, self._bends(s))
-        return found
-
-    def _bends(self, s: ConeBalls) -> list[Vector]:
-        """The derivatives of a spring's weights by the unknowns, row by row."""
-        n = len(self.values)
-        rows = self._derivatives[n * n * (2 * s.number + 1) : n * n * (2 * s.number + 3)]
-        return list(zip(rows[::2], rows[1::2], strict=True))
+        n, entries = len(self.values), self.evaluated(self.formulas.jacobian)
+        return [entries[n * i : n * i + n] for i in range(n)]
 
     @property
-    def short(self) -> list[ConeBalls]:
-        """The springs that may have no length; if there are any, the Jacobian is not known."""
-        return [s for s in self.cones if s.is_short]
+    def springs(self) -> range:
+        """The numbers of the springs that pull."""
+        return range(len(self.formulas.squared))
 
-    def balances(self, s: ConeBalls) -> list[arb]:
-        """Numbers that are zero at every solution, whatever the direction of a spring.
+    def length(self, k: int) -> arb:
+        """That of a spring; an upper bound where it may have none."""
+        squared = self.known[self.formulas.squared[k]]
+        return (squared if squared > 0 else squared.abs_upper()).sqrt()
 
-        With r_i what the equations are without it, a solution has r_i = K u.w_i for a unit vector u; for two unknowns
-        adj(A) r = K det(A) u, A having the rows w_i and w_j.
-        """
-        others = [other for other in self.cones if other.number != s.number]
-        rest = [value - sum((o.part[k] for o in others), arb(0)) for k, value in enumerate(self.smooth)]
-        found = []
-        for i, j in combinations(range(len(rest)), 2):
-            (ai, bi), (aj, bj) = s.weights[i], s.weights[j]
-            x, y = bj * rest[i] - bi * rest[j], ai * rest[j] - aj * rest[i]
-            found.append(square(x) + square(y) - square(s.pull * (ai * bj - aj * bi)))
-        return found
+    def slopes(self, k: int) -> list[arb]:
+        """How fast a spring's vector turns with each unknown, at most."""
+        pairs = self.formulas.model.cones[k].slopes
+        found = self.evaluated([x for pair in pairs for x in pair])
+        return [abs(a) + abs(b) for a, b in zip(found[::2], found[1::2], strict=True)]
 
-    def bends_down(self, s: ConeBalls) -> bool:
-        """Whether the Hessian has a negative eigenvalue wherever the one short spring has a length.
+    def pull(self, k: int) -> arb:
+        """Of a spring."""
+        return self.known[self.formulas.model.cones[k].pull]
 
-        Its trace is at most that of the rest plus K sum |g_ii| - K m/|d|, with m the least value of the sum of
-        (u x g_i)^2 over all unit vectors: the smaller eigenvalue of the sum of the g_i g_i^T, at least its
-        determinant over its trace.
-        """
-        if len(s.slopes) == 1:
-            return False
-        xx = sum((square(a) for a, _ in s.slopes), arb(0))
-        yy = sum((square(b) for _, b in s.slopes), arb(0))
-        # Lagrange's identity: no difference of large numbers
-        gram = sum((square(a * d - b * c) for (a, b), (c, d) in combinations(s.slopes, 2)), arb(0))
-        n, bends = len(s.slopes), self._bends(s)
-        trace = sum((self.jacobian[i][i] + s.pull * size(*bends[i * n + i]) for i in range(n)), arb(0))
-        if not (gram > 0 and xx + yy > 0):
-            return False
-        return bool(trace.upper() - (s.pull * gram / (xx + yy)).lower() / s.length.upper() < 0)
+    def balances(self, k: int) -> list[arb]:
+        """Numbers that are zero at every solution, whatever the direction of a spring (`Equations.balances`)."""
+        return self.evaluated(self.formulas.balances[k])
+
+    def bends_down(self, k: int) -> bool:
+        """Whether the Hessian has a negative eigenvalue wherever the one short spring has a length."""
+        return any(bend < 0 for bend in self.evaluated(self.formulas.bends[k]))
 
 
 class BallEquations:
@@ -164,7 +224,7 @@ class BallEquations:
     Parameters
     ----------
     values : a ball for each parameter; no pull of a spring is negative.
-    conditions : of the form's inequalities and conditions for stability those that are asked for.
+    conditions : the attributes of the form with the conditions that are asked for.
     with_determinant : whether that of the Jacobian is a further condition, with its columns as `Form.closing` has them.
     sides : of springs on one line each, on which side of length zero solutions are looked for. There every one of these
         has its direction, also where it is short, and a further condition, which comes before all others.
@@ -179,192 +239,44 @@ class BallEquations:
         self,
         form: Form,
         values: Mapping[str, arb],
-        conditions: Sequence[Waves] = (),
+        conditions: Sequence[str] = (),
         with_determinant: bool = False,
         sides: Sides = MappingProxyType({}),
     ):
-        self.sides = sides
-        self._with_determinant = with_determinant
-        self.form, self.values, self._conditions = form, dict(values), len(conditions)
-        self._pulling: list[_Pulling] = []
-        first, derivatives = list[Waves](form.equations), list[Waves](form.jacobian)
+        self.form, self.values, self.sides, self._with_determinant = form, dict(values), sides, with_determinant
+        # one that pulls nothing at a point has its sides there, too, as all other choices of them have
+        pulling = [c.name for c in form.cones if c.name in sides or not (ball(c.pull, values) == 0)]  # noqa: SIM201
         for cone in form.cones:
-            pull = ball(cone.pull, values)
-            # one that pulls nothing at a point has its sides there, too, as all other choices of them have
-            if cone.name in sides or not (pull == 0):  # noqa: SIM201 (not exactly zero: != asks for no zero in a ball)
-                line = _pointed(cone, values, sides[cone.name]) if cone.name in sides else None
-                self._pulling.append(_Pulling(pull, _shape(form, cone), line))
-                first += chain(cone.vector, *cone.slopes, *(cone.weights if form.closing else ()))
-                derivatives += chain(*cone.bends)
-        first += conditions
-        found = sorted({(turned, raised) for row in (*first, *derivatives) for turned, raised, _ in row})
-        self._first, self._derivatives = (_Rows(rows, found, values) for rows in (first, derivatives))
-        self._turned = {turned: _nonzero(turned) for turned, _ in found if any(turned)}
-        self._columns = [(turned, _nonzero(raised)) for turned, raised in found]
+            line = cone.line if cone.name in sides else None
+            if line is not None and not sum((square(ball(p, values)) for p in line.vector), _ZERO) > 0:
+                raise Unproved(f"the line of spring {cone.name} may have no direction")
+        of = self._formulas = _formulas_of(form, (*values,), (*sides.items(),), (*pulling,))
+        self._conditions = [n for name in ("ahead", *conditions) for n in of.conditions[name]]
+        self._steps = [*of.first, *of.further(self._conditions)]
+        self._known = [_ZERO] * len(of.list.rows)
+        for n, number in of.list.numbers.items():
+            self._known[n] = ball_of(number)
+        for name, n in of.model.parameters.items():
+            self._known[n] = values[name]
+        _run(of.steady, self._known)
 
     @property
     def circles(self) -> tuple[bool, ...]:
         """Of each unknown, whether the equations are the same after a full turn: not where half of it turns a line."""
-        lines = [s.line for s in self._pulling if s.line is not None]
+        lines = [s.line for s in self._formulas.model.cones if s.name in self.sides]
         return tuple(c and not any(line.twice[k] % 2 for line in lines) for k, c in enumerate(self.form.is_circle))
-
-    def _waves(self, at: Sequence[arb]) -> arb_mat:
-        waves = {}
-        for turned, multiples in self._turned.items():
-            angle = _ZERO
-            for k, multiple in multiples:
-                angle = angle + (at[k] if multiple == 1 else multiple * at[k])
-            sine, cosine = angle.sin_cos()
-            waves[turned] = cosine, sine
-        column = []
-        for turned, exponents in self._columns:
-            cosine, sine = waves.get(turned, (_ONE, _ZERO))
-            for k, exponent in exponents:
-                factor = power(at[k], exponent)
-                cosine, sine = cosine * factor, sine * factor
-            column += [cosine, sine]
-        return arb_mat(len(column), 1, column)
 
     def __call__(self, at: Sequence[arb]) -> BallJet:
         """At all configurations in a box."""
-        n, waves = self.form.size, self._waves(at)
-        rows = self._first(waves)
-        smooth, place = rows[:n], n
-        values, cones, ahead = list(smooth), list[ConeBalls](), list[arb]()
-        length = 2 + (4 if self.form.closing else 2) * n
-        for number, pulling in enumerate(self._pulling):
-            line = None if pulling.line is None else pulling.line.at(at)
-            new = _spring(number, pulling, rows[place : place + length], n, line)
-            if line is not None:
-                ahead.append(line.unit[0] * rows[place] + line.unit[1] * rows[place + 1])
-            for k in new.shape.equations:
-                values[k] = values[k] - new.part[k]
-            cones.append(new)
-            place += length
-        conditions = [*ahead, *rows[place:]]
-        jet = BallJet(values, smooth, tuple(cones), conditions, partial(self._derivatives, waves))
+        of, known = self._formulas, self._known.copy()
+        for n, value in zip(of.model.unknowns, at, strict=True):
+            known[n] = value
+        _run(self._steps, known)
+        short = [k for k in of.may_be_short if not known[of.squared[k]] > 0]
+        jet = BallJet([known[n] for n in of.equations], [known[n] for n in self._conditions], short, of, known)
         if self._with_determinant:
-            ordered = [[row[k] for k in self.form.closing] for row in jet.jacobian]
-            conditions.append(arb(0, inf) if jet.short else determinant(ordered))
+            jet.conditions.extend([arb(0, inf)] if short else jet.evaluated(of.determinant))
         return jet
-
-
-class _Pulling(NamedTuple):
-    """Of a spring with a free length what is the same in all boxes: its pull, where its parts are, and its line."""
-
-    pull: arb
-    shape: _Shape
-    line: _Pointed | None
-
-
-class _Rows:
-    """Sums of waves at given parameters, as a matrix by the waves, in which those of no wave have no row."""
-
-    def __init__(self, rows: Sequence[Waves], waves: Sequence[tuple[Multi, Multi]], values: Mapping[str, arb]):
-        self._number, self._places = len(rows), [n for n, row in enumerate(rows) if row]
-        columns = {key: 2 * k for k, key in enumerate(waves)}
-        entries = [_ZERO] * (len(self._places) * 2 * len(waves))
-        for n, place in enumerate(self._places):
-            for (turned, raised, sine), terms in rows[place].items():
-                entries[n * 2 * len(waves) + columns[turned, raised] + sine] = ball(terms, values)
-        self._matrix = arb_mat(len(self._places), 2 * len(waves), entries)
-
-    def __call__(self, waves: arb_mat) -> list[arb]:
-        """The sums where the cosines and sines of the waves are these."""
-        found = [_ZERO] * self._number
-        for place, value in zip(self._places, (self._matrix * waves).entries(), strict=True):
-            found[place] = value
-        return found
-
-
-def _nonzero(numbers: Sequence[int]) -> list[tuple[int, int]]:
-    """The numbers that are not zero, each after its place."""
-    return [(k, number) for k, number in enumerate(numbers) if number]
-
-
-class _Pointed(NamedTuple):
-    """The direction of a spring on one line, and the multiples of the unknowns in twice the sum that turns it."""
-
-    unit: Vector
-    twice: tuple[int, ...]
-
-    @property
-    def spins(self) -> list[arb]:
-        """How fast it turns with the unknowns."""
-        return [arb(n) / 2 for n in self.twice]
-
-    def at(self, unknowns: Sequence[arb]) -> _Pointed:
-        """Turned."""
-        if not any(self.twice):
-            return self
-        (x, y), angle = self.unit, sum((n * q for n, q in zip(self.spins, unknowns, strict=True)), arb(0))
-        sine, cosine = angle.sin_cos()
-        return self._replace(unit=(unit(x * cosine - y * sine), unit(x * sine + y * cosine)))
-
-
-def _pointed(cone: SpringCone, values: Mapping[str, arb], side: int) -> _Pointed:
-    """The direction of a spring on one line before that turns."""
-    line = cone.line
-    assert line is not None
-    x, y = (side * ball(terms, values) for terms in line.vector)
-    squared = square(x) + square(y)
-    if not squared > 0:
-        raise Unproved(f"the line of spring {cone.name} may have no direction")
-    return _Pointed((x / squared.sqrt(), y / squared.sqrt()), line.twice)
-
-
-def _shape(form: Form, cone: SpringCone) -> _Shape:
-    n = form.size
-    turned = [cone.line is not None or any(pair) for pair in cone.slopes]
-    equations = tuple(i for i in range(n) if any(cone.weights[i]))
-    entries = tuple(
-        (i, j)
-        for i in range(n)
-        for j in range(0 if form.closing else i, n)
-        if (i in equations and turned[j]) or any(cone.bends[i * n + j])
-    )
-    return _Shape(equations, entries)
-
-
-def _spring(number: int, pulling: _Pulling, rows: list[arb], n: int, line: _Pointed | None) -> ConeBalls:
-    """A spring from its vector, n slopes, and with closed loops n weights.
-
-    Parameters
-    ----------
-    line : its direction, where it is on one line: then it turns as that does.
-    """
-    (a, b), *pairs = zip(rows[::2], rows[1::2], strict=True)
-    pull, shape, slopes = pulling.pull, pulling.shape, tuple(pairs[:n])
-    weights = tuple(pairs[n:]) or slopes
-    q, part = square(a) + square(b), [_ZERO] * n
-    turns = None
-    if line is not None:
-        turns = _Turns(line.unit, _ONE, line.spins)
-    elif q > 0:
-        inverse = q.rsqrt()
-        turns = _Turns((unit(a * inverse), unit(b * inverse)), inverse, None)
-    for i in shape.equations:
-        x, y = weights[i]
-        part[i] = pull * (_ANY * size(x, y) if turns is None else turns.unit[0] * x + turns.unit[1] * y)
-    return ConeBalls(number, pull, q, slopes, weights, part, turns, shape)
-
-
-def _take_off(jacobian: Matrix, s: ConeBalls, turns: _Turns, bends: Sequence[Vector]) -> None:
-    """Take a spring's part off the Jacobian."""
-    n, (u, v) = len(jacobian), turns.unit
-    is_gradient = s.weights is s.slopes
-    for i, j in s.shape.entries:
-        (gx, gy), (wx, wy), (across, up) = s.slopes[j], s.weights[i], bends[i * n + j]
-        cross = turns.spins[j] if turns.spins else u * gy - v * gx
-        is_square = is_gradient and i == j and not turns.spins
-        turning = square(cross) if is_square else (u * wy - v * wx) * cross
-        entry = s.pull * (turning * turns.inverse + u * across + v * up)
-        jacobian[i][j] = jacobian[i][j] - entry
-        if is_gradient and i != j:
-            jacobian[j][i] = jacobian[j][i] - entry
-
-
-_ZERO, _ONE = arb(0), arb(1)
 
 
 def size(x: arb, y: arb) -> arb:
@@ -373,9 +285,4 @@ def size(x: arb, y: arb) -> arb:
     return (a * a + b * b).sqrt().upper()
 
 
-def unit(value: arb) -> arb:
-    """A ball for a number that is known to lie from -1 to 1, given one ball for it."""
-    return value if value.rad() < 1 else _ANY
-
-
-__all__ = ["BallEquations", "BallJet", "ConeBalls", "Matrix", "size"]
+__all__ = ["BallEquations", "BallJet", "Matrix", "size"]

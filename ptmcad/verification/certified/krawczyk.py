@@ -15,7 +15,7 @@ from flint import arb, arb_mat
 
 from ptmcad.verification.certified.boxes import Box, Floats, Zero
 from ptmcad.verification.certified.field import BallEquations, BallJet, Matrix
-from ptmcad.verification.certified.spectrum import inertia
+from ptmcad.verification.inertia import inertia
 
 _SHRINKINGS = (1, 0, -1, -2, -3, -4, -5, -6, -8, -10, -12, -15, -18, -22, -26, -30, -34, -38, -42, -46)
 """Powers of two times the shape of the box in which a solution is proved to be alone."""
@@ -54,23 +54,16 @@ def image(values: Sequence[arb], jacobian: Matrix, reach: Sequence[arb]) -> list
     if inverse is None:
         return None
     balls = [arb(0, r) for r in reach]
-    steps = _steps(arb_mat(len(values), 1, list(values)), inverse)
+    n, whole = len(jacobian), (inverse * arb_mat(jacobian)).entries()
     return [
-        sum((entry * x for entry, x in zip(row, balls, strict=True)), arb(0)) - step
-        for row, step in zip(_rest(jacobian, inverse), steps, strict=True)
+        sum((((i == j) - whole[i * n + j]) * x for j, x in enumerate(balls)), arb(0)) - step
+        for i, step in enumerate(_steps(values, inverse))
     ]
 
 
-def _rest(jacobian: Matrix, inverse: arb_mat) -> Matrix:
-    """I - C f'."""
-    n = len(jacobian)
-    whole = (inverse * arb_mat(jacobian)).entries()
-    return [[(i == j) - whole[i * n + j] for j in range(n)] for i in range(n)]
-
-
-def _steps(values: arb_mat, inverse: arb_mat) -> list[arb]:
+def _steps(values: Sequence[arb], inverse: arb_mat) -> list[arb]:
     """C f"""
-    steps: list[arb] = (inverse * values).entries()
+    steps: list[arb] = (inverse * arb_mat(len(values), 1, list(values))).entries()
     return steps
 
 
@@ -87,7 +80,7 @@ def newton(field: BallEquations, box: Box) -> Floats | None:
         inverse = None if jet.short else inverse_of(jet.jacobian)
         if inverse is None:
             return None
-        steps = [float(s.mid()) for s in (inverse * arb_mat(len(x), 1, jet.values)).entries()]
+        steps = [float(s.mid()) for s in _steps(jet.values, inverse)]
         x = [c - s for c, s in zip(x, steps, strict=True)]
         if not all(abs(c - m) <= 2 * r for c, m, r in zip(x, *box, strict=True)):
             return None
@@ -105,7 +98,7 @@ def proved(field: BallEquations, center: Floats, shapes: Iterable[Floats]) -> Ze
     inverse = None if jet.short else inverse_of(jet.jacobian)
     if inverse is None:
         return None
-    values = arb_mat(len(center), 1, jet.values)
+    values = jet.values
     least = [step.abs_upper() for step in _steps(values, inverse)]
     for shape, power in product(_with_steep(jet.jacobian, shapes), _SHRINKINGS):
         sizes = tuple(r * 2.0**power for r in shape)
@@ -135,7 +128,9 @@ def _with_steep(jacobian: Matrix, shapes: Iterable[Floats]) -> Iterator[Floats]:
     yield from (first, *others, *narrow)
 
 
-def _narrowed(field: BallEquations, center: Floats, values: arb_mat, radii: Floats, least: Sequence[arb]) -> Floats:
+def _narrowed(
+    field: BallEquations, center: Floats, values: Sequence[arb], radii: Floats, least: Sequence[arb]
+) -> Floats:
     """A smaller box that has the only solution of a box, too: its image, and that of that, while it gets narrower.
 
     Parameters
@@ -163,13 +158,8 @@ def _above(reach: arb) -> float:
     return float(reach.upper()) * 1.0001 + 2.0**-1000
 
 
-def _reaches(field: BallEquations, center: Floats, values: arb_mat, radii: Floats) -> list[arb] | None:
+def _reaches(field: BallEquations, center: Floats, values: Sequence[arb], radii: Floats) -> list[arb] | None:
     """Half widths of Krawczyk's image of a box; None where the Jacobian is not known, or near a singular one."""
     jet = field(list(map(arb, center, radii)))
-    inverse = None if jet.short else inverse_of(jet.jacobian)
-    if inverse is None:
-        return None
-    return [
-        step.abs_upper() + sum((entry.abs_upper() * r for entry, r in zip(row, radii, strict=True)), arb(0))
-        for step, row in zip(_steps(values, inverse), _rest(jet.jacobian, inverse), strict=True)
-    ]
+    found = None if jet.short else image(values, jet.jacobian, list(map(arb, radii)))
+    return None if found is None else [step.abs_upper() for step in found]

@@ -7,7 +7,7 @@ Guarantee: counts that are returned are true, at the point or at every point of 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -20,7 +20,7 @@ from ptmcad.model import Model
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Point, Slice
 from ptmcad.text.balls import ball_of
-from ptmcad.verification.certified.boxes import MIN_HALF_WIDTH, Box, Floats, Unproved, Zero, is_same
+from ptmcad.verification.certified.boxes import MIN_HALF_WIDTH, Box, Unproved, Zero, is_same
 from ptmcad.verification.certified.counted import CellCounts, CountedPoint, Where
 from ptmcad.verification.certified.field import BallEquations, Matrix
 from ptmcad.verification.certified.kinks import Sides, sides
@@ -28,12 +28,12 @@ from ptmcad.verification.certified.narrow import Function, judged, only
 from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
-from ptmcad.verification.certified.spectrum import inertia
-from ptmcad.verification.certified.terms import evaluated
-from ptmcad.verification.certified.waves import Form, Margin
+from ptmcad.verification.certified.waves import Form
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.inertia import inertia
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
+from ptmcad.verification.terms import evaluated
 
 PRECISIONS = ((53, MIN_HALF_WIDTH), (128, 2.0**-80))
 """Bits, and the share of all configurations below which boxes are not halved: a spring may be as short as that."""
@@ -51,15 +51,9 @@ MAX_REAL = 2**1000
 
 @dataclass(frozen=True, slots=True)
 class ModelCounting:
-    """Counts for one model, from the form that follows from its description.
-
-    Attributes
-    ----------
-    margins : of what is asked of stable solutions, where some of them are counted besides.
-    """
+    """Counts for one model, from the form that follows from its description."""
 
     form: Form
-    margins: tuple[Margin, ...] = ()
 
     def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> CountedPoint:
         """At a point of the window."""
@@ -80,14 +74,37 @@ class ModelCounting:
         self, values: Mapping[str, Fraction], count: Count, where: Where | None = None, smallest: float = MIN_HALF_WIDTH
     ) -> CountedPoint:
         """At the context's precision."""
+        numbers = _balls(values)
+        found = self._found(numbers, count, where, smallest, self._budget)
+        return CountedPoint(self._counts(numbers, found, count), found, values)
+
+    def _found(
+        self,
+        values: Mapping[str, arb],
+        count: Count,
+        where: Where | None,
+        smallest: float,
+        budget: int,
+        near: Sequence[Zero] = (),
+    ) -> list[Zero]:
+        """The solutions that count, with springs on one line each on all sides of length zero.
+
+        Parameters
+        ----------
+        near : solutions for some of the parameters, which are proved first for all of them.
+        """
         found = list[Zero]()
         for k, side in enumerate(sides(self.form)):
-            found += self._on_side(
-                values, count, side, None if where is None else (where.boxes[k], where.whole), smallest
-            )
-        found = self._once(found)
-        numbers = {name: ball_of(value) for name, value in values.items()}
-        return CountedPoint(self._counts(numbers, found, count), found, values)
+            field = _field(self.form, values, count, side)
+            start, whole = ([_start(field)], None) if where is None else (where.boxes[k], where.whole)
+            known = [zero for zero in near if _may_be_on_side(field, zero)]
+            on_side, _ = zeros(field, _only_minima(self.form, count), start, budget, smallest, known, whole)
+            counted = _counted(field, on_side, count)
+            if count is Count.TOTAL and self.form.conditions_for_stability:
+                counted = _with_signs(_field(self.form, values, Count.STABLE, side), self.form, counted)
+            # at both ends of a box of angles one may be there on two sides
+            found += [zero for zero in counted if not any(self.same(zero, other) for other in found)]
+        return found
 
     def _counts(self, values: Mapping[str, arb], found: Sequence[Zero], count: Count) -> CellCounts:
         """The counts, with the number of stable solutions with margins where these are asked for.
@@ -100,40 +117,15 @@ class ModelCounting:
         counts, kind = counts_of(self.form, found, count), kind_of(count)
         if not kind.is_predicate:
             return counts
-        field = BallEquations(self.form, values, [margin.value for margin in self.margins])
+        field = BallEquations(self.form, values, ("margins",))
         stable = (zero for zero in found if "-" not in zero.signs)
         number = sum(_has_margins(field, zero, kind.undecided) for zero in stable)
         return replace(counts, further={count.value: number})
 
-    def _once(self, found: Sequence[Zero]) -> list[Zero]:
-        """Solutions on all sides; at both ends of a box of angles one may be there on two sides."""
-        kept = list[Zero]()
-        for zero in found:
-            if not any(self.same(zero, other) for other in kept):
-                kept.append(zero)
-        return kept
-
-    def _on_side(
-        self,
-        values: Mapping[str, Fraction],
-        count: Count,
-        side: Sides,
-        where: tuple[Iterable[Box], Floats] | None,
-        smallest: float,
-    ) -> list[Zero]:
-        """The solutions that count at a point, with springs on one line each on one side of length zero."""
-        field = _field_at(self.form, values, count, side)
-        start, whole = where or ([_start(field)], None)
-        all_found, _ = zeros(field, _only_minima(self.form, count), start, self._budget, smallest, whole=whole)
-        found = _counted(field, all_found, count)
-        if count is Count.TOTAL and self.form.conditions_for_stability:
-            found = _with_signs(_field_at(self.form, values, Count.STABLE, side), self.form, found)
-        return found
-
     def within(self, values: Mapping[str, Fraction], boxes: Sequence[Solution], first: int = 0) -> list[Zero]:
         """The only solution in each of the stored boxes at parameters; the first box's number is given."""
         with ctx.workprec(_BOX_PRECISION):
-            fields = [_field_at(self.form, values, side=side) for side in sides(self.form)]
+            fields = [_field(self.form, _balls(values), None, side) for side in sides(self.form)]
             return [self._in_box(fields, values, solution, k) for k, solution in enumerate(boxes, first)]
 
     def _in_box(
@@ -173,16 +165,9 @@ class ModelCounting:
             raise Unproved("a stiffness times a free length may be negative")
         # boxes much smaller than the box of parameters are excluded no better than larger ones
         smallest = max(float(max(x.rad(), y.rad())) / 256, 2.0**-32)
-        minima = _only_minima(self.form, slice.count)
         budget = self._budget // BOX_BUDGET_SHARE
-        counted = list[Zero]()
-        for k, side in enumerate(sides(self.form)):
-            field = _field(self.form, values, slice.count, side)
-            near = [zero for zero in there.found if _may_be_on_side(field, zero)]
-            start, whole = ([_start(field)], None) if where is None else (where.boxes[k], where.whole)
-            found, _ = zeros(field, minima, start, budget, smallest, near, whole)
-            counted += _counted(field, found, slice.count)
-        return self._counts(values, self._once(counted), slice.count)
+        found = self._found(values, slice.count, where, smallest, budget, there.found)
+        return self._counts(values, found, slice.count)
 
     @property
     def _budget(self) -> int:
@@ -208,7 +193,7 @@ def _field(form: Form, values: Mapping[str, arb], count: Count | None, side: Sid
     if count is None:
         return BallEquations(form, values, sides=side)
     stable = count.is_of_stable
-    asked = form.inequalities + (form.stability if stable else ())
+    asked = ("inequalities", "stability") if stable else ("inequalities",)
     return BallEquations(form, values, asked, stable and bool(form.closing), side)
 
 
@@ -279,10 +264,8 @@ def _values_at(claims: Claims, form: Form, x: Fraction, y: Fraction) -> dict[str
     return values
 
 
-def _field_at(
-    form: Form, values: Mapping[str, Fraction], count: Count | None = None, side: Sides | None = None
-) -> BallEquations:
-    return _field(form, {name: ball_of(value) for name, value in values.items()}, count, side or {})
+def _balls(values: Mapping[str, Fraction]) -> dict[str, arb]:
+    return {name: ball_of(value) for name, value in values.items()}
 
 
 def _start(field: BallEquations) -> Box:
@@ -325,7 +308,7 @@ def _narrow(form: Form, values: Mapping[str, Fraction], side: Sides, solution: S
     """The one solution in a stored box that is narrow, and on one side; None where a search has to tell."""
 
     def function() -> Function:
-        field = _field_at(form, values, side=side)
+        field = _field(form, _balls(values), None, side)
 
         def at(box: Sequence[arb]) -> tuple[Sequence[arb], Matrix] | None:
             jet = field(box)

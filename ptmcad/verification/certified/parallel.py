@@ -12,8 +12,9 @@ from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.signs import Sign, Window, has_no_pole, is_in_domain
+from ptmcad.verification.terms import evaluated
 
 Coordinate = Mapping[Any, fmpq_mpoly]
 """One of a vector, by waves."""
@@ -65,12 +66,8 @@ class Parameters:
         return not self._expression(p).numerator
 
     def _expression(self, p: fmpq_mpoly) -> Expression:
-        total = constant(0)
-        for powers, c in p.terms():
-            term = constant(to_fraction(c))
-            for value, power in zip(self.values, powers, strict=False):
-                term = term * value ** int(power)
-            total = total + term
+        known = dict(zip(self.context.names(), self.values, strict=True))
+        total: Expression = constant(0) + evaluated(p, known)
         return total
 
     def shares(self, d: Sequence[Coordinate], other: Sequence[Coordinate]) -> tuple[fmpq_mpoly, fmpq_mpoly] | None:

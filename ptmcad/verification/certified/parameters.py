@@ -5,25 +5,22 @@ Guarantee: what is said to be proved of signs is; a ball has the values at all p
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from fractions import Fraction
-
 from flint import arb, fmpq
 
 from ptmcad.errors import ExpressionError
 from ptmcad.model import Kind
 from ptmcad.question.slice import Slice
-from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.terms import evaluated, monomials, power
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import derivation_of
 from ptmcad.verification.parameters import auxiliary, written
+from ptmcad.verification.plane import PLANE, polynomial
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.signs import Sign, Window, has_no_pole, is_in_domain
+from ptmcad.verification.terms import ball, evaluated, monomials
 
 
 def check_domain(claims: Claims) -> str:
@@ -104,11 +101,8 @@ def over(expression: Expression, x: arb, y: arb) -> arb:
     Unproved
         When it may have a pole there.
     """
-    denominator = _sum(expression.denominator, x, y)
+    at = dict(zip(PLANE.names(), (x, y), strict=True))
+    numerator, denominator = (ball(polynomial(terms), at) for terms in (expression.numerator, expression.denominator))
     if denominator.contains(0):
         raise Unproved("a parameter may have a pole")
-    return _sum(expression.numerator, x, y) / denominator
-
-
-def _sum(terms: Sequence[tuple[int, int, Fraction]], x: arb, y: arb) -> arb:
-    return sum((ball_of(c) * power(x, i) * power(y, j) for i, j, c in terms), arb(0))
+    return numerator / denominator

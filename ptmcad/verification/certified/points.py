@@ -16,7 +16,7 @@ from ptmcad.verification.certified.boxes import Unproved, Zero
 from ptmcad.verification.certified.counted import CountedPoint, Places, differs, stored
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.waves import form_of, margins_of
+from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.kinds import numbers_for
 from ptmcad.verification.report import Unchecked, Violation
@@ -77,8 +77,7 @@ def check_points(
 
 def counting_of(claims: Claims) -> ModelCounting:
     """How the solutions of the map's model are counted."""
-    slice = claims.result.slice
-    return ModelCounting(form_of(slice), margins_of(slice.model, slice.count))
+    return ModelCounting(form_of(claims.result.slice))
 
 
 def check_cell(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, places: Places | None = None) -> int:

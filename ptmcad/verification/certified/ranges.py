@@ -18,14 +18,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 from math import comb, inf, nextafter
+from typing import NamedTuple
 
 from flint import arb
 
 from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.field import size
 from ptmcad.verification.certified.held import bounds_of
-from ptmcad.verification.certified.terms import ball, power
 from ptmcad.verification.certified.waves import Form, Key, Waves
+from ptmcad.verification.terms import ball, power
 
 HALF_TURN = 101 / 32
 """A little more than pi, so that a range of this half width around 0 has the whole circle."""
@@ -96,11 +97,11 @@ class _RangeChart:
         return _RangeChart((*self.factors[:k], x, *self.factors[k + 1 :]), self.variables, self.weights, self.lead)
 
 
-class _Equation:
+class _Equation(NamedTuple):
     """An equation with balls for its coefficients, and the slopes of the springs by its unknown."""
 
-    def __init__(self, smooth: Row, cones: Sequence[tuple[arb, Row, Row]] = ()):
-        self.smooth, self.cones = smooth, cones
+    smooth: Row
+    cones: Sequence[tuple[arb, Row, Row]] = ()
 
     def monomials(self, chart: _RangeChart) -> Monomials:
         """All of it; the springs' parts have either sign."""
@@ -149,19 +150,7 @@ class _Bounds:
 
     def alone(self, k: int) -> float | None:
         """A bound of one unknown, whatever those without one are."""
-        return self._bound(list(self._orthants(k)), POWERS)
-
-    def _orthants(self, k: int) -> Iterator[_RangeChart]:
-        free = [j for j, half in enumerate(self.found) if half is None]
-        for signs in product(*map(self._signs, free)):
-            of = dict(zip(free, signs, strict=True))
-            everything = range(len(self.found))
-            yield _RangeChart(
-                tuple(arb(of[j]) if j in of else self._factor(j) for j in everything),
-                tuple(j if j in of else None for j in everything),
-                tuple(1 for _ in everything),
-                k,
-            )
+        return self._bound(list(self._faces({k: 1})), POWERS)
 
     def together(self, chosen: Sequence[int]) -> dict[int, float] | None:
         """Bounds of some unknowns that bound one another."""

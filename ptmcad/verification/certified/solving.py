@@ -30,7 +30,7 @@ from ptmcad.verification.certified.boxes import (
 )
 from ptmcad.verification.certified.field import BallEquations, BallJet
 from ptmcad.verification.certified.krawczyk import image_of, newton, proved
-from ptmcad.verification.certified.spectrum import is_no_minimum
+from ptmcad.verification.inertia import is_no_minimum
 
 _NEAR = 4.0
 """Balances are looked at where a spring may be shorter than so many times what it changes by in the box."""
@@ -124,9 +124,9 @@ def _excluded(jet: BallJet, box: Box, minima: bool) -> bool:
     short = jet.short
     if minima and not short and is_no_minimum(jet.jacobian):
         return True
-    for s in jet.cones if max(box[1]) < 1 else ():
-        change = sum((abs(a) + abs(b)).upper() * r for (a, b), r in zip(s.slopes, box[1], strict=True))
-        if not s.length > _NEAR * change and any(not b.contains(0) for b in jet.balances(s)):
+    for k in jet.springs if max(box[1]) < 1 else ():
+        change = sum(slope.upper() * r for slope, r in zip(jet.slopes(k), box[1], strict=True))
+        if not jet.length(k) > _NEAR * change and any(not b.contains(0) for b in jet.balances(k)):
             return True
     return minima and len(short) == 1 and jet.bends_down(short[0])
 
@@ -185,9 +185,11 @@ def _units(found: Sequence[Zero], whole: Floats) -> list[float]:
 def _widest(jet: BallJet, box: Box, units: Sequence[float]) -> list[int]:
     """The unknowns in the order in which halving is worth most: those first that the equations vary with most."""
 
+    slopes = {n: jet.slopes(n) for n in jet.short}
+
     def weight(k: int) -> float:
         if jet.short:
-            change = sum(float((s.pull * (abs(s.slopes[k][0]) + abs(s.slopes[k][1]))).upper()) for s in jet.short)
+            change = sum(float((jet.pull(n) * some[k]).upper()) for n, some in slopes.items())
         else:
             change = sum(float(row[k].abs_upper()) for row in jet.jacobian)
         return change * box[1][k] if isfinite(change) else box[1][k] / units[k]

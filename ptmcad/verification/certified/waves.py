@@ -7,6 +7,7 @@ products of one wave, a cosine or a sine of a sum of whole multiples of angles, 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -20,7 +21,7 @@ from ptmcad.verification.certified.lines import SpringLine, line_of
 from ptmcad.verification.certified.parallel import Parameters
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
 from ptmcad.verification.derivation import Derivation, derivation_of
-from ptmcad.verification.kinds import kind_of
+from ptmcad.verification.kinds import CheckedMargin, kind_of
 
 Multi = tuple[int, ...]
 """For each unknown the multiple of an angle, or the power of a real unknown."""
@@ -74,7 +75,8 @@ class Margin(NamedTuple):
     free: fmpq_mpoly
 
 
-class Form(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Form:
     """What is zero at a solution, one equation for each unknown.
 
     Attributes
@@ -85,6 +87,7 @@ class Form(NamedTuple):
         real unknowns that are not zero where a solution counts.
     inequalities, stability : positive at solutions that count, and at stable ones.
     multiples : of the equations, before they were divided.
+    margins : what a kind of count asks of stable solutions besides.
     closing : with closed loops and cones the numbers of the unknowns, angles first: the first equations say that the
         loops are closed, no cone is in them, and a solution is stable where the determinant of the Jacobian, its
         columns in this order, is positive; there is no other condition for stability then. Empty otherwise.
@@ -100,6 +103,7 @@ class Form(NamedTuple):
     stability: tuple[Waves, ...] = ()
     multiples: tuple[Waves, ...] = ()
     closing: tuple[int, ...] = ()
+    margins: tuple[Margin, ...] = ()
 
     @property
     def conditions_for_stability(self) -> int:
@@ -203,11 +207,11 @@ def _by(f: Waves, k: int) -> Waves:
 
 def form_of(slice: Slice) -> Form:
     """The form of a slice's model, with springs as one that are parallel all over the slice."""
-    return _form(slice.model, tuple(slice.parameters.items()), slice.axes)
+    return _form(slice.model, tuple(slice.parameters.items()), slice.axes, slice.count)
 
 
 @lru_cache(maxsize=8)
-def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis]) -> Form:
+def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis], count: Count) -> Form:
     true = derivation_of(model)
     ring = _Exponentials(model, true.ring)
     unknowns = ring.unknowns
@@ -237,19 +241,15 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
         tuple(stability),
         tuple(multiples),
         closing,
+        tuple(_margins(ring, kind_of(count).margins(true))),
     )
 
 
-@lru_cache(maxsize=8)
-def margins_of(model: Model, count: Count) -> tuple[Margin, ...]:
-    """What a kind of count asks of stable solutions."""
-    true = derivation_of(model)
-    ring, found = _Exponentials(model, true.ring), []
-    for value, spring in kind_of(count).margins(true):
-        nothing = ring.numbers.constant(0)
+def _margins(ring: _Exponentials, margins: Iterable[CheckedMargin]) -> Iterable[Margin]:
+    nothing = ring.numbers.constant(0)
+    for value, spring in margins:
         free = nothing if spring is None else next(iter(ring.waves(spring.free).values()), nothing)
-        found.append(Margin(ring.waves(value), None if spring is None else ring.vector(spring.vector), free))
-    return tuple(found)
+        yield Margin(ring.waves(value), None if spring is None else ring.vector(spring.vector), free)
 
 
 def _divided(f: Waves, inequalities: Iterable[Waves]) -> Waves:

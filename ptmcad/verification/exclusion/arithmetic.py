@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ptmcad.verification.exclusion.compiled import compiled, inlined
-from ptmcad.verification.exclusion.formulas import (
+from ptmcad.verification.certified.formulas import (
     ADD,
     COSINE,
     DIRECTION,
@@ -26,6 +25,7 @@ from ptmcad.verification.exclusion.formulas import (
     SQUARE,
     SUBTRACT,
 )
+from ptmcad.verification.exclusion.compiled import compiled, inlined
 
 _LARGE = 1e150
 _PART, _MIN_ERROR = 2.0**-52, 1e-300

@@ -1,7 +1,8 @@
 """How the loops of the exclusion are compiled, without any licence to change floating-point arithmetic.
 
 Guarantee: each operation is rounded once, to nearest; none is fused or reordered. Compiled code is kept on disk under
-a name that follows from the text of this package, as it may call what stands in another of its files.
+a name that follows from the text of this package, as it may call what stands in another of its files, and of the
+module that has the operations' numbers.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ _CONFIG: Any = config
 
 def _kept_at() -> str:
     here = Path(__file__).parent
-    text = b"\0".join(source.name.encode() + b"\0" + source.read_bytes() for source in sorted(here.glob("*.py")))
+    sources = [*sorted(here.glob("*.py")), here.parent / "certified" / "formulas.py"]
+    text = b"\0".join(source.name.encode() + b"\0" + source.read_bytes() for source in sources)
     beside = here / "__pycache__"
     if not os.access(beside if beside.exists() else here, os.W_OK):
         beside = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ptmcad"

@@ -16,9 +16,7 @@ from __future__ import annotations
 from math import cos, inf, sin, sqrt
 from typing import Any
 
-from ptmcad.verification.exclusion.arithmetic import operation, outward, reach, times
-from ptmcad.verification.exclusion.compiled import compiled, inlined
-from ptmcad.verification.exclusion.formulas import (
+from ptmcad.verification.certified.formulas import (
     ADD,
     CONSTANT,
     COSINE,
@@ -32,6 +30,8 @@ from ptmcad.verification.exclusion.formulas import (
     SUBTRACT,
     VARIABLE,
 )
+from ptmcad.verification.exclusion.arithmetic import operation, outward, reach
+from ptmcad.verification.exclusion.compiled import compiled, inlined
 
 CENTER, ERROR, LOW, HIGH, WIDTH = range(MAX_VARIABLES, MAX_VARIABLES + 5)
 """Columns of a form after those of the slopes, and their number."""
@@ -62,15 +62,7 @@ def evaluate(tape: Any, box: Any, forms: Any, start: int, end: int) -> None:
             forms[n, i if code == VARIABLE else ERROR] = wide
             continue
         a, b, c, d = forms[i, LOW], forms[i, HIGH], forms[j, LOW], forms[j, HIGH]
-        # the most frequent ones first, at once
-        if code == MULTIPLY:
-            a, b = times(a, b, c, d)
-        elif code == ADD:
-            a, b = outward(a + c, b + d)
-        elif code == SUBTRACT:
-            a, b = outward(a - d, b - c)
-        else:
-            a, b = operation(code, a, b, c, d)
+        a, b = operation(code, a, b, c, d)
         forms[n, LOW], forms[n, HIGH] = a, b
         if a == -inf or forms[i, ERROR] == inf or forms[j, ERROR] == inf:
             _flat(forms, n)

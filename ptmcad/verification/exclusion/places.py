@@ -19,10 +19,10 @@ from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Box, Floats, Unproved
 from ptmcad.verification.certified.counted import Where
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.exclusion.formulas import enclosing
 from ptmcad.verification.exclusion.pieces import Pieces, no_pieces
 from ptmcad.verification.exclusion.search import isolate
 from ptmcad.verification.exclusion.systems import CriticalSystem, halves_over, solutions_of, window_of
+from ptmcad.verification.exclusion.tapes import enclosing
 
 BUDGET = 16_000
 """Boxes that are looked at for one place and one choice of sides ..."""
@@ -97,7 +97,9 @@ class _Isolated:
         boxes = np.empty((MAX_LEFT, *self.system.start.shape))
         boxes[0] = self.system.start
         boxes[0, :2] = self.rectangle
-        left = isolate(self.system.over_place(self.smallest), self.system.tape, self.pieces, boxes, BUDGET)
+        left = isolate(
+            self.system.compiled(self.smallest, over_place=True), self.system.tape, self.pieces, boxes, BUDGET
+        )
         whole = tuple(self.system.start[2:, 1].tolist())
         return [_box(rows, whole) for rows in boxes[:left, 2:].tolist()]
 

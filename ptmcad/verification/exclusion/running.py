@@ -116,7 +116,7 @@ class _Choice:
     def _look(self, system: CriticalSystem, boxes: Any, outcome: Any, other: Any, told: Any = None) -> None:
         if told is None:
             told = np.zeros(len(system.zero) + len(system.not_negative))
-        look(system.over_window(self._smallest), system.tape, self._pieces, boxes, outcome, other, told)
+        look(system.compiled(self._smallest), system.tape, self._pieces, boxes, outcome, other, told)
 
 
 def _volumes(boxes: Any) -> Any:

@@ -47,23 +47,33 @@ def look(system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: An
     told : (formulas), those that are zero and then those that are not negative: how many boxes each of them
         has excluded is added.
     """
-    nv = boxes.shape[1]
-    forms = np.empty((len(tape.code), WIDTH))
-    number = len(system.zero) + len(system.not_negative)
-    rows, solved_for = np.empty((number, nv + 2)), np.empty(number, dtype=np.int64)
+    forms, rows, solved_for = _room(system, tape, boxes.shape[1])
     for n in range(len(boxes)):
         box = boxes[n]
         outcome[n] = _look_at(system, tape, pieces, box, forms, rows, solved_for, told)
         if outcome[n] == HALVED:
-            k = _widest(system, forms, box)
-            half = 0.5 * (box[k, 0] + box[k, 1])
-            if k < 0 or not (box[k, 0] < half < box[k, 1]):
+            k, half = _halving(system, forms, box)
+            if k < 0:
                 outcome[n] = STUCK
                 continue
-            for j in range(nv):
-                rest[n, j, 0], rest[n, j, 1] = box[j, 0], box[j, 1]
+            rest[n] = box
             rest[n, k, 0] = half
             box[k, 1] = half
+
+
+@compiled
+def _room(system: Any, tape: Any, nv: int) -> Any:
+    """Arrays for the forms of all operations, the rows of those that are asked for, and what these are solved for."""
+    number = len(system.zero) + len(system.not_negative)
+    return np.empty((len(tape.code), WIDTH)), np.empty((number, nv + 2)), np.empty(number, dtype=np.int64)
+
+
+@compiled
+def _halving(system: Any, forms: Any, box: Any) -> Any:
+    """The variable along which a box is halved, -1 for none, and where."""
+    k = _widest(system, forms, box)
+    half = 0.5 * (box[k, 0] + box[k, 1])
+    return k if k >= 0 and box[k, 0] < half < box[k, 1] else -1, half
 
 
 @compiled
@@ -79,10 +89,8 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
     The number of boxes that are left. All solutions in the box are in them.
     """
     most, nv = boxes.shape[0], boxes.shape[1]
-    forms = np.empty((len(tape.code), WIDTH))
-    number = len(system.zero) + len(system.not_negative)
-    rows, solved_for = np.empty((number, nv + 2)), np.empty(number, dtype=np.int64)
-    told = np.zeros(number)
+    forms, rows, solved_for = _room(system, tape, nv)
+    told = np.zeros(len(rows))
     box, stuck, waiting = np.empty((nv, 2)), 0, 1  # those that are stuck come first, then those that wait
     for _ in range(budget):
         if waiting == 0 or stuck + waiting == most:
@@ -92,9 +100,8 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
         outcome = _look_at(system, tape, pieces, box, forms, rows, solved_for, told)
         if outcome == GONE:
             continue
-        k = _widest(system, forms, box) if outcome == HALVED else -1
-        half = 0.5 * (box[k, 0] + box[k, 1])
-        if k >= 0 and box[k, 0] < half < box[k, 1]:
+        k, half = _halving(system, forms, box) if outcome == HALVED else (-1, 0.0)
+        if k >= 0:
             for side in range(2):
                 boxes[stuck + waiting] = box
                 boxes[stuck + waiting, k, 1 - side] = half

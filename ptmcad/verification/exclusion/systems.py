@@ -6,7 +6,7 @@ a solution of one of the systems, in the box of its start (docs/verify.md, "Why 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
@@ -16,16 +16,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from flint import arb
 
+from ptmcad.errors import ExpressionError
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Floats
+from ptmcad.verification.certified.equations import Equations, Pair, bases
+from ptmcad.verification.certified.formulas import Formulas
 from ptmcad.verification.certified.kinks import sides
 from ptmcad.verification.certified.parameters import over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.waves import Waves, form_of, margins_of
-from ptmcad.verification.exclusion.equations import Equations, Pair, bases
-from ptmcad.verification.exclusion.formulas import Formulas, IntervalTape
+from ptmcad.verification.certified.waves import Waves, form_of
+from ptmcad.verification.exclusion.tapes import IntervalTape, tape_of
 from ptmcad.verification.kinds import kind_of
+from ptmcad.verification.terms import evaluated
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its vector's factors."""
@@ -100,29 +103,25 @@ class CriticalSystem:
         )
         return _of_formulas(self.name, self.formulas, zeros, signs, self.early, self.start)
 
-    def over_window(self, smallest: float) -> Compiled:
-        """In arrays, to be looked at over boxes of the window that are wider than a share of it."""
-        units = self.start[:, 1] - self.start[:, 0]
-        least = np.where(np.arange(len(units)) < 2, smallest * units, np.inf)
-        return self._compiled(self.measured, least, 0)
+    def compiled(self, smallest: float, over_place: bool = False) -> Compiled:
+        """In arrays, to be looked at over boxes of the window that are wider than a share of it.
 
-    def over_place(self, smallest: float) -> Compiled:
-        """The same over one box of the window, and boxes of the unknowns that are wider than a share of all."""
+        Parameters
+        ----------
+        over_place : of one box of the window, and boxes of the unknowns that are wider than a share of all.
+        """
         units = self.start[:, 1] - self.start[:, 0]
-        least = np.where(np.arange(len(units)) < 2, np.inf, smallest * units)
-        return self._compiled(self.measured - 1, least, 2)
-
-    def _compiled(self, measured: int, least: Any, halved: int) -> Compiled:
+        least = np.where((np.arange(len(units)) < 2) != over_place, smallest * units, np.inf)
         zero, not_negative = (np.array(some, dtype=np.int64) for some in (self.zero, self.not_negative))
-        units = self.start[:, 1] - self.start[:, 0]
-        return Compiled(zero, not_negative, zero[:measured], self.early, self.first, units, least, halved)
+        measured = zero[: self.measured - over_place]
+        return Compiled(zero, not_negative, measured, self.early, self.first, units, least, 2 * over_place)
 
 
 def _of_formulas(
     name: str, formulas: Formulas, zeros: Sequence[int], signs: Sequence[int], early: int, start: Any
 ) -> CriticalSystem:
     """That of some formulas, of which the first ones are evaluated before all others."""
-    tape, first, places = formulas.tape(zeros[:early], [*zeros[early:], *signs])
+    tape, first, places = tape_of(formulas, zeros[:early], [*zeros[early:], *signs])
     zero, not_negative = places[: len(zeros)], places[len(zeros) :]
     return CriticalSystem(name, formulas, (*zeros,), (*signs,), tape, (*zero,), (*not_negative,), early, first, start)
 
@@ -183,11 +182,27 @@ def halves_over(claims: CertifiedClaims, x: arb, y: arb) -> Floats:
     return half_widths(form, values)
 
 
+def window_equations(claims: CertifiedClaims) -> Equations:
+    """The formulas of a map's equations, over the window in lattice steps and its unknowns."""
+    f, slice = Formulas(), claims.result.slice
+    axes = [
+        f.add(f.number(a.low), f.multiply(f.variable(k), f.number((a.high - a.low) / claims.cover.steps)))
+        for k, a in enumerate(slice.axes)
+    ]
+
+    def polynomial(terms: Iterable[tuple[int, int, Fraction]]) -> int:
+        return f.sum(f.multiply(f.number(c), f.multiply(f.power(axes[0], i), f.power(axes[1], j))) for i, j, c in terms)
+
+    parameters = {n: f.number(0) for n in claims.model.free_lengths}
+    parameters |= {n: f.divide(polynomial(e.numerator), polynomial(e.denominator)) for n, e in slice.parameters.items()}
+    return Equations(form_of(slice), f, parameters, claims.model.positive)
+
+
 class _Systems:
     """The systems of one map, and what they have in common."""
 
     def __init__(self, claims: CertifiedClaims, halves: Floats):
-        self.claims, self.model, self._halves = claims, Equations(claims), halves
+        self.claims, self.model, self._halves = claims, window_equations(claims), halves
         self.count, self.form = claims.result.slice.count, self.model.form
         self.minima = self.form.is_gradient and self.count.is_of_stable
         stable = self.form.stability if self.count.is_of_stable else ()
@@ -262,7 +277,18 @@ class _Systems:
         return [f.determinant([[rows[i][j] for j in c] for i in c]) for c in chosen] if n > 1 else []
 
     def _short(self, k: int) -> int:
-        return self.model.list.number(Fraction(float(self.model.reach(k) / SHORT_SHARE)))
+        return self.model.list.number(Fraction(float(self._reach(k) / SHORT_SHARE)))
+
+    def _reach(self, k: int) -> Fraction:
+        """About the largest length of a spring: the sum of the factors of its vector in the middle of the window."""
+        at = [(a.low + a.high) / 2 for a in self.claims.result.slice.axes]
+        values = {name: Fraction(0) for name in self.claims.model.free_lengths}
+        try:
+            values |= {n: e.evaluate(*at) for n, e in self.claims.result.slice.parameters.items()}
+        except ExpressionError:
+            return Fraction(1)
+        factors = (evaluated(p, values) for row in self.model.cones[k].cone.vector for p in row.values())
+        return sum(map(abs, factors), Fraction(0)) or Fraction(1)
 
     def _short_folds(self, k: int) -> CriticalSystem:
         """Folds at which one spring is short, with its direction as one more unknown: |d| det H is a polynomial.
@@ -308,7 +334,7 @@ class _Systems:
         """What is asked of stable solutions besides, and what is zero where one begins or ceases to be counted."""
         m, f = self.model, self.model.list
         found: list[tuple[int, tuple[int, ...]]] = []
-        for margin in margins_of(self.claims.model, self.count):
+        for margin in self.form.margins:
             if margin.vector is None:
                 value = m.waves(margin.value)
                 found.append((value, (value,)))

@@ -1,11 +1,11 @@
-"""The equations of a map's model as formulas over the window and the unknowns, from the description's normal form.
+"""The equations of a map's model as formulas in parameters and unknowns, from the description's normal form.
 
 Guarantee: exact.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations, product
 from math import prod
@@ -13,15 +13,12 @@ from typing import NamedTuple
 
 from flint import fmpq_mpoly
 
-from ptmcad.errors import ExpressionError
-from ptmcad.text.expressions import Expression
 from ptmcad.text.flint_numbers import to_fraction
+from ptmcad.verification.certified.formulas import Formulas
 from ptmcad.verification.certified.kinks import Sides
 from ptmcad.verification.certified.lines import SpringLine
-from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.terms import evaluated, monomials
-from ptmcad.verification.certified.waves import Form, Key, SpringCone, Waves, form_of
-from ptmcad.verification.exclusion.formulas import Formulas
+from ptmcad.verification.certified.waves import Form, Key, SpringCone, Waves
+from ptmcad.verification.terms import monomials
 
 Pair = tuple[int, int]
 
@@ -57,23 +54,19 @@ class ConeFormulas(NamedTuple):
 
 
 class Equations:
-    """A form's formulas over the window and the unknowns."""
+    """A form's formulas in its unknowns, which are the variables after the two axes.
 
-    def __init__(self, claims: CertifiedClaims):
-        self.form = form_of(claims.result.slice)
-        self.claims, self.list = claims, Formulas()
-        cover = claims.cover
-        f = self.list
-        axes = [
-            f.add(f.number(a.low), f.multiply(f.variable(k), f.number((a.high - a.low) / cover.steps)))
-            for k, a in enumerate(claims.result.slice.axes)
-        ]
-        self.axes = axes
-        self.parameters = {n: f.number(0) for n in claims.model.free_lengths}
-        self.parameters |= {n: self._expression(e, axes) for n, e in claims.result.slice.parameters.items()}
+    Parameters
+    ----------
+    parameters : what stands for each parameter.
+    positive : those that are; what all terms of an equation have of them is divided out.
+    """
+
+    def __init__(self, form: Form, formulas: Formulas, parameters: Mapping[str, int], positive: Collection[str] = ()):
+        self.form, self.list, self.parameters, self._positive = form, formulas, parameters, {*positive}
         self.sides: Sides = {}
-        self.unknowns = [f.variable(k + 2) for k in range(self.form.size)]
-        self.turn_to([[int(i == j) for j in range(self.form.size)] for i in range(self.form.size)])
+        self.unknowns = [formulas.variable(k + 2) for k in range(form.size)]
+        self.turn_to([[int(i == j) for j in range(form.size)] for i in range(form.size)])
 
     def turn_to(self, basis: Sequence[Sequence[int]]) -> None:
         """Write all that follows in another basis of the unknowns' directions, by rows.
@@ -98,7 +91,7 @@ class Equations:
                 rows += [_combined(self.basis[i], [vector[k] for vector in some]) for k in (0, 1)]
         found = [{name for name, _ in names} for row in rows for p in row.values() for _, names in monomials(p)]
         common = set.intersection(*found) if found else set()
-        return tuple(sorted(common & set(self.claims.model.positive)))
+        return tuple(sorted(common & self._positive))
 
     def _turned(self, rows: Sequence[Waves]) -> list[Waves]:
         """Divided by the factors."""
@@ -115,16 +108,6 @@ class Equations:
             for one, names in zip(self.basis, self._common, strict=True)
             for two in self.basis
         ]
-
-    def _expression(self, e: Expression, axes: Sequence[int]) -> int:
-        f = self.list
-
-        def polynomial(terms: Iterable[tuple[int, int, Fraction]]) -> int:
-            return f.sum(
-                f.multiply(f.number(c), f.multiply(f.power(axes[0], i), f.power(axes[1], j))) for i, j, c in terms
-            )
-
-        return f.divide(polynomial(e.numerator), polynomial(e.denominator))
 
     def polynomial(self, p: fmpq_mpoly) -> int:
         """A polynomial in the parameters."""
@@ -307,17 +290,6 @@ class Equations:
             for i, c in enumerate(self.factors)
         )
         return f.subtract(f.multiply(length, trace), f.divide(f.multiply(s.pull, gram), size))
-
-    def reach(self, k: int) -> Fraction:
-        """About the largest length of a spring: the sum of the factors of its vector in the middle of the window."""
-        at = [(a.low + a.high) / 2 for a in self.claims.result.slice.axes]
-        values = {name: Fraction(0) for name in self.claims.model.free_lengths}
-        try:
-            values |= {n: e.evaluate(*at) for n, e in self.claims.result.slice.parameters.items()}
-        except ExpressionError:
-            return Fraction(1)
-        factors = (evaluated(p, values) for row in self.cones[k].cone.vector for p in row.values())
-        return sum(map(abs, factors), Fraction(0)) or Fraction(1)
 
 
 def _combined(factors: Sequence[int], rows: Sequence[Waves]) -> Waves:

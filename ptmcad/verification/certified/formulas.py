@@ -1,4 +1,4 @@
-"""Formulas as lists of operations on numbered values, for the exclusion of critical curves.
+"""Formulas as lists of operations on numbered values, which are evaluated in balls or by compiled code.
 
 Guarantee: exact; equal operations are written once, and those of rational numbers are carried out.
 """
@@ -7,57 +7,44 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from math import inf, nextafter
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import Any
 
 CONSTANT, VARIABLE, ADD, SUBTRACT, MULTIPLY, SQUARE, DIVIDE, COSINE, SINE, DIRECTION, INVERSE_LENGTH, LENGTH = range(12)
 """Operations. DIRECTION, INVERSE_LENGTH and LENGTH of the vector (a, b): a/|(a, b)|, 1/|(a, b)| and |(a, b)|."""
 MAX_VARIABLES = 6
-"""Both axes, three unknowns, and the direction of a spring; even, as sums over them take two at once."""
-
-
-class IntervalTape(NamedTuple):
-    """Operations in their order, in arrays.
-
-    Attributes
-    ----------
-    code, first, second : of each value the operation and the numbers of its operands (of a variable its own number).
-    low, high : enclosures of constants.
-    """
-
-    code: Any
-    first: Any
-    second: Any
-    low: Any
-    high: Any
+"""Both axes, three unknowns, and the direction of a spring; even, as sums over them take two at once. Parameters that
+are variables come after them."""
 
 
 class Formulas:
-    """A list of operations that grows; a value is the number of an operation."""
+    """A list of operations that grows; a value is the number of an operation.
+
+    Attributes
+    ----------
+    rows : of each value the operation and the numbers of its operands; of a variable its own number.
+    numbers : those that are rational.
+    """
 
     def __init__(self) -> None:
-        self._rows: list[tuple[int, int, int]] = []
-        self._numbers: dict[int, Fraction] = {}
+        self.rows: list[tuple[int, int, int]] = []
+        self.numbers: dict[int, Fraction] = {}
         self._known: dict[Any, int] = {}
 
     def number(self, value: Fraction | int) -> int:
         """A rational number."""
         key = ("number", Fraction(value))
         if key not in self._known:
-            self._known[key] = len(self._rows)
-            self._numbers[len(self._rows)] = Fraction(value)
-            self._rows.append((CONSTANT, 0, 0))
+            self._known[key] = len(self.rows)
+            self.numbers[len(self.rows)] = Fraction(value)
+            self.rows.append((CONSTANT, 0, 0))
         return self._known[key]
 
     def constant(self, value: int) -> Fraction | None:
         """The number that a value is; None where it is no number."""
-        return self._numbers.get(value)
+        return self.numbers.get(value)
 
     def variable(self, number: int) -> int:
         """One of the variables."""
-        assert number < MAX_VARIABLES
         return self._new(VARIABLE, number, number)
 
     def add(self, a: int, b: int) -> int:
@@ -157,54 +144,20 @@ class Formulas:
             total = self.subtract(total, part) if k % 2 else self.add(total, part)
         return total
 
-    def tape(self, first: Sequence[int], wanted: Sequence[int]) -> tuple[IntervalTape, int, list[int]]:
-        """The operations that some values need, those of the first of them first.
-
-        Returns
-        -------
-        The operations; how many of them the first values need; and the places of all.
-        """
-        early = self._needed(first)
-        order = [*sorted(early), *sorted(self._needed(wanted) - early)]
-        place = {n: k for k, n in enumerate(order)}
-        low, high, rows = [], [], []
-        for n in place:
-            operation, a, b = self._rows[n]
-            if operation > VARIABLE:
-                a, b = place[a], place[b]
-            rows.append((operation, a, b))
-            below, above = enclosing(self._numbers.get(n, Fraction(0)))
-            low.append(below)
-            high.append(above)
-        code, first_of, second = (np.array([row[k] for row in rows], dtype=np.int64) for k in range(3))
-        tape = IntervalTape(code, first_of, second, np.array(low), np.array(high))
-        return tape, len(early), [place[n] for n in (*first, *wanted)]
-
-    def _needed(self, wanted: Sequence[int]) -> set[int]:
+    def needed(self, wanted: Sequence[int]) -> set[int]:
         """All that some values need, and themselves."""
         needed, waiting = set[int](), list(wanted)
         while waiting:
             n = waiting.pop()
             if n not in needed:
                 needed.add(n)
-                code, a, b = self._rows[n]
+                code, a, b = self.rows[n]
                 waiting += [] if code in (CONSTANT, VARIABLE) else [a, b]
         return needed
 
     def _new(self, code: int, a: int, b: int) -> int:
         key = (code, a, b)
         if key not in self._known:
-            self._known[key] = len(self._rows)
-            self._rows.append(key)
+            self._known[key] = len(self.rows)
+            self.rows.append(key)
         return self._known[key]
-
-
-def enclosing(value: Fraction) -> tuple[float, float]:
-    """Floats that a rational number lies between, or is equal to; infinite ones where there are no others."""
-    try:
-        near = float(value)
-    except OverflowError:
-        return (-inf, -1e308) if value < 0 else (1e308, inf)
-    if Fraction(near) == value:
-        return near, near
-    return nextafter(near, -inf), nextafter(near, inf)
