@@ -11,7 +11,7 @@ from fractions import Fraction
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_plane
-from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine, sign_at, simplest_between
+from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine, sign_at
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
@@ -80,12 +80,6 @@ def in_order(
     short = [refine(root_of(number), from_fraction(width)) for number in numbers]
     found = inside(disjoint(short), (from_fraction(low), from_fraction(high)))
     return tuple(algebraic_number(r) for r in found)
-
-
-def simplest_fraction(one: Fraction, other: Fraction) -> Fraction:
-    """The simplest one strictly between two numbers."""
-    low, high = sorted((one, other))
-    return to_fraction(simplest_between(from_fraction(low), from_fraction(high)))
 
 
 def as_interval(number: AlgebraicNumber) -> tuple[fmpq, fmpq]:

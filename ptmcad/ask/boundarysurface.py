@@ -14,7 +14,6 @@ from itertools import pairwise
 from math import acos, cos, inf, pi
 from typing import Any, NamedTuple
 
-from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.changes import Changes
 from ptmcad.answer.family import FamilyMap
@@ -25,7 +24,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.exact.strips import BoundaryStrips
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.doubles import within_doubles
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 from ptmcad.text.parsing import share_for
 
 TOLERANCE = Fraction(1, 100)

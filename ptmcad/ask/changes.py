@@ -17,7 +17,7 @@ from typing import Any
 from flint import fmpq
 
 from ptmcad.algebra.numbers import algebraic_number
-from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
+from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.changes import TOLERANCE, Change, Changes
 from ptmcad.ask.changewords import described
@@ -31,7 +31,7 @@ from ptmcad.exact.surfaces import surfaces_of
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.config import Family, family_from
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import share_for
 

@@ -32,7 +32,7 @@ from ptmcad.ask.fields.field import unknowns_of
 from ptmcad.ask.fields.track import Track, followed
 from ptmcad.ask.quantities import open_chain
 from ptmcad.certified.intervals import certified_intervals
-from ptmcad.certified.landing import landing, line_of, merger
+from ptmcad.certified.landing import landing, line_formulas, merger
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism
 from ptmcad.options import Progress
@@ -241,7 +241,7 @@ class _Walker:
             return met
         merges = leaving == (0,)
         places = (self._point(current), self._point(_Reached(value, way[-1], target)))
-        line = line_of(self.slice, model, self.varying, self.fixed)
+        line = line_formulas(model, self.line.parameters)
         found = (merger if merges else landing)(line, change.at, *places)
         if found is None:
             return met

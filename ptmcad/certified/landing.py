@@ -11,7 +11,7 @@ proved, it lies at the critical value, and its energy is one that the branch may
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -19,24 +19,20 @@ from flint import arb, arb_mat, ctx, fmpq
 
 from ptmcad.answer.paths import PathPoint, Target
 from ptmcad.certified.arb_isolation import Box, newton, refined
-from ptmcad.certified.continuation import BranchEquations, ProvedPoint, branches, carried, located, over
-from ptmcad.certified.parameters import parameter_formulas
 from ptmcad.certified.plain.chart import determinant
 from ptmcad.certified.system import EquationSystem, system
-from ptmcad.formulas.balls import run_arb
-from ptmcad.formulas.graph import Graph
-from ptmcad.formulas.tape import Tape, record
+from ptmcad.formulas.balls import evaluated, run_arb
+from ptmcad.formulas.continuation import BranchEquations, Reached, at_value, branch_equations, nearer, over_range
+from ptmcad.formulas.graph import Formula
 from ptmcad.model import Mechanism
-from ptmcad.model.compile import compiled_with
-from ptmcad.question.slice import Slice
-from ptmcad.text.balls import ball_of, enclosure_of
+from ptmcad.question.line import compiled_on
+from ptmcad.text.balls import ball_of, ball_over, enclosure_of
 from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.expressions import Expression
 
 BITS = 192
 _PASSES = 12
 """Of Newton's method from the last place of a branch to where it ends."""
-_FIRST = 2
-"""The number of the first unknown, after the axes'."""
 _NEAREST = Fraction(1, 2**60)
 """How near to a critical value a branch is carried, against its distance."""
 
@@ -49,36 +45,34 @@ class BranchEnd(NamedTuple):
     target_energy: Enclosure
 
 
-@dataclass(frozen=True, slots=True)
-class LineFormulas:
-    """A mechanism on unknown angles, on a line of a slice.
+class LineFormulas(NamedTuple):
+    """A mechanism on unknown angles, on a line: variable 0 is the axis, the next ones are the angles.
 
     Attributes
     ----------
     equations : of equilibrium.
     folds : the same and the Hessian's determinant, with the axis as a further unknown, the first one.
-    numbers : a tape of the energy, its slope along the line, and the heights of the rising points.
+    numbers : the energy, its slope along the line, and the heights of the rising points.
     """
 
     equations: BranchEquations
     folds: EquationSystem
-    numbers: Tape
+    numbers: Sequence[Formula]
 
 
-def line_of(slice: Slice, mechanism: Mechanism, varying: int, fixed: Fraction) -> LineFormulas:
-    """The formulas of a slice of a mechanism, along the axis number ``varying`` at a value of the other one."""
-    graph = Graph()
-    unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, _FIRST)}
-    at = compiled_with(mechanism, parameter_formulas(graph, slice) | unknowns)
-    energy = at.energy()
+def line_formulas(mechanism: Mechanism, parameters: Mapping[str, Expression]) -> LineFormulas:
+    """The formulas of a mechanism on a line, from its parameters there."""
+    at = compiled_on(mechanism, parameters)
+    energy, derivative = at.energy(), at.graph.derivative
     assert energy is not None
-    slopes = [graph.derivative(energy, v.variable) for v in unknowns.values()]
-    heights = [at.points[name][1] for name in mechanism.rising]
-    numbers = record([[energy, graph.derivative(energy, varying), *heights]])
-    variables = [v.variable for v in unknowns.values()]
-    hessian = tuple(tuple(graph.derivative(f, k) for k in variables) for f in slopes)
-    folds = system([*slopes, determinant(hessian)], [varying, *variables])
-    return LineFormulas(branches(slopes, varying, fixed), folds, numbers)
+    slopes = [derivative(energy, k) for k in at.unknowns]
+    hessian = tuple(tuple(derivative(f, k) for k in at.unknowns) for f in slopes)
+    heights = (at.points[name][1] for name in mechanism.rising)
+    return LineFormulas(
+        branch_equations(slopes, len(slopes)),
+        system([*slopes, determinant(hessian)], [0, *at.unknowns]),
+        [energy, derivative(energy, 0), *heights],
+    )
 
 
 def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> BranchEnd | None:
@@ -91,13 +85,16 @@ def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoin
     beyond : the pose that is reached, which is simple there.
     """
     with ctx.workprec(BITS):
-        after = _near(line, at, beyond)
-        there = None if after is None else over(line.equations, after, at)
-        energy = _energy_at(line, at, last)
-        if energy is None or there is None:
+        after, energy = _located(line, beyond), _energy_at(line, at, last)
+        if after is None or energy is None:
             return None
-        value = ball_of(at.low).union(ball_of(at.high))
-        reached, _, *heights = _numbers(line, value, there)
+        end = at.low if after.value < at.low else at.high
+        near = nearer(line.equations, after, end + (after.value - end) * _NEAREST)
+        tube = over_range(line.equations, near, at.low, at.high)
+        if tube is None:
+            return None
+        there = tube.hull()
+        reached, _, *heights = evaluated(line.numbers, (ball_over(at.low, at.high), *there))
         sides = tuple(1 if y > 0 else -1 if y < 0 else 0 for y in heights)
         return BranchEnd(Target(tuple(map(enclosure_of, there)), (), sides), energy, enclosure_of(reached))
 
@@ -127,39 +124,42 @@ def _around(first: Enclosure, second: Enclosure) -> Enclosure:
 def _energy_at(line: LineFormulas, at: Enclosure, last: PathPoint) -> Enclosure | None:
     """The energy of a branch at the critical value at which it ends; None where the branch is not proved."""
     with ctx.workprec(BITS):
-        place = located(line.equations, last.value, last.angles)
+        place = _located(line, last)
         if place is None:
             return None
         limit = _limit(line, at, place)
         fold = _fold(line, at, place)
         if fold is None:
             return enclosure_of(limit)
-        energy = _numbers(line, fold[line.equations.varying], fold[_FIRST:])[0]
+        (energy,) = evaluated(line.numbers[:1], fold)
         return enclosure_of(energy if limit.contains(energy) else limit)
 
 
-def _near(line: LineFormulas, at: Enclosure, point: PathPoint) -> ProvedPoint | None:
-    """A branch as near to a critical value as it can be carried."""
-    start = located(line.equations, point.value, point.angles)
-    if start is None:
+def _located(line: LineFormulas, point: PathPoint) -> Reached | None:
+    """A pose's branch: the solution that is proved to be the only one about its enclosures; None without proof."""
+    guess = tuple(ball_of(angle.center) for angle in point.angles)
+    place = at_value(line.equations, point.value, guess, 2 * max(angle.radius for angle in point.angles))
+    if place is None or not all(
+        a.contains(ball_over(b.low, b.high)) for a, b in zip(place.alone(point.value), point.angles, strict=True)
+    ):
         return None
-    end = at.low if point.value < at.low else at.high
-    return carried(line.equations, start, end + (point.value - end) * _NEAREST)
+    return Reached(point.value, place, place)
 
 
-def _limit(line: LineFormulas, at: Enclosure, place: ProvedPoint) -> arb:
+def _limit(line: LineFormulas, at: Enclosure, place: Reached) -> arb:
     """The energy of a branch at the critical value, from a place beside."""
-    between = ball_of(place.value).union(ball_of(at.low)).union(ball_of(at.high))
-    anywhere = (arb.pi() * arb(0, 1),) * len(place.unknowns)
-    slope = _numbers(line, between, anywhere)[1]
-    return _numbers(line, ball_of(place.value), place.unknowns)[0] + 2 * between.rad() * slope * arb(0, 1)
+    between = ball_of(place.value).union(ball_over(at.low, at.high))
+    anywhere = (arb.pi() * arb(0, 1),) * line.equations.angles
+    (slope,) = evaluated(line.numbers[1:2], (between, *anywhere))
+    (energy,) = evaluated(line.numbers[:1], (ball_of(place.value), *place.point))
+    return energy + 2 * between.rad() * slope * arb(0, 1)
 
 
-def _fold(line: LineFormulas, at: Enclosure, place: ProvedPoint) -> Box | None:
+def _fold(line: LineFormulas, at: Enclosure, place: Reached) -> Box | None:
     """The degenerate pose at a critical value that Newton's method finds from a place beside; None without proof."""
-    folds, varying = line.folds, line.equations.varying
+    folds = line.folds
     variables, size = [int(k) for k in folds.unknowns], len(folds.unknowns)
-    box = list(line.equations.box(ball_of(at.center), place.unknowns))
+    box = [ball_of(at.center), *place.point]
     for _ in range(_PASSES):
         for k in variables:
             box[k] = box[k].mid()
@@ -177,9 +177,4 @@ def _fold(line: LineFormulas, at: Enclosure, place: ProvedPoint) -> Box | None:
     if step is None or not step[1]:
         return None
     found = refined(folds, tuple(box), ctx.prec)
-    return found if found[varying].overlaps(ball_of(at.low).union(ball_of(at.high))) else None
-
-
-def _numbers(line: LineFormulas, value: arb, unknowns: tuple[arb, ...]) -> list[arb]:
-    values = run_arb(line.numbers, line.equations.box(value, unknowns), ctx.prec)
-    return [values[int(place)] for place in line.numbers.outputs[0]]
+    return found if found[0].overlaps(ball_over(at.low, at.high)) else None

@@ -19,13 +19,13 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.real_roots import Interval, refine, simplest_between
+from ptmcad.algebra.real_roots import Interval, refine
 from ptmcad.answer.boundarysurface import ACCURACY
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.arrangement import Picture
 from ptmcad.exact.cad.curves import by_component
 from ptmcad.exact.cad.stacks import BaseEnd
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 JUMP = Fraction(1, 2**12)
 """Of the window's height: walls on both sides of a critical abscissa that end no further apart are one wall, and

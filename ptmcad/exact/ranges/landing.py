@@ -1,7 +1,7 @@
 """What holds at the critical value at which a branch ends: the pose that is reached there, and the energies.
 
 Guarantee: every enclosure holds the number at the critical value itself, wherever that lies in its isolating interval;
-so it does not depend on where a path began. A pose that is simple there is carried to it by tubes (`tracking`). Poses
+so it does not depend on where a path began. A pose that is simple there is carried to it by tubes. Poses
 that merge there are enclosed by a region that none of them leaves meanwhile (`meeting`), or by what a symmetry or an
 exact solution at a rational value says of them. An energy is that at a place beside, which differs by no more than the
 distance times the largest slope: along a branch of critical points the energy changes with the parameter alone, which
@@ -17,21 +17,17 @@ from typing import NamedTuple
 
 from flint import arb, ctx
 
-from ptmcad.algebra.numbers import simplest_fraction
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.ranges.equations import LineSystem
-from ptmcad.exact.ranges.meeting import Meeting, parameters_at, value_at, what_meets
-from ptmcad.exact.ranges.tracking import BITS, Reached, bridge, enclose, follow
-from ptmcad.question.line import Line
+from ptmcad.exact.ranges.meeting import Meeting, what_meets
+from ptmcad.formulas.continuation import BITS, Reached, nearer, over_range
 from ptmcad.text.balls import ball_of, ball_over, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.flint_numbers import simplest_fraction
 
 DIGITS = 12
 _NEAREST = Fraction(1, 2**56)
 """How near to a critical value branches are followed for what holds there, against the window's width."""
-
-_MAX_STEPS = 1000
-"""On that way, of which a fold takes some hundred; a pitchfork, of which fewer digits are told, takes them all."""
 
 
 class LimitPose(NamedTuple):
@@ -49,7 +45,7 @@ class LimitPose(NamedTuple):
 
 
 def landing(
-    family: LineSystem, line: Line, number: AlgebraicNumber, met: Meeting, current: Reached, target: Reached
+    family: LineSystem, number: AlgebraicNumber, met: Meeting, current: Reached, target: Reached
 ) -> LimitPose | None:
     """What holds at the critical value where a branch ends; None where the pose that is reached is not proved.
 
@@ -60,21 +56,20 @@ def landing(
     target : the only stable pose beyond.
     """
     side = 1 if target.value > current.value else -1
-    distance = (line.along.high - line.along.low) * _NEAREST
+    distance = (family.line.along.high - family.line.along.low) * _NEAREST
     near, far = ends_from(number, side)
-    before = _nearer(family, current, beside(near, -side, distance))
-    after = _nearer(family, target, beside(far, side, distance))
-    energy = _limit(family, line, number, before)
+    before = nearer(family.branches, current, beside(near, -side, distance))
+    after = nearer(family.branches, target, beside(far, side, distance))
+    energy = _limit(family, number, before)
     if 0 in met.leaving:
-        merged = _merged(family, line, number, before, after)
+        merged = _merged(family, number, before, after)
         return None if merged is None else LimitPose(merged, energy, energy)
-    across = bridge(family, after, near)
-    at = None if across is None else enclose(family, number.low, number.high, across.point)
-    if across is None or at is None or not across.over.holds(at, near):
+    at = over_range(family.branches, after, number.low, number.high)
+    if at is None:
         return None
     with ctx.workprec(BITS):
         unknowns = tuple(map(enclosure_of, at.hull()))
-    return LimitPose(unknowns, energy, _limit(family, line, number, Reached(near, at, at)))
+    return LimitPose(unknowns, energy, _limit(family, number, Reached(near, at, at)))
 
 
 def ends_from(number: AlgebraicNumber, side: int) -> tuple[Fraction, Fraction]:
@@ -87,27 +82,23 @@ def beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
     return simplest_fraction(value + side * gap / 2, value + side * gap)
 
 
-def _nearer(family: LineSystem, place: Reached, value: Fraction) -> Reached:
-    """The branch at a value, or as near to it as it can be followed."""
-    steps, _ = follow(family, place, value, abs(value - place.value), _MAX_STEPS)
-    return steps[-1] if steps else place
-
-
-def _limit(family: LineSystem, line: Line, number: AlgebraicNumber, place: Reached) -> Enclosure:
+def _limit(family: LineSystem, number: AlgebraicNumber, place: Reached) -> Enclosure:
     """The energy of a branch at the critical value to which it leads, from its energy at a place beside."""
-    potential = family.system.potential
+    potential = family.formulas.smooth
     assert potential is not None  # snaps and mergers are those of a potential
     low, high = min(place.value, number.low), max(place.value, number.high)
-    there = value_at(family, line, place, potential)
+    (there,) = family.values_at([potential], place)
+    anywhere = (arb(0, 4),) * family.angles  # there is no unknown on the line
+    (slope,) = family.values([potential.graph.derivative(potential, 0)], low, high, anywhere)
     with ctx.workprec(BITS):
-        return enclosure_of(there + ball_of(high - low) * family.slope(potential, low, high) * arb(0, 1))
+        return enclosure_of(there + ball_of(high - low) * slope * arb(0, 1))
 
 
 def _merged(
-    family: LineSystem, line: Line, number: AlgebraicNumber, before: Reached, after: Reached
+    family: LineSystem, number: AlgebraicNumber, before: Reached, after: Reached
 ) -> tuple[Enclosure, ...] | None:
     """The pose in which several merge, at the critical value between two places."""
-    found = what_meets(family, line, before, after.value)
+    found = what_meets(family, before, after.value)
     if found is None or found.box is None:
         return None
     with ctx.workprec(BITS):
@@ -120,7 +111,7 @@ def _merged(
                 region[k] = _half_turned(region[k], angle)
     if number.exact is None:
         return tuple(region)
-    poses = exact_poses(family.model, parameters_at(family, line, number.exact), DIGITS).equilibria
+    poses = exact_poses(family.line.model, family.line.values(number.exact), DIGITS).equilibria
     near = [_turned((*pose.angles, *pose.reals), region, family.angles) for pose in poses]
     inside = [p for p in near if _overlap(p, region)]
     return inside[0] if len(inside) == 1 else tuple(region)

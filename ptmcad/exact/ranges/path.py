@@ -1,7 +1,8 @@
 """Paths of stable poses along a line: how far each one can be followed, and where it snaps to.
 
-Guarantee: the pose at every step of a path is the same branch (`tracking`). What a branch is said to meet at a critical
-value, and that it vanishes there, is proved (`meeting`); that it is not bridged is not enough for that.
+Guarantee: the pose at every step of a path is the same branch (`ptmcad.formulas.continuation`). What a branch is said
+to meet at a critical value, and that it vanishes there, is proved (`meeting`); that it is not bridged is not enough for
+that.
 
 Where a stable pose vanishes and one is left, as always with the paper's mechanism, which never has more than two
 (theorem 1 of docs/method.md), the energy descends to it from the place where the first one was: on a torus every
@@ -23,16 +24,13 @@ from flint import arb, ctx
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
-from ptmcad.exact.models import system_from
 from ptmcad.exact.poses import exact_poses
-from ptmcad.exact.ranges.equations import LineSystem
+from ptmcad.exact.ranges.equations import LineSystem, line_system
 from ptmcad.exact.ranges.landing import DIGITS, beside, ends_from, landing
 from ptmcad.exact.ranges.line import critical_values, is_regular
-from ptmcad.exact.ranges.matrices import Vector
-from ptmcad.exact.ranges.meeting import parameters_at, value_at, what_meets
-from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge, follow
-from ptmcad.model.compile import compiled
-from ptmcad.question.line import Line, line_of
+from ptmcad.exact.ranges.meeting import what_meets
+from ptmcad.formulas.continuation import BITS, Reached, Vector, at_value, bridge, follow
+from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice, moved
 from ptmcad.text.balls import ball_of, ball_over, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
@@ -70,9 +68,8 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
     numbers = tuple(n for n, _ in critical_values(line))
     if any(n.compare(value) == 0 for n in numbers) and not is_regular(line, value):
         raise ConfigError(f"{along} = {value} is a critical value: start beside it", key="--path")
-    system = system_from(slice.model)
-    family = LineSystem(slice.model, system, line.parameters)
-    poses = exact_poses(slice.model, parameters_at(family, line, value), DIGITS)
+    family = line_system(line)
+    poses = exact_poses(slice.model, line.values(value), DIGITS)
     stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable or not slice.model.tells_stability]
     if number is not None and number - 1 not in stable:
         what = "stable poses" if slice.model.tells_stability else "solutions"
@@ -86,24 +83,22 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
         axis,
         line.at,
         value,
-        tuple(_path(family, line, numbers, poses.equilibria[k], k + 1, value) for k in chosen),
+        tuple(_path(family, numbers, poses.equilibria[k], k + 1, value) for k in chosen),
         moved(slice.model, line.parameters),
     )
 
 
-def _path(
-    family: LineSystem, line: Line, numbers: Sequence[AlgebraicNumber], pose: Pose, number: int, start: Fraction
-) -> PosePath:
-    box = at_value(family, start, _guess(pose))
+def _path(family: LineSystem, numbers: Sequence[AlgebraicNumber], pose: Pose, number: int, start: Fraction) -> PosePath:
+    box = at_value(family.branches, start, _guess(pose))
     if box is None:
         raise ConfigError(
-            f"pose {number} at {line.along.name} = {start} is too near to a degenerate one to be followed at "
+            f"pose {number} at {family.line.along.name} = {start} is too near to a degenerate one to be followed at "
             f"{BITS} bits: start farther away",
             key="--path",
         )
     origin = Reached(start, box, box)
-    left = _one_way(family, line, [n for n in reversed(numbers) if n.compare(start) < 0], origin, -1)
-    right = _one_way(family, line, [n for n in numbers if n.compare(start) > 0], origin, 1)
+    left = _one_way(family, [n for n in reversed(numbers) if n.compare(start) < 0], origin, -1)
+    right = _one_way(family, [n for n in numbers if n.compare(start) > 0], origin, 1)
     reached = [*reversed(left[0]), origin, *right[0]]
     sides = [_sides(family, r.over.low, r.over.high, r.over.hull()) for r in reached]
     upright, reverse = (all(signs and set(signs) == {of} for signs in sides) for of in (1, -1))
@@ -118,17 +113,16 @@ def _guess(pose: Pose) -> Vector:
 
 def _sides(family: LineSystem, low: Fraction, high: Fraction, unknowns: Vector) -> tuple[int, ...]:
     """Of each rising point of a mechanism, 1 when it is proved above the x axis, -1 when below, else 0."""
-    with ctx.workprec(BITS):
-        heights = family.values_of(compiled(family.model).heights, low, high, unknowns)
-        return tuple(1 if y > 0 else -1 if y < 0 else 0 for y in heights)
+    heights = family.values(family.formulas.heights, low, high, unknowns)
+    return tuple(1 if y > 0 else -1 if y < 0 else 0 for y in heights)
 
 
 def _one_way(
-    family: LineSystem, line: Line, numbers: Sequence[AlgebraicNumber], origin: Reached, side: int
+    family: LineSystem, numbers: Sequence[AlgebraicNumber], origin: Reached, side: int
 ) -> tuple[list[Reached], PathEnd]:
     """Follow a branch in one direction through all critical values that do not concern it."""
-    window = line.along.high - line.along.low
-    edge = line.along.high if side > 0 else line.along.low
+    window = family.line.along.high - family.line.along.low
+    edge = family.line.along.high if side > 0 else family.line.along.low
     reached: list[Reached] = []
     current = origin
     for k, number in enumerate(numbers):
@@ -139,26 +133,26 @@ def _one_way(
         for least in _distances(window, gap):
             while crossed is None and gap > least:
                 after = beside(far, side, gap)
-                steps, done = follow(family, current, beside(near, -side, gap), window / _MIN_STEPS)
+                steps, done = follow(family.branches, current, beside(near, -side, gap), window / _MIN_STEPS)
                 reached += steps
                 current = steps[-1] if steps else current
                 if not done:
                     return reached, PathEnd(Fate.UNDECIDED, number, _point(family, current))
-                crossed = bridge(family, current, after)
+                crossed = bridge(family.branches, current, after)
                 gap = gap / 4
             if crossed is not None:
                 break
-            end = _meeting(family, line, number, current, after)
+            end = _meeting(family, number, current, after)
             if len(end.meeting) > 1 or end.fate is Fate.VANISH:
                 break
         if crossed is None:
             assert end is not None
             return reached, end
-        if (fate := _condition(family, line, crossed)) is not None:
+        if (fate := _condition(family, crossed)) is not None:
             return reached, PathEnd(fate, number, _point(family, current))
         reached.append(crossed)
         current = crossed
-    steps, done = follow(family, current, beside(edge, -side, window / 10**6), window / _MIN_STEPS)
+    steps, done = follow(family.branches, current, beside(edge, -side, window / 10**6), window / _MIN_STEPS)
     reached += steps
     return reached, PathEnd(
         Fate.WINDOW if done else Fate.UNDECIDED, edge, _point(family, steps[-1] if steps else current)
@@ -175,31 +169,30 @@ def _distances(window: Fraction, gap: Fraction) -> tuple[Fraction, Fraction]:
     return first, first / 2**10
 
 
-def _condition(family: LineSystem, line: Line, reached: Reached) -> Fate | None:
+def _condition(family: LineSystem, reached: Reached) -> Fate | None:
     """What a solution loses at a critical value that it passes: an inequality, or stability that is given by signs."""
-    system = family.system
-    conditions = [(Fate.EXCLUDED, p) for p in system.inequalities]
-    if not system.has_index:
-        conditions += [(Fate.UNSTABLE, p) for p in system.stability]
-    for fate, p in conditions:
-        value = value_at(family, line, reached, p)
+    conditions = [(Fate.EXCLUDED, f) for f in family.formulas.inequalities]
+    if not family.system.has_index:
+        conditions += [(Fate.UNSTABLE, f) for f in family.formulas.stability]
+    for fate, formula in conditions:
+        (value,) = family.values_at([formula], reached)
         if not value > 0:
             return fate if value < 0 else Fate.UNDECIDED
     return None
 
 
-def _meeting(family: LineSystem, line: Line, number: AlgebraicNumber, current: Reached, after: Fraction) -> PathEnd:
+def _meeting(family: LineSystem, number: AlgebraicNumber, current: Reached, after: Fraction) -> PathEnd:
     """Which solutions meet at a critical value that the path does not pass."""
     stopped = PathEnd(Fate.UNDECIDED, number, _point(family, current))
-    found = what_meets(family, line, current, after)
+    found = what_meets(family, current, after)
     if found is None:
         return stopped
     stable = [s.place for s in found.beyond if s.negative == 0]
-    told = _descends(family, line) and len(stable) == 1
+    told = _descends(family) and len(stable) == 1
     if len(found.meeting) == len(found.leaving) == 1 and not told:
         return stopped  # it goes on, and has not been followed
     met = replace(stopped, fate=Fate.VANISH, meeting=found.meeting, leaving=found.leaving, among=found.among)
-    at = landing(family, line, number, found, current, stable[0]) if told else None
+    at = landing(family, number, found, current, stable[0]) if told else None
     if at is None:
         return met
     sides = _sides(family, number.low, number.high, tuple(_ball(u) for u in at.unknowns))
@@ -212,10 +205,10 @@ def _meeting(family: LineSystem, line: Line, number: AlgebraicNumber, current: R
     )
 
 
-def _descends(family: LineSystem, line: Line) -> bool:
+def _descends(family: LineSystem) -> bool:
     """Whether every descent ends at an equilibrium: solutions are all critical points of one function on a torus."""
     system = family.system
-    return system.has_index and system.is_on_torus and not moved(family.model, line.parameters)
+    return system.has_index and system.is_on_torus and not moved(family.line.model, family.line.parameters)
 
 
 def _ball(enclosure: Enclosure) -> arb:

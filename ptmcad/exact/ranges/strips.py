@@ -15,7 +15,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
-from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, isolate, refine, simplest_between
+from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, isolate, refine
 from ptmcad.answer.counts import operation_number
 from ptmcad.exact.cad.adjacency import Crossing, cross
 from ptmcad.exact.cad.curves import FibredCurve, by_component
@@ -23,6 +23,7 @@ from ptmcad.exact.cad.stacks import BaseEnd, StackData
 from ptmcad.exact.ranges.line import runs
 from ptmcad.exact.stages import counts_of, decomposition_of, lines_across, problem_of
 from ptmcad.question.slice import Slice, without_free_lengths
+from ptmcad.text.flint_numbers import simplest_between
 
 
 @dataclass(frozen=True, slots=True)
