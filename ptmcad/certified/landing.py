@@ -15,15 +15,14 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import arb, arb_mat, ctx, fmpq
+from flint import arb, ctx
 
 from ptmcad.answer.paths import PathPoint, Target
-from ptmcad.certified.arb_isolation import Box, newton, refined
 from ptmcad.certified.plain.chart import determinant
-from ptmcad.certified.system import EquationSystem, system
-from ptmcad.formulas.balls import evaluated, run_arb
+from ptmcad.formulas.balls import evaluated
 from ptmcad.formulas.continuation import BranchEquations, Reached, at_value, branch_equations, nearer, over_range
 from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.values import substituted
 from ptmcad.model import Mechanism
 from ptmcad.question.line import compiled_on
 from ptmcad.text.balls import ball_of, ball_over, enclosure_of
@@ -31,8 +30,6 @@ from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import Expression
 
 BITS = 192
-_PASSES = 12
-"""Of Newton's method from the last place of a branch to where it ends."""
 _NEAREST = Fraction(1, 2**60)
 """How near to a critical value a branch is carried, against its distance."""
 
@@ -51,12 +48,12 @@ class LineFormulas(NamedTuple):
     Attributes
     ----------
     equations : of equilibrium.
-    folds : the same and the Hessian's determinant, with the axis as a further unknown, the first one.
+    folds : the same and the Hessian's determinant, with the axis as a further unknown, the last one, and no parameter.
     numbers : the energy, its slope along the line, and the heights of the rising points.
     """
 
     equations: BranchEquations
-    folds: EquationSystem
+    folds: BranchEquations
     numbers: Sequence[Formula]
 
 
@@ -68,9 +65,11 @@ def line_formulas(mechanism: Mechanism, parameters: Mapping[str, Expression]) ->
     slopes = [derivative(energy, k) for k in at.unknowns]
     hessian = tuple(tuple(derivative(f, k) for k in at.unknowns) for f in slopes)
     heights = (at.points[name][1] for name in mechanism.rising)
+    axis = {0: at.graph.variable(len(slopes) + 1)}
+    folds = [substituted(f, axis) for f in (*slopes, determinant(hessian))]
     return LineFormulas(
         branch_equations(slopes, len(slopes)),
-        system([*slopes, determinant(hessian)], [0, *at.unknowns]),
+        branch_equations(folds, len(slopes)),
         [energy, derivative(energy, 0), *heights],
     )
 
@@ -155,26 +154,10 @@ def _limit(line: LineFormulas, at: Enclosure, place: Reached) -> arb:
     return energy + 2 * between.rad() * slope * arb(0, 1)
 
 
-def _fold(line: LineFormulas, at: Enclosure, place: Reached) -> Box | None:
+def _fold(line: LineFormulas, at: Enclosure, place: Reached) -> tuple[arb, ...] | None:
     """The degenerate pose at a critical value that Newton's method finds from a place beside; None without proof."""
-    folds = line.folds
-    variables, size = [int(k) for k in folds.unknowns], len(folds.unknowns)
-    box = [ball_of(at.center), *place.point]
-    for _ in range(_PASSES):
-        for k in variables:
-            box[k] = box[k].mid()
-        values = run_arb(folds.tape, box, ctx.prec)
-        jacobian = arb_mat(size, size, [values[int(place)].mid() for place in folds.jacobian.flat])
-        try:
-            move = jacobian.solve(arb_mat(size, 1, [values[int(place)].mid() for place in folds.equations]))
-        except ZeroDivisionError:
-            return None
-        for n, k in enumerate(variables):
-            box[k] = box[k] - move[n, 0]
-    for k in variables:
-        box[k] = arb(box[k].mid(), arb(fmpq(1, 2 ** (ctx.prec // 3))))
-    step = newton(folds, tuple(box), ctx.prec) if all(box[k].is_finite() for k in variables) else None
-    if step is None or not step[1]:
+    tube = at_value(line.folds, Fraction(0), (*place.point, ball_of(at.center)))
+    if tube is None:
         return None
-    found = refined(folds, tuple(box), ctx.prec)
-    return found if found[0].overlaps(ball_over(at.low, at.high)) else None
+    *angles, value = tube.hull()
+    return (value, *angles) if value.overlaps(ball_over(at.low, at.high)) else None

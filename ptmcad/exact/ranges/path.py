@@ -17,11 +17,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import arb, ctx
 
-from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
+from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, Target
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
 from ptmcad.exact.poses import exact_poses
@@ -34,7 +34,6 @@ from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice, moved
 from ptmcad.text.balls import ball_of, ball_over, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.parsing import number_for
 
 _MIN_DISTANCE = Fraction(1, 10**5)
 """How near to a critical value a branch is followed, against the window's width."""
@@ -43,67 +42,60 @@ _MIN_STEPS = 64
 """The longest step is this part of the window, so that a polyline through the points looks smooth."""
 
 
-def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, number: int | None = None) -> PosePaths:
-    """Follow stable poses along a line, from their places at one value of the axis.
+class ExactFollower(NamedTuple):
+    """A line on which poses are followed from a value that is not critical.
 
-    Parameters
+    Attributes
     ----------
-    start : the value, inside the window and not critical.
-    number : which pose, counted from 1 as ``ptmcad solve`` lists them; None for every stable one.
+    critical : the critical values of the line in the window, in increasing order.
+    poses : all at the start.
+    """
+
+    family: LineSystem
+    critical: tuple[AlgebraicNumber, ...]
+    start: Fraction
+    poses: tuple[Pose, ...]
+
+    def path(self, number: int) -> PosePath:
+        """One of the poses, counted from 1, in both directions.
+
+        Raises
+        ------
+        ConfigError
+            Where it is too near to a degenerate one.
+        """
+        family, start, pose = self.family, self.start, self.poses[number - 1]
+        box = at_value(family.branches, start, _guess(pose))
+        if box is None:
+            raise ConfigError(
+                f"pose {number} at {family.line.along.name} = {start} is too near to a degenerate one to be followed "
+                f"at {BITS} bits: start farther away",
+                key="--path",
+            )
+        origin = Reached(start, box, box)
+        left = _one_way(family, [n for n in reversed(self.critical) if n.compare(start) < 0], origin, -1)
+        right = _one_way(family, [n for n in self.critical if n.compare(start) > 0], origin, 1)
+        reached = [*reversed(left[0]), origin, *right[0]]
+        sides = [_sides(family, r.over.low, r.over.high, r.over.hull()) for r in reached]
+        return PosePath.of(number, start, [_point(family, r) for r in reached], (left[1], right[1]), sides)
+
+
+def follower(slice: Slice, along: str, at: Mapping[str, Any], start: Fraction) -> ExactFollower:
+    """What follows the poses of a line from one of its values.
 
     Raises
     ------
     ConfigError
-        When the start is outside the window or critical, or there is no such stable pose.
+        When the start is critical, and as `ptmcad.question.line.line_of`.
     HypothesisError
         As for `ptmcad.ask.ranges.intervals`.
-
-    Of a system that does not say what a stable solution is, all solutions are followed.
     """
     line = line_of(slice, along, at)
-    axis = line.along
-    value = number_for("--path", start)
-    if not axis.low < value < axis.high:
-        raise ConfigError(f"{value} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path")
     numbers = tuple(n for n, _ in critical_values(line))
-    if any(n.compare(value) == 0 for n in numbers) and not is_regular(line, value):
-        raise ConfigError(f"{along} = {value} is a critical value: start beside it", key="--path")
-    family = line_system(line)
-    poses = exact_poses(slice.model, line.values(value), DIGITS)
-    stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable or not slice.model.tells_stability]
-    if number is not None and number - 1 not in stable:
-        what = "stable poses" if slice.model.tells_stability else "solutions"
-        raise ConfigError(
-            f"{number} is none of the {len(stable)} {what} at {along} = {value}, counted from 1", key="--pose"
-        )
-    chosen = stable if number is None else [number - 1]
-    return PosePaths(
-        slice.name,
-        slice.model,
-        axis,
-        line.at,
-        value,
-        tuple(_path(family, numbers, poses.equilibria[k], k + 1, value) for k in chosen),
-        moved(slice.model, line.parameters),
-    )
-
-
-def _path(family: LineSystem, numbers: Sequence[AlgebraicNumber], pose: Pose, number: int, start: Fraction) -> PosePath:
-    box = at_value(family.branches, start, _guess(pose))
-    if box is None:
-        raise ConfigError(
-            f"pose {number} at {family.line.along.name} = {start} is too near to a degenerate one to be followed at "
-            f"{BITS} bits: start farther away",
-            key="--path",
-        )
-    origin = Reached(start, box, box)
-    left = _one_way(family, [n for n in reversed(numbers) if n.compare(start) < 0], origin, -1)
-    right = _one_way(family, [n for n in numbers if n.compare(start) > 0], origin, 1)
-    reached = [*reversed(left[0]), origin, *right[0]]
-    sides = [_sides(family, r.over.low, r.over.high, r.over.hull()) for r in reached]
-    upright, reverse = (all(signs and set(signs) == {of} for signs in sides) for of in (1, -1))
-    points = tuple(_point(family, r) for r in reached)
-    return PosePath(number, start, points, left[1], right[1], upright, reverse)
+    if any(n.compare(start) == 0 for n in numbers) and not is_regular(line, start):
+        raise ConfigError(f"{along} = {start} is a critical value: start beside it", key="--path")
+    poses = exact_poses(slice.model, line.values(start), DIGITS).equilibria
+    return ExactFollower(line_system(line), numbers, start, poses)
 
 
 def _guess(pose: Pose) -> Vector:
