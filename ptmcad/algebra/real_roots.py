@@ -52,6 +52,16 @@ def sign_at(p: fmpz_poly, at: fmpq) -> int:
     return sign(fmpq(p(at)))
 
 
+def order(at: fmpq, root: RealRoot) -> int:
+    """The sign of a rational number minus a root."""
+    if root.is_rational:
+        return sign(at - root.low)
+    if not root.low < at < root.high:
+        return -1 if at <= root.low else 1
+    here = sign_at(root.polynomial, at)
+    return 0 if here == 0 else 1 if here == sign_at(root.polynomial, root.high) else -1
+
+
 def squarefree_part(p: fmpz_poly) -> fmpz_poly:
     """p divided by gcd(p, p')."""
     if p.degree() < 1:
