@@ -67,7 +67,7 @@ def follower(slice: Slice, along: str, at: Mapping[str, Any], start: Fraction) -
     intervals = certified_intervals(slice, along, at, DIGITS)
     varying, _, value = varying_axis(slice, along, at)
     line = SolutionsOnLine(slice, varying, value, DIGITS)
-    inside = any(i.low.high < start < i.high.low for i in intervals.intervals)
+    inside = any(low < start < high for low, high in intervals.stretches)
     here = line.at(start) if inside else None
     if here is None:
         raise ConfigError(f"{along} = {start} is a critical value, or not told from one: start beside it", key="--path")
@@ -150,7 +150,7 @@ class JoinedFollower:
 
     def _values(self, start: Fraction, side: int) -> Iterator[tuple[Fraction, CertifiedChange | None]]:
         """Values from the start in one direction; with a change the first one beyond it."""
-        stretches = [(i.low.high, i.high.low) for i in self.intervals.intervals]
+        stretches = self.intervals.stretches
         changes = list(self.intervals.changes)
         if side < 0:
             stretches = [(b, a) for a, b in reversed(stretches)]
@@ -220,25 +220,19 @@ class JoinedFollower:
         if self.moved or model.reals or not model.has_potential or leaving.count(0) > 1:
             return met
         way = descent(lambda point: track.at(share, point), at)
-        target = None if way is None else self._found(after, way[-1])
-        if way is None or target is None:
+        goal = None if way is None else self._found(after, way[-1])
+        if way is None or goal is None:
             return met
         merges = leaving == (0,)
-        places = (self._point(current), self._point(_Reached(value, way[-1], target)))
+        places = (self._point(current), self._point(_Reached(value, way[-1], goal)))
         line = line_formulas(model, self.line.parameters)
         found = (merger if merges else landing)(line, change.at, *places)
         if found is None:
             return met
-        reached = found.target
         if not merges:  # a path's angles may have turned on; those of a pose that is jumped to are told as any pose's
-            reached = replace(reached, angles=tuple(map(_principal, reached.angles)))
-        return replace(
-            met,
-            fate=Fate.MERGE if merges else Fate.SNAP,
-            energy=found.energy,
-            target=reached,
-            target_energy=found.target_energy,
-        )
+            target = replace(found.target, angles=tuple(map(_principal, found.target.angles)))
+            found = found._replace(target=target)
+        return replace(met, fate=Fate.MERGE if merges else Fate.SNAP, **found._asdict())
 
     def _point(self, reached: _Reached) -> PathPoint:
         pose = reached.pose

@@ -17,10 +17,18 @@ from typing import NamedTuple
 
 from flint import arb, ctx
 
-from ptmcad.answer.paths import PathPoint, Target
+from ptmcad.answer.paths import Landing, PathPoint, Target
 from ptmcad.certified.plain.chart import determinant
-from ptmcad.formulas.balls import evaluated
-from ptmcad.formulas.continuation import BranchEquations, Reached, at_value, branch_equations, nearer, over_range
+from ptmcad.formulas.balls import evaluated, signs_of
+from ptmcad.formulas.continuation import (
+    BranchEquations,
+    Reached,
+    at_value,
+    branch_equations,
+    in_the_limit,
+    nearer,
+    over_range,
+)
 from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.values import substituted
 from ptmcad.model import Mechanism
@@ -34,14 +42,6 @@ _NEAREST = Fraction(1, 2**60)
 """How near to a critical value a branch is carried, against its distance."""
 
 
-class BranchEnd(NamedTuple):
-    """The pose that is reached at a critical value, its energy, and that of the branch that ends there."""
-
-    target: Target
-    energy: Enclosure
-    target_energy: Enclosure
-
-
 class LineFormulas(NamedTuple):
     """A mechanism on unknown angles, on a line: variable 0 is the axis, the next ones are the angles.
 
@@ -49,7 +49,7 @@ class LineFormulas(NamedTuple):
     ----------
     equations : of equilibrium.
     folds : the same and the Hessian's determinant, with the axis as a further unknown, the last one, and no parameter.
-    numbers : the energy, its slope along the line, and the heights of the rising points.
+    numbers : the energy, and the heights of the rising points.
     """
 
     equations: BranchEquations
@@ -70,11 +70,11 @@ def line_formulas(mechanism: Mechanism, parameters: Mapping[str, Expression]) ->
     return LineFormulas(
         branch_equations(slopes, len(slopes)),
         branch_equations(folds, len(slopes)),
-        [energy, derivative(energy, 0), *heights],
+        [energy, *heights],
     )
 
 
-def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> BranchEnd | None:
+def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> Landing | None:
     """What holds at a critical value; None where that is not proved.
 
     Parameters
@@ -93,12 +93,11 @@ def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoin
         if tube is None:
             return None
         there = tube.hull()
-        reached, _, *heights = evaluated(line.numbers, (ball_over(at.low, at.high), *there))
-        sides = tuple(1 if y > 0 else -1 if y < 0 else 0 for y in heights)
-        return BranchEnd(Target(tuple(map(enclosure_of, there)), (), sides), energy, enclosure_of(reached))
+        reached, *heights = evaluated(line.numbers, (ball_over(at.low, at.high), *there))
+        return Landing(Target(tuple(map(enclosure_of, there)), (), signs_of(heights)), energy, enclosure_of(reached))
 
 
-def merger(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> BranchEnd | None:
+def merger(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> Landing | None:
     """The same where the pose beyond is what several become, of which ``last`` is one; None where that is not proved.
 
     The pose in which they merge is told, without proof, to lie about where those on both sides are, no farther off than
@@ -111,7 +110,7 @@ def merger(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint
         b if (ball_of(b.low).union(ball_of(b.high)) / arb.pi()).contains_integer() else _around(a, b)
         for a, b in zip(last.angles, beyond.angles, strict=True)
     )
-    return BranchEnd(Target(angles, (), beyond.sides), energy, energy)
+    return Landing(Target(angles, (), beyond.sides), energy, energy)
 
 
 def _around(first: Enclosure, second: Enclosure) -> Enclosure:
@@ -126,7 +125,7 @@ def _energy_at(line: LineFormulas, at: Enclosure, last: PathPoint) -> Enclosure 
         place = _located(line, last)
         if place is None:
             return None
-        limit = _limit(line, at, place)
+        limit = in_the_limit(line.numbers[0], place, at.low, at.high, line.equations.angles)
         fold = _fold(line, at, place)
         if fold is None:
             return enclosure_of(limit)
@@ -143,15 +142,6 @@ def _located(line: LineFormulas, point: PathPoint) -> Reached | None:
     ):
         return None
     return Reached(point.value, place, place)
-
-
-def _limit(line: LineFormulas, at: Enclosure, place: Reached) -> arb:
-    """The energy of a branch at the critical value, from a place beside."""
-    between = ball_of(place.value).union(ball_over(at.low, at.high))
-    anywhere = (arb.pi() * arb(0, 1),) * line.equations.angles
-    (slope,) = evaluated(line.numbers[1:2], (between, *anywhere))
-    (energy,) = evaluated(line.numbers[:1], (ball_of(place.value), *place.point))
-    return energy + 2 * between.rad() * slope * arb(0, 1)
 
 
 def _fold(line: LineFormulas, at: Enclosure, place: Reached) -> tuple[arb, ...] | None:

@@ -11,7 +11,7 @@ Johansson, Arb: efficient arbitrary-precision midpoint-radius interval arithmeti
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
@@ -89,6 +89,11 @@ def evaluated(formulas: Sequence[Formula], box: Sequence[arb]) -> list[arb]:
     tape = record([formulas])
     values = run_arb(tape, box, ctx.prec)
     return [values[int(place)] for place in tape.outputs[0]]
+
+
+def signs_of(values: Iterable[arb]) -> tuple[int, ...]:
+    """Of each ball 1 where it is positive, -1 where it is negative, else 0."""
+    return tuple(1 if value > 0 else -1 if value < 0 else 0 for value in values)
 
 
 def _length(x: arb, y: arb) -> arb:

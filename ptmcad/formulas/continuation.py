@@ -15,7 +15,7 @@ from fractions import Fraction
 
 from flint import arb, arb_mat, ctx, fmpq
 
-from ptmcad.formulas.balls import run_arb
+from ptmcad.formulas.balls import evaluated, run_arb
 from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.text.balls import ball_of, ball_over
@@ -329,3 +329,16 @@ def over_range(family: BranchEquations, start: Reached, low: Fraction, high: Fra
     across = bridge(family, start, end)
     tube = None if across is None else enclose(family, low, high, across.point)
     return tube if across is not None and tube is not None and across.over.holds(tube, end) else None
+
+
+def in_the_limit(potential: Formula, place: Reached, low: Fraction, high: Fraction, angles: int) -> arb:
+    """The value of a function to which it tends along a branch of its critical points, at any value in a range.
+
+    It changes with the parameter alone, which is bounded as all unknowns are angles.
+    """
+    low, high = min(place.value, low), max(place.value, high)
+    with ctx.workprec(BITS):
+        (value,) = evaluated([potential], (ball_of(place.value), *place.point))
+        anywhere = (arb(0, 4),) * angles
+        (slope,) = evaluated([potential.graph.derivative(potential, 0)], (ball_over(low, high), *anywhere))
+        return value + ball_of(high - low) * slope * arb(0, 1)

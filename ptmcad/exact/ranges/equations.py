@@ -11,7 +11,7 @@ from flint import arb, ctx
 
 from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import ParametricSystem, Part, Terms
-from ptmcad.formulas.balls import evaluated
+from ptmcad.formulas.balls import evaluated, signs_of
 from ptmcad.formulas.continuation import BITS, BranchEquations, Reached, Vector, branch_equations
 from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.formulas.rational import expression_formula
@@ -39,6 +39,10 @@ class LineSystem:
         """Formulas on the line for all parameters from low to high, at balls of the unknowns."""
         with ctx.workprec(BITS):
             return evaluated(formulas, (ball_over(low, high), *point))
+
+    def sides(self, low: Fraction, high: Fraction, point: Vector) -> tuple[int, ...]:
+        """Of each rising point of a mechanism 1 where it is proved above the x axis, -1 where below, else 0."""
+        return signs_of(self.values(self.formulas.heights, low, high, point))
 
     def values_at(self, formulas: Sequence[Formula], reached: Reached) -> list[arb]:
         """Formulas on the line at a place of a branch."""

@@ -13,15 +13,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from math import pi
-from typing import NamedTuple
 
 from flint import arb, ctx
 
+from ptmcad.answer.paths import Landing, Target
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.ranges.equations import LineSystem
 from ptmcad.exact.ranges.meeting import Meeting, what_meets
-from ptmcad.formulas.continuation import BITS, Reached, nearer, over_range
-from ptmcad.text.balls import ball_of, ball_over, enclosure_of
+from ptmcad.formulas.continuation import BITS, Reached, in_the_limit, nearer, over_range
+from ptmcad.text.balls import ball_over, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import simplest_fraction
 
@@ -30,24 +30,12 @@ _NEAREST = Fraction(1, 2**56)
 """How near to a critical value branches are followed for what holds there, against the window's width."""
 
 
-class LimitPose(NamedTuple):
-    """The stable pose at a critical value to which a state goes, and the energies.
-
-    Attributes
-    ----------
-    unknowns : the angles, not wrapped into one turn, then the unknowns on the line.
-    energy, target_energy : of the branch that ends, in the limit, and of the pose that is reached.
-    """
-
-    unknowns: tuple[Enclosure, ...]
-    energy: Enclosure
-    target_energy: Enclosure
-
-
 def landing(
     family: LineSystem, number: AlgebraicNumber, met: Meeting, current: Reached, target: Reached
-) -> LimitPose | None:
+) -> Landing | None:
     """What holds at the critical value where a branch ends; None where the pose that is reached is not proved.
+
+    Its angles are not wrapped into one turn.
 
     Parameters
     ----------
@@ -55,21 +43,32 @@ def landing(
     met : what the branch meets there.
     target : the only stable pose beyond.
     """
+    potential = family.formulas.smooth
+    assert potential is not None  # snaps and mergers are those of a potential
+
+    def energy(place: Reached) -> Enclosure:
+        found = in_the_limit(potential, place, number.low, number.high, family.angles)
+        with ctx.workprec(BITS):
+            return enclosure_of(found)
+
     side = 1 if target.value > current.value else -1
     distance = (family.line.along.high - family.line.along.low) * _NEAREST
     near, far = ends_from(number, side)
     before = nearer(family.branches, current, beside(near, -side, distance))
     after = nearer(family.branches, target, beside(far, side, distance))
-    energy = _limit(family, number, before)
+    at = None
     if 0 in met.leaving:
-        merged = _merged(family, number, before, after)
-        return None if merged is None else LimitPose(merged, energy, energy)
-    at = over_range(family.branches, after, number.low, number.high)
-    if at is None:
+        unknowns = _merged(family, number, before, after)
+    else:
+        at = over_range(family.branches, after, number.low, number.high)
+        with ctx.workprec(BITS):
+            unknowns = None if at is None else tuple(map(enclosure_of, at.hull()))
+    if unknowns is None:
         return None
     with ctx.workprec(BITS):
-        unknowns = tuple(map(enclosure_of, at.hull()))
-    return LimitPose(unknowns, energy, _limit(family, number, Reached(near, at, at)))
+        sides = family.sides(number.low, number.high, tuple(ball_over(u.low, u.high) for u in unknowns))
+    reached = Target(unknowns[: family.angles], unknowns[family.angles :], sides)
+    return Landing(reached, energy(before), energy(before if at is None else Reached(near, at, at)))
 
 
 def ends_from(number: AlgebraicNumber, side: int) -> tuple[Fraction, Fraction]:
@@ -80,18 +79,6 @@ def ends_from(number: AlgebraicNumber, side: int) -> tuple[Fraction, Fraction]:
 def beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
     """A short rational at a distance between gap / 2 and gap, at one side."""
     return simplest_fraction(value + side * gap / 2, value + side * gap)
-
-
-def _limit(family: LineSystem, number: AlgebraicNumber, place: Reached) -> Enclosure:
-    """The energy of a branch at the critical value to which it leads, from its energy at a place beside."""
-    potential = family.formulas.smooth
-    assert potential is not None  # snaps and mergers are those of a potential
-    low, high = min(place.value, number.low), max(place.value, number.high)
-    (there,) = family.values_at([potential], place)
-    anywhere = (arb(0, 4),) * family.angles  # there is no unknown on the line
-    (slope,) = family.values([potential.graph.derivative(potential, 0)], low, high, anywhere)
-    with ctx.workprec(BITS):
-        return enclosure_of(there + ball_of(high - low) * slope * arb(0, 1))
 
 
 def _merged(

@@ -19,9 +19,9 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from flint import arb, ctx
+from flint import ctx
 
-from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, Target
+from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
 from ptmcad.exact.poses import exact_poses
@@ -32,8 +32,8 @@ from ptmcad.exact.ranges.meeting import what_meets
 from ptmcad.formulas.continuation import BITS, Reached, Vector, at_value, bridge, follow
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice, moved
-from ptmcad.text.balls import ball_of, ball_over, enclosure_of
-from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.balls import ball_of, enclosure_of
+from ptmcad.text.enclosure import AlgebraicNumber
 
 _MIN_DISTANCE = Fraction(1, 10**5)
 """How near to a critical value a branch is followed, against the window's width."""
@@ -76,7 +76,7 @@ class ExactFollower(NamedTuple):
         left = _one_way(family, [n for n in reversed(self.critical) if n.compare(start) < 0], origin, -1)
         right = _one_way(family, [n for n in self.critical if n.compare(start) > 0], origin, 1)
         reached = [*reversed(left[0]), origin, *right[0]]
-        sides = [_sides(family, r.over.low, r.over.high, r.over.hull()) for r in reached]
+        sides = [family.sides(r.over.low, r.over.high, r.over.hull()) for r in reached]
         return PosePath.of(number, start, [_point(family, r) for r in reached], (left[1], right[1]), sides)
 
 
@@ -101,12 +101,6 @@ def follower(slice: Slice, along: str, at: Mapping[str, Any], start: Fraction) -
 def _guess(pose: Pose) -> Vector:
     with ctx.workprec(BITS):
         return tuple(ball_of(a.center) for a in (*pose.angles, *pose.reals))
-
-
-def _sides(family: LineSystem, low: Fraction, high: Fraction, unknowns: Vector) -> tuple[int, ...]:
-    """Of each rising point of a mechanism, 1 when it is proved above the x axis, -1 when below, else 0."""
-    heights = family.values(family.formulas.heights, low, high, unknowns)
-    return tuple(1 if y > 0 else -1 if y < 0 else 0 for y in heights)
 
 
 def _one_way(
@@ -184,17 +178,10 @@ def _meeting(family: LineSystem, number: AlgebraicNumber, current: Reached, afte
     if len(found.meeting) == len(found.leaving) == 1 and not told:
         return stopped  # it goes on, and has not been followed
     met = replace(stopped, fate=Fate.VANISH, meeting=found.meeting, leaving=found.leaving, among=found.among)
-    at = landing(family, number, found, current, stable[0]) if told else None
-    if at is None:
+    landed = landing(family, number, found, current, stable[0]) if told else None
+    if landed is None:
         return met
-    sides = _sides(family, number.low, number.high, tuple(_ball(u) for u in at.unknowns))
-    return replace(
-        met,
-        fate=Fate.MERGE if 0 in found.leaving else Fate.SNAP,
-        energy=at.energy,
-        target=Target(at.unknowns[: family.angles], at.unknowns[family.angles :], sides),
-        target_energy=at.target_energy,
-    )
+    return replace(met, fate=Fate.MERGE if 0 in found.leaving else Fate.SNAP, **landed._asdict())
 
 
 def _descends(family: LineSystem) -> bool:
@@ -203,13 +190,8 @@ def _descends(family: LineSystem) -> bool:
     return system.has_index and system.is_on_torus and not moved(family.line.model, family.line.parameters)
 
 
-def _ball(enclosure: Enclosure) -> arb:
-    with ctx.workprec(BITS):
-        return ball_over(enclosure.low, enclosure.high)
-
-
 def _point(family: LineSystem, reached: Reached) -> PathPoint:
     with ctx.workprec(BITS):
         unknowns = tuple(map(enclosure_of, reached.point))
-    sides = _sides(family, reached.value, reached.value, reached.point)
+    sides = family.sides(reached.value, reached.value, reached.point)
     return PathPoint(reached.value, unknowns[: family.angles], unknowns[family.angles :], sides)
