@@ -42,10 +42,10 @@ from ptmcad.algebra.real_roots import (
     isolate,
     refine,
     sign_at,
-    simplest_between,
     squarefree_part,
 )
 from ptmcad.algebra.resultants import discriminant
+from ptmcad.text.flint_numbers import simplest_between
 
 MAX_WORK = 2 * 10**10
 """Of a discriminant: values, times the cube of the degree, times the bits of a coefficient; some twenty seconds."""

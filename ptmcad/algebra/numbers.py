@@ -11,7 +11,7 @@ from fractions import Fraction
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_plane
-from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine, sign_at, simplest_between
+from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, order, refine
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
@@ -49,12 +49,7 @@ def compare(a: AlgebraicNumber, b: AlgebraicNumber | Fraction) -> int:
         while a.low <= b.high and b.low <= a.high:
             a, b = refined(a, (a.high - a.low) / 2 or Fraction(1)), refined(b, (b.high - b.low) / 2 or Fraction(1))
         return 1 if a.low > b.high else -1
-    if a.low == a.high:
-        return (a.low > b) - (a.low < b)
-    if b <= a.low or b >= a.high:
-        return 1 if b <= a.low else -1
-    p = UnivariatePolynomial(list(a.polynomial))
-    return 1 if sign_at(p, from_fraction(b)) == sign_at(p, from_fraction(a.low)) else -1
+    return -order(from_fraction(b), root_of(a))
 
 
 def _one_root(number: AlgebraicNumber, low: Fraction, high: Fraction) -> bool:
@@ -80,12 +75,6 @@ def in_order(
     short = [refine(root_of(number), from_fraction(width)) for number in numbers]
     found = inside(disjoint(short), (from_fraction(low), from_fraction(high)))
     return tuple(algebraic_number(r) for r in found)
-
-
-def simplest_fraction(one: Fraction, other: Fraction) -> Fraction:
-    """The simplest one strictly between two numbers."""
-    low, high = sorted((one, other))
-    return to_fraction(simplest_between(from_fraction(low), from_fraction(high)))
 
 
 def as_interval(number: AlgebraicNumber) -> tuple[fmpq, fmpq]:

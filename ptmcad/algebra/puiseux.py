@@ -20,7 +20,8 @@ from typing import NamedTuple
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
 from ptmcad.algebra.branches import SeriesTube, TooFewBits, local_coefficients, shifted, tube_around
-from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
+from ptmcad.algebra.real_roots import RealRoot, refine
+from ptmcad.text.flint_numbers import simplest_between
 
 _STAGES = 4
 """Newton polygons for one branch."""

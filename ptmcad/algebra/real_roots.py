@@ -52,6 +52,16 @@ def sign_at(p: fmpz_poly, at: fmpq) -> int:
     return sign(fmpq(p(at)))
 
 
+def order(at: fmpq, root: RealRoot) -> int:
+    """The sign of a rational number minus a root."""
+    if root.is_rational:
+        return sign(at - root.low)
+    if not root.low < at < root.high:
+        return -1 if at <= root.low else 1
+    here = sign_at(root.polynomial, at)
+    return 0 if here == 0 else 1 if here == sign_at(root.polynomial, root.high) else -1
+
+
 def squarefree_part(p: fmpz_poly) -> fmpz_poly:
     """p divided by gcd(p, p')."""
     if p.degree() < 1:
@@ -236,25 +246,3 @@ def gaps(isolated: Sequence[Any], window: tuple[Any, Any]) -> list[tuple[Any, An
     """The parts of a window between the intervals of numbers in it, which are disjoint and in increasing order."""
     ends = [window[0], *(end for number in isolated for end in (number.low, number.high)), window[1]]
     return list(zip(ends[::2], ends[1::2], strict=True))
-
-
-def simplest_between(low: fmpq, high: fmpq) -> fmpq:
-    """The rational with the smallest denominator strictly between low and high, the one nearest to zero of these."""
-    if low < 0 < high:
-        return fmpq(0)
-    if high <= 0:
-        return -simplest_between(-high, -low)
-    # continued fraction descent in integers: no fraction has to be reduced on the way
-    numerator, denominator, upper, lower = int(low.p), int(low.q), int(high.p), int(high.q)
-    a, b, c, d = 1, 0, 0, 1
-    while True:
-        whole, rest = divmod(numerator, denominator)
-        excess = upper - whole * lower
-        if excess > lower:  # whole + 1 lies below the upper end
-            return fmpq(a * (whole + 1) + b, c * (whole + 1) + d)
-        a, b, c, d = a * whole + b, a, c * whole + d, c
-        if rest == 0:  # the smallest 1/t below the rest of the upper end, t integer
-            t = lower // excess + 1
-            return fmpq(a * t + b, c * t + d)
-        # both in (0, 1]; take reciprocals
-        numerator, denominator, upper, lower = lower, excess, denominator, rest

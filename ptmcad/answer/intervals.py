@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
-from itertools import groupby
+from itertools import groupby, pairwise
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.counts import Counts, MorseIndex, euler_sum
@@ -182,6 +182,12 @@ class CountIntervals:
         return f"<CountIntervals of {self.name} along {self.along.name}: {found} in turn>"
 
     @property
+    def stretches(self) -> list[tuple[Fraction, Fraction]]:
+        """Intervals without a critical value, between rational numbers, from the lower edge to the upper one."""
+        ends: list[End] = [self.along.low, *(change.at for change in self.changes), self.along.high]
+        return [(upper(a), lower(b)) for a, b in pairwise(ends)]
+
+    @property
     def operation(self) -> tuple[OperationSpan, ...]:
         """The operation range: where there are so many stable solutions; of the paper's mechanism two."""
         groups = groupby(self.intervals, lambda i: i.counts.working == self.working)
@@ -238,3 +244,8 @@ class CertifiedIntervals:
     at: Mapping[str, Fraction]
     intervals: tuple[CertifiedInterval, ...]
     changes: tuple[CertifiedChange, ...]
+
+    @property
+    def stretches(self) -> list[tuple[Fraction, Fraction]]:
+        """Intervals without a critical value, between rational numbers, from the lower edge to the upper one."""
+        return [(interval.low.high, interval.high.low) for interval in self.intervals]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
+from typing import NamedTuple
 
 from ptmcad.answer import with_methods
 from ptmcad.model import Model
@@ -46,6 +47,14 @@ class Target:
     angles: tuple[Enclosure, ...]
     reals: tuple[Enclosure, ...] = ()
     sides: tuple[int, ...] = ()
+
+
+class Landing(NamedTuple):
+    """The pose to which a state goes at a critical value, and the energies; as in `PathEnd`."""
+
+    target: Target
+    energy: Enclosure
+    target_energy: Enclosure
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +107,20 @@ class PosePath:
     high: PathEnd
     upright: bool
     reverse: bool
+
+    @classmethod
+    def of(
+        cls,
+        number: int,
+        start: Fraction,
+        points: Iterable[PathPoint],
+        ends: tuple[PathEnd, PathEnd],
+        sides: Iterable[Sequence[int]],
+    ) -> PosePath:
+        """A path from its points and ends, and the sides of moving points: 1 above the x axis, -1 below, else 0."""
+        own = list(map(set, sides))
+        upright, reverse = (all(here == {of} for here in own) for of in (1, -1))
+        return cls(number, start, tuple(points), *ends, upright, reverse)
 
     def __repr__(self) -> str:
         ends = f"{self.low.fate.name.lower()} below, {self.high.fate.name.lower()} above"

@@ -14,7 +14,6 @@ from itertools import pairwise
 from math import acos, cos, inf, pi
 from typing import Any, NamedTuple
 
-from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.changes import Changes
 from ptmcad.answer.family import FamilyMap
@@ -25,7 +24,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.exact.strips import BoundaryStrips
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.doubles import within_doubles
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import simplest_fraction
 from ptmcad.text.parsing import share_for
 
 TOLERANCE = Fraction(1, 100)
@@ -157,7 +156,7 @@ class _SurfaceSearch:
         self, common: Common, changes: Changes, tolerance: Fraction, max_members: int, options: Options
     ) -> None:
         first = Members(common, options)
-        base = next((p.variety.base for v in changes.between if (p := first.tried(v)) is not None), None)
+        base = next((p.cut.variety.base for v in changes.between if (p := first.tried(v)) is not None), None)
         self.members = Members(common, options, base)
         self.tolerance, self.max_members = tolerance, max_members
         self.slabs = _slabs(changes, self.members)
@@ -268,7 +267,7 @@ def _value(slab: tuple[Fraction, Fraction], place: float, around: tuple[Fraction
     least, most = max(value - near, around[0] + fourth), min(value + near, around[1] - fourth)
     if least >= most:
         least, most = around[0] + fourth, around[1] - fourth
-    return to_fraction(simplest_between(from_fraction(least), from_fraction(most)))
+    return simplest_fraction(least, most)
 
 
 def _place(slab: tuple[Fraction, Fraction], value: Fraction) -> float:
@@ -281,17 +280,14 @@ def _slabs(changes: Changes, members: Members) -> list[tuple[Fraction, Fraction]
     free = changes.free
     near = NEAR * (free.high - free.low)
 
-    def beside(a: Fraction, b: Fraction) -> Fraction:
-        return to_fraction(simplest_between(from_fraction(a), from_fraction(b)))
-
     def end(value: Fraction, words: Sequence[str], inner: Fraction) -> Fraction:
-        return beside(*sorted((value, inner))) if words or members.tried(value) is None else value
+        return simplest_fraction(value, inner) if words or members.tried(value) is None else value
 
     lows, highs = [end(free.low, changes.at_ends[0], free.low + near)], []
     for change in changes:
         # of an enclosure the ends are members themselves
         exact = change.is_exact
-        highs.append(beside(change.value.low - near, change.value.low) if exact else change.value.low)
-        lows.append(beside(change.value.high, change.value.high + near) if exact else change.value.high)
+        highs.append(simplest_fraction(change.value.low - near, change.value.low) if exact else change.value.low)
+        lows.append(simplest_fraction(change.value.high, change.value.high + near) if exact else change.value.high)
     highs.append(end(free.high, changes.at_ends[1], free.high - near))
     return [slab for slab in zip(lows, highs, strict=True) if slab[0] < slab[1]]

@@ -15,7 +15,6 @@ from math import cos, pi
 from typing import Any
 
 from ptmcad.answer.branches import Branch, Branches, BranchPoint
-from ptmcad.answer.intervals import End, lower, upper
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.quantities import Quantity, of_pose, quantity, unit_of
@@ -89,13 +88,10 @@ def _stretches(slice: Slice, along: str, at: Mapping[str, Any]) -> list[tuple[Fr
     if has_free_lengths(slice, along, at):
         from ptmcad.certified.intervals import certified_intervals
 
-        found = certified_intervals(slice, along, at, DIGITS)
-        return [(i.low.high, i.high.low) for i in found.intervals]
+        return certified_intervals(slice, along, at, DIGITS).stretches
     from ptmcad.exact.ranges.line import intervals
 
-    exact = intervals(slice, along, at)
-    ends: list[End] = [exact.along.low, *(c.at for c in exact.changes), exact.along.high]
-    return [(upper(a), lower(b)) for a, b in itertools.pairwise(ends)]
+    return intervals(slice, along, at).stretches
 
 
 def solutions_on_line(slice: Slice, along: str, at: Mapping[str, Any]) -> SolutionsOnLine:

@@ -17,7 +17,7 @@ from typing import Any
 from flint import fmpq
 
 from ptmcad.algebra.numbers import algebraic_number
-from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
+from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.changes import TOLERANCE, Change, Changes
 from ptmcad.ask.changewords import described
@@ -31,7 +31,7 @@ from ptmcad.exact.surfaces import surfaces_of
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.config import Family, family_from
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_between, simplest_fraction, to_fraction
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import share_for
 
@@ -215,8 +215,8 @@ def _typical(members: Members, low: Fraction, high: Fraction) -> tuple[Fraction,
     HypothesisError
         When the members that were tried have none.
     """
-    first = _simple_between(low, high)
-    for value in (first, _simple_between(low, first), _simple_between(first, high)):
+    first = simplest_fraction(low, high)
+    for value in (first, simplest_fraction(low, first), simplest_fraction(first, high)):
         picture = members.tried(value)
         if picture is not None:
             return value, picture
@@ -236,7 +236,7 @@ def _at_ends(members: Members, tolerance: Fraction) -> tuple[tuple[str, ...], tu
     places = ((free.low, free.low, free.low + gap), (free.high, free.high - gap, free.high))
     found: list[tuple[str, ...]] = []
     for end, low, high in places:
-        there, beside = members.tried(end), members.tried(_simple_between(low, high))
+        there, beside = members.tried(end), members.tried(simplest_fraction(low, high))
         found.append(() if there is None or beside is None or _same(beside, there) else described(beside, there))
     return found[0], found[1]
 
@@ -301,15 +301,11 @@ def _bisected(members: Members, tolerance: Fraction, reason: str) -> Changes:
 def _simple_alike(members: Members, low: Fraction, high: Fraction) -> Fraction:
     """A value of the closed interval with the arrangement that the samples in it have, the lower end being one."""
     if low < high:
-        value = _simple_between(low, high)
+        value = simplest_fraction(low, high)
         picture = members.tried(value)
         if picture is not None and _same(picture, members.at(low)):
             return value
     return low
-
-
-def _simple_between(low: Fraction, high: Fraction) -> Fraction:
-    return to_fraction(simplest_between(from_fraction(low), from_fraction(high)))
 
 
 def _brackets(members: Members, values: Sequence[Fraction], width: Fraction) -> Iterator[tuple[Fraction, Fraction]]:
@@ -318,7 +314,7 @@ def _brackets(members: Members, values: Sequence[Fraction], width: Fraction) -> 
     while open_:
         low, high = open_.pop()
         members.report("bisection", 0, 1)
-        middle = None if high - low <= width else _simple_between(*_middle(low, high))
+        middle = None if high - low <= width else simplest_fraction(*_middle(low, high))
         if middle is None or members.tried(middle) is None:
             yield low, high
             continue

@@ -40,7 +40,7 @@ def _groups(before: Picture, after: Picture) -> list[_Same]:
 
 def _shared(one: Picture, other: Picture) -> Iterator[tuple[int, int]]:
     """Regions of the one, and those of the other in which their samples lie."""
-    for region, point in zip(one.neighbours.region_of, one.stacks.points, strict=True):
+    for region, point in zip(one.neighbours.region_of, one.cut.points, strict=True):
         found = other.region_at(point)
         if found is not None:
             yield region, found

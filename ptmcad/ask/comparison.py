@@ -9,39 +9,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from flint import fmpq
-
-from ptmcad.algebra.real_roots import Interval
 from ptmcad.answer.comparison import Change, Comparison
 from ptmcad.answer.counts import counted_by
-from ptmcad.answer.regionmap import Cell, Component, Region, RegionMap, Status
+from ptmcad.answer.regionmap import HARMLESS, Cell, Component, Region, RegionMap, Status
 from ptmcad.ask.location import locate
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import A_MAP, ConfigError, expect
+from ptmcad.exact.areas import region_stacks
 from ptmcad.exact.assembly import critical_values_of, stacks_of_cells
-from ptmcad.exact.cad.area import RegionStacks, region_areas
-from ptmcad.exact.cad.curves import curves_of, lines_of
-from ptmcad.exact.cad.projection import Projection, predicted_cost, project
-from ptmcad.exact.cad.stacks import Avoided, StackData, lift
+from ptmcad.exact.cad.area import region_areas
+from ptmcad.exact.decomposition import Decomposition, cut_along, seen_from
+from ptmcad.exact.regions import members
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 TOLERANCE = Fraction(1, 10**6)
 """Relative width of the areas' bounds."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Cut:
-    """The window cut along some curves."""
-
-    base: int
-    projection: Projection
-    stacks: Sequence[StackData]
 
 
 def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE) -> Comparison:
@@ -57,10 +45,12 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
     if first.cover is not None and second.cover is not None:
         return _certified(first, first.cover, second, second.cover)
     components = _union([c for m in (first, second) for c in m.components if c.separates])
-    others = _union([replace(c, left_out="") for m in (first, second) for c in m.components if not c.separates])
+    # at a sample both maps have to say what they count there
+    others = [replace(c, left_out=HARMLESS) for m in (first, second) for c in m.components if not c.separates]
     x, y = ((from_fraction(a.low), from_fraction(a.high)) for a in first.slice.axes)
-    cut = _cut(components, others, (x, y))
-    points, count = _points(first, cut), first.slice.count
+    cut = cut_along((x, y), seen_from([*components, *_union(others)]))
+    names, count = first.slice.axis_names, first.slice.count
+    points = [Point(names, to_fraction(x), to_fraction(y)) for x, y in cut.points]
     with _asked("first"):
         befores = [_region(first, at) for at in points]
         olds = [counted_by(first.regions[a], count) for a in befores]
@@ -71,11 +61,7 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
     keys = list(zip(olds, news, strict=True))
     numbers = {key: n for n, key in enumerate(dict.fromkeys(keys))}
     of_cell = [numbers[key] for key in keys]
-    rest = iter(of_cell)
-    rows = [tuple(next(rest) for _ in stack.heights) for stack in cut.stacks]
-    window = (x, y)
-    parts = RegionStacks(cut.stacks, rows, curves_of(components, cut.base), window[cut.base], window[1 - cut.base])
-    bounds, _ = region_areas(parts, tolerance)
+    bounds, _ = region_areas(region_stacks(cut, of_cell), tolerance)
     changes = []
     for key, number in numbers.items():
         before, after = pairs[of_cell.index(number)]
@@ -137,24 +123,6 @@ def _union(components: Sequence[Component]) -> list[Component]:
     return list({c.polynomial: c for c in components}.values())
 
 
-def _cut(components: Sequence[Component], others: Sequence[Component], window: tuple[Interval, Interval]) -> _Cut:
-    costs = [predicted_cost(curves_of(components, base)) for base in (0, 1)]
-    base = 1 if costs[1] < costs[0] else 0
-    curves, lines = curves_of(components, base), list(lines_of(components, base).values())
-    projection = project(curves, lines, window[base], window[1 - base])
-    # at a sample both maps have to say what they count there
-    avoided = Avoided(curves_of(others, base), list(lines_of(others, base).values()))
-    return _Cut(base, projection, lift(curves, projection.abscissae, window[base], window[1 - base], avoided))
-
-
-def _points(result: RegionMap, cut: _Cut) -> list[Point]:
-    def point(u: fmpq, v: fmpq) -> Point:
-        x, y = (to_fraction(u), to_fraction(v))[:: -1 if cut.base else 1]
-        return Point(result.slice.axis_names, x, y)
-
-    return [point(stack.sample, height) for stack in cut.stacks for height in stack.heights]
-
-
 def _region(result: RegionMap, at: Point) -> int:
     found = locate(result, {name: at[name] for name in at.names}).region
     if found is None:
@@ -165,21 +133,19 @@ def _region(result: RegionMap, at: Point) -> int:
 def _as_map(
     first: RegionMap,
     components: Sequence[Component],
-    cut: _Cut,
+    cut: Decomposition,
     points: Sequence[Point],
     found: tuple[Sequence[int], Sequence[tuple[Fraction, Fraction]]],
 ) -> RegionMap:
     """The decomposition in the form that pictures read."""
     of_cell, bounds = found
-    places = [(s, level) for s, stack in enumerate(cut.stacks) for level in range(len(stack.heights))]
     cells = tuple(
         Cell(s, level, at, region, None, None, None)
-        for (s, level), at, region in zip(places, points, of_cell, strict=True)
+        for (s, level), at, region in zip(cut.places, points, of_cell, strict=True)
     )
-    members = [tuple(n for n, other in enumerate(of_cell) if other == region) for region in range(len(bounds))]
     return replace(
         first,
-        base=cut.base,
+        base=cut.variety.base,
         components=tuple(components),
         critical_values=critical_values_of(cut.projection),
         stacks=stacks_of_cells(cut.stacks),
@@ -188,7 +154,7 @@ def _as_map(
         non_adjacencies=(),
         regions=tuple(
             Region(None, None, None, area, numbers, points[numbers[0]])
-            for area, numbers in zip(bounds, members, strict=True)
+            for area, numbers in zip(bounds, members(of_cell), strict=True)
         ),
         plan=(),
     )

@@ -12,7 +12,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.design import BestDesign, Evaluation
 from ptmcad.ask.designing.optimiser import Enough, Point, best_of, within
 from ptmcad.ask.designing.proof import Proof, ProofLimits, bounded, bounder_of, exact_maximum, most_on_lines, place_of
@@ -24,7 +23,7 @@ from ptmcad.extras import Extra, require
 from ptmcad.options import Options, Progress
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.designs import design_from
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 from ptmcad.text.parsing import share_for
 
 TOLERANCE = Fraction(1, 100)

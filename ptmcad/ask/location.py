@@ -13,14 +13,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_expression, from_plane, univariate
-from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
+from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, order, sign_at, squarefree_part
 from ptmcad.answer.location import Location
-from ptmcad.answer.regionmap import Component, CriticalValue, Kind, RegionMap, Status
+from ptmcad.answer.regionmap import Component, Kind, RegionMap, Status
 from ptmcad.answer.words import noun
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, DegenerateSliceError, expect
 from ptmcad.exact.cad.curves import FibredCurve, curves_of
+from ptmcad.exact.cad.stacks import level_at
 from ptmcad.exact.models import system_from
 from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Point
@@ -71,8 +72,8 @@ def _cell_at(result: RegionMap, u: fmpq, v: fmpq) -> int:
     if on_critical:
         # the point lies on an artefact of the decomposition: step to the stack at its left along a free segment
         u = _step_left(result, curves, u, v, stack)
-    low = from_fraction(result.slice.axes[1 - result.base].low)
-    below = sum(_roots_below(c.fibre(u), low, v) for c in curves)
+    axis = result.slice.axes[1 - result.base]
+    below = level_at(curves, u, v, (from_fraction(axis.low), from_fraction(axis.high)))
     try:
         number = result.stacks[stack].cells[below]
         result.cells[number]
@@ -211,24 +212,11 @@ def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction
 def stack_over(result: RegionMap, u: fmpq) -> tuple[int, bool]:
     """The stack over u; or, when u is a critical value, the stack at its left and True."""
     for number, critical in enumerate(result.critical_values):
-        order = _compare(u, critical)
-        if order <= 0:
-            return number, order == 0
+        low, high = from_fraction(critical.low), from_fraction(critical.high)
+        side = order(u, RealRoot(UnivariatePolynomial(list(critical.polynomial)), low, high))
+        if side <= 0:
+            return number, side == 0
     return len(result.critical_values), False
-
-
-def _compare(u: fmpq, critical: CriticalValue) -> int:
-    """The sign of u minus the critical value."""
-    low, high = from_fraction(critical.low), from_fraction(critical.high)
-    if u < low or u > high:
-        return -1 if u < low else 1
-    if low == high:
-        return 0
-    p = UnivariatePolynomial(list(critical.polynomial))
-    at = sign_at(p, u)
-    if at == 0:
-        return 0
-    return -1 if at == sign_at(p, low) else 1
 
 
 def _step_left(result: RegionMap, curves: list[FibredCurve], u: fmpq, v: fmpq, stack: int) -> fmpq:
@@ -237,7 +225,3 @@ def _step_left(result: RegionMap, curves: list[FibredCurve], u: fmpq, v: fmpq, s
     while any(has_root_between(c.trace(v), u - width, u) for c in curves):
         width = width / 2
     return u - width
-
-
-def _roots_below(p: UnivariatePolynomial, low: fmpq, v: fmpq) -> int:
-    return len(isolate(p, low, v))

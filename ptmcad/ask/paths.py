@@ -22,7 +22,7 @@ import numpy as np
 
 from ptmcad.answer.intervals import CertifiedChange, CertifiedIntervals
 from ptmcad.answer.motion import Place
-from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
+from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath
 from ptmcad.answer.poses import Pose
 from ptmcad.ask.branches import Sample, SolutionsOnLine, values_between
 from ptmcad.ask.fields.course import Course
@@ -32,15 +32,13 @@ from ptmcad.ask.fields.field import unknowns_of
 from ptmcad.ask.fields.track import Track, followed
 from ptmcad.ask.quantities import open_chain
 from ptmcad.certified.intervals import certified_intervals
-from ptmcad.certified.landing import landing, line_of, merger
+from ptmcad.certified.landing import landing, line_formulas, merger
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism
-from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.line import varying_axis
-from ptmcad.question.slice import Axis, Slice, moved
+from ptmcad.question.slice import Slice, moved
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.parsing import number_for
 
 DIGITS = 12
 POINTS = 16
@@ -51,18 +49,13 @@ SAME = 1e-5
 _PI = (Fraction(314159265358979323846, 10**20), Fraction(314159265358979323847, 10**20))
 
 
-def joined_paths(
-    slice: Slice,
-    along: str,
-    at: Mapping[str, Any],
-    start: object,
-    number: int | None = None,
-    progress: Progress | None = None,
-) -> PosePaths:
-    """Follow stable poses along a line on which springs have free lengths.
+def follower(slice: Slice, along: str, at: Mapping[str, Any], start: Fraction) -> JoinedFollower:
+    """What follows the poses of a line on which springs have free lengths from one of its values.
 
-    Parameters and errors are those of `ptmcad.exact.ranges.path.pose_paths`, and closed loops are refused; ``progress``
-    is called as progress("paths: pose", done, total).
+    Raises
+    ------
+    ConfigError
+        When the start is critical, or not distinguished from a critical value, and for closed loops.
     """
     mechanism = open_chain(slice.model)
     if mechanism is None:
@@ -71,31 +64,14 @@ def joined_paths(
             "the poses at single points",
             key="--path",
         )
-    varying, other, value = varying_axis(slice, along, at)
-    axis = slice.axes[varying]
-    begin = number_for("--path", start)
-    if not axis.low < begin < axis.high:
-        raise ConfigError(f"{begin} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path")
     intervals = certified_intervals(slice, along, at, DIGITS)
+    varying, _, value = varying_axis(slice, along, at)
     line = SolutionsOnLine(slice, varying, value, DIGITS)
-    inside = any(i.low.high < begin < i.high.low for i in intervals.intervals)
-    here = line.at(begin) if inside else None
+    inside = any(low < start < high for low, high in intervals.stretches)
+    here = line.at(start) if inside else None
     if here is None:
-        raise ConfigError(f"{along} = {begin} is a critical value, or not told from one: start beside it", key="--path")
-    stable = [k for k, pose in enumerate(here.poses) if pose.stable]
-    if number is not None and number - 1 not in stable:
-        raise ConfigError(
-            f"{number} is none of the {len(stable)} stable poses at {along} = {begin}, counted from 1", key="--pose"
-        )
-    walker = _Walker(slice, mechanism, line, axis, varying, value, intervals)
-    paths = []
-    chosen = stable if number is None else [number - 1]
-    with within_doubles(slice):
-        for done, k in enumerate(chosen):
-            if progress is not None:
-                progress("paths: pose", done, len(chosen))
-            paths.append(walker.path(k + 1, here, here.poses[k]))
-    return PosePaths(slice.name, slice.model, axis, {other: value}, begin, tuple(paths), walker.moved, joined=True)
+        raise ConfigError(f"{along} = {start} is a critical value, or not told from one: start beside it", key="--path")
+    return JoinedFollower(slice, mechanism, line, here, (varying, value), intervals)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,33 +83,41 @@ class _Reached:
     pose: Pose
 
 
-class _Walker:
-    """A line on which poses are followed."""
+class JoinedFollower:
+    """A line on which poses are followed from a value.
+
+    Attributes
+    ----------
+    poses : all at the start.
+    """
 
     def __init__(
         self,
         slice: Slice,
         mechanism: Mechanism,
         line: SolutionsOnLine,
-        axis: Axis,
-        varying: int,
-        fixed: Fraction,
+        start: Sample,
+        fixed: tuple[int, Fraction],
         intervals: CertifiedIntervals,
     ):
-        self.slice, self.mechanism, self.line = slice, mechanism, line
-        self.axis, self.varying, self.fixed = axis, varying, fixed
-        self.intervals = intervals
+        self.slice, self.mechanism, self.line, self.start = slice, mechanism, line, start
+        self.varying, self.fixed = fixed
+        self.axis, self.intervals = intervals.along, intervals
         self.moved = moved(slice.model, line.parameters)
 
-    def path(self, number: int, here: Sample, pose: Pose) -> PosePath:
-        """One pose in both directions."""
-        origin = _Reached(here.value, unknowns_of(pose), pose)
-        down, low = self._one_way(origin, -1)
-        up, high = self._one_way(origin, 1)
-        points = tuple(self._point(r) for r in (*reversed(down), origin, *up))
-        sides = [set(point.sides) for point in points]
-        upright, reverse = (all(own == {of} for own in sides) for of in (1, -1))
-        return PosePath(number, here.value, points, low, high, upright, reverse)
+    @property
+    def poses(self) -> tuple[Pose, ...]:
+        return self.start.poses
+
+    def path(self, number: int) -> PosePath:
+        """One of the poses, counted from 1, in both directions."""
+        pose, start = self.poses[number - 1], self.start.value
+        origin = _Reached(start, unknowns_of(pose), pose)
+        with within_doubles(self.slice):
+            down, low = self._one_way(origin, -1)
+            up, high = self._one_way(origin, 1)
+        points = [self._point(r) for r in (*reversed(down), origin, *up)]
+        return PosePath.of(number, start, points, (low, high), [point.sides for point in points])
 
     def _place(self, value: Fraction) -> Place:
         return (value, self.fixed) if self.varying == 0 else (self.fixed, value)
@@ -168,7 +152,7 @@ class _Walker:
 
     def _values(self, start: Fraction, side: int) -> Iterator[tuple[Fraction, CertifiedChange | None]]:
         """Values from the start in one direction; with a change the first one beyond it."""
-        stretches = [(i.low.high, i.high.low) for i in self.intervals.intervals]
+        stretches = self.intervals.stretches
         changes = list(self.intervals.changes)
         if side < 0:
             stretches = [(b, a) for a, b in reversed(stretches)]
@@ -238,25 +222,19 @@ class _Walker:
         if self.moved or model.reals or leaving.count(0) > 1:
             return met
         way = descent(lambda point: track.at(share, point), at)
-        target = None if way is None else self._found(after, way[-1])
-        if way is None or target is None:
+        goal = None if way is None else self._found(after, way[-1])
+        if way is None or goal is None:
             return met
         merges = leaving == (0,)
-        places = (self._point(current), self._point(_Reached(value, way[-1], target)))
-        line = line_of(self.slice, model, self.varying, self.fixed)
+        places = (self._point(current), self._point(_Reached(value, way[-1], goal)))
+        line = line_formulas(model, self.line.parameters)
         found = (merger if merges else landing)(line, change.at, *places)
         if found is None:
             return met
-        reached = found.target
         if not merges:  # a path's angles may have turned on; those of a pose that is jumped to are told as any pose's
-            reached = replace(reached, angles=tuple(map(_principal, reached.angles)))
-        return replace(
-            met,
-            fate=Fate.MERGE if merges else Fate.SNAP,
-            energy=found.energy,
-            target=reached,
-            target_energy=found.target_energy,
-        )
+            target = replace(found.target, angles=tuple(map(_principal, found.target.angles)))
+            found = found._replace(target=target)
+        return replace(met, fate=Fate.MERGE if merges else Fate.SNAP, **found._asdict())
 
     def _point(self, reached: _Reached) -> PathPoint:
         pose = reached.pose

@@ -7,17 +7,24 @@ Where springs have free lengths paths are what `ptmcad.ask.paths` says.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, Event
 from ptmcad.answer.paths import Fate, PosePath, PosePaths
 from ptmcad.answer.widths import Maximum, OperationWidths, Place
-from ptmcad.exact.ranges import path as exact_paths
+from ptmcad.answer.words import followed
+from ptmcad.errors import ConfigError
 from ptmcad.exact.ranges.line import intervals
+from ptmcad.exact.ranges.path import ExactFollower
+from ptmcad.exact.ranges.path import follower as exact_follower
 from ptmcad.exact.ranges.rows import operation_widths
 from ptmcad.options import Progress
-from ptmcad.question.line import has_free_lengths
-from ptmcad.question.slice import Slice
+from ptmcad.question.line import has_free_lengths, on_line, varying_axis
+from ptmcad.question.slice import Slice, moved
+from ptmcad.text.parsing import number_for
+
+if TYPE_CHECKING:
+    from ptmcad.ask.paths import JoinedFollower
 
 __all__ = [
     "Change",
@@ -61,8 +68,27 @@ def pose_paths(
 
     Of a system that does not say what a stable solution is, all solutions are followed.
     """
-    if has_free_lengths(slice, along, at):
-        from ptmcad.ask.paths import joined_paths
+    varying, other, value = varying_axis(slice, along, at)
+    axis, begin, model = slice.axes[varying], number_for("--path", start), slice.model
+    if not axis.low < begin < axis.high:
+        raise ConfigError(f"{begin} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path")
+    joined = has_free_lengths(slice, along, at)
+    follower: ExactFollower | JoinedFollower
+    if joined:
+        from ptmcad.ask import paths
 
-        return joined_paths(slice, along, at, start, number, progress)
-    return exact_paths.pose_paths(slice, along, at, start, number)
+        follower = paths.follower(slice, along, at, begin)
+    else:
+        follower = exact_follower(slice, along, at, begin)
+    stable = [k for k, pose in enumerate(follower.poses, 1) if model.criterion.works(pose.stable)]
+    if number is not None and number not in stable:
+        what = f"{len(stable)} {followed(model)}s"
+        raise ConfigError(f"{number} is none of the {what} at {along} = {begin}, counted from 1", key="--pose")
+    found = []
+    chosen = stable if number is None else [number]
+    for done, k in enumerate(chosen):
+        if joined and progress is not None:
+            progress("paths: pose", done, len(chosen))
+        found.append(follower.path(k))
+    forces = moved(model, on_line(slice, varying, value))
+    return PosePaths(slice.name, model, axis, {other: value}, begin, tuple(found), forces, joined)

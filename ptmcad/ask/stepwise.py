@@ -20,7 +20,7 @@ from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_from
 from ptmcad.exact.slicevariety import slice_variety
-from ptmcad.exact.stages import problem_of, projection_of, stacks_of, variety_of
+from ptmcad.exact.stages import decomposition_of, problem_of
 from ptmcad.model import Model
 from ptmcad.question.config import point_from_mapping, slice_from
 from ptmcad.question.domain import proved
@@ -80,10 +80,8 @@ def open_cad(question: Question) -> tuple[Point, ...]:
     """
     slice = slice_from(question)
     without_free_lengths(slice.model, slice.parameters, "an open CAD is")
-    problem = problem_of(proved(slice))
-    variety = variety_of(problem)
-    stacks = stacks_of(problem, variety, projection_of(problem, variety))
-    return tuple(Point(slice.axis_names, to_fraction(x), to_fraction(y)) for x, y in stacks.points)
+    cut = decomposition_of(problem_of(proved(slice)))
+    return tuple(Point(slice.axis_names, to_fraction(x), to_fraction(y)) for x, y in cut.points)
 
 
 def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object) -> Counts:

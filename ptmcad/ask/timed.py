@@ -20,7 +20,7 @@ error = None
 work, arguments = pickle.load(sys.stdin.buffer)
 try:
     work(*arguments)
-except Exception as raised:
+except Exception as raised:  # the process that asked raises it again, of whatever kind it is
     error = raised
 pickle.dump(error, sys.stdout.buffer)
 """

@@ -128,24 +128,6 @@ def refined(equations: EquationSystem, box: Box, precision: int) -> Box:
         box = step[0]
 
 
-def approached(system: EquationSystem, box: Box, steps: int) -> Box | None:
-    """What Newton's method finds from a box's middle, without proof; None where a Jacobian is singular."""
-    unknowns, size = [int(k) for k in system.unknowns], len(system.unknowns)
-    found = list(box)
-    for _ in range(steps):
-        for k in unknowns:
-            found[k] = found[k].mid()
-        values = run_arb(system.tape, found, ctx.prec)
-        jacobian = arb_mat(size, size, [values[int(place)].mid() for place in system.jacobian.flat])
-        try:
-            move = jacobian.solve(arb_mat(size, 1, [values[int(place)].mid() for place in system.equations]))
-        except ZeroDivisionError:
-            return None
-        for n, k in enumerate(unknowns):
-            found[k] -= move[n, 0]
-    return tuple(found)
-
-
 def isolate_arb(
     system: EquationSystem, equations: EquationSystem, start: Sequence[Box], precision: int, budget: int
 ) -> list[Isolated] | None:

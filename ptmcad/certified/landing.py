@@ -11,77 +11,70 @@ proved, it lies at the critical value, and its energy is one that the branch may
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
-from ptmcad.answer.paths import PathPoint, Target
-from ptmcad.certified.arb_isolation import Box, approached, newton, refined
-from ptmcad.certified.continuation import BranchEquations, ProvedPoint, carried, located, over
-from ptmcad.certified.parameters import parameter_formulas
-from ptmcad.certified.system import EquationSystem, system
-from ptmcad.formulas.balls import run_arb
+from ptmcad.answer.paths import Landing, PathPoint, Target
+from ptmcad.formulas.balls import evaluated, signs_of
+from ptmcad.formulas.continuation import (
+    BranchEquations,
+    Reached,
+    at_value,
+    branch_equations,
+    in_the_limit,
+    nearer,
+    over_range,
+)
 from ptmcad.formulas.determinants import determinant
-from ptmcad.formulas.graph import Graph
-from ptmcad.formulas.tape import Tape, record
+from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.values import substituted
 from ptmcad.model import Mechanism
-from ptmcad.model.compile import compiled_with
-from ptmcad.question.slice import Slice
-from ptmcad.text.balls import ball_of, enclosure_of
+from ptmcad.question.line import compiled_on
+from ptmcad.text.balls import ball_of, ball_over, enclosure_of
 from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.expressions import Expression
 
 BITS = 192
-_PASSES = 12
-"""Of Newton's method from the last place of a branch to where it ends."""
-_FIRST = 2
-"""The number of the first unknown, after the axes'."""
 _NEAREST = Fraction(1, 2**60)
 """How near to a critical value a branch is carried, against its distance."""
 
 
-class BranchEnd(NamedTuple):
-    """The pose that is reached at a critical value, its energy, and that of the branch that ends there."""
-
-    target: Target
-    energy: Enclosure
-    target_energy: Enclosure
-
-
-@dataclass(frozen=True, slots=True)
-class LineFormulas:
-    """A mechanism on unknown angles, on a line of a slice.
+class LineFormulas(NamedTuple):
+    """A mechanism on unknown angles, on a line: variable 0 is the axis, the next ones are the angles.
 
     Attributes
     ----------
     equations : of equilibrium.
-    folds : the same and the Hessian's determinant, with the axis as a further unknown, the first one.
-    numbers : a tape of the energy, its slope along the line, and the heights of the rising points.
+    folds : the same and the Hessian's determinant, with the axis as a further unknown, the last one, and no parameter.
+    numbers : the energy, and the heights of the rising points.
     """
 
     equations: BranchEquations
-    folds: EquationSystem
-    numbers: Tape
+    folds: BranchEquations
+    numbers: Sequence[Formula]
 
 
-def line_of(slice: Slice, mechanism: Mechanism, varying: int, fixed: Fraction) -> LineFormulas:
-    """The formulas of a slice of a mechanism, along the axis number ``varying`` at a value of the other one."""
-    graph = Graph()
-    unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, _FIRST)}
-    at = compiled_with(mechanism, parameter_formulas(graph, slice) | unknowns)
-    energy = at.energy()
+def line_formulas(mechanism: Mechanism, parameters: Mapping[str, Expression]) -> LineFormulas:
+    """The formulas of a mechanism on a line, from its parameters there."""
+    at = compiled_on(mechanism, parameters)
+    energy, derivative = at.energy(), at.graph.derivative
     assert energy is not None
-    slopes = [graph.derivative(energy, v.variable) for v in unknowns.values()]
-    heights = [at.points[name][1] for name in mechanism.rising]
-    numbers = record([[energy, graph.derivative(energy, varying), *heights]])
-    variables = [v.variable for v in unknowns.values()]
-    hessian = tuple(tuple(graph.derivative(f, k) for k in variables) for f in slopes)
-    folds = system([*slopes, determinant(hessian)], [varying, *variables])
-    return LineFormulas(BranchEquations(system(slopes, variables), varying, fixed), folds, numbers)
+    slopes = [derivative(energy, k) for k in at.unknowns]
+    hessian = tuple(tuple(derivative(f, k) for k in at.unknowns) for f in slopes)
+    heights = (at.points[name][1] for name in mechanism.rising)
+    axis = {0: at.graph.variable(len(slopes) + 1)}
+    folds = [substituted(f, axis) for f in (*slopes, determinant(hessian))]
+    return LineFormulas(
+        branch_equations(slopes, len(slopes)),
+        branch_equations(folds, len(slopes)),
+        [energy, *heights],
+    )
 
 
-def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> BranchEnd | None:
+def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> Landing | None:
     """What holds at a critical value; None where that is not proved.
 
     Parameters
@@ -91,18 +84,20 @@ def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoin
     beyond : the pose that is reached, which is simple there.
     """
     with ctx.workprec(BITS):
-        after = _near(line, at, beyond)
-        there = None if after is None else over(line.equations, after, at)
-        energy = _energy_at(line, at, last)
-        if energy is None or there is None:
+        after, energy = _located(line, beyond), _energy_at(line, at, last)
+        if after is None or energy is None:
             return None
-        value = ball_of(at.low).union(ball_of(at.high))
-        reached, _, *heights = _numbers(line, value, there)
-        sides = tuple(1 if y > 0 else -1 if y < 0 else 0 for y in heights)
-        return BranchEnd(Target(tuple(map(enclosure_of, there)), (), sides), energy, enclosure_of(reached))
+        end = at.low if after.value < at.low else at.high
+        near = nearer(line.equations, after, end + (after.value - end) * _NEAREST)
+        tube = over_range(line.equations, near, at.low, at.high)
+        if tube is None:
+            return None
+        there = tube.hull()
+        reached, *heights = evaluated(line.numbers, (ball_over(at.low, at.high), *there))
+        return Landing(Target(tuple(map(enclosure_of, there)), (), signs_of(heights)), energy, enclosure_of(reached))
 
 
-def merger(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> BranchEnd | None:
+def merger(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> Landing | None:
     """The same where the pose beyond is what several become, of which ``last`` is one; None where that is not proved.
 
     The pose in which they merge is told, without proof, to lie about where those on both sides are, no farther off than
@@ -115,7 +110,7 @@ def merger(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint
         b if (ball_of(b.low).union(ball_of(b.high)) / arb.pi()).contains_integer() else _around(a, b)
         for a, b in zip(last.angles, beyond.angles, strict=True)
     )
-    return BranchEnd(Target(angles, (), beyond.sides), energy, energy)
+    return Landing(Target(angles, (), beyond.sides), energy, energy)
 
 
 def _around(first: Enclosure, second: Enclosure) -> Enclosure:
@@ -127,51 +122,32 @@ def _around(first: Enclosure, second: Enclosure) -> Enclosure:
 def _energy_at(line: LineFormulas, at: Enclosure, last: PathPoint) -> Enclosure | None:
     """The energy of a branch at the critical value at which it ends; None where the branch is not proved."""
     with ctx.workprec(BITS):
-        place = located(line.equations, last.value, last.angles)
+        place = _located(line, last)
         if place is None:
             return None
-        limit = _limit(line, at, place)
+        limit = in_the_limit(line.numbers[0], place, at.low, at.high, line.equations.angles)
         fold = _fold(line, at, place)
         if fold is None:
             return enclosure_of(limit)
-        energy = _numbers(line, fold[line.equations.varying], fold[_FIRST:])[0]
+        (energy,) = evaluated(line.numbers[:1], fold)
         return enclosure_of(energy if limit.contains(energy) else limit)
 
 
-def _near(line: LineFormulas, at: Enclosure, point: PathPoint) -> ProvedPoint | None:
-    """A branch as near to a critical value as it can be carried."""
-    start = located(line.equations, point.value, point.angles)
-    if start is None:
+def _located(line: LineFormulas, point: PathPoint) -> Reached | None:
+    """A pose's branch: the solution that is proved to be the only one about its enclosures; None without proof."""
+    guess = tuple(ball_of(angle.center) for angle in point.angles)
+    place = at_value(line.equations, point.value, guess, 2 * max(angle.radius for angle in point.angles))
+    if place is None or not all(
+        a.contains(ball_over(b.low, b.high)) for a, b in zip(place.alone(point.value), point.angles, strict=True)
+    ):
         return None
-    end = at.low if point.value < at.low else at.high
-    return carried(line.equations, start, end + (point.value - end) * _NEAREST)
+    return Reached(point.value, place, place)
 
 
-def _limit(line: LineFormulas, at: Enclosure, place: ProvedPoint) -> arb:
-    """The energy of a branch at the critical value, from a place beside."""
-    between = ball_of(place.value).union(ball_of(at.low)).union(ball_of(at.high))
-    anywhere = (arb.pi() * arb(0, 1),) * len(place.unknowns)
-    slope = _numbers(line, between, anywhere)[1]
-    return _numbers(line, ball_of(place.value), place.unknowns)[0] + 2 * between.rad() * slope * arb(0, 1)
-
-
-def _fold(line: LineFormulas, at: Enclosure, place: ProvedPoint) -> Box | None:
+def _fold(line: LineFormulas, at: Enclosure, place: Reached) -> tuple[arb, ...] | None:
     """The degenerate pose at a critical value that Newton's method finds from a place beside; None without proof."""
-    folds, varying = line.folds, line.equations.varying
-    variables = [int(k) for k in folds.unknowns]
-    found = approached(folds, line.equations.box(ball_of(at.center), place.unknowns), _PASSES)
-    if found is None:
+    tube = at_value(line.folds, Fraction(0), (*place.point, ball_of(at.center)))
+    if tube is None:
         return None
-    box = list(found)
-    for k in variables:
-        box[k] = arb(box[k].mid(), arb(fmpq(1, 2 ** (ctx.prec // 3))))
-    step = newton(folds, tuple(box), ctx.prec) if all(box[k].is_finite() for k in variables) else None
-    if step is None or not step[1]:
-        return None
-    fold = refined(folds, tuple(box), ctx.prec)
-    return fold if fold[varying].overlaps(ball_of(at.low).union(ball_of(at.high))) else None
-
-
-def _numbers(line: LineFormulas, value: arb, unknowns: tuple[arb, ...]) -> list[arb]:
-    values = run_arb(line.numbers, line.equations.box(value, unknowns), ctx.prec)
-    return [values[int(place)] for place in line.numbers.outputs[0]]
+    *angles, value = tube.hull()
+    return (value, *angles) if value.overlaps(ball_over(at.low, at.high)) else None

@@ -1,50 +1,13 @@
-"""The parameters of a slice as formulas in its two axes.
-
-Guarantee: every coefficient is exact; variables 0 and 1 are the axes.
-"""
+"""The parameters of a slice at a point of its two axes, exactly."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import Expression, Term
-
-
-def expression_formula(graph: Graph, expression: Expression) -> Formula:
-    """A rational function of the axes, by Horner's rule in the first axis over polynomials in the second."""
-    return _polynomial(graph, expression.numerator) / _polynomial(graph, expression.denominator)
-
-
-def _polynomial(graph: Graph, terms: tuple[Term, ...]) -> Formula:
-    rows: dict[int, dict[int, Fraction]] = {}
-    for i, j, c in terms:
-        rows.setdefault(i, {})[j] = c
-    x, y = graph.variable(0), graph.variable(1)
-    coefficients = {i: _horner(graph, {j: graph.constant(c) for j, c in row.items()}, y) for i, row in rows.items()}
-    return _horner(graph, coefficients, x)
-
-
-def _horner(graph: Graph, coefficients: Mapping[int, Formula], variable: Formula) -> Formula:
-    value = graph.constant(0)
-    for power in range(max(coefficients, default=0), -1, -1):
-        value = value * variable + coefficients.get(power, 0)
-    return value
-
-
-def parameter_formulas(graph: Graph, slice: Slice) -> dict[str, Formula]:
-    """All variables of the slice's description; free lengths that the slice does not have are zero."""
-    given, zero = slice.parameters, graph.constant(0)
-    return {name: expression_formula(graph, given[name]) if name in given else zero for name in _names(slice)}
 
 
 def values_at(slice: Slice, x: Fraction, y: Fraction) -> dict[str, Fraction]:
-    """The same at a point of the axes."""
+    """All variables of the slice's description at a point; free lengths that the slice does not have are zero."""
     given = slice.parameters
-    return {name: given[name].evaluate(x, y) if name in given else Fraction(0) for name in _names(slice)}
-
-
-def _names(slice: Slice) -> tuple[str, ...]:
-    return slice.model.variables
+    return {name: given[name].evaluate(x, y) if name in given else Fraction(0) for name in slice.model.variables}

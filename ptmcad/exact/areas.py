@@ -6,38 +6,36 @@ an involution keeps areas, and takes regions to regions, as these do not depend 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
 from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.resultants import Check
 from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.halves import before, below
+from ptmcad.exact.decomposition import Decomposition
 from ptmcad.exact.regions import members
-from ptmcad.exact.stages import Areas, Cells, SliceProblem, Variety, cell_at
+from ptmcad.exact.stages import Areas, Cells, SliceProblem
 from ptmcad.model.involutions import Involution
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import decimal, fraction_of
 
 
-def areas_of(
-    problem: SliceProblem, variety: Variety, known: Cells, tolerance: Fraction, without: frozenset[str], check: Check
-) -> Areas:
+def areas_of(problem: SliceProblem, known: Cells, tolerance: Fraction, without: frozenset[str], check: Check) -> Areas:
     """Bounds of the regions' areas.
 
     Parameters
     ----------
     tolerance : largest relative width of each region's bounds before they are written in decimals.
     """
-    base, region_of = variety.base, known.neighbours.region_of
+    base, region_of = known.cut.variety.base, known.neighbours.region_of
     alone = "equal-counts" in without
-    rows = known.stacks.rows(range(len(region_of)) if alone else region_of)
-    parts = RegionStacks(known.stacks.stacks, rows, variety.curves, problem.window[base], problem.window[1 - base])
+    parts = region_stacks(known.cut, range(len(region_of)) if alone else region_of)
     # the halves before and behind an abscissa need no cuts, and are the cheapest
     reflections = sorted(problem.reflections, key=lambda change: (change.axes, change.axis_signs[base]))
     used = None
     for change in () if alone else reflections[:1]:
-        images = _images(problem, variety, known, change)
+        images = _images(known, change)
         if images is not None:
             parts, used = _half(parts._replace(images=images), change, base), change
     bounds, bits = region_areas(parts, tolerance, check)
@@ -45,6 +43,11 @@ def areas_of(
         bounds = tuple(_sum_of([bounds[n] for n in cells], problem.area) for cells in members(region_of))
     rounded = ((fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True))) for low, high in bounds)
     return Areas(tuple(rounded), bits, used)
+
+
+def region_stacks(cut: Decomposition, regions: Iterable[int]) -> RegionStacks:
+    """The decomposition with the region of each of its cells, as areas are computed from it."""
+    return RegionStacks(cut.stacks, cut.rows(regions), cut.variety.curves, cut.base, cut.fibre)
 
 
 def _sum_of(areas: Sequence[tuple[Fraction, Fraction]], most: Fraction) -> tuple[Fraction, Fraction]:
@@ -62,7 +65,7 @@ def _half(parts: RegionStacks, change: Involution, base: int) -> RegionStacks:
     return below(parts, RationalPolynomial([from_fraction(change.shifts[1 - base]) / 2]))
 
 
-def _images(problem: SliceProblem, variety: Variety, known: Cells, change: Involution) -> tuple[int, ...] | None:
+def _images(known: Cells, change: Involution) -> tuple[int, ...] | None:
     """The image of each region; None where all samples of one have their images on lines over critical abscissae.
 
     Raises
@@ -73,8 +76,8 @@ def _images(problem: SliceProblem, variety: Variety, known: Cells, change: Invol
     region_of, keys = known.neighbours.region_of, known.counts.keys
     images = []
     for cells in members(region_of):
-        points = (change.at((to_fraction(x), to_fraction(y))) for x, y in (known.stacks.points[n] for n in cells))
-        places = (cell_at(problem, variety, known[:2], (from_fraction(x), from_fraction(y))) for x, y in points)
+        points = (change.at((to_fraction(x), to_fraction(y))) for x, y in (known.cut.points[n] for n in cells))
+        places = (known.cut.cell_at((from_fraction(x), from_fraction(y))) for x, y in points)
         image = next((n for n in places if n is not None), None)
         if image is None:
             return None

@@ -17,22 +17,11 @@ from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.arrangement import Arrangement
 from ptmcad.answer.regionmap import Merge, Wall
 from ptmcad.exact.cad.curves import FibredCurve
-from ptmcad.exact.cad.projection import Projection
 from ptmcad.exact.cad.stacks import StackData, heights_between, level_at
+from ptmcad.exact.decomposition import Decomposition, Neighbours, Sample, crossings_of, joined_cells, neighbours_of
 from ptmcad.exact.regions import members
-from ptmcad.exact.sparing import counts_by_component, joined_cells
-from ptmcad.exact.stages import (
-    Neighbours,
-    Sample,
-    SliceProblem,
-    Stacks,
-    Variety,
-    cell_at,
-    crossings_of,
-    decomposition_of,
-    neighbours_of,
-    problem_of,
-)
+from ptmcad.exact.sparing import counts_by_component
+from ptmcad.exact.stages import SliceProblem, decomposition_of, problem_of
 from ptmcad.exact.variety import Known
 from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice, without_free_lengths
@@ -46,14 +35,12 @@ class Picture(NamedTuple):
 
     arrangement: Arrangement
     problem: SliceProblem
-    variety: Variety
-    projection: Projection
-    stacks: Stacks
+    cut: Decomposition
     neighbours: Neighbours
 
     def region_at(self, at: Sample) -> int | None:
         """The region of a point of the window; None on the curves, and on lines over critical abscissae."""
-        cell = cell_at(self.problem, self.variety, (self.projection, self.stacks), at)
+        cell = self.cut.cell_at(at)
         return None if cell is None else self.neighbours.region_of[cell]
 
 
@@ -76,11 +63,10 @@ def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing,
     """
     without_free_lengths(slice.model, slice.parameters, "an arrangement is")
     problem = problem_of(proved(slice))._replace(known=known)
-    variety, projection, stacks = decomposition_of(problem, base, check)
-    crossings = crossings_of(problem, variety, stacks, check=check)
-    joined = joined_cells(variety, projection, stacks, crossings)
-    counts = counts_by_component(problem, stacks, joined, lambda _done, _total: check())
-    neighbours = neighbours_of(variety, projection, stacks, counts, crossings)
+    cut = decomposition_of(problem, base, check)
+    crossings = crossings_of(cut, check=check)
+    counts = counts_by_component(problem, cut, joined_cells(cut, crossings), lambda _done, _total: check())
+    neighbours = neighbours_of(cut, counts.keys, crossings)
     region_of = neighbours.region_of
     keys = tuple(counts.keys[cells[0]] for cells in members(region_of))
     pairs = (
@@ -88,23 +74,20 @@ def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing,
         for a in neighbours.adjacencies
         if a.merge is Merge.SEPARATED
     )
-    sides = _sides(problem, variety, stacks, region_of)
+    sides = _sides(cut, region_of)
     arrangement = Arrangement(keys, frozenset((a, b) for a, b in pairs if a != b), sides)
-    return Picture(arrangement, problem, variety, projection, stacks, neighbours)
+    return Picture(arrangement, problem, cut, neighbours)
 
 
-def _sides(
-    problem: SliceProblem, variety: Variety, stacks: Stacks, region_of: Sequence[int]
-) -> tuple[tuple[int, ...], ...]:
+def _sides(cut: Decomposition, region_of: Sequence[int]) -> tuple[tuple[int, ...], ...]:
     """The regions along low x, high x, low y, high y."""
-    rows = stacks.rows(region_of)
+    rows = cut.rows(region_of)
     along = [_without_repetition([row[0] for row in rows]), _without_repetition([row[-1] for row in rows])]
-    base, fibre = problem.window[variety.base], problem.window[1 - variety.base]
     across = [
-        _without_repetition([row[level] for level in _levels_at(variety.curves, edge, stack, fibre)])
-        for edge, stack, row in ((base[0], stacks.stacks[0], rows[0]), (base[1], stacks.stacks[-1], rows[-1]))
+        _without_repetition([rows[end][level] for level in _levels_at(cut.variety.curves, edge, stack, cut.fibre)])
+        for end, edge, stack in ((0, cut.base[0], cut.stacks[0]), (-1, cut.base[1], cut.stacks[-1]))
     ]
-    return (*across, *along) if variety.base == 0 else (*along, *across)
+    return (*across, *along) if cut.variety.base == 0 else (*along, *across)
 
 
 def _levels_at(curves: Sequence[FibredCurve], edge: fmpq, stack: StackData, fibre: Interval) -> list[int]:

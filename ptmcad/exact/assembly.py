@@ -30,10 +30,11 @@ from ptmcad.exact.cad.adjacency import Crossing
 from ptmcad.exact.cad.projection import Projection
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.exact.counting import Equilibria
+from ptmcad.exact.decomposition import Variety, segment_of
 from ptmcad.exact.models.text import system_text
 from ptmcad.exact.plan import plan_of
 from ptmcad.exact.regions import members
-from ptmcad.exact.stages import Areas, Cells, SliceProblem, Variety, segment_of
+from ptmcad.exact.stages import Areas, Cells, SliceProblem
 from ptmcad.options import Options
 from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import to_fraction
@@ -74,11 +75,11 @@ def assemble(
         components=variety.components
         if cells is None
         else tuple(replace(c, separates=n in separating) for n, c in enumerate(variety.components)),
-        critical_values=() if cells is None else critical_values_of(cells.projection),
-        stacks=() if cells is None else stacks_of_cells(cells.stacks.stacks),
+        critical_values=() if cells is None else critical_values_of(cells.cut.projection),
+        stacks=() if cells is None else stacks_of_cells(cells.cut.stacks),
         cells=() if cells is None else tuple(_cells(problem, cells, samples)),
         adjacencies=adjacencies,
-        non_adjacencies=() if cells is None else _non_adjacencies(cells.stacks.stacks, cells.neighbours.crossings),
+        non_adjacencies=() if cells is None else _non_adjacencies(cells.cut.stacks, cells.neighbours.crossings),
         regions=() if cells is None else _regions(problem, cells, samples, areas),
         plan=(
             *plan_of(problem.slice, variety.components, variety.base, variety.costs, options.without, options.areas),
@@ -103,7 +104,7 @@ def versions() -> dict[str, str]:
 
 def _samples(problem: SliceProblem, cells: Cells) -> tuple[Point, ...]:
     names = problem.slice.axis_names
-    return tuple(Point(names, to_fraction(x), to_fraction(y)) for x, y in cells.stacks.points)
+    return tuple(Point(names, to_fraction(x), to_fraction(y)) for x, y in cells.cut.points)
 
 
 def critical_values_of(projection: Projection) -> tuple[CriticalValue, ...]:
@@ -125,9 +126,8 @@ def _further(problem: SliceProblem, key: tuple[int, ...]) -> dict[str, int]:
 
 
 def _cells(problem: SliceProblem, cells: Cells, samples: Sequence[Point]) -> Iterator[Cell]:
-    places = ((s, level) for s, stack in enumerate(cells.stacks.stacks) for level in range(len(stack.heights)))
     for (s, level), sample, region, found, key in zip(
-        places, samples, cells.neighbours.region_of, cells.counts.found, cells.counts.keys, strict=True
+        cells.cut.places, samples, cells.neighbours.region_of, cells.counts.found, cells.counts.keys, strict=True
     ):
         counts = found.counts
         further = _further(problem, key)

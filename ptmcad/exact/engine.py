@@ -15,21 +15,16 @@ from ptmcad.errors import LimitReached
 from ptmcad.exact.areas import areas_of
 from ptmcad.exact.assembly import PartialMap, assemble
 from ptmcad.exact.cad.adjacency import Crossing
-from ptmcad.exact.cad.projection import Projection
-from ptmcad.exact.sparing import counts_by_component, joined_cells
-from ptmcad.exact.stages import (
-    Cells,
-    SliceProblem,
-    Stacks,
-    Variety,
-    counts_of,
+from ptmcad.exact.decomposition import (
+    Decomposition,
     crossings_of,
+    joined_cells,
     neighbours_of,
-    problem_of,
     projection_of,
     stacks_of,
-    variety_of,
 )
+from ptmcad.exact.sparing import counts_by_component
+from ptmcad.exact.stages import Cells, SliceProblem, counts_of, problem_of, variety_of
 from ptmcad.exact.variety import Known
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.question.domain import proved
@@ -109,34 +104,31 @@ def _stages(problem: SliceProblem, options: Options, clock: _Clock) -> Iterator[
     yield PartialMap(variety)
     clock.stage("variety")
     clock.report("projection")
-    projection = projection_of(problem, variety, without, clock.check)
+    projection = projection_of(problem.window, variety, without, clock.check)
     clock.stage("projection")
     clock.report("stacks")
-    stacks = stacks_of(problem, variety, projection)
+    cut = stacks_of(problem.window, variety, projection)
     clock.stage("stacks")
-    yield from _counted(problem, options, clock, (variety, projection, stacks))
+    yield from _counted(problem, options, clock, cut)
 
 
-def _counted(
-    problem: SliceProblem, options: Options, clock: _Clock, built: tuple[Variety, Projection, Stacks]
-) -> Iterator[PartialMap]:
+def _counted(problem: SliceProblem, options: Options, clock: _Clock, cut: Decomposition) -> Iterator[PartialMap]:
     """Counts and adjacency, in either order, then areas."""
-    variety, projection, stacks = built
     crossings: tuple[Crossing, ...] = ()
     for stage in ("adjacency", "counts") if options.sparing else ("counts", "adjacency"):
         report = partial(clock.report, stage)
         if stage == "adjacency":
-            crossings = crossings_of(problem, variety, stacks, report, clock.check)
+            crossings = crossings_of(cut, report, clock.check)
         elif options.sparing:
-            counts = counts_by_component(problem, stacks, joined_cells(variety, projection, stacks, crossings), report)
+            counts = counts_by_component(problem, cut, joined_cells(cut, crossings), report)
         else:
-            counts = counts_of(problem, stacks, report)
+            counts = counts_of(problem, cut, report)
         clock.stage(stage)
-    cells = Cells(projection, stacks, counts, neighbours_of(variety, projection, stacks, counts, crossings))
-    yield PartialMap(variety, cells)
+    cells = Cells(cut, counts, neighbours_of(cut, counts.keys, crossings))
+    yield PartialMap(cut.variety, cells)
     if options.areas:
         clock.report("areas")
         tolerance = options.area_tolerance or AREA_TOLERANCE
-        areas = areas_of(problem, variety, cells, tolerance, options.without, clock.check)
+        areas = areas_of(problem, cells, tolerance, options.without, clock.check)
         clock.stage("areas")
-        yield PartialMap(variety, cells, areas)
+        yield PartialMap(cut.variety, cells, areas)

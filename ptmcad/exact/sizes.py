@@ -25,9 +25,10 @@ from ptmcad.algebra.polynomials import point_values
 from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
 from ptmcad.algebra.residues import primes
 from ptmcad.errors import LimitReached
+from ptmcad.exact.decomposition import Sample
 from ptmcad.exact.models.system import RationalPolynomial
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
-from ptmcad.exact.stages import Sample, SliceProblem, domain_limits
+from ptmcad.exact.stages import SliceProblem, domain_limits
 
 MAX_POINTS = 256
 """On a line; they tell degrees of 60 and more, and tell of more that they are more."""

@@ -5,42 +5,36 @@ Guarantee: no stage decides anything by rounding without an error bound, and non
     SliceProblem -> Variety -> Projection -> Stacks -> SampleCounts -> Neighbours -> Areas
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from itertools import islice, pairwise
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import Coefficient, Ratio, UnivariatePolynomial, from_expression, point_values
-from ptmcad.algebra.real_roots import Interval, RealRoot, sign_at
+from ptmcad.algebra.polynomials import Coefficient, Ratio, from_expression, point_values
+from ptmcad.algebra.real_roots import Interval
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.counts import Counts
-from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
-from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
-from ptmcad.exact.cad.curves import FibredCurve, curves_of, lines_of
-from ptmcad.exact.cad.projection import Projection, predicted_cost, project
-from ptmcad.exact.cad.stacks import Avoided, StackData, level_at, lift
 from ptmcad.exact.counting import Equilibria, equilibria
+from ptmcad.exact.decomposition import (
+    Decomposition,
+    Neighbours,
+    Report,
+    Sample,
+    Variety,
+    cut_along,
+    seen_from,
+    unreported,
+)
 from ptmcad.exact.models import ParametricSystem, system_counted
 from ptmcad.exact.point_system import DegeneratePoint
-from ptmcad.exact.regions import Link, merge
 from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
 from ptmcad.model.involutions import Involution, involutions
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import short_text
-
-_T = TypeVar("_T")
-Sample = tuple[fmpq, fmpq]
-Report = Callable[[int, int], None]
-"""Called as report(done, total); may raise to stop."""
-
-
-def unreported(_done: int, _total: int) -> None:
-    """The report that nobody asked for."""
 
 
 class SliceProblem(NamedTuple):
@@ -83,58 +77,11 @@ class SliceProblem(NamedTuple):
         return count_at(self.place(at), self.system, self.parameters, at)
 
 
-class Variety(NamedTuple):
-    """The discriminant variety as seen from the base axis.
-
-    Attributes
-    ----------
-    curves : the components that are used, but for lines across the base.
-    lines : these, by the components' numbers.
-    costs : predicted for each of the two base axes.
-    excludes : whether solutions at which an inequality's polynomial is zero were left out, as they are in the way.
-    """
-
-    components: tuple[Component, ...]
-    complex_solutions: int
-    base: int
-    curves: Sequence[FibredCurve]
-    lines: dict[int, UnivariatePolynomial]
-    costs: tuple[int, int]
-    excludes: bool = False
-
-
-class Stacks(NamedTuple):
-    """The stacks over the base, and the sample of every cell, stack by stack from below."""
-
-    stacks: tuple[StackData, ...]
-    points: tuple[Sample, ...]
-
-    def rows(self, values: Iterable[_T]) -> list[tuple[_T, ...]]:
-        """What there is for every cell, as a row for each stack."""
-        numbers = iter(values)
-        return [tuple(islice(numbers, len(stack.heights))) for stack in self.stacks]
-
-
 class SampleCounts(NamedTuple):
     """The equilibria at each cell's sample, and the counts by which regions are told apart."""
 
     found: tuple[Equilibria, ...]
     keys: tuple[tuple[int, ...], ...]
-
-
-class Neighbours(NamedTuple):
-    """What separates the cells and what does not.
-
-    Attributes
-    ----------
-    crossings : between neighbouring stacks.
-    adjacencies : all pairs of cells with an open arc in common.
-    region_of : the region of each cell.
-    """
-
-    crossings: tuple[Crossing, ...]
-    adjacencies: tuple[Adjacency, ...]
-    region_of: tuple[int, ...]
 
 
 class Areas(NamedTuple):
@@ -153,8 +100,7 @@ class Areas(NamedTuple):
 class Cells(NamedTuple):
     """The decomposition with its counts: what there is when only areas are missing."""
 
-    projection: Projection
-    stacks: Stacks
+    cut: Decomposition
     counts: SampleCounts
     neighbours: Neighbours
 
@@ -187,12 +133,14 @@ def variety_of(problem: SliceProblem, without: frozenset[str] = frozenset(), bas
         )
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
         raise _explained(problem, error) from error
-    views = [curves_of(found.components, base) for base in (0, 1)]
-    costs = (predicted_cost(views[0]), predicted_cost(views[1]))
-    if base is None:
-        base = 1 if costs[1] < costs[0] and "axis-order" not in without else 0
-    lines = lines_of(found.components, base)
-    return Variety(found.components, found.complex_solutions, base, views[base], lines, costs, found.excludes)
+    if base is None and "axis-order" in without:
+        base = 0
+    return seen_from(found.components, base, found.complex_solutions, found.excludes)
+
+
+def decomposition_of(problem: SliceProblem, base: int | None = None, check: Check = nothing) -> Decomposition:
+    """The window cut along the variety, over a base axis: the first stages in one."""
+    return cut_along(problem.window, variety_of(problem, base=base), check)
 
 
 def prove_regular(problem: SliceProblem) -> None:
@@ -230,39 +178,11 @@ def domain_limits(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> 
     return [limit for limit in limits if not limit.is_constant()]
 
 
-def projection_of(
-    problem: SliceProblem, variety: Variety, without: frozenset[str] = frozenset(), check: Check = nothing
-) -> Projection:
-    """The abscissae over which the order of the curves can change."""
-    window, base = problem.window, variety.base
-    return project(variety.curves, list(variety.lines.values()), window[base], window[1 - base], check, without)
-
-
-def stacks_of(problem: SliceProblem, variety: Variety, projection: Projection) -> Stacks:
-    """The stacks between them, with samples."""
-    window, base = problem.window, variety.base
-    # there real solutions stay regular but complex ones are lost, and a fibre may not be finite
-    lines = lines_of(variety.components, base, HARMLESS)
-    avoided = Avoided(curves_of(variety.components, base, HARMLESS), list(lines.values()))
-    stacks = lift(variety.curves, projection.abscissae, window[base], window[1 - base], avoided)
-    points = (((s.sample, height) if base == 0 else (height, s.sample)) for s in stacks for height in s.heights)
-    return Stacks(stacks, tuple(points))
-
-
-def decomposition_of(
-    problem: SliceProblem, base: int | None = None, check: Check = nothing
-) -> tuple[Variety, Projection, Stacks]:
-    """The window cut along the variety, over a base axis: the first stages in one."""
-    variety = variety_of(problem, base=base)
-    projection = projection_of(problem, variety, check=check)
-    return variety, projection, stacks_of(problem, variety, projection)
-
-
-def counts_of(problem: SliceProblem, stacks: Stacks, report: Report = unreported) -> SampleCounts:
+def counts_of(problem: SliceProblem, cut: Decomposition, report: Report = unreported) -> SampleCounts:
     """The equilibria at every sample."""
     found = []
-    for k, at in enumerate(stacks.points):
-        report(k, len(stacks.points))
+    for k, at in enumerate(cut.points):
+        report(k, len(cut.points))
         found.append(problem.solved_at(at))
     return with_keys(problem, found)
 
@@ -279,100 +199,6 @@ def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
     """The count by which regions are told apart."""
     known = counts.number(count)
     return (counts.total,) if known is None else known if isinstance(known, tuple) else (known,)
-
-
-def crossings_of(
-    problem: SliceProblem, variety: Variety, stacks: Stacks, report: Report = unreported, check: Check = nothing
-) -> tuple[Crossing, ...]:
-    """What is adjacent across each abscissa, with proof."""
-    fibre, crossings = problem.window[1 - variety.base], []
-    for k, (left, right) in enumerate(pairwise(stacks.stacks)):
-        report(k, len(stacks.stacks) - 1)
-        crossings.append(cross(variety.curves, left, right, fibre, check))
-    return tuple(crossings)
-
-
-def neighbours_of(
-    variety: Variety,
-    projection: Projection,
-    stacks: Stacks,
-    counts: SampleCounts,
-    crossings: tuple[Crossing, ...],
-) -> Neighbours:
-    """The adjacencies, and the cells merged into regions.
-
-    Raises
-    ------
-    ArithmeticError
-        When the counts contradict the decomposition.
-    """
-    adjacencies = tuple(adjacencies_of(stacks.stacks, crossings, lines_across(variety, projection), counts.keys))
-    region_of = merge(counts.keys, [Link(a.first, a.second, a.component) for a in adjacencies])
-    return Neighbours(crossings, adjacencies, region_of)
-
-
-def lines_across(variety: Variety, projection: Projection) -> list[int | None]:
-    """The component that is a line over each abscissa, if one is."""
-    lines = {_coefficients(p): n for n, p in variety.lines.items()}
-    return [lines.get(_coefficients(r.polynomial)) for r in projection.abscissae]
-
-
-def adjacencies_of(
-    stacks: Sequence[StackData],
-    crossings: Sequence[Crossing],
-    across: Sequence[int | None],
-    keys: Sequence[tuple[int, ...]],
-) -> Iterator[Adjacency]:
-    """Pairs of cells within each stack, and then with the next one.
-
-    Parameters
-    ----------
-    across : the component that is a line over each abscissa, if one is.
-    """
-
-    def link(first: int, second: int, component: int | None, segment: Segment | None) -> Adjacency:
-        if component is None:
-            kind = Merge.PROVEN
-        else:
-            kind = Merge.EQUAL_COUNT if keys[first] == keys[second] else Merge.SEPARATED
-        return Adjacency(first, second, component, segment, kind)
-
-    first = 0
-    for s, stack in enumerate(stacks):
-        for level, wall in enumerate(stack.walls):
-            yield link(first + level, first + level + 1, wall.component, None)
-        following = first + len(stack.heights)
-        if s < len(crossings):
-            for p in crossings[s].separators:
-                yield link(first + p.left, following + p.right, across[s], segment_of(p))
-        first = following
-
-
-def segment_of(separator: Separator) -> Segment:
-    """The open segment that proves a separator."""
-    return (to_fraction(separator.low), to_fraction(separator.high), to_fraction(separator.height))
-
-
-def cell_at(problem: SliceProblem, variety: Variety, known: tuple[Projection, Stacks], at: Sample) -> int | None:
-    """The cell in which a point of the window lies; None on the curves, and on lines over critical abscissae."""
-    projection, stacks = known
-    u, v = at[variety.base], at[1 - variety.base]
-    place = 0
-    for r in projection.abscissae:
-        if r.low <= u <= r.high and sign_at(r.polynomial, u) == 0:
-            return None
-        place += _is_below(r, u)
-    if any(sign_at(c.fibre(u), v) == 0 for c in variety.curves):
-        return None
-    first = sum(len(stack.heights) for stack in stacks.stacks[:place])
-    return first + level_at(variety.curves, u, v, problem.window[1 - variety.base])
-
-
-def _is_below(root: RealRoot, u: fmpq) -> bool:
-    """Whether a root, which is not u, is less than u."""
-    if not root.low < u < root.high:
-        return bool(u >= root.high)
-    return sign_at(root.polynomial, u) == sign_at(root.polynomial, root.high)
 
 
 def count_at(where: str, system: ParametricSystem, parameters: Mapping[str, Ratio], at: Sequence[fmpq]) -> Equilibria:
@@ -402,7 +228,3 @@ def count_at(where: str, system: ParametricSystem, parameters: Mapping[str, Rati
         raise DegenerateSliceError(
             f"{error}, a point that should lie off the variety: the slice has a whole area of singular equilibria"
         ) from error
-
-
-def _coefficients(p: UnivariatePolynomial) -> tuple[int, ...]:
-    return tuple(int(c) for c in p.coeffs())

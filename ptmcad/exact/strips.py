@@ -19,13 +19,13 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.real_roots import Interval, refine, simplest_between
+from ptmcad.algebra.real_roots import Interval, refine
 from ptmcad.answer.boundarysurface import ACCURACY
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.arrangement import Picture
 from ptmcad.exact.cad.curves import by_component
 from ptmcad.exact.cad.stacks import BaseEnd
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 JUMP = Fraction(1, 2**12)
 """Of the window's height: walls on both sides of a critical abscissa that end no further apart are one wall, and
@@ -109,10 +109,10 @@ class BoundaryStrips:
     """
 
     def __init__(self, picture: Picture) -> None:
-        self.base = picture.variety.base
-        self._curves = by_component(picture.variety.curves)
-        self._window: Interval = picture.problem.window[self.base]
-        self._fibre: Interval = picture.problem.window[1 - self.base]
+        self.base = picture.cut.variety.base
+        self._curves = by_component(picture.cut.variety.curves)
+        self._window: Interval = picture.cut.base
+        self._fibre: Interval = picture.cut.fibre
         self._keys = picture.arrangement.keys
         self._known: dict[tuple[int, float], Column] = {}
         self.strips = self._joined(self._parts(picture))
@@ -139,8 +139,8 @@ class BoundaryStrips:
 
     def _parts(self, picture: Picture) -> list[_StackPart]:
         found = []
-        rows = picture.stacks.rows(picture.neighbours.region_of)
-        for stack, row in zip(picture.stacks.stacks, rows, strict=True):
+        rows = picture.cut.rows(picture.neighbours.region_of)
+        for stack, row in zip(picture.cut.stacks, rows, strict=True):
             kept = [k for k, (a, b) in enumerate(pairwise(row)) if a != b]
             low, high = _inner(stack.left, stack.sample), _inner(stack.right, stack.sample)
             regions = (row[0], *(row[k + 1] for k in kept))

@@ -37,6 +37,6 @@ def survey(problem: SliceProblem, check: Check = nothing) -> Survey:
     DegenerateSliceError, InfiniteSolutionsError
         When every point of the slice is exceptional.
     """
-    variety, _, stacks = decomposition_of(problem, check=check)
-    cells = len(stacks.points)
-    return Survey(cells, cells - len(stacks.stacks), max((len(c.in_v) - 1 for c in variety.curves), default=0))
+    cut = decomposition_of(problem, check=check)
+    cells = len(cut.points)
+    return Survey(cells, cells - len(cut.stacks), max((len(c.in_v) - 1 for c in cut.variety.curves), default=0))

@@ -11,14 +11,17 @@ Johansson, Arb: efficient arbitrary-precision midpoint-radius interval arithmeti
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
+from typing import Any
 
 from flint import arb, ctx
 
-from ptmcad.formulas.graph import OPERATORS, Operation
-from ptmcad.formulas.tape import Tape
+from ptmcad.formulas.graph import OPERATORS, Formula, Operation
+from ptmcad.formulas.tape import Tape, record
 from ptmcad.text.balls import ball_of, exact
+from ptmcad.text.flint_numbers import from_fraction
 
 
 class EmptyMeet(Exception):
@@ -54,19 +57,43 @@ def run_arb(tape: Tape, box: Sequence[arb], precision: int, stages: int | None =
         When the box is proved to hold no point at which the operands of all `meet` nodes are equal.
     """
     end = len(tape) if stages is None else int(tape.stages[stages - 1])
-    rows = zip(tape.operations[:end].tolist(), tape.first[:end].tolist(), tape.second[:end].tolist(), strict=True)
     with ctx.workprec(precision):
         values: list[arb] = []
-        for place, (operation, a, b) in enumerate(rows):
-            if operation == Operation.CONSTANT:
-                values.append(ball_of(tape.constants[place]))
-            elif operation == Operation.VARIABLE:
+        for function, a, b in _steps(tape)[:end]:
+            if function is None:
                 values.append(box[a])
+            elif function is arb:
+                values.append(arb(a))
             elif b < 0:
-                values.append(_FUNCTIONS[operation](values[a]))
+                values.append(function(values[a]))
             else:
-                values.append(_FUNCTIONS[operation](values[a], values[b]))
+                values.append(function(values[a], values[b]))
         return values
+
+
+@lru_cache(maxsize=64)
+def _steps(tape: Tape) -> list[tuple[Callable[..., arb] | None, Any, int]]:
+    """For each node a function and its operands' places; of a variable none, of a constant `arb` and the number."""
+    steps: list[tuple[Callable[..., arb] | None, Any, int]] = []
+    rows = zip(tape.operations.tolist(), tape.first.tolist(), tape.second.tolist(), strict=True)
+    for place, (operation, a, b) in enumerate(rows):
+        if operation == Operation.CONSTANT:
+            steps.append((arb, from_fraction(tape.constants[place]), b))
+        else:
+            steps.append((_FUNCTIONS.get(operation), a, b))
+    return steps
+
+
+def evaluated(formulas: Sequence[Formula], box: Sequence[arb]) -> list[arb]:
+    """Enclosures of formulas at the context's precision; ``box`` and what is raised are those of `run_arb`."""
+    tape = record([formulas])
+    values = run_arb(tape, box, ctx.prec)
+    return [values[int(place)] for place in tape.outputs[0]]
+
+
+def signs_of(values: Iterable[arb]) -> tuple[int, ...]:
+    """Of each ball 1 where it is positive, -1 where it is negative, else 0."""
+    return tuple(1 if value > 0 else -1 if value < 0 else 0 for value in values)
 
 
 def _length(x: arb, y: arb) -> arb:

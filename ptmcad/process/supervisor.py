@@ -97,7 +97,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     except MemoryError:
         status = 1
         os.write(2, b"MemoryError\n")  # the parent reads it, and says which limit that was
-    except BaseException:
+    except BaseException:  # raised again: the interpreter prints it where it says so
         sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115 - the parent shows it, unless it comes of a limit
         raise
     # Taking the interpreter down object by object costs more time than watching does; multiprocessing ends so, too.

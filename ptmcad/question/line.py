@@ -11,7 +11,10 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.errors import A_SLICE, ConfigError, ExpressionError, expect
+from ptmcad.formulas.graph import Graph
+from ptmcad.formulas.rational import expression_formula
 from ptmcad.model import Model
+from ptmcad.model.compile import CompiledSystem, compiled_with
 from ptmcad.question.slice import Axis, Slice, have_free_lengths, without_free_lengths
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.numerals import shortest_text
@@ -26,6 +29,10 @@ class Line:
     at: Mapping[str, Fraction]
     parameters: Mapping[str, Expression]
     model: Model
+
+    def values(self, value: Fraction) -> dict[str, Fraction]:
+        """The parameters at a value of the axis that varies."""
+        return {name: e.evaluate(value, Fraction(0)) for name, e in self.parameters.items()}
 
     def place(self, value: Fraction) -> str:
         """A point of the line in words."""
@@ -100,6 +107,23 @@ def _restricted(expression: Expression, varying: int, value: Fraction) -> Expres
         return total
 
     return along(expression.numerator) / along(expression.denominator)
+
+
+def compiled_on(model: Model, parameters: Mapping[str, Expression]) -> CompiledSystem:
+    """A model's formulas on a line: variable 0 is the axis that varies, the next ones are the unknowns.
+
+    Parameters
+    ----------
+    parameters : as of `Line`; free lengths that are not among them are zero.
+    """
+    graph = Graph()
+    given = {
+        name: expression_formula(graph, parameters[name]) if name in parameters else graph.constant(0)
+        for name in model.variables
+    }
+    followers = () if model.whole is None else tuple(model.whole.followers)
+    unknowns = (*model.angles, *model.reals, *followers)
+    return compiled_with(model, given | {name: graph.variable(k) for k, name in enumerate(unknowns, 1)})
 
 
 def has_free_lengths(slice: Slice, along: str, at: Mapping[str, Any]) -> bool:

@@ -99,7 +99,7 @@ class Index:
         self.rows.execute("BEGIN")
         try:
             yield
-        except BaseException:
+        except BaseException:  # raised again: whatever stops the steps, none of them stays
             self.rows.execute("ROLLBACK")
             raise
         self.rows.execute("COMMIT")

@@ -24,7 +24,7 @@ def serve(connection: Connection) -> None:
         number = connection.recv()
         try:
             outcome = work.answer(number)
-        except BaseException as error:
+        except BaseException as error:  # raised again, and ends this process: the sweep hears why
             connection.send((number, Failed(shown(f"{type(error).__name__}: {error}")), True))
             raise
         connection.send((number, outcome, False))

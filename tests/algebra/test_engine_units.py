@@ -22,15 +22,7 @@ from ptmcad.algebra.fibre import fibre
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import PLANE, coefficients_in, evaluate, from_expression, irreducible_factors, to_plane
 from ptmcad.algebra.quotient import LINE, multiplication_denominator, norm, poles, quotient_algebra
-from ptmcad.algebra.real_roots import (
-    disjoint,
-    has_root_between,
-    isolate,
-    refine,
-    sign_at,
-    simplest_between,
-    squarefree_part,
-)
+from ptmcad.algebra.real_roots import disjoint, has_root_between, isolate, refine, sign_at, squarefree_part
 from ptmcad.algebra.resultants import discriminant, interpolate, nothing, resultant
 from ptmcad.algebra.window import nowhere_zero
 from ptmcad.answer.regionmap import Kind
@@ -40,7 +32,7 @@ from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
 from ptmcad.exact.stages import problem_of
 from ptmcad.exact.variety import hermite_determinant
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 X, Y = PLANE.gens()
 SYSTEM = system_of("ptm")

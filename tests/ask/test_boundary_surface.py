@@ -180,7 +180,7 @@ def test_strips_end_at_corners_of_walls_and_not_at_other_curves() -> None:
     assert [strip.keys for strip in corner.strips] == [((0,), (1,))] * 2
     wall = {"unknowns": {"u": "real", "v": "real"}, "equations": ["u^2 - (b - a/2)", "v^3 - (b + a)^2*(a^2 + 1)"]}
     smooth = picture_of(slice_from({"system": wall, "axes": SQUARE}), base=0)
-    assert len(smooth.stacks.stacks) > 1  # cut where the line on which no count changes crosses the wall
+    assert len(smooth.cut.stacks) > 1  # cut where the line on which no count changes crosses the wall
     assert [strip.keys for strip in BoundaryStrips(smooth).strips] == [((0,), (2,))]
 
 

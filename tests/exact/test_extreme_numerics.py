@@ -19,7 +19,7 @@ import ptmcad
 from ptmcad.algebra import isolation
 from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.fibre import CoordinatesInBalls, FibreAlgebra, univariate_representation
-from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
+from ptmcad.algebra.real_roots import RealRoot, isolate, refine
 from ptmcad.algebra.resultants import balanced, discriminant, resultant
 from ptmcad.answer.regionmap import Status
 from ptmcad.exact.cad import area
@@ -29,7 +29,7 @@ from ptmcad.exact.point_system import point_system
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.studies.stress.campaign import answer
 from ptmcad.studies.stress.case import Question, chosen
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 from ptmcad.verification.sturm import roots_between
 
 

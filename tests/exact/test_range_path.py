@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from math import cos, pi, sin
@@ -11,20 +12,17 @@ from typing import Any
 
 import jsonschema
 import pytest
-from flint import arb, ctx
+from flint import arb, arb_mat, ctx
 from support.maps import CONFIGS
 
 import ptmcad
 from ptmcad.ask.ranges import Fate, PosePath, pose_paths
 from ptmcad.errors import ConfigError
-from ptmcad.exact.models import system_from, system_of
 from ptmcad.exact.models.system import on_slice
-from ptmcad.exact.ranges.equations import LineSystem
+from ptmcad.exact.ranges.equations import line_system
 from ptmcad.exact.ranges.line import system_on
-from ptmcad.exact.ranges.matrices import plus, times
 from ptmcad.exact.ranges.mirror import Mirror, mirror_of
-from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge, enclose, follow
-from ptmcad.model import ptm
+from ptmcad.formulas.continuation import BITS, BranchEquations, Reached, at_value, bridge, enclose, follow
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.document import document, part
@@ -205,31 +203,28 @@ def test_derivatives_of_second_order() -> None:
     slice = ptmcad.load(CONFIGS / "mechanisms" / "two-bar-chain.yaml")
     line = line_of(slice, "a", {"F": "1/3"})
     stiffness = parse("(1 + 2*a^2)/(3 - a)", {"a": line.parameters["a"]})
-    chain = LineSystem(
-        slice.model, system_from(slice.model), dict.fromkeys(line.parameters, stiffness) | {"a": line.parameters["a"]}
-    )
-    point, velocity, at, h = (arb("0.3"), arb("1.1")), (arb("0.7"), arb("-0.4")), Fraction(1, 2), Fraction(1, 10**9)
+    parameters = dict.fromkeys(line.parameters, stiffness) | {"a": line.parameters["a"]}
+    chain = line_system(replace(line, parameters=parameters)).branches
+    at, h = arb("0.5"), arb("1e-9")
     with ctx.workprec(BITS):
+        point, velocity = arb_mat(2, 1, [arb("0.3"), arb("1.1")]), arb_mat(2, 1, [arb("0.7"), arb("-0.4")])
 
-        def moved(side: int, by: tuple[arb, ...]) -> tuple[arb, ...]:
-            return tuple(x + v * side * h.numerator / h.denominator for x, v in zip(point, by, strict=True))
-
-        def rise(low: Any, high: Any) -> float:
+        def rise(low: arb, high: arb) -> float:
             return float((high - low).mid()) / float(2 * h)
 
-        here, before, after = chain.at(at, at), chain.at(at - h, at - h), chain.at(at + h, at + h)
-        by = here.jacobian_slopes(point)
-        beside = ((before, moved(-1, velocity)), (after, moved(1, velocity)))
-        along = [plus(i.slope(p), times(i.jacobian(p), velocity)) for i, p in beside]
+        mixed, by, _ = chain.second(at, point)
+        places = [(at + side * h, point + velocity * (side * h)) for side in (-1, 1)]
+        along = [chain.slope(*place) + chain.jacobian(*place) * velocity for place in places]
+        before, after = (chain.jacobian(at + side * h, point) for side in (-1, 1))
+        bend = chain.bend(at, point, velocity)
         for k in range(2):
-            assert rise(along[0][k], along[1][k]) == pytest.approx(float(here.bend(point, velocity)[k].mid()), abs=1e-6)
+            assert rise(along[0][k, 0], along[1][k, 0]) == pytest.approx(float(bend[k, 0].mid()), abs=1e-6)
             for j in range(2):
-                low, high = before.jacobian(point)[k][j], after.jacobian(point)[k][j]
-                assert rise(low, high) == pytest.approx(float(by[0][k][j].mid()), abs=1e-6)
+                assert rise(before[k, j], after[k, j]) == pytest.approx(float(mixed[k, j].mid()), abs=1e-6)
                 for n in range(2):
-                    unit = tuple(arb(int(i == n)) for i in range(2))
-                    low, high = here.jacobian(moved(-1, unit))[k][j], here.jacobian(moved(1, unit))[k][j]
-                    assert rise(low, high) == pytest.approx(float(by[n + 1][k][j].mid()), abs=1e-6)
+                    unit = arb_mat(2, 1, [arb(int(i == n)) for i in range(2)])
+                    low, high = (chain.jacobian(at, point + unit * (side * h))[k, j] for side in (-1, 1))
+                    assert rise(low, high) == pytest.approx(float(by[n][k, j].mid()), abs=1e-6)
 
 
 def test_a_pair_that_meets_elsewhere_does_not_stop_a_path() -> None:
@@ -240,9 +235,8 @@ def test_a_pair_that_meets_elsewhere_does_not_stop_a_path() -> None:
     assert path.points[0].value < Fraction(1, 1000) and path.points[-1].value > Fraction(19, 10)
 
 
-def family() -> LineSystem:
-    line = line_of(record("fig4"), "rho", {"L2": "3/2"})
-    return LineSystem(ptm(), system_of("ptm"), line.parameters)
+def family() -> BranchEquations:
+    return line_system(line_of(record("fig4"), "rho", {"L2": "3/2"})).branches
 
 
 def test_a_tube_holds_one_branch_only() -> None:
@@ -306,7 +300,7 @@ def test_text_and_document() -> None:
 
 def test_a_path_towards_infinitely_many_equilibria_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     """Unloaded equal rods: near rho = 0 the steps shrink with rho, so they are counted, and the rest is undecided."""
-    monkeypatch.setattr("ptmcad.exact.ranges.tracking._MAX_STEPS", 40)
+    monkeypatch.setattr("ptmcad.formulas.continuation._MAX_STEPS", 40)
     slice = ptmcad.load(CONFIGS / "fig3.yaml")
     paths = pose_paths(slice, "rho", {"F": Fraction(0)}, Fraction(1, 2), 1)
     assert paths.paths[0].low.fate is Fate.UNDECIDED
@@ -369,7 +363,7 @@ def test_a_minimum_in_three_angles_is_followed() -> None:
     potential = "-2*(cos(t0) + cos(t1) + cos(t2)) - a/3*(cos(t0 - t1) + cos(t1 - t2)) - (b + 3)*sin(t0)/9"
     slice = system(unknowns=dict.fromkeys(("t0", "t1", "t2"), "angle"), potential=potential)
     line = line_of(slice, "b", {"a": 1})
-    chain = LineSystem(slice.model, system_from(slice.model), line.parameters)
+    chain = line_system(line).branches
     start = at_value(chain, Fraction(0), (arb("0.15"), arb(0), arb(0)))
     assert start is not None
     steps, done = follow(chain, Reached(Fraction(0), start, start), Fraction(2), Fraction(1, 4))

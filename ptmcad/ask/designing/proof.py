@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.design import BoundedBox
 from ptmcad.answer.intervals import lower, upper
 from ptmcad.answer.widths import Maximum
@@ -25,7 +24,7 @@ from ptmcad.exact.ranges.width import lines_of, widest
 from ptmcad.exact.stages import problem_of
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.slice import Axis
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 Look = Callable[[Mapping[str, Fraction]], Fraction]
 """From a design to a lower bound of the best value that is known after it was evaluated."""

@@ -13,7 +13,6 @@ from math import gcd, inf, isfinite
 
 import numpy as np
 
-from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.chart import chart
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import FIRST, Problem
@@ -21,6 +20,7 @@ from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
 from ptmcad.errors import ConfigError
 from ptmcad.formulas.graph import Formula, Graph, Operation, length
 from ptmcad.formulas.intervals import Floats, program, run
+from ptmcad.formulas.rational import expression_formula
 from ptmcad.formulas.tape import Tape, enclosing_floats, record
 from ptmcad.question.slice import Axis
 

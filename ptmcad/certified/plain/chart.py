@@ -19,7 +19,6 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
 
-from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.cones import ConeFormulas, Matrix
 from ptmcad.certified.plain.geometry import FactoredProblem
@@ -28,6 +27,7 @@ from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.turning import Turn
 from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula, Graph, length
+from ptmcad.formulas.rational import expression_formula
 
 
 class Turned(NamedTuple):

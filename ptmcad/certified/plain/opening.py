@@ -16,7 +16,6 @@ from fractions import Fraction
 from math import comb
 from typing import NamedTuple
 
-from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Angle, Unknown
 from ptmcad.certified.plain.bounds import Range
 from ptmcad.certified.plain.frame import MirrorFrame
@@ -24,6 +23,7 @@ from ptmcad.certified.plain.involution import image_of
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
 from ptmcad.formulas.graph import Formula, Graph, inverse_length, length
+from ptmcad.formulas.rational import expression_formula
 from ptmcad.formulas.values import substituted
 from ptmcad.text.expressions import Expression, constant
 

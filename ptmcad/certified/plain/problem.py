@@ -14,11 +14,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
 
-from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Formula, Graph, length
+from ptmcad.formulas.rational import expression_formula
 from ptmcad.model.closed import conditions_of
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.model.evaluate import evaluate

@@ -16,10 +16,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.rational import expression_formula
 from ptmcad.text.expressions import Expression, constant
 
 Vector = tuple["TrigonometricPolynomial", "TrigonometricPolynomial"]

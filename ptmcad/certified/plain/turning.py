@@ -17,13 +17,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
-from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.cones import ConeFormulas, Pair
 from ptmcad.certified.plain.problem import Problem, SpringCone
 from ptmcad.certified.plain.scaling import common_factor, divided, largest_factor, over
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.rational import expression_formula
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression
 

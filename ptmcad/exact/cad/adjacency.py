@@ -21,19 +21,13 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.real_roots import (
-    Interval,
-    RealRoot,
-    has_root_between,
-    refine,
-    simplest_between,
-    vanishes_at,
-)
+from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, refine, vanishes_at
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.regionmap import Reason
 from ptmcad.exact.cad.curves import FibredCurve, max_height_bits
 from ptmcad.exact.cad.points import PointsOver
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, roots_over
+from ptmcad.text.flint_numbers import simplest_between
 
 ROUNDS = 4
 """Bracketings that are tried before the exact separation; each has twice as many bits as the one before."""

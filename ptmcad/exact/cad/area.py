@@ -18,12 +18,12 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.branches import TooFewBits
 from ptmcad.algebra.polynomials import RationalPolynomial
-from ptmcad.algebra.real_roots import Interval, RealRoot, refine, simplest_between
+from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 from ptmcad.exact.cad.curves import FibredCurve, by_component, max_height_bits
 from ptmcad.exact.cad.panels import Border, PanelEffort, WallPanel, halves, panels
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.text.balls import exact
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 _Sum = TypeVar("_Sum", fmpq, arb)
 Bounds = tuple[tuple[Fraction, Fraction], ...]

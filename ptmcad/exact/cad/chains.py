@@ -19,7 +19,7 @@ from fractions import Fraction
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, halve, isolate, refine, sign_at
+from ptmcad.algebra.real_roots import RealRoot, halve, isolate, order, refine, sign_at
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.exact.cad.curves import by_component, curves_of
 from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Span, WallBranch, chords, shut_in, to_share
@@ -104,16 +104,10 @@ def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:
         When it is not between them, as in a damaged result: halving would never part it from them.
     """
     p = UnivariatePolynomial(list(value.polynomial))
-    low, high = from_fraction(value.low), from_fraction(value.high)
-    signs = sign_at(p, low), sign_at(p, high)
-    if low <= before:
-        low, signs = before, (sign_at(p, before), signs[1])
-    if high >= after:
-        high, signs = after, (signs[0], sign_at(p, after))
-    is_between = low < high and signs[0] * signs[1] < 0 if value.low < value.high else before < low == high < after
-    if not is_between:
+    root = RealRoot(p, from_fraction(value.low), from_fraction(value.high))
+    is_one = root.is_rational or (root.low < root.high and sign_at(p, root.low) * sign_at(p, root.high) < 0)
+    if not is_one or not order(before, root) < 0 < order(after, root):
         raise ValueError("a critical value is not between the samples of its stacks")
-    root = RealRoot(p, low, high)
     while root.low <= before or root.high >= after:
         root = halve(root)
     return refine(root, min(root.low - before, after - root.high) * _END)

@@ -14,19 +14,11 @@ from flint import fmpq
 
 from ptmcad.algebra.graphs import on_graph
 from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
-from ptmcad.algebra.real_roots import (
-    RealRoot,
-    disjoint,
-    halve,
-    inside,
-    isolate,
-    sign_at,
-    simplest_between,
-    squarefree_part,
-)
+from ptmcad.algebra.real_roots import RealRoot, disjoint, halve, inside, isolate, sign_at, squarefree_part
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.area import RegionStacks
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, level_at
+from ptmcad.text.flint_numbers import simplest_between
 
 
 def before(parts: RegionStacks, middle: fmpq) -> RegionStacks:

@@ -11,8 +11,9 @@ from collections.abc import Callable
 from flint import fmpq
 
 from ptmcad.algebra.branches import avoids
-from ptmcad.algebra.real_roots import Interval, RealRoot, refine, simplest_between
+from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 from ptmcad.exact.cad.curves import FibredCurve
+from ptmcad.text.flint_numbers import simplest_between
 
 
 def horizontals(curve: FibredCurve, at_middle: RealRoot, over: Interval, share: fmpq, fibre: Interval) -> Interval:

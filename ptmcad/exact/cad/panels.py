@@ -14,11 +14,12 @@ from flint import arb, ctx, fmpq
 from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.branches import Integral, TooFewBits, branch_integral
 from ptmcad.algebra.graphs import graph_integral
-from ptmcad.algebra.real_roots import Interval, RealRoot, refine, sign_at, simplest_between
+from ptmcad.algebra.real_roots import Interval, RealRoot, refine, sign_at
 from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.exact.cad.horizontals import horizontals
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.text.balls import exact
+from ptmcad.text.flint_numbers import simplest_between
 
 _REGULAR = 1.5
 """A branch seems to be regular at the ends of an interval if its series converges so much farther."""

@@ -11,9 +11,10 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import Interval, RealRoot, disjoint, gaps, inside, isolate, sign_at, simplest_between
+from ptmcad.algebra.real_roots import Interval, RealRoot, disjoint, gaps, inside, isolate, sign_at
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.curves import FibredCurve
+from ptmcad.text.flint_numbers import simplest_between
 
 
 class BaseEnd(NamedTuple):

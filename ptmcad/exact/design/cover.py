@@ -18,7 +18,8 @@ from typing import NamedTuple
 from flint import fmpq, fmpz
 
 from ptmcad.algebra.bernstein import Table, halves, over, sign
-from ptmcad.algebra.real_roots import Interval, simplest_between
+from ptmcad.algebra.real_roots import Interval
+from ptmcad.text.flint_numbers import simplest_between
 
 Box = tuple[Interval, Interval]
 """Ranges of the two design parameters; that of one which there is not is never looked at."""

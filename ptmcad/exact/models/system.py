@@ -30,8 +30,10 @@ from ptmcad.model.criterion import Criterion
 RationalPolynomial = dict[tuple[int, ...], fmpq]
 """A polynomial in the unknowns with rational coefficients: exponent vector -> coefficient."""
 
-Terms = tuple[tuple[tuple[int, ...], tuple[tuple[tuple[tuple[int, int], ...], fmpq], ...]], ...]
-"""(exponents of the unknowns, ((parameter number, exponent) pairs, coefficient) for each term) for each monomial."""
+Part = tuple[tuple[tuple[tuple[int, int], ...], fmpq], ...]
+"""((parameter number, exponent) pairs, coefficient) for each term of a coefficient."""
+Terms = tuple[tuple[tuple[int, ...], Part], ...]
+"""(exponents of the unknowns, coefficient) for each monomial."""
 
 
 class ParametricSystem(NamedTuple):

@@ -33,7 +33,7 @@ from ptmcad.algebra.polynomials import (
     from_expression,
 )
 from ptmcad.algebra.quotient import QuotientAlgebra, matrix_of, multiples, multiplication_denominator, trace_form
-from ptmcad.algebra.real_roots import gaps, isolate, simplest_between
+from ptmcad.algebra.real_roots import gaps, isolate
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError
 from ptmcad.exact.models import ParametricSystem, system_from
@@ -45,7 +45,7 @@ from ptmcad.exact.variety import algebra_of
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_between
 
 MAX_DIMENSION = 40
 """Complex solutions, with multiplicity and at all conjugate values, up to which they are told apart."""

@@ -1,7 +1,7 @@
 """What holds at the critical value at which a branch ends: the pose that is reached there, and the energies.
 
 Guarantee: every enclosure holds the number at the critical value itself, wherever that lies in its isolating interval;
-so it does not depend on where a path began. A pose that is simple there is carried to it by tubes (`tracking`). Poses
+so it does not depend on where a path began. A pose that is simple there is carried to it by tubes. Poses
 that merge there are enclosed by a region that none of them leaves meanwhile (`meeting`), or by what a symmetry or an
 exact solution at a rational value says of them. An energy is that at a place beside, which differs by no more than the
 distance times the largest slope: along a branch of critical points the energy changes with the parameter alone, which
@@ -13,45 +13,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from math import pi
-from typing import NamedTuple
 
 from flint import arb, ctx
 
-from ptmcad.algebra.numbers import simplest_fraction
+from ptmcad.answer.paths import Landing, Target
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.ranges.equations import LineSystem
-from ptmcad.exact.ranges.meeting import Meeting, parameters_at, value_at, what_meets
-from ptmcad.exact.ranges.tracking import BITS, Reached, bridge, enclose, follow
-from ptmcad.question.line import Line
-from ptmcad.text.balls import ball_of, ball_over, enclosure_of
+from ptmcad.exact.ranges.meeting import Meeting, what_meets
+from ptmcad.formulas.continuation import BITS, Reached, in_the_limit, nearer, over_range
+from ptmcad.text.balls import ball_over, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.flint_numbers import simplest_fraction
 
 DIGITS = 12
 _NEAREST = Fraction(1, 2**56)
 """How near to a critical value branches are followed for what holds there, against the window's width."""
 
-_MAX_STEPS = 1000
-"""On that way, of which a fold takes some hundred; a pitchfork, of which fewer digits are told, takes them all."""
-
-
-class LimitPose(NamedTuple):
-    """The stable pose at a critical value to which a state goes, and the energies.
-
-    Attributes
-    ----------
-    unknowns : the angles, not wrapped into one turn, then the unknowns on the line.
-    energy, target_energy : of the branch that ends, in the limit, and of the pose that is reached.
-    """
-
-    unknowns: tuple[Enclosure, ...]
-    energy: Enclosure
-    target_energy: Enclosure
-
 
 def landing(
-    family: LineSystem, line: Line, number: AlgebraicNumber, met: Meeting, current: Reached, target: Reached
-) -> LimitPose | None:
+    family: LineSystem, number: AlgebraicNumber, met: Meeting, current: Reached, target: Reached
+) -> Landing | None:
     """What holds at the critical value where a branch ends; None where the pose that is reached is not proved.
+
+    Its angles are not wrapped into one turn.
 
     Parameters
     ----------
@@ -59,22 +43,32 @@ def landing(
     met : what the branch meets there.
     target : the only stable pose beyond.
     """
+    potential = family.formulas.smooth
+    assert potential is not None  # snaps and mergers are those of a potential
+
+    def energy(place: Reached) -> Enclosure:
+        found = in_the_limit(potential, place, number.low, number.high, family.angles)
+        with ctx.workprec(BITS):
+            return enclosure_of(found)
+
     side = 1 if target.value > current.value else -1
-    distance = (line.along.high - line.along.low) * _NEAREST
+    distance = (family.line.along.high - family.line.along.low) * _NEAREST
     near, far = ends_from(number, side)
-    before = _nearer(family, current, beside(near, -side, distance))
-    after = _nearer(family, target, beside(far, side, distance))
-    energy = _limit(family, line, number, before)
+    before = nearer(family.branches, current, beside(near, -side, distance))
+    after = nearer(family.branches, target, beside(far, side, distance))
+    at = None
     if 0 in met.leaving:
-        merged = _merged(family, line, number, before, after)
-        return None if merged is None else LimitPose(merged, energy, energy)
-    across = bridge(family, after, near)
-    at = None if across is None else enclose(family, number.low, number.high, across.point)
-    if across is None or at is None or not across.over.holds(at, near):
+        unknowns = _merged(family, number, before, after)
+    else:
+        at = over_range(family.branches, after, number.low, number.high)
+        with ctx.workprec(BITS):
+            unknowns = None if at is None else tuple(map(enclosure_of, at.hull()))
+    if unknowns is None:
         return None
     with ctx.workprec(BITS):
-        unknowns = tuple(map(enclosure_of, at.hull()))
-    return LimitPose(unknowns, energy, _limit(family, line, number, Reached(near, at, at)))
+        sides = family.sides(number.low, number.high, tuple(ball_over(u.low, u.high) for u in unknowns))
+    reached = Target(unknowns[: family.angles], unknowns[family.angles :], sides)
+    return Landing(reached, energy(before), energy(before if at is None else Reached(near, at, at)))
 
 
 def ends_from(number: AlgebraicNumber, side: int) -> tuple[Fraction, Fraction]:
@@ -87,27 +81,11 @@ def beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
     return simplest_fraction(value + side * gap / 2, value + side * gap)
 
 
-def _nearer(family: LineSystem, place: Reached, value: Fraction) -> Reached:
-    """The branch at a value, or as near to it as it can be followed."""
-    steps, _ = follow(family, place, value, abs(value - place.value), _MAX_STEPS)
-    return steps[-1] if steps else place
-
-
-def _limit(family: LineSystem, line: Line, number: AlgebraicNumber, place: Reached) -> Enclosure:
-    """The energy of a branch at the critical value to which it leads, from its energy at a place beside."""
-    potential = family.system.potential
-    assert potential is not None  # snaps and mergers are those of a potential
-    low, high = min(place.value, number.low), max(place.value, number.high)
-    there = value_at(family, line, place, potential)
-    with ctx.workprec(BITS):
-        return enclosure_of(there + ball_of(high - low) * family.slope(potential, low, high) * arb(0, 1))
-
-
 def _merged(
-    family: LineSystem, line: Line, number: AlgebraicNumber, before: Reached, after: Reached
+    family: LineSystem, number: AlgebraicNumber, before: Reached, after: Reached
 ) -> tuple[Enclosure, ...] | None:
     """The pose in which several merge, at the critical value between two places."""
-    found = what_meets(family, line, before, after.value)
+    found = what_meets(family, before, after.value)
     if found is None or found.box is None:
         return None
     with ctx.workprec(BITS):
@@ -120,7 +98,7 @@ def _merged(
                 region[k] = _half_turned(region[k], angle)
     if number.exact is None:
         return tuple(region)
-    poses = exact_poses(family.model, parameters_at(family, line, number.exact), DIGITS).equilibria
+    poses = exact_poses(family.line.model, family.line.values(number.exact), DIGITS).equilibria
     near = [_turned((*pose.angles, *pose.reals), region, family.angles) for pose in poses]
     inside = [p for p in near if _overlap(p, region)]
     return inside[0] if len(inside) == 1 else tuple(region)

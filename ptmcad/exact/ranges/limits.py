@@ -14,14 +14,14 @@ from flint import fmpq
 from ptmcad.algebra.chords import side_of_chord
 from ptmcad.algebra.numbers import as_interval, fibre_roots, refined, root_of
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
-from ptmcad.algebra.real_roots import Interval, isolate, refine, sign, simplest_between
+from ptmcad.algebra.real_roots import Interval, isolate, refine, sign
 from ptmcad.algebra.resultants import resultant
 from ptmcad.algebra.slopes import tangent_resultant
 from ptmcad.answer.intervals import End
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.strips import RangeEnd, RangeStrip, at_abscissa, bound_over, end_interval
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import to_fraction
+from ptmcad.text.flint_numbers import simplest_between, to_fraction
 
 
 def ends_of(end: End) -> Interval:

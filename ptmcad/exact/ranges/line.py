@@ -19,7 +19,7 @@ from typing import Any
 
 from flint import fmpq
 
-from ptmcad.algebra.numbers import in_order, roots_in, simplest_fraction
+from ptmcad.algebra.numbers import in_order, roots_in
 from ptmcad.algebra.polynomials import Ratio, from_expression
 from ptmcad.algebra.real_roots import gaps
 from ptmcad.answer.counts import Counts, operation_number
@@ -35,7 +35,7 @@ from ptmcad.exact.witness import points
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_fraction
 from ptmcad.text.numerals import shortest_text
 
 END_WIDTH = Fraction(1, 2**100)

@@ -18,16 +18,14 @@ from typing import NamedTuple
 from flint import arb, arb_mat, ctx
 
 from ptmcad.algebra.polynomials import PLANE
-from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.exact.counting import equilibria
-from ptmcad.exact.models.system import on_slice, polynomial_at
-from ptmcad.exact.ranges.equations import LineSystem, coordinates_of, evaluated
+from ptmcad.exact.models.system import on_slice
+from ptmcad.exact.ranges.equations import LineSystem, coordinates_of
 from ptmcad.exact.ranges.line import system_on
-from ptmcad.exact.ranges.matrices import Vector
 from ptmcad.exact.ranges.mirror import Mirror, mirror_of
-from ptmcad.exact.ranges.tracking import BITS, Reached, at_value, bridge
+from ptmcad.formulas.continuation import BITS, Reached, Vector, at_value, bridge
 from ptmcad.model.involutions import involutions
-from ptmcad.question.line import Line
+from ptmcad.text.balls import ball_of, ball_over
 from ptmcad.text.flint_numbers import from_fraction
 
 _MAX_GROUP = 8
@@ -87,26 +85,12 @@ class _Member(NamedTuple):
     sign: int
 
 
-def parameters_at(family: LineSystem, line: Line, value: Fraction) -> dict[str, Fraction]:
-    """The system's parameters at a value of the line."""
-    used = family.system.ring.parameters
-    return {n: e.evaluate(value, Fraction(0)) for n, e in line.parameters.items() if n in used}
-
-
-def value_at(family: LineSystem, line: Line, reached: Reached, p: TrigonometricPolynomial) -> arb:
-    """An element of the system's ring at a place."""
-    values = {n: from_fraction(v) for n, v in parameters_at(family, line, reached.value).items()}
-    with ctx.workprec(BITS):
-        terms = tuple((m, arb(c)) for m, c in polynomial_at(family.system, p, values).items())
-        return evaluated(terms, coordinates_of(reached.point, family.angles))
-
-
-def what_meets(family: LineSystem, line: Line, current: Reached, after: Fraction) -> Meeting | None:
+def what_meets(family: LineSystem, current: Reached, after: Fraction) -> Meeting | None:
     """What a branch meets at the only critical value between its place and another value; None where not proved."""
-    before, beyond = _solutions(family, line, current.value), _solutions(family, line, after)
+    before, beyond = _solutions(family, current.value), _solutions(family, after)
     if before is None or beyond is None:
         return None
-    unmatched = _unmatched(family, line, current, after, before, beyond)
+    unmatched = _unmatched(family, current, after, before, beyond)
     if unmatched is None:
         return None
     members = [_member(family, current, s, ahead) for s, ahead in unmatched]
@@ -116,7 +100,7 @@ def what_meets(family: LineSystem, line: Line, current: Reached, after: Fraction
     if region is None:
         return _without_region(family, unmatched, tuple(beyond))
     group, box = region
-    symmetries = _symmetries(family, line, group, after)
+    symmetries = _symmetries(family, group, after)
     classes = _own_classes(group, [s.images for s in symmetries])
     if not classes:
         return None
@@ -130,17 +114,17 @@ def what_meets(family: LineSystem, line: Line, current: Reached, after: Fraction
     return Meeting(met, left, len(classes) > 1, tuple(beyond), box, fixed)
 
 
-def _solutions(family: LineSystem, line: Line, value: Fraction) -> list[PlacedSolution] | None:
+def _solutions(family: LineSystem, value: Fraction) -> list[PlacedSolution] | None:
     """All solutions at a value that is not critical; None when one was not enclosed."""
-    values = parameters_at(family, line, value)
+    values = {n: from_fraction(v) for n, v in family.line.values(value).items()}
     found = []
-    for solution in equilibria(family.system, {n: from_fraction(v) for n, v in values.items()}).solutions:
+    for solution in equilibria(family.system, values).solutions:
         with ctx.workprec(BITS):
             center = [arb(x) for x in solution.center]
             turns = 2 * family.angles
             angles = (arb.atan2(s, c) for c, s in zip(center[:turns:2], center[1:turns:2], strict=True))
             guess = (*angles, *center[turns:])
-        place = at_value(family, value, guess)
+        place = at_value(family.branches, value, guess)
         if place is None:
             return None
         found.append(PlacedSolution(Reached(value, place, place), family.system.criterion.rank(solution.signs)))
@@ -149,7 +133,6 @@ def _solutions(family: LineSystem, line: Line, value: Fraction) -> list[PlacedSo
 
 def _unmatched(
     family: LineSystem,
-    line: Line,
     current: Reached,
     after: Fraction,
     before: Sequence[PlacedSolution],
@@ -163,14 +146,14 @@ def _unmatched(
     for solution in before:
         if solution is own[0]:
             continue
-        across = bridge(family, solution.place, after)
+        across = bridge(family.branches, solution.place, after)
         if across is None:
             lost.append((solution, False))
             continue
         images = [k for k, image in enumerate(left) if _close(family, across.point, image.place.point)]
         if len(images) == 1:
             del left[images[0]]
-        elif images or not any(value_at(family, line, across, p) < 0 for p in family.system.inequalities):
+        elif images or not any(p < 0 for p in family.values_at(family.formulas.inequalities, across)):
             return None
     return lost + [(solution, True) for solution in left]
 
@@ -192,8 +175,8 @@ def _member(family: LineSystem, current: Reached, solution: PlacedSolution, ahea
             shifted.append(a + 2 * turns * arb.pi())
         value = solution.place.value
         size = len(shifted)
-        rows = family.at(value, value).jacobian(solution.place.point)
-        det = arb_mat(size, size, [x for row in rows for x in row]).det()
+        place = arb_mat(size, 1, solution.place.point)
+        det = family.branches.jacobian(ball_of(value), place).det()
         return _Member(solution, ahead, tuple(shifted), 1 if det > 0 else -1 if det < 0 else 0)
 
 
@@ -254,16 +237,16 @@ def _isolates(
     if not held or not all(_outside(family, m.shifted, box) for m in others):
         return False
     low, high = sorted((start, end))
-    at = family.at(low, high)
+    at, size = ball_over(low, high), len(box)
     whole = tuple(a.union(b) for a, b in box)
-    if not all(p > 0 for p in family.conditions(low, high, whole)):
+    if not all(p > 0 for p in family.values(family.formulas.inequalities, low, high, whole)):
         return False
     faces = [(*whole[:i], side, *whole[i + 1 :]) for i, sides in enumerate(box) for side in sides]
     stack, pieces = [(face, 0) for face in faces], 0
     while stack:
         piece, depth = stack.pop()
         pieces += 1
-        if any(not value.contains(0) for value in at.equations(piece)):
+        if any(not f.contains(0) for f in family.branches.equations(at, arb_mat(size, 1, piece)).entries()):
             continue
         if depth == _MAX_DEPTH or pieces > _MAX_PIECES:
             return False
@@ -289,18 +272,17 @@ def _outside(family: LineSystem, point: Vector, box: Sequence[tuple[arb, arb]]) 
     return False
 
 
-def _symmetries(family: LineSystem, line: Line, group: Sequence[_Member], after: Fraction) -> list[_Symmetry]:
+def _symmetries(family: LineSystem, group: Sequence[_Member], after: Fraction) -> list[_Symmetry]:
     """How the involutions that keep all points of the line, and a reflection of all angles, permute the group."""
     if len(group) <= 2:
         return []
     with ctx.workprec(BITS):
         places = [coordinates_of(m.shifted, family.angles) for m in group]
-        found = _reflections(family, line, group, places, after)
-        kinds = line.model.unknowns
-        ordered = [
-            k for name in (*line.model.angles, *line.model.reals) for k, known in enumerate(kinds) if name == known
-        ]
-        for change in involutions(line.model, line.parameters):
+        found = _reflections(family, group, places, after)
+        model = family.line.model
+        kinds = model.unknowns
+        ordered = [k for name in (*model.angles, *model.reals) for k, known in enumerate(kinds) if name == known]
+        for change in involutions(model, family.line.parameters):
             coordinates = change.coordinates(tuple(kinds.values()))
             images = _images(group, places, [[sign * place[k] for k, sign in coordinates] for place in places])
             if images is not None:
@@ -310,12 +292,12 @@ def _symmetries(family: LineSystem, line: Line, group: Sequence[_Member], after:
 
 
 def _reflections(
-    family: LineSystem, line: Line, group: Sequence[_Member], places: Sequence[Sequence[arb]], after: Fraction
+    family: LineSystem, group: Sequence[_Member], places: Sequence[Sequence[arb]], after: Fraction
 ) -> list[_Symmetry]:
     """How the reflection of all angles at once, whose line may turn with the parameter, permutes the group."""
     if family.system.ring.reals:
         return []
-    mirror = mirror_of(on_slice(*system_on(line)).equations, family.angles)
+    mirror = mirror_of(on_slice(*system_on(family.line)).equations, family.angles)
     values = [m.solution.place.value for m in group]  # the first is the branch's own, on the near side
     if mirror is None or mirror.angle(min(values[0], after), max(values[0], after)) is None:
         return []

@@ -15,14 +15,15 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
-from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, isolate, refine, simplest_between
+from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, isolate, refine
 from ptmcad.answer.counts import operation_number
 from ptmcad.exact.cad.adjacency import Crossing, cross
 from ptmcad.exact.cad.curves import FibredCurve, by_component
 from ptmcad.exact.cad.stacks import BaseEnd, StackData
 from ptmcad.exact.ranges.line import runs
-from ptmcad.exact.stages import counts_of, decomposition_of, lines_across, problem_of
+from ptmcad.exact.stages import counts_of, decomposition_of, problem_of
 from ptmcad.question.slice import Slice, without_free_lengths
+from ptmcad.text.flint_numbers import simplest_between
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,22 +107,22 @@ def strips(slice: Slice, along: str, working: int | None = None) -> RangeStrips:
     base = 1 - slice.axis_names.index(along)
     refuse_free_lengths(slice)
     problem = problem_of(slice)
-    variety, projection, stacks = decomposition_of(problem, base)
-    counts = [found.counts for found in counts_of(problem, stacks).found]
+    cut = decomposition_of(problem, base)
+    counts = [found.counts for found in counts_of(problem, cut).found]
     if working is None:
         working = operation_number(slice.model, counts)
-    inside = stacks.rows(found.working == working for found in counts)
-    curves, fibre = by_component(variety.curves), problem.window[1 - base]
-    found = [_over(stack, here, curves, fibre) for stack, here in zip(stacks.stacks, inside, strict=True)]
-    special = [stacks.stacks[0].left]
-    for k, line in enumerate(lines_across(variety, projection)):
-        left, right = stacks.stacks[k : k + 2]
+    inside = cut.rows(found.working == working for found in counts)
+    curves, fibre = by_component(cut.variety.curves), cut.fibre
+    found = [_over(stack, here, curves, fibre) for stack, here in zip(cut.stacks, inside, strict=True)]
+    special = [cut.stacks[0].left]
+    for k, line in enumerate(cut.lines_across):
+        left, right = cut.stacks[k : k + 2]
         if line is not None or (
             min(len(found[k]), len(found[k + 1])) > 1
-            and _ranges_meet(cross(variety.curves, left, right, fibre), inside[k], inside[k + 1])
+            and _ranges_meet(cross(cut.variety.curves, left, right, fibre), inside[k], inside[k + 1])
         ):
             special.append(left.right)
-    special.append(stacks.stacks[-1].right)
+    special.append(cut.stacks[-1].right)
     return RangeStrips(tuple(chain.from_iterable(found)), working, tuple(special))
 
 

@@ -14,20 +14,9 @@ from forger.consistency import NO_AREAS, settled, with_plan
 from ptmcad.answer.regionmap import Component, RegionMap
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.assembly import PartialMap, assemble
-from ptmcad.exact.cad.curves import curves_of, lines_of
 from ptmcad.exact.counting import Equilibria
-from ptmcad.exact.stages import (
-    Cells,
-    Sample,
-    SliceProblem,
-    Variety,
-    crossings_of,
-    neighbours_of,
-    problem_of,
-    projection_of,
-    stacks_of,
-    with_keys,
-)
+from ptmcad.exact.decomposition import Sample, crossings_of, cut_along, neighbours_of, seen_from
+from ptmcad.exact.stages import Cells, SliceProblem, problem_of, with_keys
 from ptmcad.options import Options
 from ptmcad.text.flint_numbers import from_fraction
 
@@ -35,25 +24,20 @@ from ptmcad.text.flint_numbers import from_fraction
 def decomposed(r: RegionMap, components: Sequence[Component]) -> RegionMap:
     """The map with these components, over the same base, and with all that follows from them."""
     problem = problem_of(r.slice)
-    base = r.base
-    variety = Variety(
-        tuple(components), r.complex_solutions, base, curves_of(components, base), lines_of(components, base), (1, 2)
-    )
-    projection = projection_of(problem, variety)
-    stacks = stacks_of(problem, variety, projection)
-    known = [_equilibria(problem, at) for at in stacks.points]
+    cut = cut_along(problem.window, seen_from(components, r.base, r.complex_solutions)._replace(costs=(1, 2)))
+    known = [_equilibria(problem, at) for at in cut.points]
     some = next((e for e in known if e is not None), None) or _equilibria(problem, _inside(r))
     assert some is not None
     counts = with_keys(problem, [some if e is None else e for e in known])
-    crossings = crossings_of(problem, variety, stacks)
+    crossings = crossings_of(cut)
     try:
-        neighbours = neighbours_of(variety, projection, stacks, counts, crossings)
+        neighbours = neighbours_of(cut, counts.keys, crossings)
     except ArithmeticError:
         counts = with_keys(problem, counts.found[:1] * len(known))
-        neighbours = neighbours_of(variety, projection, stacks, counts, crossings)
+        neighbours = neighbours_of(cut, counts.keys, crossings)
     options = Options(areas=NO_AREAS not in r.plan)
-    cells = Cells(projection, stacks, counts, neighbours)
-    found = replace(assemble(problem, options, PartialMap(variety, cells)), plan=r.plan, system=r.system)
+    cells = Cells(cut, counts, neighbours)
+    found = replace(assemble(problem, options, PartialMap(cut.variety, cells)), plan=r.plan, system=r.system)
     found = with_plan(found)
     areas = {frozenset(tuple(r.cells[n].sample) for n in g.cells): g.area for g in r.regions}
     whole = (Fraction(0), found.regions[0].area[1])

@@ -1,0 +1,216 @@
+"""A window cut along curves: stacks of cells over a base axis, and which of the cells are neighbours.
+
+Guarantee: no step decides anything by rounding without an error bound.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import islice, pairwise
+from typing import NamedTuple, TypeVar
+
+from flint import fmpq
+
+from ptmcad.algebra.polynomials import UnivariatePolynomial
+from ptmcad.algebra.real_roots import Interval, order, sign_at
+from ptmcad.algebra.resultants import Check, nothing
+from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
+from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
+from ptmcad.exact.cad.curves import FibredCurve, curves_of, lines_of
+from ptmcad.exact.cad.projection import Projection, predicted_cost, project
+from ptmcad.exact.cad.stacks import Avoided, StackData, level_at, lift
+from ptmcad.exact.regions import Link, merge
+from ptmcad.text.flint_numbers import to_fraction
+
+_T = TypeVar("_T")
+Sample = tuple[fmpq, fmpq]
+Window = tuple[Interval, Interval]
+Report = Callable[[int, int], None]
+"""Called as report(done, total); may raise to stop."""
+
+
+def unreported(_done: int, _total: int) -> None:
+    """The report that nobody asked for."""
+
+
+class Variety(NamedTuple):
+    """The discriminant variety as seen from the base axis.
+
+    Attributes
+    ----------
+    curves : the components that are used, but for lines across the base.
+    lines : these, by the components' numbers.
+    costs : predicted for each of the two base axes.
+    excludes : whether solutions at which an inequality's polynomial is zero were left out, as they are in the way.
+    """
+
+    components: tuple[Component, ...]
+    complex_solutions: int
+    base: int
+    curves: Sequence[FibredCurve]
+    lines: dict[int, UnivariatePolynomial]
+    costs: tuple[int, int]
+    excludes: bool = False
+
+
+def seen_from(
+    components: Sequence[Component], base: int | None = None, complex_solutions: int = 0, excludes: bool = False
+) -> Variety:
+    """Components over a base axis; over that of the cheaper decomposition when None."""
+    views = [curves_of(components, axis) for axis in (0, 1)]
+    costs = (predicted_cost(views[0]), predicted_cost(views[1]))
+    if base is None:
+        base = int(costs[1] < costs[0])
+    lines = lines_of(components, base)
+    return Variety(tuple(components), complex_solutions, base, views[base], lines, costs, excludes)
+
+
+class Decomposition(NamedTuple):
+    """The stacks over the base, and the sample of every cell, stack by stack from below."""
+
+    window: Window
+    variety: Variety
+    projection: Projection
+    stacks: tuple[StackData, ...]
+    points: tuple[Sample, ...]
+
+    @property
+    def base(self) -> Interval:
+        """The range of the axis over which the stacks stand."""
+        return self.window[self.variety.base]
+
+    @property
+    def fibre(self) -> Interval:
+        """The range of the other one."""
+        return self.window[1 - self.variety.base]
+
+    @property
+    def places(self) -> list[tuple[int, int]]:
+        """The stack of every cell, and its level there."""
+        return [(s, level) for s, stack in enumerate(self.stacks) for level in range(len(stack.heights))]
+
+    def rows(self, values: Iterable[_T]) -> list[tuple[_T, ...]]:
+        """What there is for every cell, as a row for each stack."""
+        numbers = iter(values)
+        return [tuple(islice(numbers, len(stack.heights))) for stack in self.stacks]
+
+    @property
+    def lines_across(self) -> list[int | None]:
+        """The component that is a line over each abscissa, if one is."""
+        lines = {_coefficients(p): n for n, p in self.variety.lines.items()}
+        return [lines.get(_coefficients(r.polynomial)) for r in self.projection.abscissae]
+
+    def cell_at(self, at: Sample) -> int | None:
+        """The cell in which a point of the window lies; None on the curves, and on lines over critical abscissae."""
+        u, v = at[self.variety.base], at[1 - self.variety.base]
+        sides = [order(u, r) for r in self.projection.abscissae]
+        if 0 in sides or any(sign_at(c.fibre(u), v) == 0 for c in self.variety.curves):
+            return None
+        first = sum(len(stack.heights) for stack in self.stacks[: sides.count(1)])
+        return first + level_at(self.variety.curves, u, v, self.fibre)
+
+
+class Neighbours(NamedTuple):
+    """What separates the cells and what does not.
+
+    Attributes
+    ----------
+    crossings : between neighbouring stacks.
+    adjacencies : all pairs of cells with an open arc in common.
+    region_of : the region of each cell.
+    """
+
+    crossings: tuple[Crossing, ...]
+    adjacencies: tuple[Adjacency, ...]
+    region_of: tuple[int, ...]
+
+
+def projection_of(
+    window: Window, variety: Variety, without: frozenset[str] = frozenset(), check: Check = nothing
+) -> Projection:
+    """The abscissae over which the order of the curves can change."""
+    base = variety.base
+    return project(variety.curves, list(variety.lines.values()), window[base], window[1 - base], check, without)
+
+
+def stacks_of(window: Window, variety: Variety, projection: Projection) -> Decomposition:
+    """The stacks between them, with samples."""
+    base = variety.base
+    # there real solutions stay regular but complex ones are lost, and a fibre may not be finite
+    lines = lines_of(variety.components, base, HARMLESS)
+    avoided = Avoided(curves_of(variety.components, base, HARMLESS), list(lines.values()))
+    stacks = lift(variety.curves, projection.abscissae, window[base], window[1 - base], avoided)
+    points = (((s.sample, height) if base == 0 else (height, s.sample)) for s in stacks for height in s.heights)
+    return Decomposition(window, variety, projection, stacks, tuple(points))
+
+
+def cut_along(window: Window, variety: Variety, check: Check = nothing) -> Decomposition:
+    """The window cut along a variety: the last two stages in one."""
+    return stacks_of(window, variety, projection_of(window, variety, check=check))
+
+
+def crossings_of(cut: Decomposition, report: Report = unreported, check: Check = nothing) -> tuple[Crossing, ...]:
+    """What is adjacent across each abscissa, with proof."""
+    crossings = []
+    for k, (left, right) in enumerate(pairwise(cut.stacks)):
+        report(k, len(cut.stacks) - 1)
+        crossings.append(cross(cut.variety.curves, left, right, cut.fibre, check))
+    return tuple(crossings)
+
+
+def neighbours_of(cut: Decomposition, keys: Sequence[tuple[int, ...]], crossings: tuple[Crossing, ...]) -> Neighbours:
+    """The adjacencies, and the cells merged into regions.
+
+    Parameters
+    ----------
+    keys : by which regions are told apart, of each cell.
+
+    Raises
+    ------
+    ArithmeticError
+        When the counts contradict the decomposition.
+    """
+    adjacencies = tuple(adjacencies_of(cut, crossings, keys))
+    region_of = merge(keys, [Link(a.first, a.second, a.component) for a in adjacencies])
+    return Neighbours(crossings, adjacencies, region_of)
+
+
+def joined_cells(cut: Decomposition, crossings: Sequence[Crossing]) -> tuple[int, ...]:
+    """The component of the variety's complement in which each cell lies, as far as it is proved that cells are joined.
+
+    Components are numbered in the order of their first cells. Within one there is a path that meets the variety
+    nowhere, on which no solution comes, goes, or changes its signs: counts are equal in all its cells.
+    """
+    keys = [()] * len(cut.points)
+    links = adjacencies_of(cut, crossings, keys)
+    return merge(keys, [Link(a.first, a.second, None) for a in links if a.component is None])
+
+
+def adjacencies_of(
+    cut: Decomposition, crossings: Sequence[Crossing], keys: Sequence[tuple[int, ...]]
+) -> Iterator[Adjacency]:
+    """Pairs of cells within each stack, and then with the next one."""
+
+    def link(first: int, second: int, component: int | None, segment: Segment | None) -> Adjacency:
+        if component is None:
+            kind = Merge.PROVEN
+        else:
+            kind = Merge.EQUAL_COUNT if keys[first] == keys[second] else Merge.SEPARATED
+        return Adjacency(first, second, component, segment, kind)
+
+    first, across = 0, cut.lines_across
+    for s, stack in enumerate(cut.stacks):
+        for level, wall in enumerate(stack.walls):
+            yield link(first + level, first + level + 1, wall.component, None)
+        following = first + len(stack.heights)
+        if s < len(crossings):
+            for p in crossings[s].separators:
+                yield link(first + p.left, following + p.right, across[s], segment_of(p))
+        first = following
+
+
+def segment_of(separator: Separator) -> Segment:
+    """The open segment that proves a separator."""
+    return (to_fraction(separator.low), to_fraction(separator.high), to_fraction(separator.height))
+
+
+def _coefficients(p: UnivariatePolynomial) -> tuple[int, ...]:
+    return tuple(int(c) for c in p.coeffs())
