@@ -138,12 +138,11 @@ class CompiledSystem:
             spring = self.springs[k]
             slack = slack + spring.pull * (spring.free / 2 - spring.length)
         slopes = [self.graph.derivative(slack, k) for k in self.unknowns]
-        if not self.tangent:
-            return tuple(equation + slope for equation, slope in zip(self.equations, slopes, strict=True))
-        *closed, along = self.equations
-        for towards, slope in zip(self.tangent, slopes, strict=True):
-            along = along + towards * slope
-        return (*closed, along)
+        if self.tangent:  # the last equation is the slope along the loops
+            slopes = [loops.dot(self.tangent, slopes)]
+        closed = len(self.equations) - len(slopes)
+        balanced = (equation + slope for equation, slope in zip(self.equations[closed:], slopes, strict=True))
+        return (*self.equations[:closed], *balanced)
 
     @property
     def quantities(self) -> dict[str, Formula]:

@@ -71,7 +71,7 @@ def conditions(closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row
         return _stationary(closing, forces, unknowns, tensions)
     rows = [_gradient(g, unknowns) for g in closing]
     tangent = cofactors(rows)
-    slope = _dot(tangent, forces)
+    slope = dot(tangent, forces)
     return LoopConditions((*closing, slope), (determinant([*rows, _gradient(slope, unknowns)]),), tangent)
 
 
@@ -80,7 +80,7 @@ def _stationary(closing: Row, forces: Row, unknowns: Sequence[int], tensions: Ro
     halves = tuple(g / 2 for g in closing)
     rows = [_gradient(g, unknowns) for g in halves]
     columns = list(zip(*rows, strict=True))
-    pulls = tuple(force + _dot(tensions, column) for force, column in zip(forces, columns, strict=True))
+    pulls = tuple(force + dot(tensions, column) for force, column in zip(forces, columns, strict=True))
     zero = (closing[0].graph.constant(0),) * len(closing)
     matrix = [(*_gradient(p, unknowns), *column) for p, column in zip(pulls, columns, strict=True)]
     matrix += [(*row, *zero) for row in rows]
@@ -102,5 +102,6 @@ def _gradient(f: Formula, unknowns: Sequence[int]) -> Row:
     return tuple(f.graph.derivative(f, k) for k in unknowns)
 
 
-def _dot(one: Row, other: Row) -> Formula:
+def dot(one: Sequence[Formula], other: Sequence[Formula]) -> Formula:
+    """The sum of products, of at least one."""
     return sum((a * b for a, b in zip(one, other, strict=True)), start=one[0].graph.constant(0))
