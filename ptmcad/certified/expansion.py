@@ -6,14 +6,12 @@ nothing is proved of the polynomials themselves, which Newton's method finds on 
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from ptmcad.certified.contraction import precondition
+from ptmcad.certified.contraction import Workspace, precondition
 from ptmcad.certified.system import Arguments
 from ptmcad.formulas.compiled import ZERO, compiled, inlined
-from ptmcad.formulas.intervals import Floats, Indices, run
+from ptmcad.formulas.intervals import Floats, run
 from ptmcad.formulas.rounding import down, magnitude, multiply, up
 from ptmcad.formulas.taylor import extend, series
 
@@ -23,29 +21,10 @@ MAX_STEP = 1.0
 SMALL_STEP = 1e-15
 
 
-class Elimination(NamedTuple):
-    """Space for row operations: the tape's values, the Jacobian's middles, the operations and their pivots."""
-
-    low: Floats
-    high: Floats
-    matrix: Floats
-    inverse: Floats
-    widths: Floats
-    pivots: Indices
-
-
 @inlined
-def elimination_for(system: Arguments) -> Elimination:
-    m, n = system.jacobian.shape
-    nodes = len(system.program.operations)
-    return Elimination(
-        np.empty(nodes), np.empty(nodes), np.empty((m, n)), np.empty((m, m)), np.empty(n), np.empty(m, np.int64)
-    )
-
-
-@inlined
-def eliminated(system: Arguments, work: Elimination) -> bool:
-    """Row operations from the middles of the Jacobian that was run last; False where there are none."""
+def eliminated(system: Arguments, work: Workspace) -> bool:
+    """Row operations from the middles of the Jacobian that was run last, columns weighted by the radii; False where
+    there are none."""
     jacobian = system.jacobian
     for i in range(jacobian.shape[0]):
         for j in range(jacobian.shape[1]):
@@ -53,7 +32,7 @@ def eliminated(system: Arguments, work: Elimination) -> bool:
             work.matrix[i, j] = 0.5 * (work.low[place] + work.high[place])
             if not abs(work.matrix[i, j]) < 1e150:
                 return False
-    precondition(work.matrix, work.inverse, work.widths, work.pivots)
+    precondition(work, work.radius)
     for i in range(len(work.pivots)):
         if work.pivots[i] < 0:
             return False
@@ -61,7 +40,7 @@ def eliminated(system: Arguments, work: Elimination) -> bool:
 
 
 @compiled
-def approach(system: Arguments, point: Floats, work: Elimination) -> bool:
+def approach(system: Arguments, point: Floats, work: Workspace) -> bool:
     """Move a point near to a zero of the equations, along all unknowns but u, in place; False where that fails."""
     equations, unknowns = system.equations, system.unknowns
     for _ in range(NEWTON_STEPS):
@@ -83,7 +62,7 @@ def approach(system: Arguments, point: Floats, work: Elimination) -> bool:
 
 
 @compiled
-def expanded(system: Arguments, point: Floats, u: int, radius: float, order: int, work: Elimination) -> Floats:
+def expanded(system: Arguments, point: Floats, u: int, radius: float, order: int, work: Workspace) -> Floats:
     """Coefficients of a curve of zeros through a point, about, in t = (u - middle)/radius; shape (variables, order+2).
 
     The last column is zero.

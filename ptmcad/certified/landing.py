@@ -23,11 +23,11 @@ from ptmcad.certified.continuation import BranchEquations, ProvedPoint, carried,
 from ptmcad.certified.parameters import parameter_formulas
 from ptmcad.certified.system import EquationSystem, system
 from ptmcad.formulas.balls import run_arb
-from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Graph
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import Mechanism
 from ptmcad.model.compile import compiled_with
+from ptmcad.model.determinants import determinant, gradient
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import Enclosure
@@ -72,11 +72,11 @@ def line_of(slice: Slice, mechanism: Mechanism, varying: int, fixed: Fraction) -
     at = compiled_with(mechanism, parameter_formulas(graph, slice) | unknowns)
     energy = at.energy()
     assert energy is not None
-    slopes = [graph.derivative(energy, v.variable) for v in unknowns.values()]
+    variables = [v.variable for v in unknowns.values()]
+    slopes = gradient(energy, variables)
     heights = [at.points[name][1] for name in mechanism.rising]
     numbers = record([[energy, graph.derivative(energy, varying), *heights]])
-    variables = [v.variable for v in unknowns.values()]
-    hessian = tuple(tuple(graph.derivative(f, k) for k in variables) for f in slopes)
+    hessian = [gradient(f, variables) for f in slopes]
     folds = system([*slopes, determinant(hessian)], [varying, *variables])
     return LineFormulas(BranchEquations(system(slopes, variables), varying, fixed), folds, numbers)
 

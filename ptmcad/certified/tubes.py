@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.contraction import contract, workspace
-from ptmcad.certified.expansion import Elimination, approach, eliminated, elimination_for, expanded, residual
+from ptmcad.certified.contraction import Workspace, contract, workspace
+from ptmcad.certified.expansion import approach, eliminated, expanded, residual
 from ptmcad.certified.search import Boxes, halved, widest_of
 from ptmcad.certified.system import Arguments
 from ptmcad.formulas.compiled import ZERO, compiled, inlined
@@ -87,7 +87,7 @@ def _spread(z: Floats, low: Floats, high: Floats, u: int, curve: tuple[Floats, F
 
 
 @compiled
-def _operator(system: Arguments, residual: Floats, work: Elimination, rest: Floats, bound: Floats) -> None:
+def _operator(system: Arguments, residual: Floats, work: Workspace, rest: Floats, bound: Floats) -> None:
     """What bounds solutions' distances from the polynomials: they are at most ``bound`` plus ``rest`` times them."""
     m = len(system.equations)
     for i in range(m):
@@ -106,7 +106,7 @@ def _operator(system: Arguments, residual: Floats, work: Elimination, rest: Floa
 
 
 @compiled
-def _iterate(system: Arguments, rest: Floats, bound: Floats, work: Elimination, far: Floats) -> None:
+def _iterate(system: Arguments, rest: Floats, bound: Floats, work: Workspace, far: Floats) -> None:
     """Make the distances smaller by the operator, several times."""
     nearer = far.copy()
     for _ in range(ITERATIONS):
@@ -122,7 +122,7 @@ def _iterate(system: Arguments, rest: Floats, bound: Floats, work: Elimination, 
 
 @compiled
 def _distance(
-    system: Arguments, z: Floats, residual: Floats, low: Floats, high: Floats, u: int, far: Floats, work: Elimination
+    system: Arguments, z: Floats, residual: Floats, low: Floats, high: Floats, u: int, far: Floats, work: Workspace
 ) -> float:
     """How far in all variables the solutions in a box are from the polynomials at most; -1 where there is none.
 
@@ -177,9 +177,9 @@ def tubes(
     u, start, end = along
     order, most, budget = limits
     variables = boxes.shape[1] // 2
-    work = elimination_for(equations)
+    work = workspace(equations, variables)
     for j in range(len(equations.unknowns)):
-        work.widths[j] = 0.0 if equations.unknowns[j] == u else 1.0
+        work.radius[j] = 0.0 if equations.unknowns[j] == u else 1.0
     middle = 0.5 * (start + end)
     radius = up(max(up(end - middle), up(middle - start)))
     centers = np.zeros((MAX_TUBES, variables, order + 2))
@@ -202,7 +202,7 @@ def tubes(
 
 
 @inlined
-def _reach(residual: Floats, work: Elimination) -> float:
+def _reach(residual: Floats, work: Workspace) -> float:
     """About how far solutions are from polynomials with such a residual."""
     result = 0.0
     for i in range(len(residual)):
@@ -214,7 +214,7 @@ def _reach(residual: Floats, work: Elimination) -> float:
 
 
 @compiled
-def _middles(equations: Arguments, boxes: Boxes, u: int, middle: float, work: Elimination) -> Floats:
+def _middles(equations: Arguments, boxes: Boxes, u: int, middle: float, work: Workspace) -> Floats:
     """Points of the curves over the middle, about: where Newton's method ends that begins in boxes next to it."""
     variables = boxes.shape[1] // 2
     distance = np.abs(0.5 * (boxes[:, u] + boxes[:, variables + u]) - middle)
@@ -257,7 +257,7 @@ def _refined(
     residuals: Floats,
     half: Floats,
     limits: tuple[int, float, int],
-    work: Elimination,
+    work: Workspace,
 ) -> int:
     """Bisect boxes until their solutions are near one of the centers, or the budget is gone; what is left then.
 

@@ -18,12 +18,13 @@ from typing import TypeVar
 
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula, Graph
-from ptmcad.formulas.values import ByNames, values
+from ptmcad.formulas.values import values
 from ptmcad.model import crossed, loops
 from ptmcad.model.crossed import Follower
 from ptmcad.model.description import Mechanism, Model, equations_in
+from ptmcad.model.determinants import gradient
 from ptmcad.model.elements import second_bar
-from ptmcad.model.evaluate import Element, Ring, evaluate, evaluated
+from ptmcad.model.evaluate import ByNames, Element, Ring, evaluate, evaluated
 from ptmcad.model.springs import AngularSpring, LinearSpring, Vector
 from ptmcad.model.work import split_moments
 from ptmcad.text.tree import Tree
@@ -105,7 +106,7 @@ class CompiledSystem:
     def forces(self) -> tuple[Formula, ...]:
         """The smooth energy's slopes by the unknowns, less the moments."""
         assert self.smooth is not None
-        slopes = (self.graph.derivative(self.smooth, k) for k in self.unknowns)
+        slopes = gradient(self.smooth, self.unknowns)
         return tuple(slope - moment for slope, moment in zip(slopes, self.moments, strict=True))
 
     @property
@@ -137,9 +138,9 @@ class CompiledSystem:
         for k in relaxed:
             spring = self.springs[k]
             slack = slack + spring.pull * (spring.free / 2 - spring.length)
-        slopes = [self.graph.derivative(slack, k) for k in self.unknowns]
+        slopes = gradient(slack, self.unknowns)
         if self.tangent:  # the last equation is the slope along the loops
-            slopes = [loops.dot(self.tangent, slopes)]
+            slopes = (loops.dot(self.tangent, slopes),)
         closed = len(self.equations) - len(slopes)
         balanced = (equation + slope for equation, slope in zip(self.equations[closed:], slopes, strict=True))
         return (*self.equations[:closed], *balanced)

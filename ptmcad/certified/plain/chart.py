@@ -26,8 +26,8 @@ from ptmcad.certified.plain.geometry import FactoredProblem
 from ptmcad.certified.plain.minors import Bent, bent
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.turning import Turn
-from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula, Graph, length
+from ptmcad.model.determinants import determinant
 
 
 class Turned(NamedTuple):
