@@ -37,6 +37,7 @@ class Workspace(NamedTuple):
     radius : of each unknown.
     j_low, j_high : the Jacobian over the box, shape (m, n).
     matrix, inverse : what `precondition` eliminates, and the row operations; shapes (m, n) and (m, m).
+    pivots : the column that each row solves for, or -1.
     """
 
     low: Floats
@@ -50,6 +51,7 @@ class Workspace(NamedTuple):
     j_high: Floats
     matrix: Floats
     inverse: Floats
+    pivots: Indices
 
 
 @compiled
@@ -60,7 +62,7 @@ def workspace(system: Arguments, variables: int) -> Workspace:
     return Workspace(
         np.empty(length), np.empty(length), np.empty(length), np.empty(length),
         np.empty(variables), np.empty(variables), np.empty(n),
-        np.empty((m, n)), np.empty((m, n)), np.empty((m, n)), np.empty((m, m)),
+        np.empty((m, n)), np.empty((m, n)), np.empty((m, n)), np.empty((m, m)), np.empty(m, np.int64),
     )  # fmt: skip
 
 
@@ -74,12 +76,12 @@ def discarded(low: Floats, high: Floats, vanishing: Indices) -> bool:
 
 
 @compiled
-def precondition(middle: Floats, inverse: Floats, widths: Floats, pivots: Indices) -> None:
-    """Gauss-Jordan elimination of ``middle`` (m, n) with full pivoting, columns weighted by ``widths``.
+def precondition(work: Workspace, widths: Floats) -> None:
+    """Gauss-Jordan elimination of the matrix with full pivoting, columns weighted by ``widths``.
 
-    ``inverse`` becomes the product of the row operations; ``pivots[i]`` the column that row i solves for, or -1.
     Rounding needs no care here: any matrix is a valid preconditioner.
     """
+    middle, inverse, pivots = work.matrix, work.inverse, work.pivots
     m, n = middle.shape
     for i in range(m):
         pivots[i] = -1
@@ -118,15 +120,14 @@ def precondition(middle: Floats, inverse: Floats, widths: Floats, pivots: Indice
 @compiled
 def contract(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> bool:
     """Shrink the box in place around the solutions in it; False when there are none."""
-    pivots = np.empty(len(system.equations), np.int64)
-    radius, matrix, inverse = work.radius, work.matrix, work.inverse
+    pivots = work.pivots
     for _ in range(SWEEPS):
         usable = linearise(system, box_low, box_high, work)
         if usable < 0:
             return False
         if usable == 0:
             return True
-        precondition(matrix, inverse, radius, pivots)
+        precondition(work, work.radius)
         shrunk = False
         for i in range(len(pivots)):
             if pivots[i] < 0:

@@ -13,6 +13,7 @@ from fractions import Fraction
 from math import inf
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptmcad.certified.refinement import CurveEnclosure
 from ptmcad.certified.search import Boxes
@@ -20,13 +21,15 @@ from ptmcad.certified.strips import NONE, Strips, areas_of_pieces, numbers_of_pi
 from ptmcad.cover import from_boxes, union_area
 from ptmcad.cover.rectangles import Cover, Window
 from ptmcad.cover.rounding import cover_of
-from ptmcad.cover.simplification import combined
+from ptmcad.cover.simplification import combined, gathered
 from ptmcad.cover.subdivision import Integers, rectangle_array
 from ptmcad.formulas.tape import enclosing_floats
 from ptmcad.model.involutions import Involution
 
 START_TILES = 8
 """Tiles of the window along each axis, with which a search begins."""
+MAX_TILES = 1000
+"""Rectangles that the search begins with at most, when it goes on from a cover: each costs a search of all angles."""
 BATCH = 4096
 SLACK = 0.9
 """Pieces are made so thin that their areas sum up to this part of what may be left undetermined."""
@@ -83,6 +86,35 @@ def outward(window: Window, rectangles: Integers, steps: int) -> Boxes:
         lines, places = np.unique(rectangles[:, 2 * k : 2 * k + 2], return_inverse=True)
         around = [enclosing_floats(low + (high - low) * Fraction(line, steps)) for line in lines.tolist()]
         result[:, [k, 2 + k]] = np.array(around).reshape(-1, 2)[places.reshape(-1, 2), [0, 1]]
+    return result
+
+
+def first_rectangles(lattice: Lattice, resume: Cover | None) -> Boxes:
+    """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards."""
+    if resume is None:
+        steps = START_TILES
+        tiles = np.array([(i, i + 1, j, j + 1) for i in range(steps) for j in range(steps)])
+        others = lattice.images(tiles, steps).tolist()
+        rectangles = tiles[[tile <= other for tile, other in zip(tiles.tolist(), others, strict=True)]]
+    else:
+        most = min(Fraction(MAX_TILES), START_TILES**2 / max(share_of(resume), Fraction(1, MAX_TILES)))
+        steps, rectangles = resume.steps, rectangle_array(gathered(resume, int(most)))
+    return outward(lattice.window, rectangles, steps)
+
+
+def share_of(cover: Cover) -> Fraction:
+    """The part of the window that a cover has."""
+    return Fraction(union_area(cover), cover.steps**2)
+
+
+def meeting(rectangles: Boxes, boxes: Boxes) -> NDArray[np.bool_]:
+    """Which rectangles and which boxes' projections have points in common: shape (rectangles, boxes)."""
+    half = boxes.shape[1] // 2
+    low, high = boxes[:, :2], boxes[:, half : half + 2]
+    result: NDArray[np.bool_] = np.ones((len(rectangles), len(boxes)), dtype=np.bool_)
+    for k in (0, 1):
+        result &= rectangles[:, None, k] <= high[None, :, k]
+        result &= rectangles[:, None, 2 + k] >= low[None, :, k]
     return result
 
 

@@ -18,22 +18,20 @@ import numpy as np
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.assembly import Assembler
-from ptmcad.certified.covering import START_TILES, Lattice, Thinning, box_rectangles, outward, thinning
+from ptmcad.certified.covering import Lattice, Thinning, box_rectangles, first_rectangles, share_of, thinning
 from ptmcad.certified.loading import load, may_be_slanted
 from ptmcad.certified.pace import SAFETY, Pace
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.involution import halving
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.refinement import CurveEnclosure, begin, refine
-from ptmcad.certified.search import Boxes
 from ptmcad.certified.searchprogress import PARTS, SearchProgress
 from ptmcad.certified.slanted import slanting
 from ptmcad.certified.specks import without_specks
 from ptmcad.certified.statement import plan_of
-from ptmcad.cover import components, union_area
+from ptmcad.cover import components
 from ptmcad.cover.rectangles import MAX_STEPS, Cover
-from ptmcad.cover.simplification import combined, gathered
-from ptmcad.cover.subdivision import rectangle_array
+from ptmcad.cover.simplification import combined
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.process.handover import LAST_SECONDS, leave_if_asked
@@ -44,8 +42,6 @@ from ptmcad.version import __version__
 
 TOLERANCE = Fraction(1, 1000)
 """Of the window's area, left undetermined unless another number is asked for."""
-MAX_TILES = 1000
-"""Rectangles that the search begins with at most, when it goes on from a cover: each costs a search of all angles."""
 FIRST_LEVEL, LAST_LEVEL = 4, 40
 """At level n, boxes are bisected until their projection has at most 4^-n of the window's area."""
 MAX_AXIS_END = Fraction(10**100)
@@ -120,7 +116,7 @@ class _MapSearch:
         window = (horizontal.low, horizontal.high), (vertical.low, vertical.high)
         self.lattice = Lattice(window, steps, None if whole else halving(slice))
         wanted = curves(slice, slice.count, options.without)
-        self.enclosures: list[CurveEnclosure] = begin(wanted, _rectangles(self.lattice, self.resumed))
+        self.enclosures: list[CurveEnclosure] = begin(wanted, first_rectangles(self.lattice, self.resumed))
         plan = plan_of(slice, wanted, options.without, self.lattice.change)
         self.assembler = Assembler(slice, plain_counter(slice), plan, _versions())
         self.best: RegionMap | None = None
@@ -149,7 +145,7 @@ class _MapSearch:
     def _search(self) -> RegionMap:
         undetermined = Fraction(1)
         tolerance = self.tolerance
-        if self.resumed is not None and _share(self.resumed) <= tolerance:
+        if self.resumed is not None and share_of(self.resumed) <= tolerance:
             result = self.map(self.resumed, Status.CERTIFIED)
             if result.undetermined <= tolerance:
                 return result
@@ -162,7 +158,7 @@ class _MapSearch:
             if not in_time:
                 return self._stopped(self._at_limit())
             cover = self._box_cover()
-            undetermined = _share(cover)
+            undetermined = share_of(cover)
             if undetermined > tolerance and self._slantable(undetermined):
                 slanted = self._slanted(undetermined, self.area * 4.0**-level)
                 if slanted is not None:
@@ -219,7 +215,7 @@ class _MapSearch:
             self.best = replace(result, status=Status.PARTIAL)
             if self.options.partial is not None:
                 self.options.partial(self.best)
-        self.exhausted = _share(replace(cover, patches=())) <= self.tolerance
+        self.exhausted = share_of(replace(cover, patches=())) <= self.tolerance
         return None
 
     def boxes(self) -> int:
@@ -252,7 +248,7 @@ class _MapSearch:
         if self.pace.deadline is not None:
             most = min(most, max(0, int(self.pace.left() / (SAFETY * SECONDS_PER_RECTANGLE))))
         cover, known = strips.cover(1.5 * strips.least(), most), self.resumed
-        if known is not None and _share(known) < _share(cover):
+        if known is not None and share_of(known) < share_of(cover):
             cover = known
         found = self.map(cover, Status.PARTIAL)
         return found if self.best is None or found.undetermined < self.best.undetermined else self.best
@@ -307,7 +303,7 @@ class _MapSearch:
         if self.options.partial is not None and self.pace.due(boxes):
             start = self.clock()
             self._thinned = None
-            enclosed = _share(self._box_cover())
+            enclosed = share_of(self._box_cover())
             self.pace.looked(self.clock() - start)
             if enclosed <= (FIRST_MAP_SHARE if self.best is None else MAP_SHRINK_RATIO * self.enclosed):
                 self._hand_over(enclosed)
@@ -330,7 +326,7 @@ class _MapSearch:
             self.best = found
             self.pace.text.record(self.boxes(), self.clock() - made)
             if found.cover is not None:
-                self.uncounted = found.undetermined - _share(found.cover)
+                self.uncounted = found.undetermined - share_of(found.cover)
         self.pace.spent += self.clock() - start
 
     def _stopped(self, why: str) -> RegionMap:
@@ -378,24 +374,6 @@ class _MapSearch:
         # half of the time there is: other programs may take the processors meanwhile
         in_time = SAFETY * self.pace.map.of(self.boxes()) < LAST_SHARE * LAST_SECONDS / 2
         return min(self._least(), enclosed + self.uncounted) if in_time else self._least()
-
-
-def _rectangles(lattice: Lattice, resume: Cover | None) -> Boxes:
-    """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards."""
-    if resume is None:
-        steps = START_TILES
-        tiles = np.array([(i, i + 1, j, j + 1) for i in range(steps) for j in range(steps)])
-        others = lattice.images(tiles, steps).tolist()
-        rectangles = tiles[[tile <= other for tile, other in zip(tiles.tolist(), others, strict=True)]]
-    else:
-        most = min(Fraction(MAX_TILES), START_TILES**2 / max(_share(resume), Fraction(1, MAX_TILES)))
-        steps, rectangles = resume.steps, rectangle_array(gathered(resume, int(most)))
-    return outward(lattice.window, rectangles, steps)
-
-
-def _share(cover: Cover) -> Fraction:
-    """The part of the window that the cover has."""
-    return Fraction(union_area(cover), cover.steps**2)
 
 
 def _versions() -> dict[str, str]:

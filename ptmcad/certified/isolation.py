@@ -60,9 +60,8 @@ def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
     """
     if linearise(system, box_low, box_high, work) < 1:
         return False
-    unknowns, middle, radius = system.unknowns, work.middle_low, work.radius
-    pivots = np.empty(len(unknowns), np.int64)
-    precondition(work.matrix, work.inverse, radius, pivots)
+    unknowns, middle, radius, pivots = system.unknowns, work.middle_low, work.radius, work.pivots
+    precondition(work, radius)
     for i in range(len(unknowns)):
         if pivots[i] < 0:
             return False

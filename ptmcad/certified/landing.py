@@ -28,10 +28,10 @@ from ptmcad.formulas.continuation import (
     nearer,
     over_range,
 )
-from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.values import substituted
 from ptmcad.model import Mechanism
+from ptmcad.model.determinants import determinant, gradient
 from ptmcad.question.line import compiled_on
 from ptmcad.text.balls import ball_of, ball_over, enclosure_of
 from ptmcad.text.enclosure import Enclosure
@@ -60,10 +60,10 @@ class LineFormulas(NamedTuple):
 def line_formulas(mechanism: Mechanism, parameters: Mapping[str, Expression]) -> LineFormulas:
     """The formulas of a mechanism on a line, from its parameters there."""
     at = compiled_on(mechanism, parameters)
-    energy, derivative = at.energy(), at.graph.derivative
+    energy = at.energy()
     assert energy is not None
-    slopes = [derivative(energy, k) for k in at.unknowns]
-    hessian = tuple(tuple(derivative(f, k) for k in at.unknowns) for f in slopes)
+    slopes = gradient(energy, at.unknowns)
+    hessian = [gradient(f, at.unknowns) for f in slopes]
     heights = (at.points[name][1] for name in mechanism.rising)
     axis = {0: at.graph.variable(len(slopes) + 1)}
     folds = [substituted(f, axis) for f in (*slopes, determinant(hessian))]

@@ -138,14 +138,7 @@ def branch_and_prune(
         kept = contract_curve(system, low, high, work, space) if linear else contract(system, low, high, work)
         if not kept:
             continue
-        widest, width = -1, 0.0
-        for x in system.unknowns:
-            middle = low[x] + CUT * (high[x] - low[x])
-            size = (high[x] - low[x]) * weights[x]
-            if is_known(x, system, work):
-                size *= SOLVED_WEIGHT
-            if size > width and low[x] < middle < high[x]:
-                widest, width = x, size
+        widest, width = widest_of(system, box, weights, work, SOLVED_WEIGHT)
         if width <= limits.proof_width:
             wide = inflated(equations, box, weights, work)
             if len(wide) > 0:
@@ -161,10 +154,7 @@ def branch_and_prune(
             small = _with(small, finished, box)
             finished += 1
             continue
-        middle = low[widest] + CUT * (high[widest] - low[widest])
-        stack = _with(_with(stack, top, box), top + 1, box)
-        stack[top, variables + widest] = middle
-        stack[top + 1, widest] = middle
+        stack = halved(stack, top, box, widest)
         top += 2
     return SearchResult(
         unique[:proved].copy(), narrow[:proved].copy(), small[:finished].copy(), stack[:top].copy(), used
@@ -178,6 +168,39 @@ def is_known(variable: int, system: Arguments, work: Workspace) -> bool:
         if system.solved[k, 0] == variable and determined(system.solved[k], work.low, work.high):
             return True
     return False
+
+
+@compiled
+def widest_of(
+    system: Arguments, box: Floats, weights: Floats, work: Workspace, solved_weight: float
+) -> tuple[int, float]:
+    """The unknown to bisect, -1 where no float lies between the ends of any, and its width by weights.
+
+    Parameters
+    ----------
+    solved_weight : of the width of one that the equations are solved for.
+    """
+    variables = len(weights)
+    widest, width = -1, 0.0
+    for x in system.unknowns:
+        low, high = box[x], box[variables + x]
+        size = (high - low) * weights[x]
+        if is_known(x, system, work):
+            size *= solved_weight
+        if size > width and low < low + CUT * (high - low) < high:
+            widest, width = x, size
+    return widest, width
+
+
+@compiled
+def halved(stack: Boxes, top: int, box: Floats, x: int) -> Boxes:
+    """The stack of so many boxes with both halves of one more, bisected in the variable x."""
+    variables = len(box) // 2
+    middle = box[x] + CUT * (box[variables + x] - box[x])
+    stack = _with(_with(stack, top, box), top + 1, box)
+    stack[top, variables + x] = middle
+    stack[top + 1, x] = middle
+    return stack
 
 
 @compiled

@@ -21,7 +21,7 @@ import numpy as np
 from flint import fmpq
 
 from ptmcad.certified.controls import controls
-from ptmcad.certified.covering import Lattice
+from ptmcad.certified.covering import Lattice, meeting, outward
 from ptmcad.certified.refinement import CurveEnclosure
 from ptmcad.certified.search import Boxes, search_curve
 from ptmcad.certified.system import Arguments
@@ -30,7 +30,6 @@ from ptmcad.cover import tubes as exact
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle, Tube
 from ptmcad.cover.rounding import from_boxes
 from ptmcad.formulas.intervals import Floats
-from ptmcad.formulas.tape import enclosing_floats
 from ptmcad.text.flint_numbers import from_fraction
 
 FINER = 64
@@ -117,7 +116,7 @@ class Slanting:
 
     def _settled(self, rectangle: Rectangle, around: tuple[Boxes, ...], tolerance: Fraction) -> _Leaf | Patch | None:
         """None where no box is over the rectangle, the tubes where they can be had, else the leaf."""
-        frame = self._floats(rectangle)
+        frame = outward(self.lattice.window, np.array([rectangle]), self.lattice.steps)
         boxes = tuple(
             self._over(frame, own, system, enclosure)
             for own, system, enclosure in zip(around, self.whole, self.enclosures, strict=True)
@@ -136,25 +135,16 @@ class Slanting:
                 return patch
         return leaf
 
-    def _floats(self, rectangle: Rectangle) -> tuple[float, float, float, float]:
-        """Floats around a rectangle: left, right, bottom, top."""
-        ends = []
-        for k, (low, high) in enumerate(self.lattice.window):
-            step = (high - low) / self.lattice.steps
-            ends += [enclosing_floats(low + step * rectangle[2 * k])[0],
-                     enclosing_floats(low + step * rectangle[2 * k + 1])[1]]  # fmt: skip
-        return ends[0], ends[1], ends[2], ends[3]
-
-    def _over(
-        self, frame: tuple[float, float, float, float], boxes: Boxes, system: Arguments, enclosure: CurveEnclosure
-    ) -> Boxes:
-        """The boxes over a frame, bisected until they are small enough."""
-        boxes = _meeting(frame, boxes)
+    def _over(self, frame: Boxes, boxes: Boxes, system: Arguments, enclosure: CurveEnclosure) -> Boxes:
+        """The boxes over a frame, one rectangle, bisected until they are small enough."""
+        boxes = boxes[meeting(frame, boxes)[0]]
         if not len(boxes):
             return boxes
-        area = (frame[1] - frame[0]) * (frame[3] - frame[2]) / FINER
-        found = search_curve(system, boxes, area, BUDGET, enclosure.curve.importance())
-        return _meeting(frame, found.left())
+        left, bottom, right, top = frame[0].tolist()
+        area = (right - left) * (top - bottom) / FINER
+        found = search_curve(system, boxes, area, BUDGET, enclosure.curve.importance()).left()
+        over: Boxes = found[meeting(frame, found)[0]]
+        return over
 
     def _inner(self, rectangle: Rectangle, boxes: tuple[Boxes, ...]) -> Rectangle | None:
         """The least part of a rectangle that all boxes over it project to."""
@@ -239,14 +229,6 @@ def _hull(boxes: Boxes) -> tuple[Floats, Floats]:
     """The ends of the boxes' projections."""
     half = boxes.shape[1] // 2
     return boxes[:, :2].min(axis=0), boxes[:, half : half + 2].max(axis=0)
-
-
-def _meeting(frame: tuple[float, float, float, float], boxes: Boxes) -> Boxes:
-    """The boxes whose projections have points in common with a frame."""
-    half = boxes.shape[1] // 2
-    left, right, bottom, top = frame
-    kept = (boxes[:, 0] <= right) & (boxes[:, half] >= left) & (boxes[:, 1] <= top) & (boxes[:, half + 1] >= bottom)
-    return boxes[kept]
 
 
 def _quarters(rectangle: Rectangle) -> list[Rectangle]:

@@ -19,7 +19,7 @@ from itertools import compress
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.certified.covering import Lattice, outward
+from ptmcad.certified.covering import Lattice, meeting, outward
 from ptmcad.certified.refinement import CurveEnclosure
 from ptmcad.certified.search import Boxes, search_curve
 from ptmcad.cover.complement import Components
@@ -82,15 +82,4 @@ def without_specks(
 
 def _entered(specks: Sequence[Boxes], boxes: Boxes) -> NDArray[np.bool_]:
     """Which of several sets of rectangles, and which boxes' projections, have points in common."""
-    return np.array([_meeting(rectangles, boxes).any(axis=0) for rectangles in specks])
-
-
-def _meeting(rectangles: Boxes, boxes: Boxes) -> NDArray[np.bool_]:
-    """Which rectangles and which boxes' projections have points in common: shape (rectangles, boxes)."""
-    half = boxes.shape[1] // 2
-    low, high = boxes[:, :2], boxes[:, half : half + 2]
-    result: NDArray[np.bool_] = np.ones((len(rectangles), len(boxes)), dtype=np.bool_)
-    for k in (0, 1):
-        result &= rectangles[:, None, k] <= high[None, :, k]
-        result &= rectangles[:, None, 2 + k] >= low[None, :, k]
-    return result
+    return np.array([meeting(rectangles, boxes).any(axis=0) for rectangles in specks])

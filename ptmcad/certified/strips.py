@@ -50,8 +50,7 @@ def strips(system: Arguments, boxes: Boxes) -> Strips:
     variables = boxes.shape[1] // 2
     m, n = system.jacobian.shape
     work = workspace(system, variables)
-    radius, matrix, inverse = work.radius, work.matrix, work.inverse
-    widths, pivots = np.empty(n), np.empty(m, np.int64)
+    widths = np.empty(n)
     result = np.empty((boxes.shape[0], 11))
     found = 0
     low, high = np.empty(variables), np.empty(variables)
@@ -71,11 +70,11 @@ def strips(system: Arguments, boxes: Boxes) -> Strips:
             continue
         # eliminate all unknowns but the plane's: columns without width are not chosen
         for j in range(n):
-            widths[j] = radius[j] if j > 1 else 0.0
-        precondition(matrix, inverse, widths, pivots)
+            widths[j] = work.radius[j] if j > 1 else 0.0
+        precondition(work, widths)
         thinnest = inf
         for i in range(m):
-            if pivots[i] < 0:
+            if work.pivots[i] < 0:
                 thinnest = min(thinnest, _solved(system, i, low, high, work, strip, thinnest))
     return result[:found].copy()
 
@@ -117,15 +116,21 @@ def _solved(
     return thickness
 
 
+@inlined
+def _shape(strip: NDArray[np.float64], v: int) -> tuple[float, float, float]:
+    """How long a strip is in u, how steep, and how thick."""
+    along = strip[3 - v] - strip[1 - v]
+    slope = 0.5 * abs(strip[_Q] + strip[_Q + 1])
+    return along, slope, (strip[_C + 1] - strip[_C]) + (strip[_Q + 1] - strip[_Q]) * along
+
+
 @compiled
 def _number_of_pieces(strip: NDArray[np.float64], area: float) -> int:
     """Into how many pieces a strip is cut if each may cover about ``area`` for being a step instead of slanted."""
     if strip[_V] < 0:
         return 1
     v = int(strip[_V])
-    along = strip[3 - v] - strip[1 - v]
-    slope = 0.5 * abs(strip[_Q] + strip[_Q + 1])
-    thickness = (strip[_C + 1] - strip[_C]) + (strip[_Q + 1] - strip[_Q]) * along
+    along, slope, thickness = _shape(strip, v)
     rise = along * slope
     wanted: float = min(sqrt(along * rise / area) if area > 0 else inf, rise / (MIN_PIECE_RISE * thickness + 1e-300))
     if thickness > strip[2 + v] - strip[v]:
@@ -151,9 +156,7 @@ def areas_of_pieces(strips: Strips, area: float) -> NDArray[np.float64]:
         result[k] = (strip[2] - strip[0]) * (strip[3] - strip[1])
         v = int(strip[_V])
         if v >= 0:
-            along = strip[3 - v] - strip[1 - v]
-            slope = 0.5 * abs(strip[_Q] + strip[_Q + 1])
-            thickness = (strip[_C + 1] - strip[_C]) + (strip[_Q + 1] - strip[_Q]) * along
+            along, slope, thickness = _shape(strip, v)
             steps = along * slope / _number_of_pieces(strip, area)
             result[k] = min(result[k], along * (thickness + steps))
     return result

@@ -16,6 +16,7 @@ from ptmcad.certified.solved import Quotient
 from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.intervals import Indices, Program, program
 from ptmcad.formulas.tape import Tape, record
+from ptmcad.model.determinants import gradient
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,9 +94,8 @@ def system(
     jacobian : the equations' derivatives by the unknowns, where there are better formulas than those of the graph.
     solved : of formulas that vanish at solutions; their variables are among the unknowns.
     """
-    graph = equations[0].graph
     if jacobian is None:
-        jacobian = [[graph.derivative(f, x) for x in unknowns] for f in equations]
+        jacobian = [gradient(f, unknowns) for f in equations]
     cheap, costly = vanishing
     first, rest = list(equations[:2]), list(equations[2:])
     tape = record([

@@ -15,18 +15,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.contraction import contract, precondition, workspace
-from ptmcad.certified.search import Boxes
+from ptmcad.certified.contraction import Workspace, contract, workspace
+from ptmcad.certified.expansion import approach, eliminated, expanded, residual
+from ptmcad.certified.search import Boxes, halved, widest_of
 from ptmcad.certified.system import Arguments
 from ptmcad.formulas.compiled import ZERO, compiled, inlined
-from ptmcad.formulas.intervals import Floats, Indices, run
+from ptmcad.formulas.intervals import Floats, run
 from ptmcad.formulas.rounding import down, magnitude, multiply, up
-from ptmcad.formulas.taylor import extend, series
 
-NEWTON_STEPS = 12
-MAX_STEP = 1.0
-"""Newton's method that steps farther is lost."""
-SMALL_STEP = 1e-15
 ITERATIONS = 30
 """Of the bound of the distance from the polynomial: each multiplies what is above the limit by a matrix."""
 SHRINKAGES = 3
@@ -56,126 +52,6 @@ class Tubes(NamedTuple):
     left: int
 
 
-class _Work(NamedTuple):
-    low: Floats
-    high: Floats
-    matrix: Floats
-    inverse: Floats
-    widths: Floats
-    pivots: Indices
-
-
-@inlined
-def _work(system: Arguments) -> _Work:
-    m, n = system.jacobian.shape
-    nodes = len(system.program.operations)
-    return _Work(
-        np.empty(nodes), np.empty(nodes), np.empty((m, n)), np.empty((m, m)), np.empty(n), np.empty(m, np.int64)
-    )
-
-
-@inlined
-def _eliminated(system: Arguments, work: _Work) -> bool:
-    """Row operations from the middles of the Jacobian that was run last; False where there are none."""
-    jacobian = system.jacobian
-    for i in range(jacobian.shape[0]):
-        for j in range(jacobian.shape[1]):
-            place = jacobian[i, j]
-            work.matrix[i, j] = 0.5 * (work.low[place] + work.high[place])
-            if not abs(work.matrix[i, j]) < 1e150:
-                return False
-    precondition(work.matrix, work.inverse, work.widths, work.pivots)
-    for i in range(len(work.pivots)):
-        if work.pivots[i] < 0:
-            return False
-    return True
-
-
-@compiled
-def _newton(system: Arguments, point: Floats, work: _Work) -> bool:
-    """Move a point near to a zero of the equations, along all unknowns but u, in place; False where that fails."""
-    equations, unknowns = system.equations, system.unknowns
-    for _ in range(NEWTON_STEPS):
-        run(system.program, point, point, work.low, work.high, ZERO, system.stages[3])
-        if not _eliminated(system, work):
-            return False
-        change = 0.0
-        for i in range(len(equations)):
-            step = 0.0
-            for k in range(len(equations)):
-                step += work.inverse[i, k] * 0.5 * (work.low[equations[k]] + work.high[equations[k]])
-            if not abs(step) < MAX_STEP:
-                return False
-            point[unknowns[work.pivots[i]]] -= step
-            change = max(change, abs(step))
-        if change < SMALL_STEP:
-            break
-    return True
-
-
-@compiled
-def _expanded(system: Arguments, point: Floats, u: int, radius: float, order: int, work: _Work) -> Floats:
-    """Coefficients of a curve of zeros through a point, about, in t = (u - middle)/radius; shape (variables, order+2).
-
-    The last column is zero.
-    """
-    equations, unknowns, end = system.equations, system.unknowns, system.stages[1]
-    z = np.zeros((len(point), order + 2))
-    for x in range(len(point)):
-        z[x, 0] = point[x]
-    z[u, 1] = radius
-    values = series(end, order)
-    extend(system.program, z, z, values, 0, 0, end)
-    for k in range(1, order + 1):
-        extend(system.program, z, z, values, k, k, end)
-        for i in range(len(equations)):
-            step = 0.0
-            for j in range(len(equations)):
-                f = equations[j]
-                step += work.inverse[i, j] * 0.5 * (values.low[f, k] + values.high[f, k])
-            z[unknowns[work.pivots[i]], k] -= step
-        extend(system.program, z, z, values, k, k, end)
-    return z
-
-
-@compiled
-def _about_all(z: Floats) -> tuple[Floats, Floats]:
-    """Enclosures of the polynomials' coefficients about every point of [-1, 1]: of p(s + t) for all s there."""
-    variables, terms = z.shape
-    low, high = np.zeros((variables, terms)), np.zeros((variables, terms))
-    for x in range(variables):
-        for k in range(terms):
-            u = v = 0.0
-            for j in range(terms - 1, k - 1, -1):
-                u, v = multiply(u, v, -1.0, 1.0)
-                # binomials of such small numbers are exact
-                binomial = 1.0
-                for i in range(k):
-                    binomial = binomial * (j - i) / (i + 1)
-                u, v = down(u + down(z[x, j] * binomial)), up(v + up(z[x, j] * binomial))
-            low[x, k], high[x, k] = u, v
-    return low, high
-
-
-@compiled
-def _residual(system: Arguments, z: Floats) -> Floats:
-    """Bounds of the equations' absolute values along the polynomials, for t in [-1, 1]."""
-    equations, end = system.equations, system.stages[1]
-    last = z.shape[1] - 1
-    thin, wide = series(end, last), series(end, last)
-    extend(system.program, z, z, thin, 0, last - 1, end)
-    low, high = _about_all(z)
-    extend(system.program, low, high, wide, 0, last, end)
-    bound = np.empty(len(equations))
-    for i in range(len(equations)):
-        f = equations[i]
-        total = magnitude(wide.low[f, last], wide.high[f, last])
-        for k in range(last):
-            total = up(total + magnitude(thin.low[f, k], thin.high[f, k]))
-        bound[i] = total
-    return bound
-
-
 @compiled
 def _centered(z: Floats, start: float, end: float) -> tuple[float, float]:
     """The values of a polynomial over an interval within [-1, 1]: its coefficients about the middle, summed up."""
@@ -196,64 +72,80 @@ def _centered(z: Floats, start: float, end: float) -> tuple[float, float]:
 
 
 @compiled
+def _spread(z: Floats, low: Floats, high: Floats, u: int, curve: tuple[Floats, Floats], far: Floats) -> bool:
+    """The polynomials' values over a box, and how far its points are from these at most; False where no number is."""
+    middle, radius = z[u, 0], z[u, 1]
+    t_low = max(down(down(low[u] - middle) / radius), -1.0)
+    t_high = min(up(up(high[u] - middle) / radius), 1.0)
+    curve_low, curve_high = curve
+    finite = True
+    for x in range(len(low)):
+        curve_low[x], curve_high[x] = _centered(z[x], t_low, t_high)
+        far[x] = 0.0 if x == u else up(max(up(high[x] - curve_low[x]), up(curve_high[x] - low[x])))
+        finite = finite and far[x] < inf
+    return finite
+
+
+@compiled
+def _operator(system: Arguments, residual: Floats, work: Workspace, rest: Floats, bound: Floats) -> None:
+    """What bounds solutions' distances from the polynomials: they are at most ``bound`` plus ``rest`` times them."""
+    m = len(system.equations)
+    for i in range(m):
+        bound[i] = 0.0
+        for k in range(m):
+            bound[i] = up(bound[i] + up(abs(work.inverse[i, k]) * residual[k]))
+        for j in range(m):
+            p = q = 0.0
+            for k in range(m):
+                place = system.jacobian[k, work.pivots[j]]
+                a, b = multiply(work.inverse[i, k], work.inverse[i, k], work.low[place], work.high[place])
+                p, q = down(p + a), up(q + b)
+            if i == j:
+                p, q = down(1.0 - q), up(1.0 - p)
+            rest[i, j] = magnitude(p, q)
+
+
+@compiled
+def _iterate(system: Arguments, rest: Floats, bound: Floats, work: Workspace, far: Floats) -> None:
+    """Make the distances smaller by the operator, several times."""
+    nearer = far.copy()
+    for _ in range(ITERATIONS):
+        for i in range(len(bound)):
+            total = bound[i]
+            for j in range(len(bound)):
+                total = up(total + up(rest[i, j] * far[system.unknowns[work.pivots[j]]]))
+            # a sum that is no number is passed over
+            x = system.unknowns[work.pivots[i]]
+            nearer[x] = min(nearer[x], total)
+        far[:] = nearer
+
+
+@compiled
 def _distance(
-    system: Arguments, z: Floats, residual: Floats, low: Floats, high: Floats, u: int, far: Floats, work: _Work
+    system: Arguments, z: Floats, residual: Floats, low: Floats, high: Floats, u: int, far: Floats, work: Workspace
 ) -> float:
     """How far in all variables the solutions in a box are from the polynomials at most; -1 where there is none.
 
     ``far`` becomes these bounds, variable by variable.
     """
-    unknowns, m = system.unknowns, len(system.equations)
-    middle, radius = z[u, 0], z[u, 1]
-    t_low = max(down(down(low[u] - middle) / radius), -1.0)
-    t_high = min(up(up(high[u] - middle) / radius), 1.0)
-    curve_low, curve_high = np.empty(len(low)), np.empty(len(low))
-    box_low, box_high = low.copy(), high.copy()
-    for x in range(len(low)):
-        curve_low[x], curve_high[x] = _centered(z[x], t_low, t_high)
-    for x in range(len(low)):
-        far[x] = 0.0 if x == u else up(max(up(high[x] - curve_low[x]), up(curve_high[x] - low[x])))
-    for x in range(len(low)):
-        if not far[x] < inf:
-            return inf
-    rest, bound, nearer = np.empty((m, m)), np.empty(m), np.empty(len(low))
+    variables, m = len(low), len(system.equations)
+    curve_low, curve_high = np.empty(variables), np.empty(variables)
+    if not _spread(z, low, high, u, (curve_low, curve_high), far):
+        return inf
+    box_low, box_high, rest, bound = low.copy(), high.copy(), np.empty((m, m)), np.empty(m)
     for _ in range(SHRINKAGES):
-        for x in range(len(low)):
+        for x in range(variables):
             if x != u:
-                box_low[x], box_high[x] = min(low[x], curve_low[x]), max(high[x], curve_high[x])
-                box_low[x] = max(box_low[x], down(curve_low[x] - far[x]))
-                box_high[x] = min(box_high[x], up(curve_high[x] + far[x]))
+                box_low[x] = max(min(low[x], curve_low[x]), down(curve_low[x] - far[x]))
+                box_high[x] = min(max(high[x], curve_high[x]), up(curve_high[x] + far[x]))
         if not run(system.program, box_low, box_high, work.low, work.high, ZERO, system.stages[3]):
             return inf
-        if not _eliminated(system, work):
+        if not eliminated(system, work):
             return inf
-        for i in range(m):
-            bound[i] = 0.0
-            for k in range(m):
-                bound[i] = up(bound[i] + up(abs(work.inverse[i, k]) * residual[k]))
-            for j in range(m):
-                p = q = 0.0
-                for k in range(m):
-                    place = system.jacobian[k, work.pivots[j]]
-                    a, b = multiply(work.inverse[i, k], work.inverse[i, k], work.low[place], work.high[place])
-                    p, q = down(p + a), up(q + b)
-                if i == j:
-                    p, q = down(1.0 - q), up(1.0 - p)
-                rest[i, j] = magnitude(p, q)
+        _operator(system, residual, work, rest, bound)
         before = far.max()
-        for _ in range(ITERATIONS):
-            for x in range(len(low)):
-                nearer[x] = far[x]
-            for i in range(m):
-                x = unknowns[work.pivots[i]]
-                total = bound[i]
-                for j in range(m):
-                    total = up(total + up(rest[i, j] * far[unknowns[work.pivots[j]]]))
-                # a sum that is no number is passed over
-                nearer[x] = min(nearer[x], total)
-            for x in range(len(low)):
-                far[x] = nearer[x]
-        for x in range(len(low)):
+        _iterate(system, rest, bound, work, far)
+        for x in range(variables):
             if x != u and (down(curve_low[x] - far[x]) > high[x] or up(curve_high[x] + far[x]) < low[x]):
                 return -1.0
         if not far.max() <= 0.5 * before:
@@ -285,9 +177,9 @@ def tubes(
     u, start, end = along
     order, most, budget = limits
     variables = boxes.shape[1] // 2
-    work = _work(equations)
+    work = workspace(equations, variables)
     for j in range(len(equations.unknowns)):
-        work.widths[j] = 0.0 if equations.unknowns[j] == u else 1.0
+        work.radius[j] = 0.0 if equations.unknowns[j] == u else 1.0
     middle = 0.5 * (start + end)
     radius = up(max(up(end - middle), up(middle - start)))
     centers = np.zeros((MAX_TUBES, variables, order + 2))
@@ -296,10 +188,10 @@ def tubes(
     count = 0
     for k in range(len(points)):
         # once more, for the row operations there
-        if not _newton(equations, points[k], work):
+        if not approach(equations, points[k], work):
             continue
-        centers[count] = _expanded(equations, points[k], u, radius, order, work)
-        residuals[count] = _residual(equations, centers[count])
+        centers[count] = expanded(equations, points[k], u, radius, order, work)
+        residuals[count] = residual(equations, centers[count])
         if _reach(residuals[count], work) <= most:
             count += 1
     left = len(boxes)
@@ -310,7 +202,7 @@ def tubes(
 
 
 @inlined
-def _reach(residual: Floats, work: _Work) -> float:
+def _reach(residual: Floats, work: Workspace) -> float:
     """About how far solutions are from polynomials with such a residual."""
     result = 0.0
     for i in range(len(residual)):
@@ -322,7 +214,7 @@ def _reach(residual: Floats, work: _Work) -> float:
 
 
 @compiled
-def _middles(equations: Arguments, boxes: Boxes, u: int, middle: float, work: _Work) -> Floats:
+def _middles(equations: Arguments, boxes: Boxes, u: int, middle: float, work: Workspace) -> Floats:
     """Points of the curves over the middle, about: where Newton's method ends that begins in boxes next to it."""
     variables = boxes.shape[1] // 2
     distance = np.abs(0.5 * (boxes[:, u] + boxes[:, variables + u]) - middle)
@@ -336,7 +228,7 @@ def _middles(equations: Arguments, boxes: Boxes, u: int, middle: float, work: _W
         k = order[n]
         point = 0.5 * (boxes[k, :variables] + boxes[k, variables:])
         point[u] = middle
-        if not _newton(equations, point, work):
+        if not approach(equations, point, work):
             continue
         known = False
         for x in range(variables):
@@ -365,7 +257,7 @@ def _refined(
     residuals: Floats,
     half: Floats,
     limits: tuple[int, float, int],
-    work: _Work,
+    work: Workspace,
 ) -> int:
     """Bisect boxes until their solutions are near one of the centers, or the budget is gone; what is left then.
 
@@ -402,18 +294,9 @@ def _refined(
                 break
         if near:
             continue
-        widest, width = -1, 0.0
-        for x in system.unknowns:
-            middle = low[x] + 0.5 * (high[x] - low[x])
-            size = (high[x] - low[x]) * weights[x]
-            if size > width and low[x] < middle < high[x]:
-                widest, width = x, size
+        widest, width = widest_of(system, box, weights, contraction, 1.0)
         if widest < 0 or width < least:
             return top + 1
-        middle = low[widest] + 0.5 * (high[widest] - low[widest])
-        for k in range(len(box)):
-            stack[top, k] = stack[top + 1, k] = box[k]
-        stack[top, variables + widest] = middle
-        stack[top + 1, widest] = middle
+        stack = halved(stack, top, box, widest)
         top += 2
     return 0

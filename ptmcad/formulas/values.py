@@ -33,32 +33,6 @@ class Arithmetic(Protocol[V_co]):
 
 
 @dataclass(frozen=True, slots=True)
-class ByNames:
-    """An arithmetic of a ring whose variables and angles have names.
-
-    Attributes
-    ----------
-    names : of the variables by their numbers.
-    ring : has ``constant``, ``parameter``, ``cos`` and ``sin``; the latter three take names.
-    """
-
-    names: Sequence[str]
-    ring: Any
-
-    def constant(self, value: Fraction) -> Any:
-        return self.ring.constant(value)
-
-    def variable(self, number: int) -> Any:
-        return self.ring.parameter(self.names[number])
-
-    def cos(self, number: int) -> Any:
-        return self.ring.cos(self.names[number])
-
-    def sin(self, number: int) -> Any:
-        return self.ring.sin(self.names[number])
-
-
-@dataclass(frozen=True, slots=True)
 class Substitution:
     """The arithmetic of formulas: with others in the place of some variables, of the same graph or of another one."""
 

@@ -18,13 +18,14 @@ from typing import TypeVar
 
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula, Graph
-from ptmcad.formulas.values import ByNames, values
+from ptmcad.formulas.values import values
 from ptmcad.model import crossed, loops
 from ptmcad.model.criterion import Criterion
 from ptmcad.model.crossed import Follower
 from ptmcad.model.description import Mechanism, Model, equations_in
+from ptmcad.model.determinants import gradient
 from ptmcad.model.elements import second_bar
-from ptmcad.model.evaluate import Element, Ring, evaluate, evaluated
+from ptmcad.model.evaluate import ByNames, Element, Ring, evaluate, evaluated
 from ptmcad.model.springs import AngularSpring, ElasticLine, Vector
 from ptmcad.model.work import split_moments
 from ptmcad.text.tree import Tree
@@ -119,7 +120,7 @@ class CompiledSystem:
     def forces(self) -> tuple[Formula, ...]:
         """The smooth energy's slopes by the unknowns, less the moments."""
         assert self.smooth is not None
-        slopes = (self.graph.derivative(self.smooth, k) for k in self.unknowns)
+        slopes = gradient(self.smooth, self.unknowns)
         return tuple(slope - moment for slope, moment in zip(slopes, self.moments, strict=True))
 
     @property
@@ -154,13 +155,12 @@ class CompiledSystem:
         slack = self.graph.constant(0)
         for k in relaxed:
             slack = slack - self.springs[k].pull * self.springs[k].length
-        slopes = [self.graph.derivative(slack, k) for k in self.unknowns]
-        if not self.tangent:
-            return tuple(equation + slope for equation, slope in zip(self.equations, slopes, strict=True))
-        *closed, along = self.equations
-        for towards, slope in zip(self.tangent, slopes, strict=True):
-            along = along + towards * slope
-        return (*closed, along)
+        slopes = gradient(slack, self.unknowns)
+        if self.tangent:  # the last equation is the slope along the loops
+            slopes = (loops.dot(self.tangent, slopes),)
+        closed = len(self.equations) - len(slopes)
+        balanced = (equation + slope for equation, slope in zip(self.equations[closed:], slopes, strict=True))
+        return (*self.equations[:closed], *balanced)
 
     @property
     def quantities(self) -> dict[str, Formula]:

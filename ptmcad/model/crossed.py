@@ -22,9 +22,10 @@ from math import prod
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.values import ByNames, values
+from ptmcad.formulas.values import values
+from ptmcad.model.determinants import determinant
+from ptmcad.model.evaluate import ByNames
 from ptmcad.model.identities import Polynomial, Ring
 from ptmcad.model.sizes import MAX_TERMS, TOO_LARGE
 

@@ -7,7 +7,8 @@ Division is by constants only: a coordinate is a polynomial.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -56,6 +57,26 @@ class Ring(Protocol[_E_co]):
     def cos(self, angle: str, /) -> _E_co: ...
 
     def sin(self, angle: str, /) -> _E_co: ...
+
+
+@dataclass(frozen=True, slots=True)
+class ByNames(Generic[E]):
+    """A ring as an arithmetic for formulas, whose variables have these names."""
+
+    names: Sequence[str]
+    ring: Ring[E]
+
+    def constant(self, value: Fraction) -> E:
+        return self.ring.constant(value)
+
+    def variable(self, number: int) -> E:
+        return self.ring.parameter(self.names[number])
+
+    def cos(self, number: int) -> E:
+        return self.ring.cos(self.names[number])
+
+    def sin(self, number: int) -> E:
+        return self.ring.sin(self.names[number])
 
 
 def evaluate(tree: Tree, ring: Ring[E]) -> E:

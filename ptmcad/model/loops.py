@@ -36,8 +36,8 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from ptmcad.formulas.determinants import cofactors, determinant
 from ptmcad.formulas.graph import Formula
+from ptmcad.model.determinants import cofactors, determinant, gradient
 
 Row = tuple[Formula, ...]
 
@@ -69,20 +69,20 @@ def conditions(closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row
     """
     if tensions:
         return _stationary(closing, forces, unknowns, tensions)
-    rows = [_gradient(g, unknowns) for g in closing]
+    rows = [gradient(g, unknowns) for g in closing]
     tangent = cofactors(rows)
-    slope = _dot(tangent, forces)
-    return LoopConditions((*closing, slope), (determinant([*rows, _gradient(slope, unknowns)]),), tangent)
+    slope = dot(tangent, forces)
+    return LoopConditions((*closing, slope), (determinant([*rows, gradient(slope, unknowns)]),), tangent)
 
 
 def _stationary(closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row) -> LoopConditions:
     """The multipliers' equations and the conditions c_1, ..., c_f for stability."""
     halves = tuple(g / 2 for g in closing)
-    rows = [_gradient(g, unknowns) for g in halves]
+    rows = [gradient(g, unknowns) for g in halves]
     columns = list(zip(*rows, strict=True))
-    pulls = tuple(force + _dot(tensions, column) for force, column in zip(forces, columns, strict=True))
+    pulls = tuple(force + dot(tensions, column) for force, column in zip(forces, columns, strict=True))
     zero = (closing[0].graph.constant(0),) * len(closing)
-    matrix = [(*_gradient(p, unknowns), *column) for p, column in zip(pulls, columns, strict=True)]
+    matrix = [(*gradient(p, unknowns), *column) for p, column in zip(pulls, columns, strict=True)]
     matrix += [(*row, *zero) for row in rows]
     return LoopConditions((*pulls, *halves), tuple(_definite(matrix, len(closing))))
 
@@ -98,9 +98,6 @@ def _definite(matrix: Sequence[Row], bars: int) -> Iterator[Formula]:
         yield -total if bars % 2 else total
 
 
-def _gradient(f: Formula, unknowns: Sequence[int]) -> Row:
-    return tuple(f.graph.derivative(f, k) for k in unknowns)
-
-
-def _dot(one: Row, other: Row) -> Formula:
+def dot(one: Sequence[Formula], other: Sequence[Formula]) -> Formula:
+    """The sum of products, of at least one."""
     return sum((a * b for a, b in zip(one, other, strict=True)), start=one[0].graph.constant(0))

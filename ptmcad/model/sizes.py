@@ -6,7 +6,6 @@ and no polynomial of degree d in n variables more than binomial(d + n, n); cosin
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from fractions import Fraction
 from math import comb
 
@@ -67,19 +66,12 @@ class Sizes:
 
 def check_sizes(model: Model, faults: Faults) -> None:
     """Note the first part with which a model's equations, or its energy, may have too many terms."""
-    total = 0
+    ring, total = Named(Sizes(), model.coordinates), 0
     with faults:
-        for key, terms in _terms(model):
-            total += terms
+        for key, trees in model.polynomials.items():
+            try:
+                total += sum(evaluate(tree, ring).terms for tree in trees)
+            except ExpressionError as error:
+                raise ConfigError(error.message, key=key) from None
             if total > MAX_TERMS:
                 raise ConfigError(f"with what stands before, {TOO_LARGE}", key=key)
-
-
-def _terms(model: Model) -> Iterator[tuple[str, int]]:
-    """What bounds the terms of the parts of a model, by their keys."""
-    ring = Named(Sizes(), model.coordinates)
-    for key, trees in model.polynomials.items():
-        try:
-            yield key, sum(evaluate(tree, ring).terms for tree in trees)
-        except ExpressionError as error:
-            raise ConfigError(error.message, key=key) from None

@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("numba")
 
 from ptmcad.certified import specks
-from ptmcad.certified.covering import Lattice, box_rectangles, thinning
+from ptmcad.certified.covering import Lattice, box_rectangles, meeting, thinning
 from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.refinement import CurveEnclosure, begin, refine
 from ptmcad.certified.search import Boxes
@@ -75,7 +75,7 @@ def test_what_meets() -> None:
     rectangles = np.concatenate([sides[:, :, 0], sides[:, :, 1]], axis=1)
     third = np.full((len(sides), 1), 7.0)
     boxes = np.concatenate([sides[:, :, 0], third, sides[:, :, 1], third], axis=1)
-    found = specks._meeting(rectangles, boxes)
+    found = meeting(rectangles, boxes)
     for i, j in product(range(0, len(sides), 3), range(len(sides))):
         common = [range(max(a[0], b[0]), min(a[1], b[1]) + 1) for a, b in zip(*sides[[i, j]].astype(int), strict=True)]
         assert found[i, j] == all(map(len, common))

@@ -23,8 +23,8 @@ from ptmcad.certified.plain.quotient import NEAR, SymmetricFold, folds
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.plain.swallowed import cones
 from ptmcad.certified.scales import short_lengths, variable_weights
-from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula
+from ptmcad.model.determinants import determinant
 from ptmcad.model.involutions import Involution
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice

@@ -59,12 +59,12 @@ class MirrorFrame:
     @property
     def evens(self) -> list[list[tuple[int, int]]]:
         """For each even coordinate the unknowns that it is in, with its signs."""
-        return [[(k, p.even_sign) for k, p in enumerate(self.places) if p.even == e] for e in range(len(self.ranges))]
+        return _members([(p.even, p.even_sign) for p in self.places], len(self.ranges))
 
     @property
     def odds(self) -> list[list[tuple[int, int]]]:
         """The same of the odd ones."""
-        return [[(k, p.odd_sign) for k, p in enumerate(self.places) if p.odd == o] for o in range(len(self.reaches))]
+        return _members([(p.odd, p.odd_sign) for p in self.places], len(self.reaches))
 
     def distance(self, unknowns: Sequence[Unknown]) -> Formula:
         """Of a configuration from its image: of odd coordinates the squares of the sines, or shares of the reach."""
@@ -128,6 +128,10 @@ class MirrorFrame:
             return total
 
         return tuple(tuple(entry(a, b) for b in columns) for a in columns)
+
+
+def _members(signed: Sequence[tuple[int, int]], count: int) -> list[list[tuple[int, int]]]:
+    return [[(k, sign) for k, (own, sign) in enumerate(signed) if own == n] for n in range(count)]
 
 
 def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Iterator[MirrorFrame]:

@@ -11,8 +11,8 @@ from itertools import combinations
 from typing import NamedTuple
 
 from ptmcad.certified.plain.cones import ConeFormulas, Matrix
-from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula
+from ptmcad.model.determinants import determinant
 
 
 class Bent(NamedTuple):

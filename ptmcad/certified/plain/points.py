@@ -10,58 +10,41 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import NamedTuple
 
 import numpy as np
 from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.counts import counts_of_signs, euler_sum
-from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb, refined
-from ptmcad.certified.distinct import FULL_TURN, distinct
+from ptmcad.certified.arb_isolation import refined
 from ptmcad.certified.parameters import values_at
 from ptmcad.certified.peaks import peaks
-from ptmcad.certified.plain.bounds import Range, ranges
+from ptmcad.certified.plain.bounds import ranges
 from ptmcad.certified.plain.chart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.covering import in_description
 from ptmcad.certified.plain.geometry import geometry
-from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, problem_of
+from ptmcad.certified.plain.problem import MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.straight import branches
-from ptmcad.certified.points import BUDGET, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
-from ptmcad.certified.search import Boxes, SearchResult, isolate
-from ptmcad.certified.system import Arguments, EquationSystem, system
+from ptmcad.certified.plain.zeros import Zeros, ZeroSearch
+from ptmcad.certified.points import PRECISIONS, PointCount, boxed
+from ptmcad.certified.search import Boxes
+from ptmcad.certified.system import EquationSystem, system
 from ptmcad.errors import DegenerateSliceError
-from ptmcad.formulas.balls import ball, lower, run_arb, upper
+from ptmcad.formulas.balls import ball, run_arb
 from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.intervals import Indices, program, run
-from ptmcad.formulas.tape import Tape, enclosing_floats, record
+from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import ptm
 from ptmcad.model.criterion import by_hessian
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
 
-MANY_BOXES = 6_000_000
-"""Boxes in floating point for one point where there are more than `MAX_UNKNOWNS` unknowns: about half a minute."""
-
-MAX_OPEN_BOXES = 40
-"""Boxes as narrow as is looked at that stay open, before a search ends: with one of them nothing is decided."""
-
 WITNESSES = tuple((Fraction(u), Fraction(v)) for u, v in (("10/21", "19/35"), ("2/13", "11/17"), ("15/19", "4/23")))
 """Shares of the window: points that are rarely on a curve that a person has in mind."""
 
-ARB_BUDGETS = (6_000, 800)
-"""Boxes by precision. What takes many is nearly a curve of equilibria, and of that more digits make no fewer."""
 HALVINGS = 60
 """Of a box around a solution, before it is in no other solution's way."""
-
-
-class Zeros(NamedTuple):
-    """Boxes with exactly one zero each, narrower ones around it, each zero once; and how many boxes may hold more."""
-
-    unique: Boxes
-    narrow: Boxes
-    open: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,24 +53,27 @@ class PlainCounter:
 
     Attributes
     ----------
-    ranges : over the window.
     all, stable : the systems that a search prunes with, for all solutions that count and for the stable ones.
-    equations : the equations alone.
     hessian : a tape of one stage with the Hessian's entries row by row.
     conditions : a tape with the inequalities, then the conditions for stability, with closed loops the Jacobian's
         determinant; and in a second stage what has to be positive where the count's predicate holds.
-    pause : called between the parts of a long search; what it raises ends that.
     """
 
     slice: Slice
-    problem: Problem
-    ranges: tuple[Range, ...]
+    search: ZeroSearch
     all: EquationSystem
     stable: EquationSystem
-    equations: EquationSystem
     hessian: Tape
     conditions: Tape
-    pause: Callable[[], None] | None = None
+
+    @property
+    def problem(self) -> Problem:
+        return self.search.problem
+
+    @property
+    def equations(self) -> EquationSystem:
+        """The equations alone."""
+        return self.search.equations
 
     def at(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> PointCount:
         """What ``count`` needs at the point (x, y) of the two axes.
@@ -99,7 +85,7 @@ class PlainCounter:
         ArithmeticError
             When the counts contradict Euler's sum on the torus, which would be a fault of this program.
         """
-        zeros = self._zeros(x, y, count.is_of_stable, thorough)
+        zeros = self.search.at(x, y, self.stable if count.is_of_stable else self.all, thorough)
         counted, unclear = self._counted(x, y, zeros, count)
         unclear += zeros.open
         if unclear and count.is_of_stable:
@@ -187,7 +173,7 @@ class PlainCounter:
         """
         for k in range(HALVINGS):
             box = np.clip(narrow + (unique - narrow) / 2.0**k, *_ends(unique))
-            values = run_arb(self.conditions, self._box(x, y, box), PRECISIONS[0])
+            values = run_arb(self.conditions, self.search.box(x, y, box), PRECISIONS[0])
             if all(values[int(place)] > 0 for place in self.conditions.outputs[0][: len(self.problem.inequalities)]):
                 return box
         return None
@@ -213,65 +199,15 @@ class PlainCounter:
         """Values at a proved zero, with more and more bits."""
         for precision in PRECISIONS:
             with ctx.workprec(precision):
-                narrow = refined(self.equations, self._box(x, y, unique), precision)
+                narrow = refined(self.equations, self.search.box(x, y, unique), precision)
                 values = run_arb(tape, narrow, precision)
             yield [values[int(place)] for place in places], precision
-
-    def _zeros(self, x: Fraction, y: Fraction, stable: bool, thorough: bool) -> Zeros:
-        """The zeros at a point that a search proves."""
-        none = np.empty((0, 2 * (FIRST + len(self.problem.unknowns))))
-        (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
-        low, high = zip(*self.ranges, strict=True)
-        start = np.array([[x_low, y_low, *low, x_high, y_high, *high]])
-        arguments = (self.stable if stable else self.all).arguments()
-        for finest in MIN_BOX_WIDTHS if thorough else MIN_BOX_WIDTHS[:1]:
-            found = self._isolated(arguments, start, finest, thorough)
-            if not len(found.left()):
-                break
-        if thorough and 0 < len(found.small) <= MAX_OPEN_BOXES and not len(found.waiting):
-            found = self._with_more_digits(x, y, stable, found)
-        periods = np.array([0.0] * FIRST + [FULL_TURN * is_angle for is_angle in self.problem.is_angle])
-        kept = distinct(found.unique, found.narrow, FIRST, periods)
-        if kept is None:
-            return Zeros(none, none, len(found.left()) + len(found.unique))
-        return Zeros(found.unique[kept], found.narrow[kept], len(found.left()))
-
-    def _isolated(self, arguments: Arguments, start: Boxes, finest: float, thorough: bool) -> SearchResult:
-        """The search in boxes no finer than that; of more than three unknowns one of many parts."""
-        equations, weights = self.equations.arguments(), np.ones(start.shape[1] // 2)
-        most = MANY_BOXES if len(self.problem.unknowns) > MAX_UNKNOWNS else BUDGET
-        part = BUDGET if thorough else QUICK_BUDGET
-        found = isolate(arguments, equations, start, (finest, part, MAX_OPEN_BOXES), weights)
-        while thorough and len(found.waiting) and len(found.small) <= MAX_OPEN_BOXES and found.used < most:
-            if self.pause is not None:
-                self.pause()
-            more = isolate(arguments, equations, found.waiting, (finest, part, MAX_OPEN_BOXES), weights)
-            unique, narrow, small = (np.concatenate(pair) for pair in zip(found[:3], more[:3], strict=True))
-            found = SearchResult(unique, narrow, small, more.waiting, found.used + more.used)
-        return found
-
-    def _with_more_digits(self, x: Fraction, y: Fraction, stable: bool, found: SearchResult) -> SearchResult:
-        """The same with the zeros, if any, in the boxes that floating point left open, where more digits tell them."""
-        searched = self.stable if stable else self.all
-        for precision, budget in zip(PRECISIONS, ARB_BUDGETS, strict=True):
-            with ctx.workprec(precision):
-                start = [self._box(x, y, box) for box in found.small]
-            zeros = isolate_arb(searched, self.equations, start, precision, budget)
-            boxes = [_in_floats(zero, found.small[0]) for zero in zeros or ()]
-            if zeros is not None and None not in boxes:
-                more = np.array(boxes, np.float64).reshape(len(boxes), 2, found.small.shape[1])
-                return found._replace(
-                    unique=np.concatenate([found.unique, more[:, 0]]),
-                    narrow=np.concatenate([found.narrow, more[:, 1]]),
-                    small=found.small[:0],
-                )
-        return found
 
     def zero_condition(self, x: Fraction, y: Fraction, count: Count) -> str:
         """What is not decided of the signs of conditions at a proved zero, to as many digits as there are, in words."""
         conditions = [c.text for c in self.problem.conditions(count)]
         further = [c.text for c in self.problem.further]
-        found = self._zeros(x, y, bool(further), False) if conditions or further else None
+        found = self.search.at(x, y, self.stable if further else self.all, False) if conditions or further else None
         for unique in () if found is None or found.open else found.unique:
             if further and self.problem.is_gradient and self._index(x, y, unique) != 0:
                 continue
@@ -282,11 +218,6 @@ class PlainCounter:
                 if False in signs:
                     break
         return ""
-
-    def _box(self, x: Fraction, y: Fraction, box: Boxes) -> Box:
-        """A box over the point in balls of the precision that is set."""
-        ends = [(Fraction(float(box[k])), Fraction(float(box[k + len(box) // 2]))) for k in self.problem.variables]
-        return (ball(x, x), ball(y, y), *(ball(low, high) for low, high in ends))
 
     def _index_in_floats(self, narrow: Boxes) -> int | None:
         """The number of negative eigenvalues all over a box; None where doubles do not tell."""
@@ -330,18 +261,6 @@ class BranchCounter:
         return parts[0] if len(parts) == 1 else _sum(parts)
 
 
-def _in_floats(zero: Isolated, around: Boxes) -> tuple[list[float], list[float]] | None:
-    """Its boxes, the wide one rounded inward and the narrow one outward; None where these meet."""
-    wide = low, high = [list(map(float, some)) for some in np.split(around, 2)]
-    least, most = list(low), list(high)
-    for k in range(FIRST, len(low)):
-        low[k], high[k] = enclosing_floats(lower(zero.unique[k]))[1], enclosing_floats(upper(zero.unique[k]))[0]
-        least[k], most[k] = enclosing_floats(lower(zero.narrow[k]))[0], enclosing_floats(upper(zero.narrow[k]))[1]
-        if not low[k] < least[k] <= most[k] < high[k]:
-            return None
-    return [end for ends in wide for end in ends], [*least, *most]
-
-
 def _ends(box: Boxes) -> tuple[Boxes, Boxes]:
     """Its low ends, twice, and its high ends, twice."""
     low, high = np.split(box, 2)
@@ -372,7 +291,7 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
     Parameters
     ----------
     most : unknowns that the model may have.
-    pause : see `PlainCounter`.
+    pause : see `ZeroSearch`.
 
     Raises
     ------
@@ -388,23 +307,19 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
 def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -> PlainCounter:
     at = chart(geometry(problem))
     vanishing = (at.dependent, at.balances)
-    unknowns = [at.equations[0].graph.variable(k) for k in problem.variables]
-    inequalities, stability, further = (
-        [c.value.formula(unknowns) for c in some] for some in (problem.inequalities, problem.stability, problem.further)
-    )
+    asked = problem.inequalities, problem.stability, problem.further
+    inequalities, stability, further = ([c.value.formula(at.unknowns) for c in some] for some in asked)
     if problem.closing:
         stability = [at.determinant()]
     minima = _semidefinite(at) if problem.is_gradient else stability
+    alone = system(at.equations, problem.variables, jacobian=at.hessian)
     counter = PlainCounter(
         slice,
-        problem,
-        ranges(problem, slice.axes),
+        ZeroSearch(problem, ranges(problem, slice.axes), alone, pause),
         system(at.equations, problem.variables, vanishing, inequalities, at.hessian),
         system(at.equations, problem.variables, vanishing, [*minima, *inequalities], at.hessian),
-        system(at.equations, problem.variables, jacobian=at.hessian),
         record([[entry for row in at.hessian for entry in row]]),
         record([[*inequalities, *stability], further]),
-        pause,
     )
     if not problem.where:  # where sides of kinks are not conditions that anybody asked for
         _check_conditions(counter)

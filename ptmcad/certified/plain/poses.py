@@ -31,6 +31,7 @@ from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import Mechanism, Model, ptm
 from ptmcad.model.compile import CompiledSystem, compiled_with
+from ptmcad.model.determinants import gradient
 from ptmcad.model.fourbars import flat_everywhere
 from ptmcad.question.counts import POSE_COLUMNS, Count
 from ptmcad.question.domain import proved
@@ -164,12 +165,13 @@ def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> Numbers:
     found = {f"{angle}.cos": unknowns[angle].cos() for angle in mechanism.angles}
     found |= {f"{angle}.sin": unknowns[angle].sin() for angle in mechanism.angles}
     found |= {f"{name}.real": unknowns[name] for name in mechanism.reals} | system.quantities
-    hessian, slopes = list[Formula](), list[Formula]()
+    hessian, slopes = list[Formula](), tuple[Formula, ...]()
     if (energy := system.energy()) is not None:
         found["energy"] = energy
     if (potential := system.potential()) is not None:
-        slopes = [graph.derivative(potential, v.variable) for v in unknowns.values()]
-        hessian = [graph.derivative(slope, v.variable) for slope in slopes for v in unknowns.values()]
+        variables = [v.variable for v in unknowns.values()]
+        slopes = gradient(potential, variables)
+        hessian = [entry for slope in slopes for entry in gradient(slope, variables)]
     tape = record([list(found.values()), hessian, slopes])
     return Numbers(mechanism, parameters, system, tuple(found), tape)
 

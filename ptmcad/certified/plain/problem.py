@@ -186,10 +186,8 @@ def _equations(slice: Slice, ring: Harmonics) -> Problem:
     inequalities = _conditions(_margins(positive), ring)
     is_angle = tuple(kind.turns for kind in model.unknowns.values())
     problem = Problem(ring.unknowns, is_angle, (), (), system.is_gradient, inequalities)
-    if slice.has_free_lengths and system.tangent:
-        return _with_springs(_of_loops(problem, system, ring), slice, system, ring)
-    if system.are_slopes:
-        return _with_springs(_of_slopes(problem, system, ring), slice, system, ring)
+    if system.are_slopes or (slice.has_free_lengths and system.tangent):
+        return _with_springs(problem, slice, system, ring)
     stability = _conditions(_margins({f"stable.{n}": tree for n, tree in enumerate(stable, 1)}), ring)
     # an unknown that is not zero where solutions count is no factor of an equation: without this, the solutions at
     # which it is zero, say those where a species is extinct, would be undecided all over the window
@@ -219,20 +217,6 @@ def _places(system: CompiledSystem, ring: Harmonics) -> list[int]:
     return [ring.unknowns.index(system.names[k]) for k in system.unknowns]
 
 
-def _of_slopes(problem: Problem, system: CompiledSystem, ring: Harmonics) -> Problem:
-    """The energy's derivatives, less the moments."""
-    assert system.smooth is not None
-    energy, *moments = system.values((system.smooth, *system.moments), ring)
-    by_place = dict(zip(_places(system, ring), moments, strict=True))
-    return replace(problem, equations=tuple(energy.derivative(k) - by_place[k] for k in range(len(moments))))
-
-
-def _of_loops(problem: Problem, system: CompiledSystem, ring: Harmonics) -> Problem:
-    """Of closed loops with one degree of freedom left."""
-    *closed, slope = system.values(system.equations, ring)
-    return replace(problem, equations=(*closed, slope.scaled(_order(system, ring))), closing=len(closed))
-
-
 def _order(system: CompiledSystem, ring: Harmonics) -> Fraction:
     """Where unknowns are in another order the Jacobian's determinant may have the other sign: so has the slope then."""
     exchanged = sum(a > b for a, b in combinations(_places(system, ring), 2))
@@ -240,22 +224,29 @@ def _order(system: CompiledSystem, ring: Harmonics) -> Fraction:
 
 
 def _with_springs(problem: Problem, slice: Slice, system: CompiledSystem, ring: Harmonics) -> Problem:
-    """The problem with a cone for each spring with a free length."""
-    nothing = ring.constant(Fraction(0))
-    tangent = [f.scaled(_order(system, ring)) for f in system.values(system.tangent, ring)]
+    """The equations of open chains, or those of closed loops with one degree of freedom, with a cone for each spring
+    with a free length."""
+    places, order, nothing = _places(system, ring), _order(system, ring), ring.constant(Fraction(0))
+    equations, tangent = system.values(system.equations, ring), system.values(system.tangent, ring)
+    rigid = [(nothing, nothing)] * (len(equations) - 1)
 
     def along(f: TrigonometricPolynomial) -> TrigonometricPolynomial:
-        slopes = (t * f.derivative(k) for t, k in zip(tangent, _places(system, ring), strict=True))
-        return sum(slopes, start=nothing)
+        return sum((t * f.derivative(k) for t, k in zip(tangent, places, strict=True)), start=nothing).scaled(order)
 
     def weights(x: TrigonometricPolynomial, y: TrigonometricPolynomial) -> tuple[Vector, ...]:
         """What takes K |d| off the energy takes K u . w off its slope along loops, w being d's derivative there."""
-        if problem.closing:
-            return (*[(nothing, nothing)] * problem.closing, (along(x), along(y)))
-        return tuple((x.derivative(k), y.derivative(k)) for k in range(len(ring.unknowns)))
+        if tangent:
+            return (*rigid, (along(x), along(y)))
+        return tuple((x.derivative(k), y.derivative(k)) for k in range(len(places)))
 
-    cones = tuple(SpringCone(name, pull, d, weights(*d)) for name, pull, d in _pulls(slice, system, ring))
-    return replace(problem, cones=cones)
+    return replace(
+        problem,
+        equations=(*equations[:-1], equations[-1].scaled(order))
+        if tangent
+        else tuple(equations[places.index(k)] for k in range(len(places))),
+        closing=len(rigid) if tangent else 0,
+        cones=tuple(SpringCone(name, pull, d, weights(*d)) for name, pull, d in _pulls(slice, system, ring)),
+    )
 
 
 def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[str, Expression, Vector]]:

@@ -27,8 +27,8 @@ from ptmcad.certified.plain.cones import Matrix
 from ptmcad.certified.plain.frame import MirrorFrame
 from ptmcad.certified.plain.geometry import FactoredProblem
 from ptmcad.certified.plain.opening import Coordinates, UnfoldedEnergy, coordinates, opening, stiffness
-from ptmcad.formulas.determinants import determinant
 from ptmcad.formulas.graph import Formula
+from ptmcad.model.determinants import determinant
 
 NEAR = Fraction(1, 1024)
 """The distance from their images below which configurations are searched about the fixed points."""

@@ -1,15 +1,20 @@
-"""Determinants of matrices of formulas, by Laplace's expansion: for the few rows that there are.
+"""Gradients of formulas, and determinants of matrices by Laplace's expansion: for the few rows that there are.
 
 Guarantee: exact identities.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from ptmcad.formulas.graph import Formula
 
 Rows = Sequence[tuple[Formula, ...]]
+
+
+def gradient(f: Formula, variables: Iterable[int]) -> tuple[Formula, ...]:
+    """The derivatives by the variables of these numbers."""
+    return tuple(f.graph.derivative(f, k) for k in variables)
 
 
 def determinant(matrix: Rows) -> Formula:

@@ -1,0 +1,130 @@
+"""The zeros of a problem's equations at one rational point of a slice: a search in floats, and then in balls.
+
+Guarantee: each box holds exactly one zero, each zero has one, and there are no others but in what is left open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+from flint import ctx
+
+from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb
+from ptmcad.certified.distinct import FULL_TURN, distinct
+from ptmcad.certified.plain.bounds import Range
+from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem
+from ptmcad.certified.points import BUDGET, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET
+from ptmcad.certified.search import Boxes, SearchResult, isolate
+from ptmcad.certified.system import Arguments, EquationSystem
+from ptmcad.formulas.balls import ball, lower, upper
+from ptmcad.formulas.tape import enclosing_floats
+
+MANY_BOXES = 6_000_000
+"""Boxes in floating point for one point where there are more than `MAX_UNKNOWNS` unknowns: about half a minute."""
+
+MAX_OPEN_BOXES = 40
+"""Boxes as narrow as is looked at that stay open, before a search ends: with one of them nothing is decided."""
+
+ARB_BUDGETS = (6_000, 800)
+"""Boxes by precision. What takes many is nearly a curve of equilibria, and of that more digits make no fewer."""
+
+
+class Zeros(NamedTuple):
+    """Boxes with exactly one zero each, narrower ones around it, each zero once; and how many boxes may hold more."""
+
+    unique: Boxes
+    narrow: Boxes
+    open: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ZeroSearch:
+    """What is searched at all points of one slice.
+
+    Attributes
+    ----------
+    ranges : of the unknowns over the window.
+    equations : alone.
+    pause : called between the parts of a long search; what it raises ends that.
+    """
+
+    problem: Problem
+    ranges: tuple[Range, ...]
+    equations: EquationSystem
+    pause: Callable[[], None] | None = None
+
+    def at(self, x: Fraction, y: Fraction, system: EquationSystem, thorough: bool) -> Zeros:
+        """The zeros at a point that a search proves.
+
+        Parameters
+        ----------
+        system : the equations with what discards boxes.
+        thorough : whether a hard point may take long.
+        """
+        none = np.empty((0, 2 * (FIRST + len(self.problem.unknowns))))
+        (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
+        low, high = zip(*self.ranges, strict=True)
+        start = np.array([[x_low, y_low, *low, x_high, y_high, *high]])
+        arguments = system.arguments()
+        for finest in MIN_BOX_WIDTHS if thorough else MIN_BOX_WIDTHS[:1]:
+            found = self._isolated(arguments, start, finest, thorough)
+            if not len(found.left()):
+                break
+        if thorough and 0 < len(found.small) <= MAX_OPEN_BOXES and not len(found.waiting):
+            found = self._with_more_digits(x, y, system, found)
+        periods = np.array([0.0] * FIRST + [FULL_TURN * is_angle for is_angle in self.problem.is_angle])
+        kept = distinct(found.unique, found.narrow, FIRST, periods)
+        if kept is None:
+            return Zeros(none, none, len(found.left()) + len(found.unique))
+        return Zeros(found.unique[kept], found.narrow[kept], len(found.left()))
+
+    def _isolated(self, arguments: Arguments, start: Boxes, finest: float, thorough: bool) -> SearchResult:
+        """The search in boxes no finer than that; of more than three unknowns one of many parts."""
+        equations, weights = self.equations.arguments(), np.ones(start.shape[1] // 2)
+        most = MANY_BOXES if len(self.problem.unknowns) > MAX_UNKNOWNS else BUDGET
+        part = BUDGET if thorough else QUICK_BUDGET
+        found = isolate(arguments, equations, start, (finest, part, MAX_OPEN_BOXES), weights)
+        while thorough and len(found.waiting) and len(found.small) <= MAX_OPEN_BOXES and found.used < most:
+            if self.pause is not None:
+                self.pause()
+            more = isolate(arguments, equations, found.waiting, (finest, part, MAX_OPEN_BOXES), weights)
+            unique, narrow, small = (np.concatenate(pair) for pair in zip(found[:3], more[:3], strict=True))
+            found = SearchResult(unique, narrow, small, more.waiting, found.used + more.used)
+        return found
+
+    def _with_more_digits(self, x: Fraction, y: Fraction, system: EquationSystem, found: SearchResult) -> SearchResult:
+        """The same with the zeros, if any, in the boxes that floating point left open, where more digits tell them."""
+        for precision, budget in zip(PRECISIONS, ARB_BUDGETS, strict=True):
+            with ctx.workprec(precision):
+                start = [self.box(x, y, box) for box in found.small]
+            zeros = isolate_arb(system, self.equations, start, precision, budget)
+            boxes = [_in_floats(zero, found.small[0]) for zero in zeros or ()]
+            if zeros is not None and None not in boxes:
+                more = np.array(boxes, np.float64).reshape(len(boxes), 2, found.small.shape[1])
+                return found._replace(
+                    unique=np.concatenate([found.unique, more[:, 0]]),
+                    narrow=np.concatenate([found.narrow, more[:, 1]]),
+                    small=found.small[:0],
+                )
+        return found
+
+    def box(self, x: Fraction, y: Fraction, box: Boxes) -> Box:
+        """A box over the point in balls of the precision that is set."""
+        ends = [(Fraction(float(box[k])), Fraction(float(box[k + len(box) // 2]))) for k in self.problem.variables]
+        return (ball(x, x), ball(y, y), *(ball(low, high) for low, high in ends))
+
+
+def _in_floats(zero: Isolated, around: Boxes) -> tuple[list[float], list[float]] | None:
+    """Its boxes, the wide one rounded inward and the narrow one outward; None where these meet."""
+    wide = low, high = [list(map(float, some)) for some in np.split(around, 2)]
+    least, most = list(low), list(high)
+    for k in range(FIRST, len(low)):
+        low[k], high[k] = enclosing_floats(lower(zero.unique[k]))[1], enclosing_floats(upper(zero.unique[k]))[0]
+        least[k], most[k] = enclosing_floats(lower(zero.narrow[k]))[0], enclosing_floats(upper(zero.narrow[k]))[1]
+        if not low[k] < least[k] <= most[k] < high[k]:
+            return None
+    return [end for ends in wide for end in ends], [*least, *most]
