@@ -14,6 +14,7 @@ import click
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.timings import with_compilation
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, drawing_options, names_of, share_of
+from ptmcad.cli.formats import Formats
 from ptmcad.cli.gathering import gathered, reading
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
@@ -42,13 +43,13 @@ class Output(NamedTuple):
     """What is to be printed and written beside the table, and where."""
 
     out: Path
-    formats: tuple[str, ...]
+    formats: Formats
     explain: bool
     no_timings: bool
     drawing: DrawingOptions
 
     @property
-    def beside(self) -> tuple[str, ...]:
+    def beside(self) -> Formats:
         """The formats of the files beside the JSON."""
         return tuple(kind for kind in self.formats if kind != "json")
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from ptmcad.cli.formats import format_option
+from ptmcad.cli.formats import Formats, format_option
 from ptmcad.cli.gathering import F, gathered, reading
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.values import palettes
@@ -37,7 +37,7 @@ TABLES = ("boundaries", "regions", "cells")
 MAX_SIDE = 10_000
 
 
-def names_of(stem: str, formats: tuple[str, ...]) -> tuple[str, ...]:
+def names_of(stem: str, formats: Formats) -> tuple[str, ...]:
     """The files of these formats."""
     return tuple(
         name
@@ -68,7 +68,7 @@ class DrawingOptions(NamedTuple):
     overlay: tuple[Measured, ...] = ()
     poses: tuple[tuple[tuple[Fraction, Fraction], Poses], ...] = ()
 
-    def writers(self, result: Any, stem: str, formats: tuple[str, ...]) -> dict[str, Writer]:
+    def writers(self, result: Any, stem: str, formats: Formats) -> dict[str, Writer]:
         """For each file a function that writes it, in the order of the formats."""
         boundaries = cache(lambda: result.boundaries(self.boundary_tolerance))
         found: dict[str, Writer] = {}
@@ -172,7 +172,7 @@ def style_options(command: F) -> F:
     return command
 
 
-def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable[[F], F]:
+def drawing_options(known: Formats, default: str, what: str) -> Callable[[F], F]:
     """Add ``--format``, which the command gets as ``formats``, and the options that it gets as a `DrawingOptions`.
 
     Parameters

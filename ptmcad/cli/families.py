@@ -14,6 +14,7 @@ from ptmcad.answer.changes import TOLERANCE, Changes
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, names_of
+from ptmcad.cli.formats import Formats
 from ptmcad.cli.pictures import figure
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import read_other, read_result
@@ -44,7 +45,7 @@ class FamilyOutput(NamedTuple):
     """
 
     out: Path
-    formats: tuple[str, ...]
+    formats: Formats
     no_timings: bool
     drawing: DrawingOptions
     changes: bool = False
@@ -55,7 +56,7 @@ class FamilyOutput(NamedTuple):
     def needs_surface(self) -> bool:
         return bool(self.among(MESHES)) or (self.surface and bool(self.among(PICTURES)))
 
-    def among(self, known: tuple[str, ...]) -> tuple[str, ...]:
+    def among(self, known: Formats) -> Formats:
         """The formats that are of one kind: pictures, meshes, or data, of which each member has files of its own."""
         return tuple(kind for kind in self.formats if kind in known)
 
@@ -159,7 +160,7 @@ def _writers(result: FamilyMap, surface: BoundarySurface | None, wanted: FamilyO
 def picture_writers(
     result: FamilyMap,
     stem: str,
-    formats: tuple[str, ...],
+    formats: Formats,
     drawing: DrawingOptions,
     surface: BoundarySurface | None = None,
 ) -> dict[str, Writer]:
@@ -180,7 +181,7 @@ def picture_writers(
     return found
 
 
-def mesh_writers(surface: BoundarySurface, stem: str, formats: tuple[str, ...]) -> dict[str, Writer]:
+def mesh_writers(surface: BoundarySurface, stem: str, formats: Formats) -> dict[str, Writer]:
     """For each of `MESHES` a function that writes the surface."""
     from ptmcad.show.export.mesh import MESHES as KNOWN
 

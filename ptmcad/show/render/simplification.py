@@ -17,6 +17,12 @@ _MAX_DEPTH = 32
 """Halvings of a piece, and corners of the shorter ones into which it is cut when it still departs too far then."""
 
 
+def distinct(corners: Integers) -> Integers:
+    """Without corners that are where the one before them is."""
+    kept: Integers = corners[np.concatenate([[True], (corners[1:] != corners[:-1]).any(axis=1)])]
+    return kept
+
+
 def simplified(points: Floats, tolerance: float) -> Floats:
     """A closed polygon with fewer corners, all of them its own, from which it departs by at most the tolerance.
 
