@@ -91,11 +91,7 @@ class DrawingOptions(NamedTuple):
         from ptmcad.show import data
 
         table = name.removesuffix(".csv").rpartition("-")[2]
-        if table == "boundaries":
-            text = data.csv_text(data.boundary_rows(result, boundaries()))
-        else:
-            text = data.csv_text({"regions": data.region_rows, "cells": data.cell_rows}[table](result))
-        text_writer(text)(path)
+        text_writer(data.csv_text(data.rows_of(result, table, boundaries)))(path)
 
     def _arrays(self, result: Any, _name: str, boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show.data import npz_bytes

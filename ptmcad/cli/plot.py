@@ -26,7 +26,7 @@ from ptmcad.errors import ConfigError, blamed, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import portable_file
 from ptmcad.show import render
-from ptmcad.show.style import LegendPlace, PictureStyle
+from ptmcad.show.style import LegendPlace
 
 
 class Added(NamedTuple):
@@ -60,12 +60,6 @@ def _idle(result: Path, drawing: DrawingOptions, added: Added) -> tuple[Idle, ..
         ("legend", below, "a legend of several maps is below them"),
         ("surface", kind_of(result) != "family", "this is one map: a surface is of a family"),
     )
-
-
-def _say_width(style: PictureStyle, added: Added) -> None:
-    """What needs more room than a journal's column has gets both."""
-    if style.wide is not None and (added.at or added.compare is not None):
-        click.echo(f"over two columns, {style.wide:.3g} inches wide, which --size changes", err=True)
 
 
 def _check_compared(added: Added, formats: Formats) -> None:
@@ -193,7 +187,9 @@ def command(
         _check_compared(added, formats)
         check_writable(folder, names_of(stem, formats))
         drawing = _with_points(stored, drawing, added)
-        _say_width(drawing.style, added)
+        if (wide := drawing.style.wide) is not None and (added.at or added.compare is not None):
+            # what needs more room than a journal's column has gets both
+            click.echo(f"over two columns, {wide:.3g} inches wide, which --size changes", err=True)
         if added.compare is not None:
             pictures = _compared(stored, result, added.compare, stem, formats, drawing)
             with ProgressBar():

@@ -8,7 +8,7 @@ a line.
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from io import BytesIO, StringIO
 from math import inf, isnan, nan, nextafter
@@ -130,7 +130,7 @@ def data_frame(result: RegionMap, what: str, options: Mapping[str, Any]) -> Data
     if what == "grid":
         grid: DataFrame = _pandas().DataFrame(grid_columns(result, result.grid(**options)))
         return grid
-    return pandas_frame(_rows(result, what, options), None, _MAY_BE_MISSING)
+    return pandas_frame(rows_of(result, what, lambda: result.boundaries(**options)), None, _MAY_BE_MISSING)
 
 
 def pandas_frame(rows: Iterable[Row], columns: Sequence[str] | None, whole: Iterable[str]) -> DataFrame:
@@ -163,9 +163,10 @@ def _pandas() -> Any:
 _MAY_BE_MISSING = ("stable", "total", *PREDICATES, "component", "left", "right", "stack")
 
 
-def _rows(result: RegionMap, what: str, options: Mapping[str, Any]) -> Iterable[Row]:
+def rows_of(result: RegionMap, what: str, boundaries: Callable[[], Sequence[Boundary]]) -> Iterable[Row]:
+    """The rows of one of the tables but that of a grid."""
     if what == "boundaries":
-        return boundary_rows(result, result.boundaries(**options))
+        return boundary_rows(result, boundaries())
     return {"regions": region_rows, "cells": cell_rows, "components": component_rows}[what](result)
 
 

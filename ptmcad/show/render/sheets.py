@@ -22,6 +22,7 @@ from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.legend import INK, THIN, Entry
 from ptmcad.show.render.painting import Paint
 from ptmcad.show.render.view import Floats
+from ptmcad.show.table import index_text
 
 Pair = tuple[tuple[int, ...], tuple[int, ...]]
 """The counts on both sides of a sheet."""
@@ -112,16 +113,14 @@ def sheet_entries(surface: BoundarySurface, colours: Mapping[Pair, str], told: S
     told : the entries above: what is counted, and the fills of a map on the floor.
     """
     found = list(told)
-    found += [Entry((f"between {' and '.join(map(_key_text, pair))}",), Fill(face)) for pair, face in colours.items()]
+    for pair, face in colours.items():
+        counts = (str(key[0]) if len(key) == 1 else index_text(key) for key in pair)
+        found.append(Entry((f"between {' and '.join(counts)}",), Fill(face)))
     found.append(Entry(("boundary of a member",), THIN))
     found.append(Entry((f"sheets: linear between {len(surface.members)} exact boundaries",), heads=0))
     if not surface.complete:
         found.append(Entry(("(not proved that nothing changes between them)",), heads=0))
     return found
-
-
-def _key_text(key: tuple[int, ...]) -> str:
-    return str(key[0]) if len(key) == 1 else f"({', '.join(map(str, key))})"
 
 
 def add_sheets(

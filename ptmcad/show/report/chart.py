@@ -83,14 +83,13 @@ def pattern_defs(fills: Sequence[Fill]) -> str:
     hatches = sorted({fill.hatch for fill in fills if fill.hatch})
     if not hatches:
         return ""
-    body = "".join(_pattern(hatch) + _of_outlines(hatch) for hatch in hatches)
+    # the second is the same pattern for what is drawn in steps of the grid
+    body = "".join(
+        f'{_pattern(hatch)}<pattern id="map-{hatch_id(hatch)}" href="#{hatch_id(hatch)}" '
+        f'patternTransform="scale({GRID})"/>'
+        for hatch in hatches
+    )
     return f'<svg class="defs" width="0" height="0" aria-hidden="true"><defs>{body}</defs></svg>'
-
-
-def _of_outlines(hatch: str) -> str:
-    """The same pattern for what is drawn in steps of the grid."""
-    name = hatch_id(hatch)
-    return f'<pattern id="map-{name}" href="#{name}" patternTransform="scale({GRID})"/>'
 
 
 def hatch_id(hatch: str) -> str:
