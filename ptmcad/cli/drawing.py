@@ -99,6 +99,25 @@ class DrawingOptions(NamedTuple):
         path.write_bytes(npz_bytes(result, boundaries(), result.grid(*self.pixels)))
 
 
+class Output(NamedTuple):
+    """What is to be printed and written beside the table, and where."""
+
+    out: Path
+    formats: Formats
+    explain: bool
+    no_timings: bool
+    drawing: DrawingOptions
+
+    def among(self, known: Formats) -> Formats:
+        """The formats that are of some kind."""
+        return tuple(kind for kind in self.formats if kind in known)
+
+    def text(self, result: Any) -> str:
+        """The result's JSON."""
+        text: str = result.to_json(timings=not self.no_timings)
+        return text
+
+
 share_of = reading(share_for)
 """A share between 0 and 1, where one is given."""
 
