@@ -10,7 +10,7 @@ import click
 
 from ptmcad.answer.motion import Fall, Motion
 from ptmcad.answer.words import assignments
-from ptmcad.cli.formats import format_option
+from ptmcad.cli.formats import Formats, format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map, tolerance_option
@@ -64,7 +64,7 @@ def _style(size: str | None, palette: str | None, title: str | None) -> PictureS
 @gathered(style=_style)
 def command(
     *, asked: SliceOptions, path: str, pose: str, frames: int, fps: int, style: PictureStyle, dpi: int,
-    tolerance: Fraction, out: Path, name: str | None, formats: tuple[str, ...], limits: ResourceLimits,
+    tolerance: Fraction, out: Path, name: str | None, formats: Formats, limits: ResourceLimits,
 ) -> None:  # fmt: skip
     """Show the mechanism moving along a path of parameters, and where it snaps.
 

@@ -7,13 +7,13 @@ from collections.abc import Iterable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import click
 
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.timings import with_compilation
-from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, drawing_options, names_of, share_of
+from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Output, drawing_options, names_of, share_of
 from ptmcad.cli.gathering import gathered, reading
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
@@ -36,26 +36,6 @@ from ptmcad.text.bounds import percent
 FORMATS = ("json", *PICTURES, *DATA, *MESHES)
 MIN_SECONDS = 0.01
 """Seconds that are left in any case, so that the result from which to go on is handed on."""
-
-
-class Output(NamedTuple):
-    """What is to be printed and written beside the table, and where."""
-
-    out: Path
-    formats: tuple[str, ...]
-    explain: bool
-    no_timings: bool
-    drawing: DrawingOptions
-
-    @property
-    def beside(self) -> tuple[str, ...]:
-        """The formats of the files beside the JSON."""
-        return tuple(kind for kind in self.formats if kind != "json")
-
-    def text(self, result: Any) -> str:
-        """The result's JSON."""
-        text: str = result.to_json(timings=not self.no_timings)
-        return text
 
 
 def _wanted(
@@ -119,7 +99,7 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
                 raise
             # first: if this process is ended now, the other one has it
             text = _hand_over(stopped.partial, slice.name, output)
-            beside = names_of(slice.name, output.beside)
+            beside = names_of(slice.name, output.among((*PICTURES, *DATA)))
             place, why = save_stopped(output.out / f"{slice.name}.json", text, beside=beside)
             where = f"partial map{_open_share(stopped.partial)} saved to {place}{why}"
             further = "" if getattr(stopped.partial, "cover", None) is None else how_to_go_on(place)
@@ -142,7 +122,7 @@ def _hand_over(result: Any, name: str, output: Output) -> str:
     text = output.text(result)
     if "json" in output.formats:
         state = "partial" if result.status.value == "partial" else "complete"
-        place, beside = str(output.out / f"{name}.json"), names_of(name, output.beside)
+        place, beside = str(output.out / f"{name}.json"), names_of(name, output.among((*PICTURES, *DATA)))
         send(Topic.RESULT, state, text, _open_share(result), place, *beside)
     return text
 
@@ -157,7 +137,7 @@ def _save(result: Any, name: str, output: Output) -> None:
     # first: drawing may take longer than there is time
     file = f"{name}.json" if "json" in output.formats else ""
     text = _hand_over(result, name, output) if file else ""
-    write_result(output.out, output.drawing.writers(result, name, output.beside), file, text)
+    write_result(output.out, output.drawing.writers(result, name, output.among((*PICTURES, *DATA))), file, text)
 
 
 def explanation(steps: Iterable[Any]) -> str:
@@ -255,23 +235,21 @@ def _classify_family(
 ) -> None:
     """Classify and draw the members of a family."""
     # with what stores and draws families, which a slice does without
-    from ptmcad.cli.families import FamilyOutput, family_to_files, names_of_family
+    from ptmcad.cli.families import family_to_files, names_of_family
 
     report_idle((
         ("resume", resume is not None, "the members of a family are classified anew"),
         ("explain", output.explain, "a family has a plan for each of its members: give one with --set"),
-        ("surface", third.surface and not set(output.formats) & {*PICTURES, *MESHES},
+        ("surface", third.surface and not output.among((*PICTURES, *MESHES)),
              "no picture and no mesh is written, see --format"),
         *idle_drawing(output.formats),
     ))  # fmt: skip
-    further = (third.changes, third.between, third.surface)
-    wanted = FamilyOutput(output.out, output.formats, output.no_timings, output.drawing, *further)
     with held(limits):
-        result, surface = family_to_files(family, options, wanted)
+        result, surface = family_to_files(family, options, output, third)
     click.echo(f"{question_in(family.record, family.name)}\n{result.table()}")
     if surface is not None:
         click.echo(f"boundary surface: {surface.words()}")
-    report_written(output.out, names_of_family(family.name, wanted))
+    report_written(output.out, names_of_family(family.name, output))
     single = [kind for kind in output.formats if kind not in (*PICTURES, *MESHES)]
     files = sum(len(names_of("", (kind,))) for kind in single) * len(result.values)
     if files:
@@ -360,7 +338,7 @@ def command(
     if isinstance(slice, Family):
         _classify_family(slice, third, options, output, limits, resume)
         return
-    if meshes := [kind for kind in output.formats if kind in MESHES]:
+    if meshes := output.among(MESHES):
         raise ConfigError(f"{meshes[0]} is for the boundary surface of a family: add --free NAME=LO:HI", key="--format")
     report_idle((
         *_idle(slice, options),

@@ -10,7 +10,7 @@ import click
 
 from ptmcad.answer.design import BestDesign
 from ptmcad.cli.drawing import share_of
-from ptmcad.cli.formats import format_option
+from ptmcad.cli.formats import Formats, format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import idle_output, report_idle
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
@@ -94,7 +94,7 @@ def command(
     boxes: int,
     out: Path,
     name: str | None,
-    formats: tuple[str, ...],
+    formats: Formats,
     limits: ResourceLimits,
 ) -> int:
     """Find the design that makes a range, an area, a barrier or an expression as large as possible.

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from ptmcad.cli.formats import format_option
+from ptmcad.cli.formats import Formats, format_option
 from ptmcad.cli.gathering import F, gathered, reading
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.values import palettes
@@ -37,7 +37,7 @@ TABLES = ("boundaries", "regions", "cells")
 MAX_SIDE = 10_000
 
 
-def names_of(stem: str, formats: tuple[str, ...]) -> tuple[str, ...]:
+def names_of(stem: str, formats: Formats) -> tuple[str, ...]:
     """The files of these formats."""
     return tuple(
         name
@@ -68,7 +68,7 @@ class DrawingOptions(NamedTuple):
     overlay: tuple[Measured, ...] = ()
     poses: tuple[tuple[tuple[Fraction, Fraction], Poses], ...] = ()
 
-    def writers(self, result: Any, stem: str, formats: tuple[str, ...]) -> dict[str, Writer]:
+    def writers(self, result: Any, stem: str, formats: Formats) -> dict[str, Writer]:
         """For each file a function that writes it, in the order of the formats."""
         boundaries = cache(lambda: result.boundaries(self.boundary_tolerance))
         found: dict[str, Writer] = {}
@@ -91,16 +91,31 @@ class DrawingOptions(NamedTuple):
         from ptmcad.show import data
 
         table = name.removesuffix(".csv").rpartition("-")[2]
-        if table == "boundaries":
-            text = data.csv_text(data.boundary_rows(result, boundaries()))
-        else:
-            text = data.csv_text({"regions": data.region_rows, "cells": data.cell_rows}[table](result))
-        text_writer(text)(path)
+        text_writer(data.csv_text(data.rows_of(result, table, boundaries)))(path)
 
     def _arrays(self, result: Any, _name: str, boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show.data import npz_bytes
 
         path.write_bytes(npz_bytes(result, boundaries(), result.grid(*self.pixels)))
+
+
+class Output(NamedTuple):
+    """What is to be printed and written beside the table, and where."""
+
+    out: Path
+    formats: Formats
+    explain: bool
+    no_timings: bool
+    drawing: DrawingOptions
+
+    def among(self, known: Formats) -> Formats:
+        """The formats that are of some kind."""
+        return tuple(kind for kind in self.formats if kind in known)
+
+    def text(self, result: Any) -> str:
+        """The result's JSON."""
+        text: str = result.to_json(timings=not self.no_timings)
+        return text
 
 
 share_of = reading(share_for)
@@ -172,7 +187,7 @@ def style_options(command: F) -> F:
     return command
 
 
-def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable[[F], F]:
+def drawing_options(known: Formats, default: str, what: str) -> Callable[[F], F]:
     """Add ``--format``, which the command gets as ``formats``, and the options that it gets as a `DrawingOptions`.
 
     Parameters

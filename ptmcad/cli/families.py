@@ -8,14 +8,16 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from ptmcad.answer.changes import TOLERANCE, Changes
+from ptmcad.answer.changes import TOLERANCE
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, names_of
+from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, Output, names_of
+from ptmcad.cli.formats import Formats
 from ptmcad.cli.pictures import figure
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.slices import Third
 from ptmcad.cli.stored import read_other, read_result
 from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown_path
 from ptmcad.options import Options
@@ -27,40 +29,14 @@ from ptmcad.text.numerals import text_of
 
 if TYPE_CHECKING:
     from ptmcad.answer.boundarysurface import BoundarySurface
-    from ptmcad.ask.members import Common
 
 SOLID = "-3d"
 """Behind a family's name, in that of its picture in three dimensions."""
 
 
-class FamilyOutput(NamedTuple):
-    """What is to be written of a family, and where.
-
-    Attributes
-    ----------
-    changes : whether to find where the arrangement of the regions changes.
-    between : whether the members are those between the changes.
-    surface : whether the picture in three dimensions is one of the boundary surface.
-    """
-
-    out: Path
-    formats: tuple[str, ...]
-    no_timings: bool
-    drawing: DrawingOptions
-    changes: bool = False
-    between: bool = False
-    surface: bool = False
-
-    @property
-    def needs_surface(self) -> bool:
-        return bool(self.among(MESHES)) or (self.surface and bool(self.among(PICTURES)))
-
-    def among(self, known: tuple[str, ...]) -> tuple[str, ...]:
-        """The formats that are of one kind: pictures, meshes, or data, of which each member has files of its own."""
-        return tuple(kind for kind in self.formats if kind in known)
-
-
-def family_to_files(family: Family, options: Options, wanted: FamilyOutput) -> tuple[FamilyMap, BoundarySurface | None]:
+def family_to_files(
+    family: Family, options: Options, wanted: Output, third: Third
+) -> tuple[FamilyMap, BoundarySurface | None]:
     """Classify the members one by one, write each, then the family's own files.
 
     Returns the maps, and the boundary surface where that is wanted.
@@ -81,8 +57,13 @@ def family_to_files(family: Family, options: Options, wanted: FamilyOutput) -> t
         progress("variety of the family", 0, 1)
         common = in_common(family, options)
         ends = None if options.timeout is None else time.monotonic() + options.timeout
-        changes = _changes(common, replace(options, progress=progress), wanted)
-        if changes is not None and wanted.between:
+        drawn = bool(wanted.among(MESHES)) or (third.surface and bool(wanted.among(PICTURES)))
+        changes = None
+        if drawn or third.changes or third.between:
+            from ptmcad.ask.changes import changes_of
+
+            changes = changes_of(common, options.tolerance or TOLERANCE, replace(options, progress=progress))
+        if changes is not None and third.between:
             family = family._replace(values=changes.between)
             common = common._replace(family=family)
         for number, value in enumerate(family.values):
@@ -98,7 +79,7 @@ def family_to_files(family: Family, options: Options, wanted: FamilyOutput) -> t
             _write_member(found, wanted)
             members.append(found)
         surface = None
-        if wanted.needs_surface and changes is not None:
+        if drawn and changes is not None:
             from ptmcad.ask.boundarysurface import surface_of
 
             left = None if ends is None else max(ends - time.monotonic(), 0.01)
@@ -107,18 +88,9 @@ def family_to_files(family: Family, options: Options, wanted: FamilyOutput) -> t
     result = FamilyMap(
         family.name, family.free, family.values, tuple(members), common.surfaces, title, changes, family.text
     )
-    if writers := _writers(result, surface, wanted):
+    if writers := _writers(result, surface, wanted, third.surface):
         write_files(wanted.out, writers)
     return result, surface
-
-
-def _changes(common: Common, options: Options, wanted: FamilyOutput) -> Changes | None:
-    """Where the arrangement changes, if that is asked for."""
-    if not (wanted.changes or wanted.between or wanted.needs_surface):
-        return None
-    from ptmcad.ask.changes import changes_of
-
-    return changes_of(common, options.tolerance or TOLERANCE, options)
 
 
 def _at(error: PtmcadError, place: str) -> PtmcadError:
@@ -128,25 +100,25 @@ def _at(error: PtmcadError, place: str) -> PtmcadError:
     return type(error)(f"{error} (at {place})")
 
 
-def names_of_family(name: str, wanted: FamilyOutput) -> tuple[str, ...]:
+def names_of_family(name: str, wanted: Output) -> tuple[str, ...]:
     """The family's own files."""
     names = [f"{name}{end}.{kind}" for kind in wanted.among(PICTURES) for end in ("", SOLID)]
     names += [f"{name}.{kind}" for kind in wanted.among(MESHES)]
     return (*names, f"{name}.json") if "json" in wanted.formats else tuple(names)
 
 
-def _write_member(found: RegionMap, wanted: FamilyOutput) -> None:
+def _write_member(found: RegionMap, wanted: Output) -> None:
     name = found.slice.name
     writers = wanted.drawing.writers(found, name, wanted.among(DATA))
     if "json" in wanted.formats:
-        writers[f"{name}.json"] = text_writer(found.to_json(timings=not wanted.no_timings))
+        writers[f"{name}.json"] = text_writer(wanted.text(found))
     if writers:
         write_files(wanted.out, writers)
 
 
-def _writers(result: FamilyMap, surface: BoundarySurface | None, wanted: FamilyOutput) -> dict[str, Writer]:
+def _writers(result: FamilyMap, surface: BoundarySurface | None, wanted: Output, solid: bool) -> dict[str, Writer]:
     name = result.name
-    shown = surface if wanted.surface else None
+    shown = surface if solid else None
     writers = picture_writers(result, name, wanted.among(PICTURES), wanted.drawing, shown)
     if surface is not None:
         writers |= mesh_writers(surface, name, wanted.among(MESHES))
@@ -159,7 +131,7 @@ def _writers(result: FamilyMap, surface: BoundarySurface | None, wanted: FamilyO
 def picture_writers(
     result: FamilyMap,
     stem: str,
-    formats: tuple[str, ...],
+    formats: Formats,
     drawing: DrawingOptions,
     surface: BoundarySurface | None = None,
 ) -> dict[str, Writer]:
@@ -180,7 +152,7 @@ def picture_writers(
     return found
 
 
-def mesh_writers(surface: BoundarySurface, stem: str, formats: tuple[str, ...]) -> dict[str, Writer]:
+def mesh_writers(surface: BoundarySurface, stem: str, formats: Formats) -> dict[str, Writer]:
     """For each of `MESHES` a function that writes the surface."""
     from ptmcad.show.export.mesh import MESHES as KNOWN
 

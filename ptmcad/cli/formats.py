@@ -12,8 +12,11 @@ import click
 from ptmcad.cli.gathering import F, reading
 from ptmcad.cli.values import formats as completed
 
+Formats = tuple[str, ...]
+"""Kinds of output."""
 
-def format_option(known: tuple[str, ...], help: str, default: str | None = None) -> Callable[[F], F]:
+
+def format_option(known: Formats, help: str, default: str | None = None) -> Callable[[F], F]:
     """Add ``--format``, of which the command gets the kinds as ``formats``."""
     kinds = reading(lambda _, text: _kinds(text, known), absent=())
     return click.option(
@@ -22,7 +25,7 @@ def format_option(known: tuple[str, ...], help: str, default: str | None = None)
     )  # fmt: skip
 
 
-def _kinds(text: str, known: tuple[str, ...]) -> tuple[str, ...]:
+def _kinds(text: str, known: Formats) -> Formats:
     """The kinds in a text such as ``json,png``, each once."""
     formats = tuple(dict.fromkeys(part.strip().lower() for part in text.split(",") if part.strip()))
     unknown = [part for part in formats if part not in known]

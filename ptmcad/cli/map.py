@@ -13,7 +13,7 @@ import click
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.field import Field
 from ptmcad.cli.drawing import pixels_of, style_options
-from ptmcad.cli.formats import format_option
+from ptmcad.cli.formats import Formats, format_option
 from ptmcad.cli.idle import idle_style, report_idle
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map, tolerance_option
@@ -71,7 +71,7 @@ def command(
     style: PictureStyle,
     dpi: int,
     out: Path,
-    formats: tuple[str, ...],
+    formats: Formats,
     limits: ResourceLimits,
 ) -> None:
     """Colour the window by a quantity of one equilibrium.

@@ -13,6 +13,7 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, drawing_options, names_of
 from ptmcad.cli.families import mesh_writers, picture_writers, read_family_file
+from ptmcad.cli.formats import Formats
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
@@ -25,7 +26,7 @@ from ptmcad.errors import ConfigError, blamed, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import portable_file
 from ptmcad.show import render
-from ptmcad.show.style import LegendPlace, PictureStyle
+from ptmcad.show.style import LegendPlace
 
 
 class Added(NamedTuple):
@@ -61,13 +62,7 @@ def _idle(result: Path, drawing: DrawingOptions, added: Added) -> tuple[Idle, ..
     )
 
 
-def _say_width(style: PictureStyle, added: Added) -> None:
-    """What needs more room than a journal's column has gets both."""
-    if style.wide is not None and (added.at or added.compare is not None):
-        click.echo(f"over two columns, {style.wide:.3g} inches wide, which --size changes", err=True)
-
-
-def _check_compared(added: Added, formats: tuple[str, ...]) -> None:
+def _check_compared(added: Added, formats: Formats) -> None:
     if added.compare is None:
         return
     if added.at or added.overlay is not None:
@@ -77,7 +72,7 @@ def _check_compared(added: Added, formats: tuple[str, ...]) -> None:
 
 
 def _compared(
-    stored: RegionMap, result: Path, other: Path, stem: str, formats: tuple[str, ...], drawing: DrawingOptions
+    stored: RegionMap, result: Path, other: Path, stem: str, formats: Formats, drawing: DrawingOptions
 ) -> Mapping[str, Writer]:
     """A writer for each picture of two maps, after their difference has been printed.
 
@@ -106,7 +101,7 @@ def _compared(
     return {n: figure(n, lambda: render.comparison_figure(found, **how), **how) for n in names_of(stem, formats)}
 
 
-def _plot_family(result: Path, folder: Path, formats: tuple[str, ...], drawing: DrawingOptions, added: Added) -> None:
+def _plot_family(result: Path, folder: Path, formats: Formats, drawing: DrawingOptions, added: Added) -> None:
     if added._replace(surface=False) != Added(None, (), None, False):
         raise ConfigError("points and comparisons are for one map: give a member's file", file=str(result))
     if any(kind in DATA for kind in formats):
@@ -160,7 +155,7 @@ def command(
     *,
     result: Path,
     out: Path | None,
-    formats: tuple[str, ...],
+    formats: Formats,
     drawing: DrawingOptions,
     added: Added,
     limits: ResourceLimits,
@@ -192,7 +187,9 @@ def command(
         _check_compared(added, formats)
         check_writable(folder, names_of(stem, formats))
         drawing = _with_points(stored, drawing, added)
-        _say_width(drawing.style, added)
+        if (wide := drawing.style.wide) is not None and (added.at or added.compare is not None):
+            # what needs more room than a journal's column has gets both
+            click.echo(f"over two columns, {wide:.3g} inches wide, which --size changes", err=True)
         if added.compare is not None:
             pictures = _compared(stored, result, added.compare, stem, formats, drawing)
             with ProgressBar():

@@ -15,7 +15,7 @@ from ptmcad.cli.locate import point_of, rows_of
 from ptmcad.errors import ConfigError, ExpressionError, blamed, shown
 from ptmcad.question.config import point_from_mapping
 from ptmcad.question.counts import Shades
-from ptmcad.show.table import count_text
+from ptmcad.show.table import count_text, index_text
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import rational
 
@@ -119,7 +119,7 @@ def _count(result: RegionMap, text: str) -> str:
     if result.slice.count.kind.shades is Shades.INDEX:
         numbers = text.removeprefix("(").removesuffix(")").split(",")
         if all(re.fullmatch(r"\s*\d{1,6}\s*", number, re.ASCII) for number in numbers):
-            return f"({', '.join(str(int(number)) for number in numbers)})"
+            return index_text(map(int, numbers))
         raise ConfigError(f"'{shown(text, 40)}' is not a count by index such as (1, 2, 1)")
     if re.fullmatch(r"\d{1,6}(\.0*)?", text, re.ASCII):
         return str(int(text.partition(".")[0]))

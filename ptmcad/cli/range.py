@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 from click.core import ParameterSource
 
-from ptmcad.cli.formats import format_option
+from ptmcad.cli.formats import Formats, format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import idle_output, report_idle
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
@@ -162,7 +162,7 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> RangeRequest:
                    "Repeatable.")  # fmt: skip
 @limit_options
 @gathered(asked=AskedLine)
-def command(*, asked: AskedLine, out: Path, name: str | None, formats: tuple[str, ...], limits: ResourceLimits) -> None:
+def command(*, asked: AskedLine, out: Path, name: str | None, formats: Formats, limits: ResourceLimits) -> None:
     """Find the intervals of constant count along one axis, and the operation range, where the most are stable.
 
     Of the paper's mechanism these are two equilibria; where nothing says what is stable, all solutions are counted.

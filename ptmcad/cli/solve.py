@@ -11,7 +11,7 @@ import click
 
 from ptmcad.answer.poses import MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.cli.formats import format_option
+from ptmcad.cli.formats import Formats, format_option
 from ptmcad.cli.idle import idle_output, report_idle
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
@@ -32,7 +32,7 @@ FORMATS = ("table", "json", "png", "svg", "pdf")
 DIGITS = 10
 
 
-def file_names(name: str, formats: tuple[str, ...], landscape: bool) -> tuple[str, ...]:
+def file_names(name: str, formats: Formats, landscape: bool) -> tuple[str, ...]:
     """The files that are written; the JSON file, which vouches for the pictures, comes last."""
     pictures = [suffix for suffix in formats if suffix not in ("table", "json")]
     names = [f"{name}.{suffix}" for suffix in pictures]
@@ -101,7 +101,7 @@ def command(
     at: str | None,
     sets: tuple[str, ...],
     digits: int,
-    formats: tuple[str, ...],
+    formats: Formats,
     out: Path,
     name: str | None,
     landscape: bool,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ptmcad.cli.formats import format_option
+from ptmcad.cli.formats import Formats, format_option
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import figure, report_written, write_result
@@ -28,7 +28,7 @@ GRACE_SECONDS = 60.0
 """Seconds after the time limit for the case that is being run, before the process is ended from outside."""
 
 
-def save(found: Row, folder: Path, formats: tuple[str, ...]) -> tuple[str, ...]:
+def save(found: Row, folder: Path, formats: Formats) -> tuple[str, ...]:
     """Write the files of these formats, all or none, and return their names.
 
     Raises
@@ -76,7 +76,7 @@ def command(
     number: int,
     seed: int,
     repeats: int,
-    formats: tuple[str, ...],
+    formats: Formats,
     out: Path,
     only_list: bool,
     limits: ResourceLimits,

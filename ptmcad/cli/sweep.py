@@ -13,7 +13,7 @@ import click
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import State, Sweep
 from ptmcad.cli.drawing import share_of
-from ptmcad.cli.formats import format_option
+from ptmcad.cli.formats import Formats, format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.paths import record_argument
@@ -100,7 +100,7 @@ class MemberOptions:
 @limit_options
 @gathered(asked=MemberOptions)
 def command(
-    *, config: Path, out: Path | None, formats: tuple[str, ...], fps: int, asked: MemberOptions, jobs: int | None,
+    *, config: Path, out: Path | None, formats: Formats, fps: int, asked: MemberOptions, jobs: int | None,
     scheduler: str | None, retries: int, limits: ResourceLimits,
 ) -> int:  # fmt: skip
     """Classify every member of a sweep.

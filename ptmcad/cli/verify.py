@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from fractions import Fraction
@@ -67,6 +67,7 @@ def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | 
         ptmcad classify --slice L2,rho --format json
         ptmcad verify slice-L2-rho.json
     """
+    how = {"seed": seed, "boxes": boxes, "effort": effort}
     with held(limits), _clock(limits.timeout) as is_over:
         from ptmcad.verification.report import FINISHED, Check, VerifyReport, heading
 
@@ -80,7 +81,7 @@ def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | 
             shown.append(check)
             ProgressBar.say(check.row())
 
-        for title, check in _reports(result, seed, boxes, effort):
+        for title, check in _reports(result, how):
             if title:
                 click.echo(title)
             shown.clear()
@@ -132,25 +133,23 @@ def _clock(seconds: float | None) -> Iterator[Callable[[], bool]]:
         signal.signal(signal.SIGVTALRM, before)
 
 
-def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None) -> Iterator[tuple[str, Verify]]:
-    """What there is to check in a file, each with a heading where there are several."""
-    from ptmcad.verification import verify
+def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]:
+    """What there is to check in a file, each with a heading where there are several; ``how`` are `verify`'s options."""
 
     def of_map(stored: RegionMap) -> Verify:
         exact = stored.cover is None
         report_idle([(name, exact, "an exact map is checked whole") for name in ("boxes", "effort")])
-        return lambda progress: verify(stored, seed=seed, boxes=boxes, progress=progress, effort=effort)
+        return partial(_verified_map, stored, how)
 
     if path.is_dir():
-        yield "", partial(_verified_sweep, path, seed, boxes, effort)
+        yield "", partial(_verified_sweep, path, how)
         return
     kind = kind_of(path)
     if kind in ("design", "poses", "range"):
-        report_idle([("boxes", boxes is not None, "all that is stored is checked"),
-                     ("effort", effort is not None, "all that is stored is checked")])  # fmt: skip
+        report_idle([(name, how[name] is not None, "all that is stored is checked") for name in ("boxes", "effort")])
     if kind == "design":
         design, versions = read_other(path, _design_in, "ptmcad-design/1")
-        yield "", partial(_verified_design, design, versions, seed)
+        yield "", partial(_verified_design, design, versions, how["seed"])
     elif kind == "poses":
         poses = read_other(path, Poses.from_json, "ptmcad-poses/1")
         yield "", partial(_verified_poses, poses)
@@ -161,7 +160,7 @@ def _reports(path: Path, seed: int | None, boxes: int | None, effort: int | None
         family = read_family_file(path, whole=False)
         for value, member in family:
             yield f"{family.free.name} = {text_of(value)}", of_map(member)
-        yield f"what the members have in common over {family.free.name}", partial(_verified_family, family, seed)
+        yield f"what the members have in common over {family.free.name}", partial(_verified_family, family, how["seed"])
     else:
         yield "", of_map(read_result(path, whole=False))
 
@@ -182,9 +181,13 @@ def _meet(one: Bounds | None, other: Bounds | None) -> bool:
     return max(Fraction(one[0]), Fraction(other[0])) <= min(Fraction(one[1]), Fraction(other[1]))
 
 
-def _verified_sweep(
-    folder: Path, seed: int | None, boxes: int | None, effort: int | None, progress: Progress
-) -> VerifyReport:
+def _verified_map(stored: RegionMap, how: Mapping[str, Any], progress: Progress) -> VerifyReport:
+    from ptmcad.verification import verify
+
+    return verify(stored, progress=progress, **how)
+
+
+def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) -> VerifyReport:
     """Each member's map, and what the index holds of it."""
     from ptmcad.answer.widths import Attainment
     from ptmcad.sweeping.index import member_map, members, read_sweep
@@ -221,7 +224,7 @@ def _verified_sweep(
         wrong = [part for part in Summary.__match_args__ if getattr(true, part) != getattr(summary, part)]
         if wrong:
             raise Violation(f"the index has another value than its map: {', '.join(wrong)}")
-        report = verify(stored, seed=seed, boxes=boxes, effort=effort)
+        report = verify(stored, **how)
         if report.violation is not None:
             raise Violation(report.violation)
         untold += f"; which value {unknown} has" * bool(unknown)

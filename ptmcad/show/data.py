@@ -8,14 +8,14 @@ a line.
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from io import BytesIO, StringIO
 from math import inf, isnan, nan, nextafter
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.boundaries import Boundary, Grid
-from ptmcad.answer.counts import Counted, MorseIndex
+from ptmcad.answer.counts import Counted
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
@@ -47,7 +47,7 @@ def region_rows(result: RegionMap) -> list[Row]:
     with within_doubles(result.slice):
         return [
             {
-                "region": k, "stable": r.stable, "total": r.total, "index": _index(r.index), **_further(result, r),
+                "region": k, **_counts(result, r),
                 "area_low": _rounded(r.area[0], -inf), "area_high": _rounded(r.area[1], inf), "cells": len(r.cells),
                 **_at(result, r.sample),
             }
@@ -60,16 +60,18 @@ def cell_rows(result: RegionMap) -> list[Row]:
     with within_doubles(result.slice):
         return [
             {
-                "cell": k, "region": c.region, "stable": c.stable, "total": c.total, "index": _index(c.index),
-                **_further(result, c), "stack": c.stack, "level": c.level, **_at(result, c.sample),
+                "cell": k, "region": c.region, **_counts(result, c), "stack": c.stack, "level": c.level,
+                **_at(result, c.sample),
             }
             for k, c in enumerate(result.cells)
         ]  # fmt: skip
 
 
-def _further(result: RegionMap, part: Counted) -> Row:
-    """Of how many solutions predicates hold, by their names."""
-    return {name: part.further.get(name) for name in further_names(result.slice.count)}
+def _counts(result: RegionMap, part: Counted) -> Row:
+    """All numbers of solutions that are known; of how many predicates hold by their names."""
+    index = None if part.index is None else " ".join(map(str, part.index))
+    further = {name: part.further.get(name) for name in further_names(result.slice.count)}
+    return {"stable": part.stable, "total": part.total, "index": index, **further}
 
 
 def component_rows(result: RegionMap) -> list[Row]:
@@ -128,7 +130,7 @@ def data_frame(result: RegionMap, what: str, options: Mapping[str, Any]) -> Data
     if what == "grid":
         grid: DataFrame = _pandas().DataFrame(grid_columns(result, result.grid(**options)))
         return grid
-    return pandas_frame(_rows(result, what, options), None, _MAY_BE_MISSING)
+    return pandas_frame(rows_of(result, what, lambda: result.boundaries(**options)), None, _MAY_BE_MISSING)
 
 
 def pandas_frame(rows: Iterable[Row], columns: Sequence[str] | None, whole: Iterable[str]) -> DataFrame:
@@ -161,19 +163,25 @@ def _pandas() -> Any:
 _MAY_BE_MISSING = ("stable", "total", *PREDICATES, "component", "left", "right", "stack")
 
 
-def _rows(result: RegionMap, what: str, options: Mapping[str, Any]) -> Iterable[Row]:
+def rows_of(result: RegionMap, what: str, boundaries: Callable[[], Sequence[Boundary]]) -> Iterable[Row]:
+    """The rows of one of the tables but that of a grid."""
     if what == "boundaries":
-        return boundary_rows(result, result.boundaries(**options))
+        return boundary_rows(result, boundaries())
     return {"regions": region_rows, "cells": cell_rows, "components": component_rows}[what](result)
 
 
-def csv_text(rows: Iterable[Row]) -> str:
-    """Comma-separated values with a line of names; truth as 1 and 0, numbers that do not exist are empty or ``nan``."""
+def csv_text(rows: Iterable[Row], names: Sequence[str] | None = None) -> str:
+    """Comma-separated values with a line of names, those of the first row unless they are given.
+
+    Truth is 1 and 0, and numbers that do not exist are empty or ``nan``.
+    """
     text = StringIO()
-    writer: Any = None
+    writer = csv.DictWriter(text, names or (), lineterminator="\n")
+    if names is not None:
+        writer.writeheader()
     for row in rows:
-        if writer is None:
-            writer = csv.DictWriter(text, list(row), lineterminator="\n")
+        if not writer.fieldnames:
+            writer.fieldnames = list(row)
             writer.writeheader()
         writer.writerow({name: int(v) if isinstance(v, bool) else v for name, v in row.items()})
     return text.getvalue()
@@ -209,8 +217,14 @@ def npz_bytes(result: RegionMap, boundaries: Sequence[Boundary], grid: Grid) -> 
         "region_total": _labels(r.total for r in result.regions),
         **grid.arrays(),
     }
+    return _zipped(data)
+
+
+def _zipped(arrays: Mapping[str, Any]) -> bytes:
+    import numpy as np
+
     content = BytesIO()
-    np.savez_compressed(content, **data)
+    np.savez_compressed(content, **arrays)
     return content.getvalue()
 
 
@@ -233,23 +247,17 @@ def field_npz(field: Field) -> bytes:
     """
     import numpy as np
 
-    content = BytesIO()
     arrays: dict[str, Any] = {"axes": np.array(field.names), "x": field.x, "y": field.y}
     arrays |= {"values": field.values, "region": field.region}
     if field.jumps is not None:
         arrays["jump_right"], arrays["jump_above"] = field.jumps
-    np.savez_compressed(content, **arrays)
-    return content.getvalue()
+    return _zipped(arrays)
 
 
 def _labels(values: Iterator[int | None]) -> Any:
     import numpy as np
 
     return np.array([-1 if v is None else v for v in values], dtype=np.int64)
-
-
-def _index(index: MorseIndex | None) -> str | None:
-    return None if index is None else " ".join(map(str, index))
 
 
 def _at(result: RegionMap, sample: Sequence[Fraction]) -> Row:

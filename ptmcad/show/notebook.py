@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 from ptmcad.answer.motion import Motion
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.words import count_words
 from ptmcad.show import render
 from ptmcad.show.style import DEFAULT
-from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, count_text, index_heading
+from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, count_text
 from ptmcad.text.enclosure import Enclosure
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def map_html(result: RegionMap) -> str:
     rows = [_region_row(result, k, r) for k, r in enumerate(result.regions[:MAX_ROWS])]
     if len(result.regions) > MAX_ROWS:
         rows.append(("…", f"{len(result.regions) - MAX_ROWS} more", "", "", ""))
-    head = ("region", result.slice.count.value, "in all", index_heading(result.slice.model), "area")
+    head = ("region", result.slice.count.value, "in all", count_words("({index})", result.slice.model), "area")
     return f"<div><b>{escape(result.slice.heading)}</b>, {result.status.value}</div>{shown}{_table(head, rows)}"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Iterable
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,6 @@ from ptmcad.answer.counts import counted_by, key_text
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.timings import COMPILATION
 from ptmcad.answer.words import count_words, noun, several
-from ptmcad.model import Model
 from ptmcad.question.counts import Count
 from ptmcad.show.units import area_unit
 from ptmcad.text.bounds import certified_digits, interval_text, percent
@@ -21,14 +21,14 @@ if TYPE_CHECKING:  # a map of the exact engine has no cover
     from ptmcad.cover.rectangles import Cover
 
 
-def index_heading(model: Model) -> str:
-    """What the entries of an index stand for, in brackets as they are."""
-    return count_words("({index})", model)
-
-
 def count_text(region: Region, count: Count) -> str:
     """The count by which regions are distinguished, as text."""
     return key_text(counted_by(region, count))
+
+
+def index_text(numbers: Iterable[int]) -> str:
+    """A count by index as text."""
+    return f"({', '.join(map(str, numbers))})"
 
 
 def in_order(text: str) -> list[int]:

@@ -112,7 +112,7 @@ def sextic(p: Mapping[str, Any]) -> tuple[tuple[Any, ...], ...]:
     ----------
     p : L1, L2, rho, k1, k2, k3, F3, F4, F3x and F4x, elements of one ring.
     """
-    b1, b2 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
+    b1, b2 = along_base(p)
     pull, stretch = p["k3"] * p["L1"], p["k3"] * p["L2"]
     v, w = (p["F3"], 2 * b1, -p["F3"]), (-p["F4"], 2 * b2, p["F4"])
     middle, along = b1 * b1 + stretch * stretch + p["F3"] * p["F3"], 2 * b1 * p["k3"] * p["L2"]
@@ -121,9 +121,14 @@ def sextic(p: Mapping[str, Any]) -> tuple[tuple[Any, ...], ...]:
     return tuple(a - b for a, b in zip(left, right, strict=True)), v, w, square
 
 
+def along_base(p: Mapping[str, Any]) -> tuple[Any, Any]:
+    """b1 and b2."""
+    return (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
+
+
 def parts(p: Mapping[str, Any], c2: Any, s2: Any) -> tuple[Any, Any, Any, Any]:
     """V, W, X and Y at cosine and sine of th2."""
-    b1, b2 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
+    b1, b2 = along_base(p)
     v, w = p["F3"] * c2 + b1 * s2, b2 * s2 - p["F4"] * c2
     return v, w, b1 - p["k3"] * p["L2"] * c2, p["F3"] + p["k3"] * p["L2"] * s2
 

@@ -31,7 +31,7 @@ from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
 from ptmcad.show.render.legend import CORE, RIM
 from ptmcad.show.render.regionmap import MapDrawing, _zoomed
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.simplification import simplified, simplified_polygons
+from ptmcad.show.render.simplification import simplified_polygons
 from ptmcad.show.render.view import Floats, View
 from ptmcad.show.report import page
 
@@ -171,7 +171,7 @@ def test_polygons_and_raster_agree_with_the_exact_answer(result: RegionMap) -> N
 @given(st.lists(st.tuples(st.integers(0, 60), st.integers(0, 60)), min_size=1, max_size=60))
 def test_simplified_polygons_stay_near_and_keep_their_corners(corners: list[tuple[int, int]]) -> None:
     points = np.array(corners, dtype=float) * 0.4 * TOLERANCE
-    few = simplified(points, TOLERANCE)
+    few = simplified_polygons(points, np.array([len(points)]), TOLERANCE)[0]
     assert {tuple(p) for p in few.tolist()} <= {tuple(p) for p in points.tolist()}
     if len(few) < 2:
         return
@@ -196,12 +196,14 @@ def test_polygons_that_are_simplified_together_are_what_each_is_by_itself(corner
     """Empty ones, and such as collapse to a point, too."""
     polygons = [np.array(each, dtype=float).reshape(-1, 2) for each in corners]
     together = simplified_polygons(np.concatenate(polygons), np.array([len(p) for p in polygons]), 1.5)
-    assert [p.tolist() for p in together] == [simplified(p, 1.5).tolist() for p in polygons]
+    assert [p.tolist() for p in together] == [
+        simplified_polygons(p, np.array([len(p)]), 1.5)[0].tolist() for p in polygons
+    ]
 
 
 def test_a_triangle_stays_however_flat() -> None:
     flat = np.array([[0.0, 0.0], [9.0, 0.0], [4.0, 0.1]])
-    assert simplified(flat, 1.5).tolist() == flat.tolist()
+    assert simplified_polygons(flat, np.array([len(flat)]), 1.5)[0].tolist() == flat.tolist()
 
 
 @pytest.mark.parametrize("height", [3.0, 0.3])
@@ -217,7 +219,7 @@ def test_a_long_flight_of_stairs_is_simplified_in_few_steps(height: float, monke
     monkeypatch.setattr(simplification, "_distances", counted)
     rises = np.repeat(np.cumsum(np.linspace(1.0, 1.2, 400)), 2) * height * TOLERANCE
     stairs = np.concatenate([np.stack([rises[1:], rises[:-1]], axis=1), [[0.0, rises[-1]]]])
-    few = simplified(stairs, TOLERANCE)
+    few = simplified_polygons(stairs, np.array([len(stairs)]), TOLERANCE)[0]
     assert len(steps) <= 70
     assert {tuple(p) for p in few.tolist()} <= {tuple(p) for p in stairs.tolist()}
     assert distance(stairs, few) <= TOLERANCE * 1.000001

@@ -7,13 +7,15 @@ exactly; the program that a format is meant for reads the text as it is.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from ptmcad.answer.slicevariety import SliceVariety
 from ptmcad.errors import ConfigError
-from ptmcad.show.export.code import maple, mathematica, sympy
+from ptmcad.show.export.code import code
 from ptmcad.show.export.document import FORMAT, document
 from ptmcad.show.export.inputs import msolve, qepcad
 from ptmcad.show.export.listing import latex, listing
+from ptmcad.show.polynomial_text import Style
 from ptmcad.text.syntax import did_you_mean
 
 __all__ = ["FORMAT", "FORMATS", "variety_text"]
@@ -21,9 +23,7 @@ __all__ = ["FORMAT", "FORMATS", "variety_text"]
 FORMATS: Mapping[str, Callable[[SliceVariety], str]] = {
     "text": listing,
     "json": document,
-    "sympy": sympy,
-    "maple": maple,
-    "mathematica": mathematica,
+    **{style.value: partial(code, style=style) for style in (Style.SYMPY, Style.MAPLE, Style.MATHEMATICA)},
     "qepcad": qepcad,
     "msolve": msolve,
     "latex": latex,

@@ -15,10 +15,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from ptmcad.answer.poses import Poses
 from ptmcad.errors import ConfigError
 from ptmcad.show.drawable import no_drawing
-from ptmcad.show.render.blocks import GAP, Block, BlockColumn, Slot, arranged, sized
+from ptmcad.show.render.blocks import GAP, Block, BlockColumn, PointPoses, Slot, arranged, sized
 from ptmcad.show.render.clearance import Box, Position
 from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.layout import Layout
@@ -28,7 +27,6 @@ from ptmcad.show.render.mechanism import STRONG, draw_sketch
 from ptmcad.show.render.poses import pose_axes
 from ptmcad.show.render.regionmap import MapDrawing, left_out
 from ptmcad.show.render.sketch import PanelFrame, Scene, arrow_lengths
-from ptmcad.show.render.view import Point
 from ptmcad.show.style import MAX_SIDE, PictureStyle, Size, styled
 
 DrawnMap = tuple[Figure, tuple[str, ...]]
@@ -38,7 +36,7 @@ _STEPS, _STEP = 60, 1.05
 """How sizes are tried that would do."""
 
 
-def draw_around(drawing: MapDrawing, points: Sequence[tuple[Point, Poses]]) -> DrawnMap:
+def draw_around(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
     """The map in the middle and poses at its sides; within `ptmcad.show.render.printing.settings`.
 
     Parameters
@@ -65,7 +63,7 @@ def draw_around(drawing: MapDrawing, points: Sequence[tuple[Point, Poses]]) -> D
         raise ConfigError(f"{error.message}: {_remedy(drawing, points)}", key=error.key) from error
 
 
-def _remedy(drawing: MapDrawing, points: Sequence[tuple[Point, Poses]]) -> str:
+def _remedy(drawing: MapDrawing, points: Sequence[PointPoses]) -> str:
     """The least size of the same shape in which poses have room, of a page that is given whole."""
     style = drawing.style
     if style.size is None or style.wide is not None:
@@ -84,7 +82,7 @@ def _remedy(drawing: MapDrawing, points: Sequence[tuple[Point, Poses]]) -> str:
     return "give a larger size, or fewer points"
 
 
-def _drawn(drawing: MapDrawing, points: Sequence[tuple[Point, Poses]]) -> DrawnMap:
+def _drawn(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
     """The figure, and what of the map had no room.
 
     Raises

@@ -23,6 +23,9 @@ from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.render.view import Point
 from ptmcad.show.style import PAGE_HEIGHT, LegendPlace, PictureStyle
 
+PointPoses = tuple[Point, Poses]
+"""A point of the map, in the order of its axes, with the solutions there."""
+
 PANEL, MIN_PANEL = 138.0, 104.0
 """Width of a pose in points, and the least at which its letters have room."""
 _TALLEST = 120.0
@@ -127,7 +130,7 @@ def sized(plan: Plan, style: PictureStyle, points: int) -> tuple[Position, list[
     return (page.width, tall), taken, inner
 
 
-def arranged(result: RegionMap, points: Sequence[tuple[Point, Poses]], style: PictureStyle) -> Plan:
+def arranged(result: RegionMap, points: Sequence[PointPoses], style: PictureStyle) -> Plan:
     """Half of the points at each side of the map, few all at the right; on a page of a given width as fits best."""
     shown = [poses.working for _, poses in points]
     usual = len(points) // 2 if len(points) > 3 else 0
@@ -176,7 +179,7 @@ class BlockColumn:
 
 
 def _block(
-    result: RegionMap, n: int, point: tuple[Point, Poses], shown: tuple[Pose, ...], page: _PosePage, style: PictureStyle
+    result: RegionMap, n: int, point: PointPoses, shown: tuple[Pose, ...], page: _PosePage, style: PictureStyle
 ) -> Block:
     at, poses = point
     wide = min(max(1, len(shown)), page.across) * page.panel

@@ -17,18 +17,18 @@ from matplotlib.figure import Figure
 from ptmcad.answer.comparison import Bounds, Change, Comparison
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.axes import Dress, dress, symbol
+from ptmcad.show.render.axes import Dress, symbol
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
 from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang, rewrapped
-from ptmcad.show.render.inches import Box, axes_at, write_lines
+from ptmcad.show.render.inches import Box, write_lines
 from ptmcad.show.render.legend import INK, Entry, Type, Wording, draw_legend, entries, hidden_words
-from ptmcad.show.render.painting import Paint, paint_map, paint_of
+from ptmcad.show.render.painting import Paint, paint_of
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import wrapped
-from ptmcad.show.render.thinmarks import Marks, draw_marks, marks_of
+from ptmcad.show.render.thinmarks import Marks, draw_chart, marks_of
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, count_text
@@ -243,9 +243,7 @@ def _differences(comparison: Comparison, style: PictureStyle) -> list[Entry]:
 
 def _draw(figure: Figure, panel: _MapPanel, box: Box, how: Dress, font: float) -> None:
     left, bottom, _, high = box
-    axes = axes_at(figure, box)
-    result = panel.seen.result
-    paint_map(axes, panel.seen, "", panel.paint)
+    axes = draw_chart(figure, box, panel.seen, panel.paint, panel.marks, how)
     for number, fill in panel.outlined.items():
         rims = [np.vstack([polygon, polygon[:1]]) for polygon in panel.seen.polygons(number)]
         axes.add_artist(
@@ -254,8 +252,6 @@ def _draw(figure: Figure, panel: _MapPanel, box: Box, how: Dress, font: float) -
                 gid=f"change-{number}",
             )
         )  # fmt: skip
-    draw_marks(axes, panel.marks, font / 9)
-    dress(axes, result.slice, panel.seen.view.x, panel.seen.view.y, how)
     em = font / 72
     first = (left, bottom + high + 0.35 * em + 0.675 * em)
     write_lines(figure, first, reversed(panel.head), font, -1.35 * em, fontweight="bold", color=INK)

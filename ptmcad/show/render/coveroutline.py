@@ -21,7 +21,6 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover import components
 from ptmcad.cover.complement import Components
 from ptmcad.cover.outlines import outlines
-from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.slanted import shown as with_steps
 from ptmcad.cover.subdivision import FREE
 from ptmcad.show.render.simplification import simplified_polygons
@@ -132,7 +131,7 @@ def _meets_view(low: Floats, high: Floats) -> NDArray[np.bool_]:
     return np.logical_and((high > 0).all(axis=-1), (low < 1).all(axis=-1))
 
 
-def cover_outline(result: RegionMap, cover: Cover) -> CoverOutline:
+def cover_outline(result: RegionMap) -> CoverOutline:
     """The outlines of a certified map over its whole window; traced once for several pictures of it.
 
     Raises
@@ -140,13 +139,14 @@ def cover_outline(result: RegionMap, cover: Cover) -> CoverOutline:
     ValueError
         When the map contradicts itself: a sample is in no component of its own, or a rectangle is none.
     """
-    return _cover_outline(Same(result), Same(cover))
+    return _cover_outline(Same(result))
 
 
 @lru_cache(maxsize=8)
-def _cover_outline(of: Same[RegionMap], covered: Same[Cover]) -> CoverOutline:
-    result, cover = of.it, covered.it
-    complement = components(cover)
+def _cover_outline(of: Same[RegionMap]) -> CoverOutline:
+    result = of.it
+    assert result.cover is not None  # others have no such outline
+    complement = components(result.cover)
     number_of = _components_of(result, complement)
     region_at = np.full(len(complement.areas) + 1, -1, dtype=np.int64)
     for cell, number in number_of.items():

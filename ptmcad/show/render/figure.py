@@ -1,7 +1,6 @@
 """The figure of a region map with the stable poses at one of its points, as the paper shows them side by side.
 
-Guarantee: the point is marked where its exact coordinates are, and the poses belong to the map's mechanisms: every
-parameter of the poses is what the slice says at that point.
+Guarantee: the point is marked where its exact coordinates are.
 """
 
 from __future__ import annotations
@@ -15,14 +14,12 @@ from matplotlib.lines import Line2D
 
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import heading_of
 from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.layout import GAP, LEFT, SIDE
 from ptmcad.show.render.legend import INK, Entry, Type, draw_legend
 from ptmcad.show.render.mechanism import spring_mark, symbol_mark
 from ptmcad.show.render.poses import (
-    BELOW,
     HEAD,
     assigned,
     below_panel,
@@ -30,7 +27,6 @@ from ptmcad.show.render.poses import (
     panel,
     scale_bar,
     support_legend,
-    value_text,
 )
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import FreeSpace, MapDrawing, description
@@ -43,38 +39,27 @@ _MAX_HEIGHT = 134.0
 _DPI = 150
 
 
-def draw_figure(result: RegionMap, poses: Poses) -> Figure:
+def draw_figure(result: RegionMap, point: Point, poses: Poses) -> Figure:
     """The region map at the left, the stable poses at a point at the right; the point is marked in the map.
 
     Parameters
     ----------
     result : a map of a mechanism.
-    poses : at a point of the map's plane.
-
-    Raises
-    ------
-    ValueError
-        When the poses are those of no point of the map's window.
+    point : of the map's window, in the order of its axes.
+    poses : those there, of which one is stable at least.
     """
-    x, y = point_of(result.slice, poses)
-    shown, told = poses.working, poses.known_stable is not None
+    shown = poses.working
     arrows = arrow_lengths(poses)
     mechanism = poses.model.whole
     assert mechanism is not None  # `arrow_lengths` has refused others
     parts = (Entry(("spring; bars are thick",), spring_mark()), *support_legend(mechanism))
     entries = (*parts, *_LOADS) if arrows else parts
-    below = below_panel(shown[0], mechanism) if shown else BELOW
-    values = [assigned(a.name, v) for a, v in zip(result.slice.axes, (x, y), strict=True)]
-    head = textwrap.wrap(
-        f"{('Stable poses' if told else 'Poses') if shown else 'No stable pose' if told else 'No pose'} at "
-        + ", ".join(values),
-        34,
-    )
-    frame = frame_of(shown, most_height=_MAX_HEIGHT) if shown else None
+    below = below_panel(shown[0], mechanism)
+    values = [assigned(axis.name, value) for axis, value in zip(result.slice.axes, point, strict=True)]
+    head = textwrap.wrap(f"Stable poses at {', '.join(values)}", 34)
+    frame = frame_of(shown, most_height=_MAX_HEIGHT)
     wide = 200.0 / 72
-    panels = _LINE * len(head) + 0.1
-    if frame is not None:
-        panels += len(shown) * (HEAD + frame.height / 72 + below + 0.06)
+    panels = _LINE * len(head) + 0.1 + len(shown) * (HEAD + frame.height / 72 + below + 0.06)
     key = Type().height(entries) + 0.35
     with settings():
         # what the parts mean stands below the map's legend, unless that is long or insets are there
@@ -91,15 +76,14 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
             place = (left, chart.get_position().y1 * tall - panels)
         top = chart.get_position().y1 * tall
         figure.set_label(f"{heading_of(result.slice)}\n{description(result)} Beside it: {describe(poses)}")
-        _mark(chart, result, (x, y))
+        _mark(chart, result, point)
         _write_head(figure, head, left, top)
         top -= _LINE * len(head) + 0.1
-        if frame is not None:
-            for number, pose in enumerate(shown, 1):
-                top -= HEAD + frame.height / 72
-                panel(figure, Scene(mechanism, frame, arrows), pose, number, (left, top))
-                top -= below + 0.06
-            scale_bar(figure, frame, (place[0], place[1] - Type().height(entries) - 0.16), result.slice.units)
+        for number, pose in enumerate(shown, 1):
+            top -= HEAD + frame.height / 72
+            panel(figure, Scene(mechanism, frame, arrows), pose, number, (left, top))
+            top -= below + 0.06
+        scale_bar(figure, frame, (place[0], place[1] - Type().height(entries) - 0.16), result.slice.units)
         draw_legend(figure, entries, *place)
     return figure
 
@@ -124,36 +108,3 @@ def _mark(chart: Any, result: RegionMap, point: Point) -> None:
     """A diamond at the point, in the axes' own scales."""
     x, y = View.whole(result).approximate_position(point)
     chart.add_artist(Line2D((x,), (y,), transform=chart.transAxes, gid="point", **_POINT))
-
-
-def point_of(slice: Slice, poses: Poses) -> Point:
-    """The point of the slice's window whose mechanism the poses are of.
-
-    Raises
-    ------
-    ValueError
-        When there is none, or no parameter is a number times an axis, so that it cannot be read off.
-    """
-    found = []
-    for axis, exponents in zip(slice.axes, ((1, 0), (0, 1)), strict=True):
-        scaled = [
-            (name, expression.numerator[0][2] / expression.denominator[0][2])
-            for name, expression in slice.parameters.items()
-            if name in poses.parameters
-            and expression.is_polynomial
-            and [term[:2] for term in expression.numerator] == [exponents]
-        ]
-        if not scaled:
-            raise ValueError(f"no parameter of the slice {slice.name} is a number times {axis.name}")
-        name, factor = scaled[0]
-        value = poses.parameters[name] / factor
-        if not axis.low <= value <= axis.high:
-            raise ValueError(f"{axis.name} {value_text(value)} is not in the window of {slice.name}")
-        found.append(value)
-    x, y = found
-    for name, value in poses.parameters.items():
-        if name in slice.parameters and slice.parameters[name].evaluate(x, y) != value:
-            raise ValueError(
-                f"the poses have {name} {value_text(value)}, which {slice.name} does not have at that point"
-            )
-    return x, y

@@ -15,9 +15,9 @@ from matplotlib.figure import Figure
 
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.axes import Dress, dress, symbol
+from ptmcad.show.render.axes import Dress, symbol
 from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang
-from ptmcad.show.render.inches import axes_at, write, write_lines
+from ptmcad.show.render.inches import write, write_lines
 from ptmcad.show.render.legend import (
     INK,
     STRONG,
@@ -31,12 +31,12 @@ from ptmcad.show.render.legend import (
     in_rows,
     thin_entry,
 )
-from ptmcad.show.render.painting import Paint, fills_by_count, paint_map, paint_of
+from ptmcad.show.render.painting import Paint, fills_by_count, paint_of
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import wrapped
-from ptmcad.show.render.thinmarks import draw_marks, marks_of
+from ptmcad.show.render.thinmarks import draw_chart, marks_of
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.text.numerals import shortest_text
 
@@ -129,10 +129,7 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
     for k, (value, shape) in enumerate(zip(family.values, seen, strict=True)):
         row, column = divmod(k, columns)
         box = (left + column * (side + gap), top - (row + 1) * (head + tall) - row * 0.5 * em, side, tall)
-        axes = axes_at(figure, box)
-        paint_map(axes, shape, f"{k}-", paint)
-        dress(axes, shape.result.slice, shape.view.x, shape.view.y, how)
-        draw_marks(axes, marks[k], font / 9)
+        axes = draw_chart(figure, box, shape, paint, marks[k], how, f"{k}-")
         _strip_inner(axes, column > 0, k + columns < len(seen))
         write(figure, (box[0], box[1] + tall + 0.75 * em), value_text(family, value), font, color=INK)
     draw_flowed(figure, lines, em, type)

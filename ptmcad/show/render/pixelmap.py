@@ -33,7 +33,10 @@ def grid_png(grid: Grid, dpi: int) -> bytes:
     told = bool((grid.stable != NONE).any())
     counts = grid.stable if told else grid.total
     known = sorted({int(count) for count in np.unique(counts)} - {NONE})
-    colours = [UNDETERMINED.face, *(_face(count, told) for count in known)]
+    colours = [
+        UNDETERMINED.face,
+        *(fill_of_counts(Counts(0, count, None) if told else Counts(count, None, None)).face for count in known),
+    ]  # pixels show no hatch
     codes = np.searchsorted(np.array([NONE, *known]), counts)
     with settings():
         figure, axes = _chart(grid, dpi)
@@ -58,11 +61,6 @@ def field_png(field: Field, dpi: int) -> bytes:
             figure.colorbar(image, ax=axes).set_label(bar_text(field))
         _walls(axes, field, field.region)
         return printed(figure, "png", dpi, repr(field), description(field))
-
-
-def _face(count: int, stable: bool) -> str:
-    """As on maps; hatches beyond the palette's end are not seen on pixels."""
-    return fill_of_counts(Counts(0, count, None) if stable else Counts(count, None, None)).face
 
 
 def _chart(pixels: Grid | Field, dpi: int) -> tuple[Figure, Any]:

@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib.patches import Patch
 from matplotlib.transforms import Affine2D
 
-from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import expect
 from ptmcad.show.render.around import draw_around
 from ptmcad.show.render.axes import axis_name
+from ptmcad.show.render.blocks import PointPoses
 from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.legend import INK, head_of
 from ptmcad.show.render.overlay import Overlay
@@ -23,7 +23,6 @@ from ptmcad.show.render.poses import describe
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import MapDrawing, description, whole_title
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.view import Point
 from ptmcad.show.style import LegendPlace, PictureStyle, styled
 
 
@@ -83,7 +82,7 @@ def handles_of(fills: Mapping[str, Fill]) -> list[Patch]:
 
 def draw_with_poses(
     result: RegionMap,
-    points: Sequence[tuple[Point, Poses]],
+    points: Sequence[PointPoses],
     path: Path,
     dpi: int,
     style: PictureStyle,

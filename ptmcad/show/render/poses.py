@@ -99,14 +99,10 @@ def kind(pose: Pose) -> str:
     return "stable (minimum)" if pose.index == 0 else critical_point(pose.index, len(pose.eigenvalues))
 
 
-def unknown_texts(model: Model, pose: Pose) -> list[str]:
-    """The unknowns with their values: angles in degrees."""
-    return assignments(model, (f"{number_text(a)}°" for a in pose.degrees), map(number_text, pose.reals), symbol)
-
-
 def _lines_below(model: Model, pose: Pose) -> list[str]:
     """Energy, if there is one, and unknowns: as many of them on a line as there is room for."""
-    unknowns = unknown_texts(model, pose)
+    angles = (f"{number_text(a)}°" for a in pose.degrees)
+    unknowns = assignments(model, angles, map(number_text, pose.reals), symbol)
     return [
         *([] if pose.energy is None else [f"U = {number_text(pose.energy)}"]),
         *(", ".join(unknowns[k : k + 2]) for k in range(0, len(unknowns), 2)),
@@ -142,9 +138,9 @@ def pose_axes(figure: Figure, corner: Position, frame: PanelFrame, gid: str, str
     return axes
 
 
-def number_text(number: Enclosure, digits: int = _DIGITS) -> str:
+def number_text(number: Enclosure) -> str:
     """A certified number rounded to nearest, as it is printed."""
-    return printed_number(number.text(1 if number.told_digits(digits) is None else digits))
+    return printed_number(number.text(1 if number.told_digits(_DIGITS) is None else _DIGITS))
 
 
 def printed_number(text: str) -> str:

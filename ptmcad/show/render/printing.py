@@ -113,7 +113,7 @@ def content(figure: Figure, suffix: str, *, dpi: int = 150, style: PictureStyle 
 def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str) -> bytes:
     """The picture as a file's content, without dates and versions; to be called within `settings`."""
     data = BytesIO()
-    metadata = {**_UNDATED[suffix], "Title": _ascii(title) if suffix == "eps" else title}
+    metadata = {**_UNDATED[suffix], "Title": title.encode("ascii", "replace").decode() if suffix == "eps" else title}
     with _opaque():
         figure.savefig(data, format=suffix, dpi=dpi, metadata=metadata)
     if suffix == "eps":
@@ -139,8 +139,3 @@ def _opaque() -> Iterator[None]:
         yield
     finally:
         log.removeFilter(other)
-
-
-def _ascii(text: str) -> str:
-    """For a comment of PostScript."""
-    return text.encode("ascii", "replace").decode()

@@ -17,7 +17,7 @@ def shapes(result: RegionMap) -> Shapes:
     if result.cover is not None:
         from ptmcad.show.render.coveroutline import cover_outline
 
-        return cover_outline(result, result.cover)
+        return cover_outline(result)
     from ptmcad.show.render.outline import outline
 
     return outline(result)

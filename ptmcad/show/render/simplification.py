@@ -17,16 +17,17 @@ _MAX_DEPTH = 32
 """Halvings of a piece, and corners of the shorter ones into which it is cut when it still departs too far then."""
 
 
-def simplified(points: Floats, tolerance: float) -> Floats:
-    """A closed polygon with fewer corners, all of them its own, from which it departs by at most the tolerance.
-
-    Method: Ramer, Douglas and Peucker; the two halves are those between the first corner and the one farthest from it.
-    """
-    return simplified_polygons(points, np.array([len(points)]), tolerance)[0]
+def distinct(corners: Integers) -> Integers:
+    """Without corners that are where the one before them is."""
+    kept: Integers = corners[np.concatenate([[True], (corners[1:] != corners[:-1]).any(axis=1)])]
+    return kept
 
 
 def simplified_polygons(points: Floats, sizes: Integers, tolerance: float) -> list[Floats]:
-    """Closed polygons with fewer corners, each as by `simplified`; many of them take little longer than one.
+    """Closed polygons with fewer corners, their own, from which they depart by at most the tolerance.
+
+    Many of them take little longer than one. Method: Ramer, Douglas and Peucker; the two halves are those between the
+    first corner and the one farthest from it.
 
     Parameters
     ----------

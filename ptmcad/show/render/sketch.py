@@ -66,6 +66,9 @@ class PanelFrame:
         }
 
 
+Nodes = Mapping[str, Position]
+"""The points' places on paper."""
+
 Arrow = tuple[str, Position, Position]
 """A load's component at a node: its name, such as F3x, its start and its end."""
 
@@ -82,7 +85,7 @@ class Sketch:
     """
 
     mechanism: Mechanism
-    nodes: Mapping[str, Position]
+    nodes: Nodes
     rails: tuple[tuple[Position, Position], ...]
     bars: tuple[tuple[Position, Position], ...]
     coils: Mapping[str, tuple[Position, ...]]
@@ -155,8 +158,8 @@ def sketch(mechanism: Mechanism, pose: Pose, frame: PanelFrame, arrows: Mapping[
 
 
 def sketched(
-    mechanism: Mechanism, nodes: Mapping[str, Position], sides: Position, arrows: Mapping[str, float],
-    turns: int | None = None, labels: Callable[[Mapping[str, Position]], Iterable[Label]] | None = None,
+    mechanism: Mechanism, nodes: Nodes, sides: Position, arrows: Mapping[str, float],
+    turns: int | None = None, labels: Callable[[Nodes], Iterable[Label]] | None = None,
 ) -> Sketch:  # fmt: skip
     """A mechanism whose nodes are at places on paper of these sides, with arrows of these lengths.
 
@@ -185,7 +188,7 @@ def sketched(
     return Sketch(mechanism, nodes, rails, bars, coils, placed_arrows, tuple(placed))
 
 
-def _rails(mechanism: Mechanism, nodes: Mapping[str, Position]) -> Iterator[tuple[Position, Position]]:
+def _rails(mechanism: Mechanism, nodes: Nodes) -> Iterator[tuple[Position, Position]]:
     fixed = next((nodes[name] for name, kind in mechanism.supports.items() if kind is Support.PIN), None)
     for name, kind in mechanism.supports.items():
         x, y = nodes[name]
@@ -195,7 +198,7 @@ def _rails(mechanism: Mechanism, nodes: Mapping[str, Position]) -> Iterator[tupl
             yield (fixed, (x, y)) if fixed is not None and abs(fixed[1] - y) < 1e-6 else ((x - RAIL, y), (x + RAIL, y))
 
 
-def _symbols(mechanism: Mechanism, nodes: Mapping[str, Position]) -> Iterator[Box]:
+def _symbols(mechanism: Mechanism, nodes: Nodes) -> Iterator[Box]:
     """What pins, supports and sliders cover."""
     for x, y in nodes.values():
         yield x - PIN, y - PIN, x + PIN, y + PIN
@@ -244,7 +247,7 @@ def _covered(line: Sequence[Position], drawn: Sequence[Stroke]) -> bool:
     return sum(any(distance(p, s) < AMPLITUDE + s.half for s in drawn) for p in points) > 7
 
 
-def _arrows(loads: Sequence[Load], nodes: Mapping[str, Position], lengths: Mapping[str, float]) -> Iterator[Arrow]:
+def _arrows(loads: Sequence[Load], nodes: Nodes, lengths: Mapping[str, float]) -> Iterator[Arrow]:
     """The loads' arrows; where some would lie on each other, they stand side by side."""
     at = [nodes[load.point] for load in loads]
     for number, load in enumerate(loads):
@@ -260,14 +263,14 @@ def _arrows(loads: Sequence[Load], nodes: Mapping[str, Position], lengths: Mappi
             yield vertical, (x + side, y + sign * PIN), (x + side, y + sign * PIN + lengths[vertical])
 
 
-def own_labels(nodes: Mapping[str, Position], offsets: Mapping[str, Position]) -> Iterator[Label]:
+def own_labels(nodes: Nodes, offsets: Nodes) -> Iterator[Label]:
     """A label for each node, to lie where these offsets point."""
     for name, at in nodes.items():
         text = symbol(name)
         yield Label(text, at, (max(6.9, 3.45 * len(text)), LABEL_HALF_HEIGHT), offsets.get(text, (0.0, 1.0)))
 
 
-def _labels(nodes: Mapping[str, Position]) -> Iterator[Label]:
+def _labels(nodes: Nodes) -> Iterator[Label]:
     """One label for each node, or for the nodes that coincide on paper."""
     groups: list[list[str]] = []
     for name, at in nodes.items():

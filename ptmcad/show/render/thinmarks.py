@@ -10,8 +10,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.show.render.axes import Dress, dress
+from ptmcad.show.render.inches import Box, axes_at
 from ptmcad.show.render.labels import Placement, place
 from ptmcad.show.render.legend import INK
+from ptmcad.show.render.painting import Paint, paint_map
 from ptmcad.show.render.slivers import Sliver, inside, thin_regions
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import Size
@@ -94,6 +97,15 @@ def marks_of(whole: Shapes, sides: Size, dpi: int, size: float, names: Sequence[
     return Marks(
         [slivers[k] for k in clear], [found[k] for k in clear], [labels[k] for k in clear], len(thin) - len(clear)
     )
+
+
+def draw_chart(figure: Any, box: Box, seen: Shapes, paint: Paint, marks: Marks, how: Dress, prefix: str = "") -> Any:
+    """A map in a box on the page, with its marks and its axes' numbers; its axes."""
+    axes = axes_at(figure, box)
+    paint_map(axes, seen, prefix, paint)
+    dress(axes, seen.result.slice, seen.view.x, seen.view.y, how)
+    draw_marks(axes, marks, how.scale)
+    return axes
 
 
 def draw_marks(axes: Any, marks: Marks, scale: float) -> None:

@@ -64,6 +64,12 @@ class View:
         return float((point[0] - left) / (right - left)), float((point[1] - bottom) / (top - bottom))
 
 
+def from_above(line: Floats, side: float) -> Floats:
+    """Fractions of a view's sides in units of which a picture's side has so many, from its upper left corner."""
+    placed: Floats = np.stack([line[:, 0], 1 - line[:, 1]], axis=1) * side
+    return placed
+
+
 class Shapes(Protocol):
     """The shapes of a map in a view."""
 

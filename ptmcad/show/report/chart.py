@@ -25,7 +25,7 @@ from ptmcad.question.counts import Count
 from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.slivers import innermost, thin_regions, zooms
-from ptmcad.show.render.view import Floats, Shapes
+from ptmcad.show.render.view import Floats, Shapes, from_above
 from ptmcad.show.report.frame import SIDE, frame, room
 from ptmcad.show.report.pathdata import GRID, path_data
 from ptmcad.show.table import count_text
@@ -83,14 +83,13 @@ def pattern_defs(fills: Sequence[Fill]) -> str:
     hatches = sorted({fill.hatch for fill in fills if fill.hatch})
     if not hatches:
         return ""
-    body = "".join(_pattern(hatch) + _of_outlines(hatch) for hatch in hatches)
+    # the second is the same pattern for what is drawn in steps of the grid
+    body = "".join(
+        f'{_pattern(hatch)}<pattern id="map-{hatch_id(hatch)}" href="#{hatch_id(hatch)}" '
+        f'patternTransform="scale({GRID})"/>'
+        for hatch in hatches
+    )
     return f'<svg class="defs" width="0" height="0" aria-hidden="true"><defs>{body}</defs></svg>'
-
-
-def _of_outlines(hatch: str) -> str:
-    """The same pattern for what is drawn in steps of the grid."""
-    name = hatch_id(hatch)
-    return f'<pattern id="map-{name}" href="#{name}" patternTransform="scale({GRID})"/>'
 
 
 def hatch_id(hatch: str) -> str:
@@ -163,18 +162,8 @@ def _shortened(value: Fraction) -> str:
     return text if len(text) <= 12 else f"{float(value):.6g}" if abs(value) < 10**300 else text[:12] + "…"
 
 
-def _placed(line: Floats) -> Floats:
-    """Fractions of the view's sides in the picture's units, from above."""
-    placed: Floats = np.stack([line[:, 0], 1 - line[:, 1]], axis=1) * SIDE
-    return placed
-
-
-def _open(line: Floats) -> str:
-    return path_data(_placed(line))
-
-
 def _closed(polygon: Floats) -> str:
-    return path_data(_placed(polygon), closed=True)
+    return path_data(from_above(polygon, SIDE), closed=True)
 
 
 def _paints(region: Region, count: Count) -> list[str]:
@@ -217,7 +206,7 @@ def wall_lines(seen: Shapes, simpler: bool = True) -> dict[tuple[bool, int], str
     tolerance = _WALLS / SIDE if simpler else 0.0
     lines: dict[tuple[bool, int], list[str]] = {}
     for component, separates, line in seen.walls(tolerance):
-        lines.setdefault((separates, component), []).append(_open(line))
+        lines.setdefault((separates, component), []).append(path_data(from_above(line, SIDE)))
     return {kind: "".join(pieces) for kind, pieces in sorted(lines.items())}
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.show.render.simplification import distinct
 from ptmcad.show.render.view import Floats
 
 GRID = 20
@@ -43,7 +44,7 @@ def _after(steps: int) -> str:
 
 def _needed(corners: NDArray[np.int64]) -> NDArray[np.int64]:
     """Without corners that are where the one before them is, or on the way along an axis to the next one."""
-    corners = corners[np.concatenate([[True], (corners[1:] != corners[:-1]).any(axis=1)])]
+    corners = distinct(corners)
     if len(corners) < 3:
         return corners
     steps = np.sign(np.diff(corners, axis=0))

@@ -13,8 +13,8 @@ import numpy as np
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.simplification import simplified_line
-from ptmcad.show.render.view import Floats
+from ptmcad.show.render.simplification import distinct, simplified_line
+from ptmcad.show.render.view import Floats, from_above
 from ptmcad.show.table import count_text
 
 SIDE = 800
@@ -74,8 +74,7 @@ def _data(polygons: list[Floats], tolerance: float) -> str:
     for polygon in polygons:
         half = len(polygon) // 2
         kept = np.concatenate([simplified_line(part, tolerance) for part in (polygon[:half], polygon[half:])])
-        placed = np.rint(np.stack([kept[:, 0], 1 - kept[:, 1]], axis=1) * SIDE).astype(int)
-        placed = placed[np.concatenate([[True], (placed[1:] != placed[:-1]).any(axis=1)])]
+        placed = distinct(np.rint(from_above(kept, SIDE)).astype(np.int64))
         if len(placed) > 2:
             corners = " ".join(f"{x} {y}" for x, y in placed.tolist())
             parts.append(f"M{corners}z")

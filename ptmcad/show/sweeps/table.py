@@ -8,13 +8,12 @@ texts of this program's, but for errors, which are quoted with an apostrophe the
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
-from io import StringIO
 from typing import Any
 
 from ptmcad.answer.sweep import CountedArea, Member, State, Sweep, Widest
+from ptmcad.show import data
 from ptmcad.show.columns import aligned
 from ptmcad.text.numerals import fraction_of, shortest_text
 
@@ -82,12 +81,7 @@ def middle(bounds: tuple[str, str]) -> Fraction:
 def csv_text(sweep: Sweep, members: Members) -> str:
     """All members as CSV, one a line."""
     counts = counts_in(members())
-    text = StringIO()
-    writer = csv.DictWriter(text, columns(sweep, counts), lineterminator="\n")
-    writer.writeheader()
-    for member in members():
-        writer.writerow(row(sweep, member, counts))
-    return text.getvalue()
+    return data.csv_text((row(sweep, member, counts) for member in members()), columns(sweep, counts))
 
 
 def counts_in(members: Iterable[Member]) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from base64 import b64encode
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
+from fractions import Fraction
 from functools import partial
 from html import escape
 from itertools import groupby
@@ -200,6 +201,7 @@ def _pictures(figure: str) -> dict[str, bytes]:
     from ptmcad.show.render.printing import content
 
     at: dict[str, Any] = dict(POINTS[figure][1])
-    poses = solve(figure, **at)
-    drawn = {figure: draw_figure(region_map(figure), poses), f"{figure}-poses": draw_poses(poses)}
+    result, poses = region_map(figure), solve(figure, **at)
+    first, second = (Fraction(at[name]) for name in result.slice.axis_names)
+    drawn = {figure: draw_figure(result, (first, second), poses), f"{figure}-poses": draw_poses(poses)}
     return {f"{name}.{kind}": content(picture, kind) for name, picture in drawn.items() for kind in PICTURES}

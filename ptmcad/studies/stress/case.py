@@ -68,11 +68,11 @@ class Question:
     along, fixed : the axis that varies along a line, and the value of the other one.
     """
 
-    parameters: Mapping[str, Fraction]
+    parameters: Parameters
     axes: Mapping[str, Span] = field(default_factory=dict)
     tolerance: Fraction | None = None
     along: str = ""
-    fixed: Mapping[str, Fraction] = field(default_factory=dict)
+    fixed: Parameters = field(default_factory=dict)
 
     @property
     def kind(self) -> str:
@@ -108,7 +108,7 @@ class Case:
     slow: bool = False
 
 
-def free_lengths(parameters: Mapping[str, Fraction]) -> bool:
+def free_lengths(parameters: Parameters) -> bool:
     """Whether a spring has one."""
     return any(name.startswith("l0") and value for name, value in parameters.items())
 
@@ -225,8 +225,8 @@ def _case(entry: Mapping[str, Any], e: int) -> Case:
     )
 
 
-def _question(entry: Mapping[str, Any], known: Mapping[str, Fraction]) -> Question:
-    base: Mapping[str, Fraction] = {}
+def _question(entry: Mapping[str, Any], known: Parameters) -> Question:
+    base: Parameters = {}
     if "at" in entry:
         base = NAMED[entry["at"]].beside(_numbers(entry.get("beside", 0), known))
     names = ("parameters", "axes", "tolerance", "fixed")
@@ -238,7 +238,7 @@ def _question(entry: Mapping[str, Any], known: Mapping[str, Fraction]) -> Questi
     return Question(values, along=entry.get("along", ""), **given)
 
 
-def _numbers(node: Any, known: Mapping[str, Fraction]) -> Any:
+def _numbers(node: Any, known: Parameters) -> Any:
     """What has expressions for numbers, with their values."""
     if isinstance(node, dict):
         return {key: _numbers(value, known) for key, value in node.items()}

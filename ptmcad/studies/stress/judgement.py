@@ -23,7 +23,7 @@ from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.studies.byhand import scale
-from ptmcad.studies.stress.case import Case, free_lengths
+from ptmcad.studies.stress.case import Case, Parameters, free_lengths
 from ptmcad.studies.stress.methods import IndexedPose, apart, double_poses, proved_poses, sextic_poses
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.expressions import Expression
@@ -34,6 +34,9 @@ STEPS = 200
 """Points along a line."""
 _BITS = 512
 DECIDED = (Status.EXACT, Status.CERTIFIED)
+
+Expressions = Mapping[str, Expression]
+"""Of parameters, over a map's axes or along a line."""
 
 Row = dict[str, Any]
 """What came out of a case.
@@ -199,7 +202,7 @@ def _expected(case: Case, stable: Sequence[int | None], numbers: Sequence[Sequen
 
 
 def _confirmed(
-    parameters: Mapping[str, Expression], at: Sequence[Fraction], stable: int | None, total: int | None = None
+    parameters: Expressions, at: Sequence[Fraction], stable: int | None, total: int | None = None
 ) -> tuple[bool, str]:
     """Whether the second method finds as many at a sample; a total is compared where it is given."""
     known = sextic_poses(_values(parameters, at))
@@ -207,12 +210,12 @@ def _confirmed(
     return right, f"the second method finds {_shown(known)} at a sample"
 
 
-def _double(parameters: Mapping[str, Expression], at: Sequence[Fraction]) -> int:
+def _double(parameters: Expressions, at: Sequence[Fraction]) -> int:
     """The stable count of double precision at a place."""
     return _stable(double_poses(_values(parameters, at)))
 
 
-def _values(parameters: Mapping[str, Expression], at: Sequence[Fraction]) -> Mapping[str, Fraction]:
+def _values(parameters: Expressions, at: Sequence[Fraction]) -> Parameters:
     return {name: e.evaluate(at[0], at[1]) for name, e in parameters.items()}
 
 

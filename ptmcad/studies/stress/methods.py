@@ -21,7 +21,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -29,7 +28,7 @@ from flint import arb, arb_mat, ctx, fmpq, fmpq_poly
 
 from ptmcad.studies import byhand
 from ptmcad.studies.byhand import derivatives, parts, sextic
-from ptmcad.studies.stress.case import free_lengths
+from ptmcad.studies.stress.case import Parameters, free_lengths
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction
 
@@ -57,7 +56,7 @@ def in_balls(parameters: Mapping[str, arb], angles: Sequence[arb]) -> tuple[arb_
 
 
 def newton_pose(
-    parameters: Mapping[str, Fraction], start: tuple[arb | float, arb | float], bits: int = BITS[0]
+    parameters: Parameters, start: tuple[arb | float, arb | float], bits: int = BITS[0]
 ) -> IndexedPose | None:
     """The equilibrium that Newton's method finds from a start, proved by Krawczyk's test; None when it finds none.
 
@@ -99,7 +98,7 @@ def apart(first: IndexedPose, second: IndexedPose) -> arb:
 
 
 def proved_poses(
-    parameters: Mapping[str, Fraction], starts: Iterable[tuple[Any, Any]], bits: int = BITS[0], most: float = np.inf
+    parameters: Parameters, starts: Iterable[tuple[Any, Any]], bits: int = BITS[0], most: float = np.inf
 ) -> tuple[IndexedPose, ...]:
     """The different equilibria that Newton's method finds from starts, each proved; not more than are asked for."""
     known: list[IndexedPose] = []
@@ -110,7 +109,7 @@ def proved_poses(
     return tuple(known)
 
 
-def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
+def sextic_poses(parameters: Parameters) -> tuple[IndexedPose, ...]:
     """All equilibria of a mechanism whose springs have no free length.
 
     Raises
@@ -141,7 +140,7 @@ def _start(p: Mapping[str, fmpq], th2: arb, side: int) -> tuple[arb, arb]:
     return arb.atan2(y * side, x * side), th2
 
 
-def double_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...] | None:
+def double_poses(parameters: Parameters) -> tuple[IndexedPose, ...] | None:
     """The equilibria in double precision; None when numbers overflow or the eigenvalue method fails."""
     p = {name: np.array([float(value)]) for name, value in parameters.items()}
     try:
