@@ -58,9 +58,8 @@ class ElasticLine(NamedTuple):
         stiffness, free = ring.of((spring.stiffness, spring.free))
         names = {"k": stiffness, "f": free, "q": x * x + y * y}
         law = spring.law
-        formulas = Assignment(names, ring.constant)
-        of_law = evaluated((law.smooth, law.pull, law.density), formulas)
-        return cls(spring.name, spring.start, spring.end, law, stiffness, free, (x, y), names["q"], *of_law)
+        formulas = evaluated((law.smooth, law.pull, law.density), Assignment(names, ring.constant))
+        return cls(spring.name, spring.start, spring.end, law, stiffness, free, (x, y), names["q"], *formulas)
 
     @property
     def length(self) -> Formula:

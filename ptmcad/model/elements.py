@@ -214,6 +214,7 @@ class Law(Enum):
     smooth : the energy without a free length: a polynomial in q.
     pull : what the energy lacks for each unit of length; without lengths, and zero without a free length.
     force : the energy's slope by the length, positive where the spring pulls.
+    density : the force for each unit of length without a free length.
     """
 
     LINEAR = (("force", "/", "length"), "1/2*k*(l - f)^2", "1/2*k*q", "k*f", "k*(l - f)")
@@ -221,11 +222,7 @@ class Law(Enum):
     def __init__(self, unit: Unit, *formulas: str) -> None:
         self.unit = unit
         self.energy, self.smooth, self.pull, self.force = map(parse, formulas)
-
-    @property
-    def density(self) -> Tree:
-        """The force for each unit of length without a free length."""
-        return product(_TWO, derivative(self.smooth, "q"))
+        self.density = product(_TWO, derivative(self.smooth, "q"))
 
 
 class Spring(NamedTuple):
@@ -338,14 +335,6 @@ class TorsionSpring(NamedTuple):
     def unit(self) -> Unit:
         """Of its stiffness, a moment."""
         return "force", "·", "length"
-
-    @property
-    def law(self) -> str:
-        """What it does, in words."""
-        return (
-            "energy k (1 - cos(angle - rest)), moment k sin(angle - rest): for small angles that of a linear spring, "
-            "k (angle - rest)"
-        )
 
     @property
     def energy(self) -> Tree:

@@ -86,7 +86,7 @@ def _units(poses: Poses) -> list[str]:
 
 def _in_products(mechanism: Mechanism, product: str) -> list[str]:
     """What is measured in force times length."""
-    moments = "moments" if any(spring.unit == mechanism.energy_unit for spring in mechanism.elastic) else ""
+    moments = "moments" if mechanism.energy_unit in {spring.unit for spring in mechanism.elastic} else ""
     if not mechanism.has_potential:
         return [f"{moments} in {product}"] if moments else []
     if mechanism.closing or mechanism.xjoints:

@@ -255,7 +255,8 @@ def _margins(model: Model, _mechanism: Mechanism | None) -> tuple[Margin, ...]:
     ring, found = _Exponentials(model, true.ring), []
     for spring in true.springs:
         free = next(iter(ring.waves(spring.free).values()), ring.numbers.constant(0))
-        found.append(Margin(spring.name, ring.vector(spring.vector), free, ring.waves(spring.excess)))
+        squared = ring.waves(spring.squared - spring.free**2)
+        found.append(Margin(spring.name, ring.vector(spring.vector), free, squared))
     return tuple(found)
 
 
