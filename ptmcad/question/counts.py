@@ -53,7 +53,7 @@ class Shades(Enum):
     INDEX = "minima, with hatches for saddles and maxima"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # slots and a type parameter do not go together
 class Margin(Generic[V]):
     """A quantity that has to be positive at a solution; where it vanishes a solution begins or stops to count.
 
