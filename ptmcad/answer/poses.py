@@ -22,8 +22,8 @@ Vector = tuple[Enclosure, Enclosure]
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """A spring in a pose: ``name`` of its stiffness, nodes ``start`` and ``end``; ``force`` = stiffness * (length -
-    free_length) is its tension, negative when the spring is pushed."""
+    """A spring in a pose: ``name`` of its stiffness, nodes ``start`` and ``end``; ``force`` is its tension, the slope
+    of its energy by its length: negative when the spring is pushed."""
 
     name: str
     start: str

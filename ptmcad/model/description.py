@@ -44,6 +44,11 @@ __all__ = [
     "looped",
 ]
 
+_TORSION = (
+    "energy k (1 - cos(angle - rest)), moment k sin(angle - rest): for small angles that of a linear spring, "
+    "k (angle - rest)"
+)
+
 
 @dataclass(frozen=True)
 class Mechanism(Model):
@@ -187,7 +192,7 @@ class Mechanism(Model):
     @property
     def laws(self) -> Mapping[str, str]:
         """What springs do, by the keys of the description, where it is not what an engineer expects."""
-        return {"torsion": self.torsion[0].law} if self.torsion else {}
+        return {"torsion": _TORSION} if self.torsion else {}
 
     @property
     def elastic(self) -> tuple[Spring | TorsionSpring, ...]:

@@ -349,14 +349,6 @@ class TorsionSpring(NamedTuple):
         return "force", "·", "length"
 
     @property
-    def law(self) -> str:
-        """What it does, in words."""
-        return (
-            "energy k (1 - cos(angle - rest)), moment k sin(angle - rest): for small angles that of a linear spring, "
-            "k (angle - rest)"
-        )
-
-    @property
     def energy(self) -> Tree:
         """As a tree; the cosine of the difference is expanded, since only the rest's cosine and sine are known."""
         return product(self.stiffness, total(ONE, negative(self.deflection[0])))

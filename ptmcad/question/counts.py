@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from ptmcad.model import Mechanism, Model
 from ptmcad.model.elements import difference, squared
@@ -20,6 +20,9 @@ from ptmcad.text.tree import Tree
 
 if TYPE_CHECKING:
     from ptmcad.text.enclosure import Enclosure
+
+
+V = TypeVar("V")
 
 
 class Count(Enum):
@@ -50,14 +53,14 @@ class Shades(Enum):
     INDEX = "minima, with hatches for saddles and maxima"
 
 
-@dataclass(frozen=True, slots=True)
-class Margin:
+@dataclass(frozen=True)  # slots and a type parameter do not go together
+class Margin(Generic[V]):
     """A quantity that has to be positive at a solution; where it vanishes a solution begins or stops to count.
 
     Attributes
     ----------
     text : what it is, in words or as it is written.
-    value : in the parameters and unknowns of a model.
+    value : in the parameters and unknowns of a model, or over a slice.
     curve, reason : the name of the curve on which it vanishes, and why the count changes there; empty for those that
         are made of the text.
     squares : the value is the sum of their squares, less something. Where this is zero all over a window the value has
@@ -65,10 +68,10 @@ class Margin:
     """
 
     text: str
-    value: Tree
+    value: V
     curve: str = ""
     reason: str = ""
-    squares: tuple[Tree, ...] = ()
+    squares: tuple[V, ...] = ()
 
 
 class _Posed(Protocol):
@@ -108,7 +111,7 @@ class Predicate:
         since that form of documents was made. Of others a map has the number that its count is of.
     """
 
-    margins: Callable[[Mechanism], Iterator[Margin]]
+    margins: Callable[[Mechanism], Iterator[Margin[Tree]]]
     is_symmetric: bool
     needs_free_lengths: bool
     of_systems: str
@@ -147,7 +150,7 @@ class CountKind:
     predicate: Predicate | None = None
 
 
-def _longer_than_free(mechanism: Mechanism) -> Iterator[Margin]:
+def _longer_than_free(mechanism: Mechanism) -> Iterator[Margin[Tree]]:
     """|d|^2 - l0^2 of each spring, d being the vector between its ends: of the sign of |d| - l0, as no free length is
     negative. Lengths that are constant are in no description."""
     for spring in mechanism.springs:

@@ -104,7 +104,7 @@ def approximate_svg(mechanism: Mechanism) -> str:
     for start, end in mechanism.spring_ends:
         parts.append(_path(list(_zigzag(at[start], at[end])), "#1f1f1f", 1))
     joints = joints_of(mechanism)
-    for spiral in filter(None, spirals(joints, at, *SPIRAL)):
+    for spiral in spirals(joints, at, *SPIRAL).values():
         parts.append(_path(list(spiral), "#1f1f1f", 1))
     wound = {joint.point for joint in joints if joint is not None}
     for name, kind in mechanism.supports.items():

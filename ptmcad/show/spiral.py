@@ -5,6 +5,7 @@ Floating point throughout: a drawing decides nothing.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from math import atan2, cos, hypot, pi, sin
 
@@ -18,24 +19,20 @@ TURNS, STEPS = 1.75, 24
 
 def spirals(
     joints: Sequence[Joint | None], places: Mapping[str, Place], inner: float, outer: float, gap: float
-) -> list[tuple[Place, ...] | None]:
-    """The spirals of joints as polylines from the inside out; None where there is no joint.
+) -> dict[int, tuple[Place, ...]]:
+    """The spirals of joints as polylines from the inside out, by their numbers from 1; none where there is no joint.
 
     Parameters
     ----------
     places : of the points, y upwards.
     inner, outer : radii; of further springs at one point they are larger, with a gap between them.
     """
-    seen: dict[str, int] = {}
-    found: list[tuple[Place, ...] | None] = []
-    for joint in joints:
-        if joint is None:
-            found.append(None)
-            continue
-        shift = seen.get(joint.point, 0) * (outer - inner + gap)
-        seen[joint.point] = seen.get(joint.point, 0) + 1
-        centre = places[joint.point]
-        found.append(spiral(centre, places.get(joint.towards, centre), inner + shift, outer + shift))
+    seen, found = Counter[str](), {}
+    for number, joint in enumerate(joints, 1):
+        if joint is not None:
+            shift, centre = seen[joint.point] * (outer - inner + gap), places[joint.point]
+            seen[joint.point] += 1
+            found[number] = spiral(centre, places.get(joint.towards, centre), inner + shift, outer + shift)
     return found
 
 

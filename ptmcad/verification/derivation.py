@@ -157,11 +157,6 @@ class SpringVector(NamedTuple):
         """The energy where it has no length."""
         return self.pull * self.free * fmpq(1, 2)
 
-    @property
-    def excess(self) -> fmpq_mpoly:
-        """Positive where it is longer than its free length, as no free length is negative."""
-        return self.squared - self.free**2
-
 
 class Required(NamedTuple):
     """What has to be positive, or at least not negative, in words and as a polynomial in parameters."""

@@ -75,7 +75,7 @@ def _is_of_springs(model: Model) -> bool:
 
 def _longer_than_free(point: Derivation) -> Iterator[CheckedMargin]:
     for spring in point.springs:
-        yield CheckedMargin(spring.excess, spring)
+        yield CheckedMargin(spring.squared - spring.free**2, spring)
 
 
 _KINDS = {

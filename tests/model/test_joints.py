@@ -108,9 +108,9 @@ def test_a_spiral_ends_on_the_arm() -> None:
     assert hypot(line[0][0] - 1, line[0][1] - 2) == pytest.approx(0.5)
     assert line[-1] == pytest.approx((1.0, 3.5))
     places = {"O": (0.0, 0.0), "P": (cos(1.0), sin(1.0))}
-    inner, none, outer = spirals((Joint("O", "P"), None, Joint("O", "P")), places, 0.1, 0.3, 0.1)
-    assert none is None
-    assert inner is not None and outer is not None
+    found = spirals((Joint("O", "P"), None, Joint("O", "P")), places, 0.1, 0.3, 0.1)
+    assert [*found] == [1, 3]
+    inner, outer = found.values()
     assert inner[-1] == pytest.approx((0.3 * cos(1), 0.3 * sin(1)))
     assert hypot(*outer[0]) == pytest.approx(0.4), "beyond the first one, with a gap"
 

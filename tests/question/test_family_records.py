@@ -113,8 +113,8 @@ def test_the_free_parameter_may_become_an_axis(tmp_path: Path) -> None:
 
 @given(st.fractions(max_denominator=50), st.sampled_from(["F", "-F^2", "2*F - 1/F", "F^-F", "(F + x)^2*-F", "x/F"]))
 def test_a_replaced_name_means_its_value(value: Fraction, text: str) -> None:
-    tree = replaced(parse(text), "F", Number(value))
+    tree = replaced(parse(text), {"F": Number(value)})
     assert "F" not in names_of(tree)
     assert parse(to_text(tree)) is not None
-    back = to_text(replaced(parse(to_text(replaced(parse(text), "F", Name("G")))), "G", Number(value)))
+    back = to_text(replaced(parse(to_text(replaced(parse(text), {"F": Name("G")}))), {"G": Number(value)}))
     assert back == to_text(tree)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.problem import SpringCone
@@ -75,15 +75,14 @@ class ConeFormulas(NamedTuple):
             meet(c, r / self.pull) if i in self.active and (r.value is None or self.pull.value is not None) else c
             for i, (c, r) in enumerate(zip(self.cosines, rest, strict=True))
         ]
-        size = range(len(known))
         return tuple(
             tuple(
                 meet(product, self.squares[i][j] - known[i] * known[j])
                 if i in self.active and j in self.active
                 else product
-                for j, product in zip(size, row, strict=True)
+                for j, product in enumerate(row)
             )
-            for i, row in zip(size, self.products(), strict=True)
+            for i, row in enumerate(self.products())
         )
 
 
@@ -118,14 +117,12 @@ class ConeShape:
         phi : the angle of the spring's direction, where that is a variable of its own.
         """
 
-        def written(f: TrigonometricPolynomial) -> Formula:
-            return f.formula(unknowns)
+        def written(part: Any) -> Any:
+            return tuple(map(written, part)) if isinstance(part, tuple) else part.formula(unknowns)
 
-        x, y = self.difference
-        dx, dy = written(x), written(y)
+        dx, dy = written(self.difference)
         ux, uy = (direction(dx, dy), direction(dy, dx)) if phi is None else (phi.cos(), phi.sin())
-        vectors = tuple((written(a), written(b)) for a, b in self.weights)
-        slopes = ((written(a), written(b)) for a, b in self.slopes)
+        vectors = written(self.weights)
         return ConeFormulas(
             expression_formula(graph, self.pull),
             (dx, dy),
@@ -135,11 +132,9 @@ class ConeShape:
             tuple(i for i, (a, b) in enumerate(self.weights) if a.terms or b.terms),
             tuple(ux * a + uy * b for a, b in vectors),
             tuple(ux * b - uy * a for a, b in vectors),
-            tuple(ux * b - uy * a for a, b in slopes),
-            tuple(tuple(ux * written(a) + uy * written(b) for a, b in row) for row in self.bends),
-            tuple(map(written, self.levers)),
-            tuple(tuple(map(written, row)) for row in self.squares),
-            tuple(tuple(map(written, row)) for row in self.crosses),
+            tuple(ux * b - uy * a for a, b in written(self.slopes)),
+            tuple(tuple(ux * a + uy * b for a, b in row) for row in written(self.bends)),
+            *map(written, (self.levers, self.squares, self.crosses)),
         )
 
 

@@ -74,21 +74,8 @@ class Push:
         return expression_formula(graph, self.pull) * length(*(expression_formula(graph, e) for e in self.direction))
 
 
-@dataclass(frozen=True, slots=True)
-class Condition:
-    """What is positive at solutions that count, or at stable ones: a `Margin` over a slice.
-
-    Attributes
-    ----------
-    text, curve, reason : as of the margin.
-    squares : where the value is the sum of their squares, what vanishes in its place; else none.
-    """
-
-    text: str
-    value: TrigonometricPolynomial
-    curve: str = ""
-    reason: str = ""
-    squares: tuple[TrigonometricPolynomial, ...] = ()
+Condition = Margin[TrigonometricPolynomial]
+"""What is positive at solutions that count, or at stable ones; with squares where the value is exactly their sum."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,13 +260,13 @@ def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[
     return found
 
 
-def _margins(trees: Mapping[str, Tree]) -> Iterator[tuple[str, Margin]]:
+def _margins(trees: Mapping[str, Tree]) -> Iterator[tuple[str, Margin[Tree]]]:
     """A model's conditions, with the key of each in the record."""
     for key, tree in trees.items():
         yield key, Margin(to_text(tree), tree)
 
 
-def _conditions(margins: Iterable[tuple[str, Margin]], ring: Harmonics) -> tuple[Condition, ...]:
+def _conditions(margins: Iterable[tuple[str, Margin[Tree]]], ring: Harmonics) -> tuple[Condition, ...]:
     """The conditions that say something, of margins with the keys of a record that they come from.
 
     Raises

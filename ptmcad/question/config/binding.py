@@ -81,11 +81,10 @@ def settled(record: Record, given: Mapping[str, Scalar]) -> Record:
 def _with_numbers(scalar: Scalar, numbers: Mapping[str, Fraction]) -> Scalar:
     """A text with numbers in it; what cannot be read or has no value stays as it is, to be refused with its place."""
     try:
-        tree = other = parse(scalar.text)
+        tree = parse(scalar.text)
     except ExpressionError:
         return scalar
-    for name, number in numbers.items():
-        other = replaced(other, {name: Number(number)})
+    other = replaced(tree, {name: Number(number) for name, number in numbers.items()})
     return scalar if other is tree else Scalar(_simplest(other), scalar.place)
 
 

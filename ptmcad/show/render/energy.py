@@ -84,8 +84,7 @@ def energy_of(model: Model, parameters: Mapping[str, Fraction]) -> Energy:
     known = compiled(model)
     given = Assignment(dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters), Fraction)
     moments = known.values(tuple(known.acting.values()), given)
-    sizes = [abs(c) for c in (*exact.values(), *moments)]
-    unit = Fraction(10) ** magnitude(max(sizes, default=Fraction(1)))
+    unit = Fraction(10) ** magnitude(max(map(abs, (*exact.values(), *moments)), default=Fraction(1)))
     roots = []
     for spring in known.kinked:
         pull, collapsed = known.values((spring.pull, spring.collapsed), given)

@@ -308,15 +308,14 @@ def _load_texts(mechanism: Mechanism, acting: Sequence[PointForce]) -> Iterator[
 
     What was given as a number or an expression is a force across, Fx, or up, Fy, at its point.
     """
-    places: dict[str, list[str]] = {}
+    places: dict[tuple[str, str], list[str]] = {}
     known = components(acting)
     for load in acting:
         for axis, name in zip("xy", load.names, strict=True):
             what = symbol(name) if name in mechanism.parameters else f"F{axis} at {symbol(load.point)}"
             if known[name]:
-                places.setdefault(f"{what}\n{name}", []).append(symbol(load.point))
-    for key, points in places.items():
-        what, _, name = key.partition("\n")
+                places.setdefault((what, name), []).append(symbol(load.point))
+    for (what, name), points in places.items():
         several = name in mechanism.parameters and len(set(points)) > 1
         at = f" at {', '.join(dict.fromkeys(points))}" if several else ""
         yield f"{what}{at} {value_text(known[name])}".replace(" ", "\N{NO-BREAK SPACE}")

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import dist, hypot
+from math import copysign, dist, hypot
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.model import Mechanism, Support
@@ -123,7 +123,7 @@ def arrow_lengths(poses: Poses) -> dict[str, float]:
 def arrows_of(forces: Mapping[str, Fraction], largest: Fraction) -> dict[str, float]:
     """The lengths of the arrows of those that are not zero, in proportion to the largest."""
     return {
-        name: (1 if force > 0 else -1) * max(MIN_ARROW, MAX_ARROW * float(abs(force) / largest))
+        name: copysign(max(MIN_ARROW, MAX_ARROW * float(abs(force) / largest)), force)
         for name, force in forces.items()
         if force
     }
@@ -174,10 +174,9 @@ def sketched(
     for number, (start, end) in enumerate(mechanism.spring_ends, 1):
         coils[f"spring-{number}"] = line = _spring(nodes[start], nodes[end], drawn, turns)
         drawn += polyline(line, 0.5)
-    for number, wound in enumerate(spirals(joints_of(mechanism), nodes, *SPIRAL, SPIRAL_GAP), 1):
-        if wound is not None:
-            coils[f"torsion-{number}"] = wound
-            drawn += polyline(wound, 0.5)
+    for number, line in spirals(joints_of(mechanism), nodes, *SPIRAL, SPIRAL_GAP).items():
+        coils[f"torsion-{number}"] = line
+        drawn += polyline(line, 0.5)
     placed_arrows = tuple(_arrows(mechanism.loads, nodes, arrows))
     rails = tuple(_rails(mechanism, nodes))
     strokes = [*drawn, *(Stroke(a, b, 1.0) for a, b in rails)]
@@ -254,13 +253,11 @@ def _arrows(loads: Sequence[Load], nodes: Nodes, lengths: Mapping[str, float]) -
         x, y = at[number]
         near = [k for k, other in enumerate(at) if dist(other, at[number]) < 5]
         side = 5.2 * (near.index(number) - (len(near) - 1) / 2)
-        horizontal, vertical = load.names
-        if horizontal in lengths:
-            sign = 1 if lengths[horizontal] > 0 else -1
-            yield horizontal, (x + sign * PIN, y + side), (x + sign * PIN + lengths[horizontal], y + side)
-        if vertical in lengths:
-            sign = 1 if lengths[vertical] > 0 else -1
-            yield vertical, (x + side, y + sign * PIN), (x + side, y + sign * PIN + lengths[vertical])
+        for name, (u, v) in zip(load.names, ((1, 0), (0, 1)), strict=True):
+            if name in lengths:
+                rim = copysign(PIN, lengths[name])
+                start, end = ((x + u * r + v * side, y + v * r + u * side) for r in (rim, rim + lengths[name]))
+                yield name, start, end
 
 
 def own_labels(nodes: Nodes, offsets: Nodes) -> Iterator[Label]:

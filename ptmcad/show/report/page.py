@@ -154,7 +154,7 @@ def drawing_of(model: Model) -> dict[str, Any]:
     mechanism = model.drawable
     if mechanism is None:
         empty = ("points", "rods", "springs", "loaded", "moving", "pinned", "sliding", "rising")
-        return unknowns | {name: [] for name in empty}
+        return unknowns | dict.fromkeys(empty, ())
     number = {name: n for n, name in enumerate(mechanism.points)}
 
     def held(support: Support) -> list[int]:
