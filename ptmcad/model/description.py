@@ -28,14 +28,13 @@ from ptmcad.model.elements import (
     Spring,
     Support,
     TorsionSpring,
+    Unit,
     UnknownKind,
     XJoint,
 )
 from ptmcad.model.evaluate import multiples
 from ptmcad.text.tree import Name, Tree, names_of
 
-Unit = tuple[str, ...]
-"""Quantities, ``length`` and ``force``, and between two of them what joins them."""
 _UNITS: Mapping[Kind, Unit] = {
     Kind.LENGTH: ("length",),
     Kind.BASE: ("length",),
@@ -462,8 +461,8 @@ class System(Model):
 
     @cached_property
     def polynomials(self) -> Mapping[str, tuple[Tree, ...]]:
-        lists = _numbered("equations", self.equations), self.conditions, _numbered("stable", self.stability)
-        found = {key: (tree,) for trees in lists for key, tree in trees.items()}
+        trees = _numbered("equations", self.equations) | dict(self.conditions) | _numbered("stable", self.stability)
+        found = {key: (tree,) for key, tree in trees.items()}
         return found if self.potential is None else {**found, "potential": (self.potential,)}
 
 

@@ -27,6 +27,8 @@ LEVEL: Tree = ZERO
 _HALF: Tree = Number(Fraction(1, 2))
 _TWO: Tree = Number(Fraction(2))
 Place = tuple[Tree, Tree]
+Unit = tuple[str, ...]
+"""Quantities, ``length`` and ``force``, and between two of them what joins them."""
 
 
 class Kind(Enum):
@@ -66,7 +68,8 @@ class Kind(Enum):
 
 
 class UnknownKind(Enum):
-    """Where an unknown lives: the word of records, then what others ask of it.
+    """Where an unknown lives: the word of records, then what others ask of it. A part of the line has a condition, too,
+    in `Model.conditions`.
 
     Attributes
     ----------
@@ -81,9 +84,9 @@ class UnknownKind(Enum):
 
     where: str
     turns: bool
-    unit: tuple[str, ...]
+    unit: Unit
 
-    def __new__(cls, word: str, where: str, turns: bool = False, unit: tuple[str, ...] = ()) -> UnknownKind:
+    def __new__(cls, word: str, where: str, turns: bool = False, unit: Unit = ()) -> UnknownKind:
         kind = object.__new__(cls)
         kind._value_, kind.where, kind.turns, kind.unit = word, where, turns, unit
         return kind

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ptmcad.model import Model
-from ptmcad.model.description import Unit
+from ptmcad.model.elements import Unit
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import parse
