@@ -283,8 +283,8 @@ class System(Model):
 
     @cached_property
     def polynomials(self) -> Mapping[str, tuple[Tree, ...]]:
-        lists = _numbered("equations", self.equations), self.conditions, _numbered("stable", self.stability)
-        found = {key: (tree,) for trees in lists for key, tree in trees.items()}
+        trees = _numbered("equations", self.equations) | dict(self.conditions) | _numbered("stable", self.stability)
+        found = {key: (tree,) for key, tree in trees.items()}
         return found if self.potential is None else {**found, "potential": (self.potential,)}
 
 

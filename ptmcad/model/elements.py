@@ -69,7 +69,8 @@ class Kind(Enum):
 
 
 class UnknownKind(Enum):
-    """Where an unknown lives: the word of records, then what others ask of it.
+    """Where an unknown lives: the word of records, then what others ask of it. A part of the line has a condition, too,
+    in `Model.conditions`.
 
     Attributes
     ----------
@@ -84,9 +85,9 @@ class UnknownKind(Enum):
 
     where: str
     turns: bool
-    unit: tuple[str, ...]
+    unit: Unit
 
-    def __new__(cls, word: str, where: str, turns: bool = False, unit: tuple[str, ...] = ()) -> UnknownKind:
+    def __new__(cls, word: str, where: str, turns: bool = False, unit: Unit = ()) -> UnknownKind:
         kind = object.__new__(cls)
         kind._value_, kind.where, kind.turns, kind.unit = word, where, turns, unit
         return kind
