@@ -17,7 +17,7 @@ from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.verification.certified.formulas import Formulas
 from ptmcad.verification.certified.kinks import Sides
 from ptmcad.verification.certified.lines import SpringLine
-from ptmcad.verification.certified.waves import Form, Key, SpringCone, Waves
+from ptmcad.verification.certified.waves import Form, Key, SpringCone, Waves, by
 from ptmcad.verification.terms import monomials
 
 Pair = tuple[int, int]
@@ -79,35 +79,31 @@ class Equations:
         self._common = [self._in_all(i) for i in range(n)]
         self.factors = [f.product(self.parameters[name] for name in names) for names in self._common]
         self.cones = [s for s in map(self._spring, form.cones) if f.constant(s.pull) != 0]
-        self.smooth = [self.waves(row) for row in self._turned(form.equations)]
-        entries = [self.waves(row) for row in self._turned_twice(form.jacobian)]
-        self.jacobian = [entries[n * i : n * i + n] for i in range(n)]
+        rows = self._turned(form.equations)
+        self.smooth = list(map(self.waves, rows))
+        self.jacobian = [list(map(self.waves, self._slopes(row))) for row in rows]
 
     def _in_all(self, i: int) -> tuple[str, ...]:
         """The positive parameters that are in every term of an equation and of the springs' parts in it."""
         rows = [_combined(self.basis[i], self.form.equations)]
         for cone in self.form.cones:
-            for some in (cone.slopes, cone.weights):
-                rows += [_combined(self.basis[i], [vector[k] for vector in some]) for k in (0, 1)]
+            rows += [self._slopes(coordinate)[i] for coordinate in cone.vector]
+            rows += [_combined(self.basis[i], [weight[k] for weight in cone.weights]) for k in (0, 1)]
         found = [{name for name, _ in names} for row in rows for p in row.values() for _, names in monomials(p)]
         common = set.intersection(*found) if found else set()
         return tuple(sorted(common & self._positive))
 
     def _turned(self, rows: Sequence[Waves]) -> list[Waves]:
-        """Divided by the factors."""
-        return [
-            _without(_combined(vector, rows), names) for vector, names in zip(self.basis, self._common, strict=True)
-        ]
+        """Those along the basis, divided by the factors."""
+        return self._divided([_combined(vector, rows) for vector in self.basis])
 
-    def _turned_twice(self, rows: Sequence[Waves]) -> list[Waves]:
-        """Divided by the factors of the first unknowns."""
-        n = self.form.size
-        flat = [rows[n * i + j] for i in range(n) for j in range(n)]
-        return [
-            _without(_combined([a * b for a in one for b in two], flat), names)
-            for one, names in zip(self.basis, self._common, strict=True)
-            for two in self.basis
-        ]
+    def _slopes(self, row: Waves) -> list[Waves]:
+        """The derivatives along the basis."""
+        slopes = [by(row, k) for k in range(self.form.size)]
+        return [_combined(vector, slopes) for vector in self.basis]
+
+    def _divided(self, rows: Sequence[Waves]) -> list[Waves]:
+        return [_without(row, names) for row, names in zip(rows, self._common, strict=True)]
 
     def polynomial(self, p: fmpq_mpoly) -> int:
         """A polynomial in the parameters."""
@@ -133,13 +129,12 @@ class Equations:
         return total
 
     def _spring(self, cone: SpringCone) -> ConeFormulas:
-        slopes, weights = (
-            [self._turned([vector[k] for vector in some]) for k in (0, 1)] for some in (cone.slopes, cone.weights)
-        )
-        bends = [self._turned_twice([bend[k] for bend in cone.bends]) for k in (0, 1)]
+        slopes = [self._divided(self._slopes(coordinate)) for coordinate in cone.vector]
+        weights = [self._turned([weight[k] for weight in cone.weights]) for k in (0, 1)]
+        bends = [[bend for row in rows for bend in self._slopes(row)] for rows in weights]
 
         def pairs(of: Sequence[Sequence[Waves]]) -> tuple[Pair, ...]:
-            across, up = ([self.waves(row) for row in some] for some in of)
+            across, up = (map(self.waves, some) for some in of)
             return tuple(zip(across, up, strict=True))
 
         vector = self.waves(cone.vector[0]), self.waves(cone.vector[1])
@@ -317,7 +312,7 @@ def bases(form: Form) -> list[list[list[int]]]:
     for (i, j), sign in product(combinations(range(n), 2), (1, -1)):
         vector = [0] * n
         vector[i], vector[j] = 1, sign
-        rows = [form.equations, *([s[k] for s in cone.slopes] for cone in form.cones for k in (0, 1))]
+        rows = [form.equations, *([by(d, k) for k in range(n)] for cone in form.cones for d in cone.vector)]
         before = sum(len(row[i]) + len(row[j]) for row in rows)
         if sum(len(_combined(vector, row)) for row in rows) < before - len(rows) // 2:
             found.append([vector if k == j else [int(k == m) for m in range(n)] for k in range(n)])

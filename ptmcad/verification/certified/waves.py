@@ -44,19 +44,15 @@ class SpringCone(NamedTuple):
     name : of the spring, or of each.
     pull : K, the stiffness times the free length; of several the sum, each by how much longer it is than the vector.
     vector : between the spring's ends; of several one in the same direction.
-    slopes : first derivatives of both by the unknowns.
-    weights : for each equation the vector whose product with the spring's direction, times K, it lacks: the slopes, but
-        with closed loops the derivative along them in the last equation, and nothing in the others.
-    bends : the weights' derivatives by the unknowns, row by row.
+    weights : for each equation the vector whose product with the spring's direction, times K, it lacks: the vector's
+        derivative by the unknown, but with closed loops that along them in the last equation, and nothing in others.
     line : along which the vector stays all over the slice, if there is one.
     """
 
     name: str
     pull: fmpq_mpoly
     vector: Vector
-    slopes: tuple[Vector, ...]
     weights: tuple[Vector, ...]
-    bends: tuple[Vector, ...]
     line: SpringLine | None
 
 
@@ -83,8 +79,8 @@ class Form:
     ----------
     is_circle : of each unknown, whether it is an angle.
     is_gradient : whether the equations are the derivatives of a potential, so that the Jacobian is a Hessian.
-    equations, jacobian : without the parts of the cones; the derivatives row by row. Equations are divided by powers of
-        real unknowns that are not zero where a solution counts.
+    equations : without the parts of the cones; divided by powers of real unknowns that are not zero where a solution
+        counts.
     inequalities, stability : positive at solutions that count, and at stable ones.
     multiples : of the equations, before they were divided.
     margins : what a kind of count asks of stable solutions besides.
@@ -97,7 +93,6 @@ class Form:
     is_circle: tuple[bool, ...]
     is_gradient: bool
     equations: tuple[Waves, ...]
-    jacobian: tuple[Waves, ...]
     cones: tuple[SpringCone, ...]
     inequalities: tuple[Waves, ...] = ()
     stability: tuple[Waves, ...] = ()
@@ -193,7 +188,7 @@ def _collected(terms: Iterable[tuple[Key, fmpq_mpoly]]) -> Waves:
     return {key: c for key, c in found.items() if not c.is_zero()}
 
 
-def _by(f: Waves, k: int) -> Waves:
+def by(f: Waves, k: int) -> Waves:
     """The derivative by an unknown."""
     found = []
     for (turned, raised, sine), c in f.items():
@@ -215,7 +210,6 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
     true = derivation_of(model)
     ring = _Exponentials(model, true.ring)
     unknowns = ring.unknowns
-    everything = range(len(unknowns))
     inequalities, stability = (list(map(ring.waves, some)) for some in (true.inequalities, true.stability))
     multiples: list[Waves] = []
     if true.from_energy:
@@ -225,7 +219,6 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
         whole = list(map(ring.waves, true.equations))
         equations = [_divided(e, inequalities) for e in whole]
         multiples = [e for e, f in zip(whole, equations, strict=True) if e != f]
-    jacobian = [_by(e, k) for e in equations for k in everything]
     cones = tuple(_cones(ring, true, Parameters(values, axes, ring.numbers)))
     closing = tuple(map(unknowns.index, true.unknowns)) if cones and true.closing else ()
     if closing:
@@ -235,7 +228,6 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
         tuple(name in model.angles for name in unknowns),
         true.is_gradient,
         tuple(equations),
-        tuple(jacobian),
         cones,
         tuple(inequalities),
         tuple(stability),
@@ -273,7 +265,7 @@ def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Ite
     for spring in true.pulling:
         pull = ring.waves(spring.pull)
         vector = ring.vector(spring.vector)
-        if all(map(parameters.vanishes, pull.values())) or not any(_by(d, k) for d in vector for k in everything):
+        if all(map(parameters.vanishes, pull.values())) or not any(by(d, k) for d in vector for k in everything):
             continue
         across, up = spring.vector
         along = ring.vector((true.along_loops(across), true.along_loops(up))) if true.closing else None
@@ -285,16 +277,11 @@ def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Ite
         else:
             sides.append(new)
     for name, pull, vector, along in sides:
-        slopes = tuple(_slope(vector, k) for k in everything)
-        nothing: Vector = ({}, {})
-        weights = slopes if along is None else (*[nothing] * (len(ring.unknowns) - 1), along)
-        bends = tuple(_slope(weight, k) for weight in weights for k in everything)
+        weights = [(by(vector[0], k), by(vector[1], k)) for k in everything]
+        if along is not None:
+            weights = [*[({}, {})] * (len(weights) - 1), along]
         ((_, strength),) = pull.items()
-        yield SpringCone(name, strength, vector, slopes, weights, bends, line_of(vector, parameters.vanishes))
-
-
-def _slope(vector: Vector, k: int) -> Vector:
-    return _by(vector[0], k), _by(vector[1], k)
+        yield SpringCone(name, strength, vector, tuple(weights), line_of(vector, parameters.vanishes))
 
 
 def _joined(one: _Side, other: _Side, parameters: Parameters) -> _Side | None:
