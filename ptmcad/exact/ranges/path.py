@@ -22,7 +22,6 @@ from flint import arb, ctx
 
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.poses import Pose
-from ptmcad.answer.words import followed
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models import system_from
 from ptmcad.exact.poses import exact_poses
@@ -76,7 +75,7 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
     poses = exact_poses(slice.model, parameters_at(family, line, value), DIGITS)
     stable = range(len(poses.working))
     if number is not None and number - 1 not in stable:
-        what = f"{len(stable)} {followed(slice.model)}s"
+        what = f"{len(stable)} {slice.model.criterion.poses}"
         raise ConfigError(f"{number} is none of the {what} at {along} = {value}, counted from 1", key="--pose")
     chosen = stable if number is None else (number - 1,)
     return PosePaths(
