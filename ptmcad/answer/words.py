@@ -112,17 +112,20 @@ def of_what(model: Model, parameters: Mapping[str, Fraction]) -> str:
     ----------
     model : one that has a potential.
     """
-    moments = moments_at(model, parameters)
-    return f"of springs and loads, without the {moments_work(model, moments)}" if moments else ""
+    work = moments_work(model, moments_at(model, parameters))
+    return work and f"of springs and loads, without the {work}"
 
 
 def moments_work(model: Model, unknowns: Collection[str]) -> str:
-    """What the moments on some unknowns do, and the forces on those that are no angles, that is in no energy.
+    """What the moments on some unknowns do, and the forces on those that are no angles, that is in no energy; empty
+    where there are none.
 
     Parameters
     ----------
     model : a mechanism; the work of what varies in a moment is in its energy.
     """
+    if not unknowns:
+        return ""
     what, several = acting(model, unknowns), len(unknowns) > 1
     mechanism = model.drawable
     if mechanism is not None and split_moments(mechanism).energies:

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, Event
 from ptmcad.answer.paths import Fate, PosePath, PosePaths
 from ptmcad.answer.widths import Maximum, OperationWidths, Place
-from ptmcad.answer.words import followed
 from ptmcad.errors import ConfigError
 from ptmcad.exact.ranges.line import intervals
 from ptmcad.exact.ranges.path import ExactFollower
@@ -82,7 +81,7 @@ def pose_paths(
         follower = exact_follower(slice, along, at, begin)
     stable = [k for k, pose in enumerate(follower.poses, 1) if model.criterion.works(pose.stable)]
     if number is not None and number not in stable:
-        what = f"{len(stable)} {followed(model)}s"
+        what = f"{len(stable)} {model.criterion.poses}"
         raise ConfigError(f"{number} is none of the {what} at {along} = {begin}, counted from 1", key="--pose")
     found = []
     chosen = stable if number is None else [number]

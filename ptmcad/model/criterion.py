@@ -34,7 +34,7 @@ class Criterion:
         last one is its determinant, times what is positive.
     stable_at_zero : whether a solution at which a condition vanishes may be stable all the same.
     numbers, differences : what has values where there is an energy: of one solution, and between two.
-    adjective : before the noun of the solutions that are followed and make ranges.
+    adjective, poses : before the noun of the solutions that are followed and make ranges, and as messages call them.
     solutions, singular, matrix, determinant : what they are called in messages.
     loose : why there may be infinitely many solutions.
     undecided, degenerate : a solution of which it is not decided whether it is stable, and one without signs.
@@ -51,6 +51,7 @@ class Criterion:
     numbers: tuple[str, ...] = ()
     differences: tuple[str, ...] = ()
     adjective: str = ""
+    poses: str = "solutions"
     solutions: str = "solutions"
     singular: str = "solution has a singular Jacobian"
     matrix: str = "Jacobian"
@@ -143,6 +144,7 @@ NOTHING = Criterion()
 CONDITIONS = Criterion(
     counts=("total", "stable"),
     adjective="stable ",
+    poses="stable poses",
     undecided="undecided",
     may_vary="it may change within a region, see --count stable",
     no_target="where it goes from there is not decided",

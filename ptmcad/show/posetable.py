@@ -102,17 +102,17 @@ def _bounds(poses: Poses) -> list[str]:
     return wrapped("bounds", ["of what may be zero: " + said[0], *said[1:_MAX_BOUNDS], *more], "; ") if said else []
 
 
+_KINDS = ("stable", "saddle", "maximum", "degenerate", "unstable", "undecided")
+_PLURALS = {"saddle": "saddles", "maximum": "maxima"}
+
+
 def _summary(poses: Poses) -> list[str]:
     if poses.status is Status.UNDECIDED and not poses.equilibria:
         return [poses.remark]
     kinds = [kind_of(pose, poses.model) for pose in poses.equilibria]
-    several = {"stable": "stable", "saddle": "saddles", "maximum": "maxima", "degenerate": "degenerate"}
-    several |= {"unstable": "unstable", "solution": "solutions", "undecided": "undecided"}
-    tally = [
-        f"{kinds.count(kind)} {several[kind] if kinds.count(kind) > 1 else kind}" for kind in several if kind in kinds
-    ]
-    tells = f": {', '.join(tally)}" if kinds and "solution" not in kinds else ""
-    parts = [f"{counted(poses.model, len(kinds))}{tells}", poses.status.value]
+    told = () if "solution" in kinds else _KINDS
+    tally = [f"{n} {_PLURALS.get(kind, kind) if n > 1 else kind}" for kind in told if (n := kinds.count(kind))]
+    parts = [": ".join(filter(None, (counted(poses.model, len(kinds)), ", ".join(tally)))), poses.status.value]
     if poses.status is Status.UNDECIDED:
         boxes = f"{poses.undecided} box{'' if poses.undecided == 1 else 'es'}"
         parts = [f"at least {parts[0]}, each certified", f"{boxes} of configurations undecided"]

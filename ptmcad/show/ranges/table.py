@@ -188,8 +188,12 @@ def _heights(model: Model) -> list[str]:
 
 def _side(path: PosePath, heights: Sequence[str]) -> str:
     if path.upright or path.reverse:
-        return " and ".join(f"{y} {'>' if path.upright else '<'} 0" for y in heights)
+        return " and ".join(_signed(heights, ">" if path.upright else "<"))
     return f"{', '.join(heights)} of mixed sign" if len(heights) > 1 else f"{heights[0]} of either sign"
+
+
+def _signed(heights: Sequence[str], sign: str) -> list[str]:
+    return [f"{y} {sign} 0" for y in heights]
 
 
 def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
@@ -241,9 +245,9 @@ def _kind(negative: int, model: Model) -> str:
 def _posture(point: Target, heights: Sequence[str]) -> str:
     """The signs of the moving points' heights, such as y3 and y4."""
     if set(point.sides) == {1}:
-        return ", ".join(f"{y} > 0" for y in heights)
+        return ", ".join(_signed(heights, ">"))
     if set(point.sides) == {-1}:
-        return "reverse: " + ", ".join(f"{y} < 0" for y in heights)
+        return "reverse: " + ", ".join(_signed(heights, "<"))
     return f"{', '.join(heights)} of mixed sign or zero" if len(heights) > 1 else f"{heights[0]} near zero"
 
 

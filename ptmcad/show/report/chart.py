@@ -10,7 +10,7 @@ seen of a fill, and what of an area can be pointed at, is in that cell of the ma
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from html import escape
 from math import ceil
@@ -237,16 +237,12 @@ def _rimmed_areas(seen: Shapes, name: str) -> Iterator[str]:
 
 def counts_text(part: Cell | Region, model: Model) -> str:
     """The counts in words, as far as they are known."""
-    stable, total = part.stable, part.total
-    if part.further:
-        further = ", ".join(f"{number} {name}" for name, number in part.further.items())
-        more = f", {counts_text(replace(part, further={}), model)}" if (stable, total) != (None, None) else ""
-        return further + more
-    if stable is None and total is None:
-        return "counts not known"
-    if total is None:
-        return f"{stable} stable"
-    return stable_of(model, stable, total)
+    known = [f"{number} {name}" for name, number in part.further.items()]
+    if part.total is not None:
+        known.append(stable_of(model, part.stable, part.total))
+    elif part.stable is not None:
+        known.append(f"{part.stable} stable")
+    return ", ".join(known) or "counts not known"
 
 
 def region_labels(seen: Shapes) -> list[Label]:

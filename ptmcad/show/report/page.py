@@ -180,11 +180,8 @@ def drawing_of(model: Model) -> dict[str, Any]:
 
 def _work(model: Model) -> str:
     """What the energies of poses leave out, where moments work; empty where there are none, or no energies."""
-    mechanism = model.drawable
-    if mechanism is None:
-        return ""
-    acted = [moment.unknown for moment in split_moments(mechanism).steady]
-    return moments_work(model, acted) if acted else ""
+    steady = () if model.drawable is None else split_moments(model.drawable).steady
+    return moments_work(model, [moment.unknown for moment in steady])
 
 
 def _declared(slice: Slice) -> dict[str, Any]:
