@@ -34,9 +34,7 @@ def picture(name: str, draw: Writer) -> Writer:
             draw(path)
         except MemoryError:
             raise
-        except (
-            Exception
-        ) as error:  # a library's, of any kind: fonts, caches, the disk; raised as one kind
+        except Exception as error:  # a library's, of any kind: fonts, caches, the disk; raised as one kind
             raise PictureError(f"{name} cannot be drawn: {_reason(error)}") from error
 
     return write
