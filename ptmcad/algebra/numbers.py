@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import Protocol
 
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_plane
 from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, order, refine
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, interval_of, to_fraction
 from ptmcad.text.plane import PlanePolynomial
 
 
@@ -27,11 +28,22 @@ def algebraic_number(root: RealRoot) -> AlgebraicNumber:
     return AlgebraicNumber(coefficients, to_fraction(root.low), to_fraction(root.high))
 
 
-def root_of(number: AlgebraicNumber) -> RealRoot:
+class Isolated(Protocol):
+    """A root of a polynomial, between two numbers."""
+
+    @property
+    def polynomial(self) -> tuple[int, ...]: ...
+
+    @property
+    def low(self) -> Fraction: ...
+
+    @property
+    def high(self) -> Fraction: ...
+
+
+def root_of(number: Isolated) -> RealRoot:
     """The engine's form of a number."""
-    return RealRoot(
-        UnivariatePolynomial(list(number.polynomial)), from_fraction(number.low), from_fraction(number.high)
-    )
+    return RealRoot(UnivariatePolynomial(list(number.polynomial)), *interval_of(number))
 
 
 def refined(number: AlgebraicNumber, width: Fraction) -> AlgebraicNumber:
@@ -75,11 +87,6 @@ def in_order(
     short = [refine(root_of(number), from_fraction(width)) for number in numbers]
     found = inside(disjoint(short), (from_fraction(low), from_fraction(high)))
     return tuple(algebraic_number(r) for r in found)
-
-
-def as_interval(number: AlgebraicNumber) -> tuple[fmpq, fmpq]:
-    """The isolating interval's ends."""
-    return from_fraction(number.low), from_fraction(number.high)
 
 
 def fibre_roots(p: UnivariatePolynomial, low: fmpq, high: fmpq) -> tuple[AlgebraicNumber, ...]:

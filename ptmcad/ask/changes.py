@@ -31,7 +31,7 @@ from ptmcad.exact.surfaces import surfaces_of
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.config import Family, family_from
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.flint_numbers import from_fraction, simplest_between, simplest_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, simplest_fraction, to_fraction
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import share_for
 
@@ -159,7 +159,7 @@ def _critical(members: Members) -> tuple[RealRoot, ...] | str:
     if variety is None:
         return "the equations are not eliminated over all members in common"
     members.report("critical values", 0, 1)
-    box = [(from_fraction(a.low), from_fraction(a.high)) for a in (*asked.axes, asked.free)]
+    box = list(map(interval_of, (*asked.axes, asked.free)))
     return critical_values(surfaces_of(*in_space(asked), variety, box), box, members.check)
 
 

@@ -26,7 +26,7 @@ from ptmcad.exact.decomposition import Decomposition, cut_along, seen_from
 from ptmcad.exact.regions import members
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Point
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import interval_of
 
 TOLERANCE = Fraction(1, 10**6)
 """Relative width of the areas' bounds."""
@@ -47,10 +47,9 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
     components = _union([c for m in (first, second) for c in m.components if c.separates])
     # at a sample both maps have to say what they count there
     others = [replace(c, left_out=HARMLESS) for m in (first, second) for c in m.components if not c.separates]
-    x, y = ((from_fraction(a.low), from_fraction(a.high)) for a in first.slice.axes)
+    x, y = map(interval_of, first.slice.axes)
     cut = cut_along((x, y), seen_from([*components, *_union(others)]))
-    names, count = first.slice.axis_names, first.slice.count
-    points = [Point(names, to_fraction(x), to_fraction(y)) for x, y in cut.points]
+    points, count = cut.samples(first.slice.axis_names), first.slice.count
     with _asked("first"):
         befores = [_region(first, at) for at in points]
         olds = [counted_by(first.regions[a], count) for a in befores]

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import fmpq
 
+from ptmcad.algebra.numbers import root_of
 from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_expression, from_plane, univariate
-from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, order, sign_at, squarefree_part
+from ptmcad.algebra.real_roots import has_root_between, isolate, order, sign_at, squarefree_part
 from ptmcad.answer.location import Location
 from ptmcad.answer.regionmap import Component, Kind, RegionMap, Status
 from ptmcad.answer.words import noun
@@ -25,7 +26,7 @@ from ptmcad.exact.cad.stacks import level_at
 from ptmcad.exact.models import system_from
 from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Point
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import from_fraction, interval_of
 from ptmcad.text.parsing import number_for
 
 if TYPE_CHECKING:
@@ -72,8 +73,7 @@ def _cell_at(result: RegionMap, u: fmpq, v: fmpq) -> int:
     if on_critical:
         # the point lies on an artefact of the decomposition: step to the stack at its left along a free segment
         u = _step_left(result, curves, u, v, stack)
-    axis = result.slice.axes[1 - result.base]
-    below = level_at(curves, u, v, (from_fraction(axis.low), from_fraction(axis.high)))
+    below = level_at(curves, u, v, interval_of(result.slice.axes[1 - result.base]))
     try:
         number = result.stacks[stack].cells[below]
         result.cells[number]
@@ -212,8 +212,7 @@ def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction
 def stack_over(result: RegionMap, u: fmpq) -> tuple[int, bool]:
     """The stack over u; or, when u is a critical value, the stack at its left and True."""
     for number, critical in enumerate(result.critical_values):
-        low, high = from_fraction(critical.low), from_fraction(critical.high)
-        side = order(u, RealRoot(UnivariatePolynomial(list(critical.polynomial)), low, high))
+        side = order(u, root_of(critical))
         if side <= 0:
             return number, side == 0
     return len(result.critical_values), False

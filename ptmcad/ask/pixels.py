@@ -22,7 +22,7 @@ from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.curves import by_component, curves_of, lines_of
 from ptmcad.question.doubles import within_doubles
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import from_fraction, interval_of
 
 MAX_PIXELS = 10**8
 
@@ -75,8 +75,7 @@ def _exact(result: RegionMap, centres: list[list[Fraction]]) -> Labels:
     curves = by_component(curves_of(result.components, base))
     lines = list(lines_of(result.components, base).values())
     heights = [from_fraction(v) for v in centres[1 - base]]
-    axis = result.slice.axes[1 - base]
-    fibre = from_fraction(axis.low), from_fraction(axis.high)
+    fibre = interval_of(result.slice.axes[1 - base])
     image = np.full((len(centres[base]), len(heights)), NONE, dtype=np.int64)
     for k, at in enumerate(centres[base]):
         u = from_fraction(at)

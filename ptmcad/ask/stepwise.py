@@ -26,7 +26,7 @@ from ptmcad.question.config import point_from_mapping, slice_from
 from ptmcad.question.domain import proved
 from ptmcad.question.slice import Point, Slice, without_free_lengths
 from ptmcad.text.expressions import constant
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction
 
 TIMEOUT = 60.0
 """Seconds for a search where algebra does not count."""
@@ -80,8 +80,7 @@ def open_cad(question: Question) -> tuple[Point, ...]:
     """
     slice = slice_from(question)
     without_free_lengths(slice.model, slice.parameters, "an open CAD is")
-    cut = decomposition_of(problem_of(proved(slice)))
-    return tuple(Point(slice.axis_names, to_fraction(x), to_fraction(y)) for x, y in cut.points)
+    return decomposition_of(problem_of(proved(slice))).samples(slice.axis_names)
 
 
 def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object) -> Counts:

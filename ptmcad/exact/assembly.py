@@ -65,7 +65,7 @@ def assemble(
         precision["solutions"] = max(e.bits for e in cells.counts.found)
     if areas is not None:
         precision["areas"] = areas.bits
-    samples = () if cells is None else _samples(problem, cells)
+    samples = () if cells is None else cells.cut.samples(problem.slice.axis_names)
     return RegionMap(
         slice=problem.slice,
         status=status,
@@ -100,11 +100,6 @@ def versions() -> dict[str, str]:
         "python-flint": flint.__version__,
         "flint": flint.__FLINT_VERSION__,
     }
-
-
-def _samples(problem: SliceProblem, cells: Cells) -> tuple[Point, ...]:
-    names = problem.slice.axis_names
-    return tuple(Point(names, to_fraction(x), to_fraction(y)) for x, y in cells.cut.points)
 
 
 def critical_values_of(projection: Projection) -> tuple[CriticalValue, ...]:

@@ -18,6 +18,7 @@ from ptmcad.exact.cad.curves import FibredCurve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, level_at, lift
 from ptmcad.exact.regions import Link, merge
+from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import to_fraction
 
 _T = TypeVar("_T")
@@ -86,6 +87,10 @@ class Decomposition(NamedTuple):
     def places(self) -> list[tuple[int, int]]:
         """The stack of every cell, and its level there."""
         return [(s, level) for s, stack in enumerate(self.stacks) for level in range(len(stack.heights))]
+
+    def samples(self, names: tuple[str, str]) -> tuple[Point, ...]:
+        """The points as answers have them, by the axes' names."""
+        return tuple(Point(names, to_fraction(x), to_fraction(y)) for x, y in self.points)
 
     def rows(self, values: Iterable[_T]) -> list[tuple[_T, ...]]:
         """What there is for every cell, as a row for each stack."""

@@ -33,7 +33,7 @@ from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
 from ptmcad.model.involutions import Involution, involutions
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import interval_of, to_fraction
 from ptmcad.text.numerals import short_text
 
 
@@ -109,7 +109,7 @@ def problem_of(slice: Slice) -> SliceProblem:
     """The slice in the ring of the engine."""
     system = system_counted(slice.model, slice.count)
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
-    first, second = ((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
+    first, second = map(interval_of, slice.axes)
     return SliceProblem(slice, system, parameters, (first, second))
 
 

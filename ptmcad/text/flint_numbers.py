@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Protocol
 
 from flint import fmpq
 
@@ -15,6 +16,21 @@ def to_fraction(value: fmpq) -> Fraction:
 def from_fraction(value: Fraction | int) -> fmpq:
     """A Python fraction or integer as a FLINT rational."""
     return fmpq(value.numerator, value.denominator)
+
+
+class Ends(Protocol):
+    """What reaches from one number to another: an axis, an enclosure."""
+
+    @property
+    def low(self) -> Fraction: ...
+
+    @property
+    def high(self) -> Fraction: ...
+
+
+def interval_of(ends: Ends) -> tuple[fmpq, fmpq]:
+    """The two numbers as FLINT's."""
+    return from_fraction(ends.low), from_fraction(ends.high)
 
 
 def simplest_between(low: fmpq, high: fmpq) -> fmpq:

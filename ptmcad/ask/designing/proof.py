@@ -23,8 +23,7 @@ from ptmcad.exact.ranges.strips import strips
 from ptmcad.exact.ranges.width import lines_of, widest
 from ptmcad.exact.stages import problem_of
 from ptmcad.question.config.designed import Aim, Design
-from ptmcad.question.slice import Axis
-from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, to_fraction
 
 Look = Callable[[Mapping[str, Fraction]], Fraction]
 """From a design to a lower bound of the best value that is known after it was evaluated."""
@@ -116,16 +115,12 @@ def _bounder(design: Design, tolerance: fmpq) -> Bounder | None:
         space = space_of_slice(problem_of(slice), slice.axis_names.index(design.along), design.working)
         return Lengths(space, tolerance)
     axes = (*family.axes, family.free)
-    ranges = tuple(_interval(axis) for axis in axes)
+    ranges = tuple(interval_of(axis) for axis in axes)
     along = 1 if design.aim is Aim.AREA else 0
     found = space_of_family(*in_space(family), Axes(tuple(a.name for a in axes), ranges, along), design.working)
     if found is None:
         return None
     return AreaBounder(found, ranges[0]) if design.aim is Aim.AREA else Lengths(found, tolerance)
-
-
-def _interval(axis: Axis) -> tuple[fmpq, fmpq]:
-    return from_fraction(axis.low), from_fraction(axis.high)
 
 
 def bounded(design: Design, bounder: Bounder, look: Look, limits: ProofLimits) -> Proof:
@@ -145,7 +140,7 @@ def bounded(design: Design, bounder: Bounder, look: Look, limits: ProofLimits) -
 
     size = _size(design)
     wanted = Goal(from_fraction(limits.tolerance), from_fraction(limits.tolerance * size), limits.boxes)
-    whole = tuple(_interval(axis) for axis in design.over)
+    whole = tuple(interval_of(axis) for axis in design.over)
     try:
         outcome = search(bounder, whole, feasible, improved, wanted, check)
     except HypothesisError as error:

@@ -18,12 +18,12 @@ from fractions import Fraction
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial
+from ptmcad.algebra.numbers import root_of
 from ptmcad.algebra.real_roots import RealRoot, halve, isolate, order, refine, sign_at
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.exact.cad.curves import by_component, curves_of
 from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Span, WallBranch, chords, shut_in, to_share
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import from_fraction, interval_of
 
 _NARROWEST = Fraction(1, 2**40)
 _END = fmpq(1, 2**60)
@@ -88,8 +88,7 @@ def _goes_on(wall: WallBranch, end: Span, number: int) -> bool:
 
 def critical_shares(result: RegionMap) -> list[Span]:
     """Every critical value between two shares of the base, near together against the stacks beside it."""
-    axis = result.slice.axes[result.base]
-    base = from_fraction(axis.low), from_fraction(axis.high)
+    base = interval_of(result.slice.axes[result.base])
     samples = [from_fraction(s.sample) for s in result.stacks]
     ends = [_enclosed(v, samples[k], samples[k + 1]) for k, v in enumerate(result.critical_values)]
     return [(to_share(root.low, base), to_share(root.high, base)) for root in ends]
@@ -103,9 +102,9 @@ def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:
     ValueError
         When it is not between them, as in a damaged result: halving would never part it from them.
     """
-    p = UnivariatePolynomial(list(value.polynomial))
-    root = RealRoot(p, from_fraction(value.low), from_fraction(value.high))
-    is_one = root.is_rational or (root.low < root.high and sign_at(p, root.low) * sign_at(p, root.high) < 0)
+    root = root_of(value)
+    signs = {sign_at(root.polynomial, end) for end in (root.low, root.high)}
+    is_one = root.is_rational or (root.low < root.high and signs == {-1, 1})
     if not is_one or not order(before, root) < 0 < order(after, root):
         raise ValueError("a critical value is not between the samples of its stacks")
     while root.low <= before or root.high >= after:

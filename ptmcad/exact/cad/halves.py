@@ -14,7 +14,7 @@ from flint import fmpq
 
 from ptmcad.algebra.graphs import on_graph
 from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, disjoint, halve, inside, isolate, sign_at, squarefree_part
+from ptmcad.algebra.real_roots import RealRoot, disjoint, halve, inside, isolate, order, squarefree_part
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.area import RegionStacks
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, level_at
@@ -61,7 +61,7 @@ def _apart(end: BaseEnd, middle: fmpq) -> BaseEnd:
     root = end.root
     if root is None:
         return end
-    if root.low <= middle <= root.high and not sign_at(root.polynomial, middle):
+    if order(middle, root) == 0:
         return BaseEnd(middle, RealRoot(root.polynomial, middle, middle), None)
     while root.low <= middle <= root.high:
         root = halve(root)

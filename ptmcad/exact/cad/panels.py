@@ -14,7 +14,7 @@ from flint import arb, ctx, fmpq
 from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.branches import Integral, TooFewBits, branch_integral
 from ptmcad.algebra.graphs import graph_integral
-from ptmcad.algebra.real_roots import Interval, RealRoot, refine, sign_at
+from ptmcad.algebra.real_roots import Interval, RealRoot, order, refine
 from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.exact.cad.horizontals import horizontals
 from ptmcad.exact.cad.stacks import BaseEnd
@@ -169,11 +169,8 @@ def _at_end(border: Border, over: Interval, side: int, effort: PanelEffort, allo
 
 def _place_of(end: BaseEnd, near: fmpq) -> fmpq:
     """The end's place as far as it is known, exactly where ``near`` is that place."""
-    root = end.root
-    if root is None or sign_at(root.polynomial, near):
-        return end.value
     # a rational root may become known as such only when it is refined
-    return near if root.low < near < root.high or root.low == near == root.high else end.value
+    return near if end.root is not None and order(near, end.root) == 0 else end.value
 
 
 def _about_end(

@@ -20,7 +20,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.determinants import determinant
-from ptmcad.algebra.numbers import algebraic_number, as_interval, in_order
+from ptmcad.algebra.numbers import algebraic_number, in_order
 from ptmcad.algebra.points import RealPoint, points, value_at
 from ptmcad.algebra.polynomials import (
     ONE,
@@ -45,7 +45,7 @@ from ptmcad.exact.variety import algebra_of
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import from_fraction, simplest_between
+from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between
 
 MAX_DIMENSION = 40
 """Complex solutions, with multiplicity and at all conjugate values, up to which they are told apart."""
@@ -124,7 +124,7 @@ def _critical(equations: SliceSystem, algebra: QuotientAlgebra, axis: Axis) -> t
         )
     ]
     factors = {tuple(map(int, factor.coeffs())): factor for p in found for factor, _ in p.factor()[1]}
-    low, high = from_fraction(axis.low), from_fraction(axis.high)
+    low, high = interval_of(axis)
     roots = [algebraic_number(root) for factor in factors.values() for root in isolate(factor, low, high)]
     return in_order(roots, axis.low, axis.high, (axis.high - axis.low) * END_WIDTH)
 
@@ -187,7 +187,7 @@ class _Counting(NamedTuple):
         required = [*point.inequalities]
         if self.value.exact is None:
             unit, one = (*(0,) * (self.system.ring.width - 1), 1), (0,) * self.system.ring.width
-            low, high = as_interval(self.value)
+            low, high = interval_of(self.value)
             required += [{unit: fmpq(1), one: -low}, {unit: fmpq(-1), one: high}]
         stable = open_ones = 0
         for solution in points(point.algebra, None).real:

@@ -12,7 +12,7 @@ from fractions import Fraction
 from flint import fmpq
 
 from ptmcad.algebra.chords import side_of_chord
-from ptmcad.algebra.numbers import as_interval, fibre_roots, refined, root_of
+from ptmcad.algebra.numbers import fibre_roots, refined, root_of
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
 from ptmcad.algebra.real_roots import Interval, isolate, refine, sign
 from ptmcad.algebra.resultants import resultant
@@ -21,12 +21,12 @@ from ptmcad.answer.intervals import End
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.strips import RangeEnd, RangeStrip, at_abscissa, bound_over, end_interval
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import simplest_between, to_fraction
+from ptmcad.text.flint_numbers import interval_of, simplest_between, to_fraction
 
 
 def ends_of(end: End) -> Interval:
     """An interval that holds a limit: of length zero when it is rational."""
-    return as_interval(AlgebraicNumber.of(end))
+    return interval_of(AlgebraicNumber.of(end))
 
 
 def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End | None:

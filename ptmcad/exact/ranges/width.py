@@ -50,7 +50,7 @@ from ptmcad.exact.ranges.strips import (
 )
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import interval_of, to_fraction
 
 _END_WIDTH = fmpq(1, 2**120)
 _MIN_PIECE = fmpq(1, 2**50)
@@ -337,7 +337,7 @@ def _limits(strip: RangeStrip, end: BaseEnd) -> tuple[End, End] | None:
 
 def _width(span: Span) -> Interval:
     known = Span(*(AlgebraicNumber.of(e).refined(to_fraction(_END_WIDTH)) for e in (span.low, span.high))).width
-    return from_fraction(known.low), from_fraction(known.high)
+    return interval_of(known)
 
 
 def _within(ends: tuple[End, End], span: Span) -> bool:
