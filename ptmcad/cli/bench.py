@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.gathering import reading
-from ptmcad.cli.paths import out_option
+from ptmcad.cli.paths import PATH, out_option
 from ptmcad.cli.pictures import report_written
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.values import files
@@ -29,10 +29,8 @@ def _seconds(key: str, value: float) -> float:
 
 
 @click.command("bench")
-@click.argument(
-    "configs", nargs=-1, type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"), metavar="[CONFIG]..."
-)
-@click.option("--compare", nargs=2, type=click.Path(path_type=Path), metavar="OLD NEW",
+@click.argument("configs", nargs=-1, type=PATH, shell_complete=files(".yaml", ".yml"), metavar="[CONFIG]...")
+@click.option("--compare", nargs=2, type=PATH, metavar="OLD NEW",
               help="Compare two JSON files of earlier runs; measure nothing.")  # fmt: skip
 @out_option
 @click.option("--method", "methods", multiple=True, type=click.Choice(METHODS), metavar="NAME",

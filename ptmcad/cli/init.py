@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.mechanisms import known_starter
+from ptmcad.cli.paths import PATH
 from ptmcad.cli.values import mechanisms
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.process.output import reason
@@ -17,7 +18,7 @@ from ptmcad.question.shipped import shipped_records
 
 @click.command("init")
 @click.argument("mechanism", default="pendulum", shell_complete=mechanisms)
-@click.option("--out", type=click.Path(path_type=Path), metavar="FILE",
+@click.option("--out", type=PATH, metavar="FILE",
               help="The file to write; never one that is there. A missing folder is made.  "
                    "[default: standard output]")  # fmt: skip
 def command(*, mechanism: str, out: Path | None) -> None:

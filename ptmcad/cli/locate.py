@@ -14,7 +14,7 @@ from ptmcad.answer.location import Location
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import result_argument
+from ptmcad.cli.paths import PATH, result_argument
 from ptmcad.cli.stored import read_result
 from ptmcad.cli.values import point as propose_point
 from ptmcad.errors import ConfigError, shown
@@ -169,7 +169,7 @@ def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str], 
     shell_complete=propose_point,
     help="A point: both axes, exact numbers.",
 )
-@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="FILE",
+@click.option("--csv", "table", type=PATH, metavar="FILE",
               help="A CSV file whose first row names the axes; prints a CSV row for each of its points.")  # fmt: skip
 @limit_options
 def command(*, result: Path, at: str | None, table: Path | None, limits: ResourceLimits) -> None:

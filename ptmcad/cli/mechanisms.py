@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.paths import PATH
 from ptmcad.cli.values import mechanisms as known_mechanisms
 from ptmcad.errors import ConfigError, quoted
 from ptmcad.model import Model
@@ -57,7 +58,7 @@ def description(model: Model) -> str:
 
 @click.command("mechanisms")
 @click.argument("names", nargs=-1, shell_complete=known_mechanisms)
-@click.option("--out", type=click.Path(path_type=Path), help="Folder for drawings, NAME.svg for each mechanism.")
+@click.option("--out", type=PATH, help="Folder for drawings, NAME.svg for each mechanism.")
 def command(*, names: tuple[str, ...], out: Path | None) -> None:
     """List the built-in mechanisms, with parameters and a drawing, and the shipped records; or the mechanisms of NAMES.
 

@@ -7,13 +7,14 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.limits import ResourceLimits, held, limit_options, report_deadline
+from ptmcad.cli.paths import PATH
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import shown_path
 from ptmcad.process.output import check_writable
 
 
 @click.command("paper")
-@click.option("--out", type=click.Path(path_type=Path), default=Path("paper"), show_default=True,
+@click.option("--out", type=PATH, default=Path("paper"), show_default=True,
               help="Folder for the files.")  # fmt: skip
 @limit_options
 def command(*, out: Path, limits: ResourceLimits) -> int:

@@ -10,14 +10,16 @@ import click
 from ptmcad.cli.gathering import F
 from ptmcad.cli.values import files
 
+PATH = click.Path(path_type=Path)
+
 
 def record_argument(name: str = "config", *, required: bool = False) -> Callable[[F], F]:
     """A problem record: a YAML file, or the name of one that is shipped."""
     complete = files(".yaml", ".yml")
-    return click.argument(name, required=required, type=click.Path(path_type=Path), shell_complete=complete)
+    return click.argument(name, required=required, type=PATH, shell_complete=complete)
 
 
-result_argument = click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
+result_argument = click.argument("result", type=PATH, shell_complete=files(".json"))
 """A stored result."""
 
 
@@ -28,11 +30,9 @@ def name_option(default: str) -> Callable[[F], F]:
 
 def out_option(command: F) -> F:
     """Add ``--out``, the folder for what a command writes."""
-    return click.option(
-        "--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]"
-    )(command)
+    return click.option("--out", type=PATH, default=Path(), help="Folder for the files.  [default: .]")(command)
 
 
 def file_option(name: str, suffix: str, metavar: str, help: str) -> Callable[[F], F]:
     """An option for a file, of which the shell proposes those of a suffix."""
-    return click.option(name, type=click.Path(path_type=Path), shell_complete=files(suffix), metavar=metavar, help=help)
+    return click.option(name, type=PATH, shell_complete=files(suffix), metavar=metavar, help=help)

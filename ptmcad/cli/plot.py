@@ -17,7 +17,7 @@ from ptmcad.cli.formats import Formats
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import file_option, result_argument
+from ptmcad.cli.paths import PATH, file_option, result_argument
 from ptmcad.cli.pictures import figure
 from ptmcad.cli.points import disagreements, measured, places, poses_at
 from ptmcad.cli.progress import ProgressBar
@@ -129,7 +129,7 @@ def _surface(family: FamilyMap, file: Path) -> BoundarySurface:
 
 @click.command("plot")
 @result_argument
-@click.option("--out", type=click.Path(path_type=Path), help="Folder for the files.  [default: that of RESULT]")
+@click.option("--out", type=PATH, help="Folder for the files.  [default: that of RESULT]")
 @drawing_options((*PICTURES, *DATA, *MESHES), "png", "What to make")
 @file_option(
     "--overlay", ".csv", "FILE",

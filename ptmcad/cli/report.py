@@ -8,7 +8,7 @@ import click
 
 from ptmcad.cli.gathering import reading
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import result_argument
+from ptmcad.cli.paths import PATH, result_argument
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import read_result
 from ptmcad.errors import ConfigError, shown_path
@@ -22,11 +22,11 @@ def _file_name(key: str, value: str) -> str:
 
 @click.command("report")
 @result_argument
-@click.option("--out", type=click.Path(path_type=Path), help="Folder for the page.  [default: that of RESULT]")
+@click.option("--out", type=PATH, help="Folder for the page.  [default: that of RESULT]")
 @click.option(
     "--name", callback=reading(_file_name), metavar="NAME", help="Name of the page.  [default: that of RESULT]"
 )
-@click.option("--bench", type=click.Path(path_type=Path), metavar="FILE",
+@click.option("--bench", type=PATH, metavar="FILE",
               help="A measurement of error against time to show.  "
                    "[default: NAME.error-time.json beside RESULT, if there is one]")  # fmt: skip
 @click.option("--no-timings", is_flag=True, help="Leave run times out, so that the page is the same every time.")

@@ -39,8 +39,7 @@ def read_result(path: Path, *, whole: bool = True) -> RegionMap:
     ConfigError
         When there is no such file, or it is not a whole region map.
     """
-    text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
-    result = _read(path, RegionMap.from_json, FORMAT, text)
+    result = read_other(path, RegionMap.from_json, FORMAT)
     if whole:
         with blamed(file=path):
             check_numbers(result)
@@ -56,7 +55,7 @@ def kind_of(path: Path) -> str:
 
 
 def read_other(path: Path, read: Callable[[str], Answer], kind: str) -> Answer:
-    """The answer in a JSON file that is no map.
+    """The answer in a JSON file, of whatever kind.
 
     Parameters
     ----------
@@ -67,11 +66,7 @@ def read_other(path: Path, read: Callable[[str], Answer], kind: str) -> Answer:
     ConfigError
         When it is not a whole document of one.
     """
-    return _read(path, read, kind, read_text(path, MAX_BYTES, f"a {kind} file"))
-
-
-def _read(path: Path, read: Callable[[str], Answer], kind: str, text: str) -> Answer:
-    """What a file's text is read as, by a function that raises ValueError where it is no such document."""
+    text = read_text(path, MAX_BYTES, f"a {kind} file")
     try:
         return read(text)
     except (ValueError, PtmcadError, ZeroDivisionError, RecursionError) as error:

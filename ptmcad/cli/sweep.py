@@ -16,7 +16,7 @@ from ptmcad.cli.drawing import share_of
 from ptmcad.cli.formats import Formats, format_option
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import record_argument
+from ptmcad.cli.paths import PATH, record_argument
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.question import question_in
@@ -72,7 +72,7 @@ class MemberOptions:
 
 @click.command("sweep")
 @record_argument(required=True)
-@click.option("--out", type=click.Path(path_type=Path), help="Folder of the sweep.  [default: NAME-sweep]")
+@click.option("--out", type=PATH, help="Folder of the sweep.  [default: NAME-sweep]")
 @format_option(
     FORMATS,
     "What to write of the whole sweep beside the index and the results: csv (a line for each member), "

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.paths import PATH
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import SliceOptions, slice_options
 from ptmcad.errors import shown_path
@@ -19,7 +20,7 @@ from ptmcad.show.export import FORMATS
 @slice_options
 @click.option("--format", "format", type=click.Choice(list(FORMATS)), default="text", show_default=True,
               help="The language to write it in.")  # fmt: skip
-@click.option("--out", type=click.Path(path_type=Path), metavar="FILE", help="Write to a file, not to the terminal.")
+@click.option("--out", type=PATH, metavar="FILE", help="Write to a file, not to the terminal.")
 @limit_options
 def command(
     *,

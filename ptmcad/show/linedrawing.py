@@ -78,8 +78,7 @@ def approximate_text(mechanism: Mechanism) -> str:
 
 def _fitted(places: Mapping[str, Place], shape: float) -> dict[str, Place]:
     """Places in the unit square that stands for a frame as many times as high as wide."""
-    left, right = (pick(x for x, _ in places.values()) for pick in (min, max))
-    low, high = (pick(y for _, y in places.values()) for pick in (min, max))
+    (left, right), (low, high) = ((min(ends), max(ends)) for ends in zip(*places.values(), strict=True))
     unit = max(right - left, (high - low) / shape) or 1.0
     across, up = (1 - (right - left) / unit) / 2, (1 - (high - low) / (unit * shape)) / 2
     return {name: (across + (x - left) / unit, up + (y - low) / (unit * shape)) for name, (x, y) in places.items()}

@@ -13,7 +13,7 @@ from math import cos, dist, pi, sin
 
 import numpy as np
 
-from ptmcad.show.render.clearance import Box, Position, around, holds, overlap
+from ptmcad.show.render.clearance import Box, Position, around, holds, overlap, touch
 from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import Size
@@ -82,7 +82,7 @@ def place(
                 )
                 cost += 1e4 * sum(overlap(_wider(box, 2), other) for other in taken)
                 cost += 1e3 * sum(holds(_wider(box, 6), p) for p in points)
-                cost += 1e3 * sum(_crosses(a, b, tip, (x, y)) for a, b in arrows)
+                cost += 1e3 * sum(touch(a, b, tip, (x, y)) for a, b in arrows)
                 cost += 1e3 * sum(_meets(box, a, b) for a, b in arrows)
                 cost += 1e3 * sum(_meets(other, tip, (x, y)) for other in taken) if skip else 0.0
                 met = cost >= _MET
@@ -114,13 +114,6 @@ def _meets(box: Box, a: Position, b: Position) -> bool:
     """Whether an arrow passes through a box, seen at points a few points apart."""
     n, near = max(2, int(dist(a, b) / 4)), _wider(box, 6)
     return any(holds(near, (a[0] + (b[0] - a[0]) * k / n, a[1] + (b[1] - a[1]) * k / n)) for k in range(n + 1))
-
-
-def _crosses(a: Position, b: Position, c: Position, d: Position) -> bool:
-    def side(p: Position, q: Position, r: Position) -> bool:
-        return (q[0] - p[0]) * (r[1] - p[1]) > (q[1] - p[1]) * (r[0] - p[0])
-
-    return side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
 
 
 def _passed(image: Image, a: Position, b: Position, sides: Size) -> int:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 from math import dist
 
-from ptmcad.show.render.clearance import Box, Position, Stroke, around, crosses, holds
+from ptmcad.show.render.clearance import Box, Position, Stroke, around, crosses, holds, touch
 
 Course = tuple[Position, ...]
 """From a berth to a point, straight or with one bend."""
@@ -121,15 +121,4 @@ def _crossed(course: Course, others: Sequence[Course]) -> int:
 
 def meet(one: Course, other: Course) -> bool:
     """Whether two lines have a point in common."""
-    return any(_touch(*a, *b) for a in pairwise(one) for b in pairwise(other))
-
-
-def _touch(a: Position, b: Position, c: Position, d: Position) -> bool:
-    """Whether two segments have a point in common."""
-    if any(max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]) for k in (0, 1)):
-        return False
-    return _turn(a, b, c) * _turn(a, b, d) <= 0 and _turn(c, d, a) * _turn(c, d, b) <= 0
-
-
-def _turn(a: Position, b: Position, c: Position) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    return any(touch(*a, *b) for a in pairwise(one) for b in pairwise(other))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from math import degrees, remainder
@@ -64,19 +64,6 @@ FOLLOWED, STABLE, UNSTABLE = "#111111", "#3d6b8c", "#bdbdbd"
 Pixels = NDArray[np.uint8]
 
 
-@dataclass(frozen=True, slots=True)
-class _World:
-    """From the mechanism's plane to points on paper."""
-
-    scale: float
-    shift: Position
-    sides: Size
-
-    def places(self, mechanism: Mechanism, step: Step) -> dict[str, Position]:
-        (dx, dy), k = self.shift, self.scale
-        return {name: (x * k + dx, y * k + dy) for name, (x, y) in zip(mechanism.points, step.points, strict=True)}
-
-
 def check_drawable(motion: Motion) -> Mechanism:
     """The mechanism that is drawn.
 
@@ -115,7 +102,7 @@ class Stage:
         draw_rows(self.figure, key, (LEFT, foot - BOTTOM + 0.04), LINE, TYPE)
         self._right(LEFT + side + GAP, top, foot)
         self.where = (LEFT, top + 0.13)
-        self.sketches = _sketches(motion, self.mechanism, self.world)
+        self.sketches = _sketches(motion, self.mechanism, self.sides)
         self.canvas.draw()
         self.background = self.canvas.copy_from_bbox(self.figure.bbox)
 
@@ -129,7 +116,7 @@ class Stage:
         sides = (wide * 72, (top - low) * 72)
         self.panel = axes_at(self.figure, (left, low, wide, top - low), "mechanism")
         self.panel.set(xlim=(0, sides[0]), ylim=(0, sides[1]), xticks=[], yticks=[])
-        self.world = _world(self.motion, sides)
+        self.sides = sides
         self.above, self.below = (left, top + 0.13), (left, low - 0.15)
         self.curve: Any = None
         if curved:
@@ -206,7 +193,7 @@ class Stage:
         else:
             stable = f", {step.stable} stable" if step.stable is not None else ""
             what, colour = f"one of exactly {counted(model, step.total)}{stable}", INK
-        wide = self.world.sides[0] / 72
+        wide = self.sides[0] / 72
         size = min(SIZES[1], SIZES[1] * wide / text_width(what, SIZES[1]))
         yield self._text(self.above, what, size, colour)
         turns = len(model.angles)
@@ -254,24 +241,25 @@ class Stage:
         return write(self.figure, at, text, size, color=colour)
 
 
-def _world(motion: Motion, sides: Size) -> _World:
-    """One scale for all steps, and their middle in the middle."""
+def _places(motion: Motion, mechanism: Mechanism, sides: Size) -> Iterator[dict[str, Position]]:
+    """The points on paper at each step: one scale for all steps, and their middle in the middle."""
     places = np.array([step.points for step in motion.steps]).reshape(-1, 2)
     low, high = places.min(axis=0), places.max(axis=0)
     room = [max(side - 2 * RIM, 10.0) for side in sides]
-    scale = min((r / float(b - a) for r, a, b in zip(room, low, high, strict=True) if b > a), default=1.0)
-    shift = tuple(side / 2 - scale * float(a + b) / 2 for side, a, b in zip(sides, low, high, strict=True))
-    return _World(scale, (shift[0], shift[1]), sides)
+    k = min((r / float(b - a) for r, a, b in zip(room, low, high, strict=True) if b > a), default=1.0)
+    dx, dy = (side / 2 - k * float(a + b) / 2 for side, a, b in zip(sides, low, high, strict=True))
+    for step in motion.steps:
+        yield {name: (x * k + dx, y * k + dy) for name, (x, y) in zip(mechanism.points, step.points, strict=True)}
 
 
-def _sketches(motion: Motion, mechanism: Mechanism, world: _World) -> list[Sketch]:
+def _sketches(motion: Motion, mechanism: Mechanism, sides: Size) -> list[Sketch]:
     """The mechanism at each step; labels keep their side while they can, and glide where they cannot."""
     arrows, sketches = _arrows(motion, mechanism), list[Sketch]()
     offsets: dict[str, Position] = {}
     ways: list[dict[str, Position]] = []
-    for step in motion.steps:
+    for step, nodes in zip(motion.steps, _places(motion, mechanism, sides), strict=True):
         labels = partial(own_labels, offsets=dict(offsets))
-        seen = sketched(mechanism, world.places(mechanism, step), world.sides, arrows[step.at], TURNS, labels)
+        seen = sketched(mechanism, nodes, sides, arrows[step.at], TURNS, labels)
         offsets = {p.label.text: (p.center[0] - p.label.at[0], p.center[1] - p.label.at[1]) for p in seen.labels}
         sketches.append(seen)
         ways.append(offsets)
