@@ -40,7 +40,7 @@ def holds(pieces: Any, along: int, strip: Any) -> bool:
     if number <= 0:
         return False
     parts = np.empty((MAX_PARTS + 2, 4))
-    parts[0, 0], parts[0, 1], parts[0, 2], parts[0, 3] = strip[0], strip[1], strip[7], strip[8]
+    parts[0, :2], parts[0, 2:] = strip[:2], strip[7:]
     waiting, done = 1, 0
     slack = SLACK * pieces.steps
     while waiting > 0:
@@ -61,8 +61,7 @@ def holds(pieces: Any, along: int, strip: Any) -> bool:
                 upright, at = 0, 0.5 * (a + b)
                 if not a < at < b or b - a < _MIN_SHARE * (strip[1] - strip[0]):
                     return False
-        for k in range(4):
-            parts[waiting + 1, k] = parts[waiting, k]
+        parts[waiting + 1] = parts[waiting]
         parts[waiting, 2 * upright + 1] = at
         parts[waiting + 1, 2 * upright] = at
         waiting += 2
@@ -96,10 +95,7 @@ def _near(pieces: Any, along: int, strip: Any, near: Any) -> int:
                     continue
                 if f[2 - 2 * along] > high or f[3 - 2 * along] < low:
                     continue
-                known = False
-                for m in range(number):
-                    known = known or near[m] == n
-                if known:
+                if (near[:number] == n).any():
                     continue
                 if number == len(near):
                     return -1

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ptmcad.verification.exclusion.compiled import compiled
+from ptmcad.verification.exclusion.compiled import compiled, inlined
 from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate
 from ptmcad.verification.exclusion.holding import holds
 
@@ -130,8 +130,7 @@ def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: An
         if excluding >= 0:
             told[excluding] += 1
             return GONE
-        for j in range(nv):
-            before[j, 0], before[j, 1] = box[j, 0], box[j, 1]
+        before[:] = box
         number = _eliminated(system, forms, nv, rows, solved_for)
         gained = _narrowed(system, number, box, before, rows, solved_for)
         if gained < 0:
@@ -233,7 +232,7 @@ def _narrowed(system: Any, number: int, box: Any, before: Any, rows: Any, solved
         if low[j] > high[j]:
             return -1.0
         if high[j] - low[j] < 2.0:
-            at, half = 0.5 * (before[j, 0] + before[j, 1]), 0.5 * (before[j, 1] - before[j, 0])
+            at, half = _middle_of(before[j])
             lost = _ROUNDING * (abs(at) + half)
             box[j, 0] = max(before[j, 0], at + half * low[j] - lost)
             box[j, 1] = min(before[j, 1], at + half * high[j] + lost)
@@ -243,12 +242,16 @@ def _narrowed(system: Any, number: int, box: Any, before: Any, rows: Any, solved
     return gained
 
 
+@inlined
+def _middle_of(side: Any) -> Any:
+    """Of an interval, and half its width."""
+    return 0.5 * (side[0] + side[1]), 0.5 * (side[1] - side[0])
+
+
 @compiled
 def _rectangle_held(pieces: Any, box: Any) -> bool:
-    strip = np.empty(9)
-    strip[0], strip[1], strip[2], strip[3], strip[4] = box[0, 0], box[0, 1], box[0, 0], box[1, 0], 0.0
-    strip[5], strip[6], strip[7], strip[8] = 0.0, box[1, 1] - box[1, 0], box[1, 0], box[1, 1]
-    return bool(holds(pieces, 0, strip))
+    (left, right), (bottom, top) = box[0], box[1]
+    return bool(holds(pieces, 0, np.array((left, right, left, bottom, 0.0, 0.0, top - bottom, bottom, top))))
 
 
 @compiled
@@ -258,8 +261,8 @@ def _strip_held(pieces: Any, box: Any, before: Any, row: Any, v: int) -> bool:
     pivot, reach = row[v], row[nv + 1]
     for j in range(2, nv):
         reach += abs(row[j])
-    at_u, half_u = 0.5 * (before[u, 0] + before[u, 1]), 0.5 * (before[u, 1] - before[u, 0])
-    at_v, half_v = 0.5 * (before[v, 0] + before[v, 1]), 0.5 * (before[v, 1] - before[v, 0])
+    at_u, half_u = _middle_of(before[u])
+    at_v, half_v = _middle_of(before[v])
     if not (half_u > 0 and abs(pivot) > 0):
         return False
     slope = -row[u] / pivot * (half_v / half_u)
@@ -267,10 +270,8 @@ def _strip_held(pieces: Any, box: Any, before: Any, row: Any, v: int) -> bool:
     middle = at_v - row[nv] / pivot * half_v
     if not (reach < half_v and abs(slope) < _MAX_SLOPE):
         return False
-    strip = np.empty(9)
-    strip[0], strip[1], strip[2], strip[3], strip[4] = box[u, 0], box[u, 1], at_u, middle, slope
-    strip[5], strip[6], strip[7], strip[8] = -reach, reach, box[v, 0], box[v, 1]
-    return bool(holds(pieces, u, strip))
+    (a, b), (least, most) = box[u], box[v]
+    return bool(holds(pieces, u, np.array((a, b, at_u, middle, slope, -reach, reach, least, most))))
 
 
 @compiled
