@@ -70,5 +70,6 @@ def conditions_of(model: Model) -> tuple[Trees, Mapping[str, Tree], Trees]:
 
     if system.are_slopes:
         return (), model.conditions, ()
-    positive = {f"positive.{n}": tree for n, tree in enumerate(written(system.inequalities), 1)}
-    return written(system.equations), positive, written(system.stability)
+    further = written(system.inequalities[len(model.conditions) :])
+    positive = {f"positive.{n}": tree for n, tree in enumerate(further, 1)}
+    return written(system.equations), {**model.conditions, **positive}, written(system.stability)

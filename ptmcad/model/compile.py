@@ -216,7 +216,7 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
     assert known.smooth is not None
     moments = dict(zip(mechanism.sorted_unknowns, known.moments, strict=True))
     found = crossed.conditions(known.smooth, known.followers, moments, variables)
-    return replace(known, **found._asdict())
+    return replace(known, **found._replace(inequalities=known.inequalities + found.inequalities)._asdict())
 
 
 @dataclass(frozen=True, slots=True)

@@ -687,3 +687,22 @@ def test_a_count_that_the_checker_does_not_know_is_refused(stable: RegionMap, mo
     assert report.violation == "form: the checker does not know what admissible counts are"
     exact = ptmcad.verify(replace(shipped("fig4"), slice=replace(shipped("fig4").slice, count=Count.ADMISSIBLE)))
     assert exact.violation == "shape: the checker does not know what admissible counts are"
+
+
+def test_conditions_that_are_numbers_all_over_a_slice_are_none() -> None:
+    """A map with such ones was said to be false: nothing is stored of them."""
+    record = {
+        "name": "settled",
+        "system": {
+            "parameters": {"c": {"kind": "number"}},
+            "unknowns": {"x": "real"},
+            "equations": ["x^2 - a"],
+            "positive": ["3*c - 1"],
+            "stable": ["c", "2", "x - b"],
+        },
+        "parameters": {"c": 1},
+        "axes": {"a": [-1, 2], "b": [-1, 1]},
+    }
+    found = ptmcad.classify(slice_from_mapping(record), engine="certified", tolerance="1/10", jobs=1)
+    assert {cell.stable for cell in found.cells} == {0, 1, 2}
+    assert ptmcad.verify(found).ok

@@ -61,6 +61,11 @@ class Parameters:
         sign = next(signs, None)
         return None if sign is None else p * sign
 
+    def is_positive_number(self, p: fmpq_mpoly) -> bool:
+        """Whether a polynomial in the parameters is the same positive number all over the slice."""
+        value = self._expression(p)
+        return value.is_constant and value.constant() > 0
+
     def vanishes(self, p: fmpq_mpoly) -> bool:
         """Whether a polynomial in the parameters is zero all over the slice."""
         return not self._expression(p).numerator

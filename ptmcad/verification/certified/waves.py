@@ -210,7 +210,16 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
     true = derivation_of(model)
     ring = _Exponentials(model, true.ring)
     unknowns = ring.unknowns
-    inequalities, stability = (list(map(ring.waves, some)) for some in (true.inequalities, true.stability))
+    parameters = Parameters(values, axes, ring.numbers)
+
+    def says_something(condition: Waves) -> bool:
+        """Of others nothing is stored: they are positive numbers all over the slice."""
+        [*terms] = condition.items()
+        return len(terms) != 1 or any(map(any, terms[0][0][:2])) or not parameters.is_positive_number(terms[0][1])
+
+    inequalities, stability = (
+        list(filter(says_something, map(ring.waves, some))) for some in (true.inequalities, true.stability)
+    )
     multiples: list[Waves] = []
     if true.from_energy:
         given = dict(zip(true.unknowns, true.equations, strict=True))
@@ -219,7 +228,7 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
         whole = list(map(ring.waves, true.equations))
         equations = [_divided(e, inequalities) for e in whole]
         multiples = [e for e, f in zip(whole, equations, strict=True) if e != f]
-    cones = tuple(_cones(ring, true, Parameters(values, axes, ring.numbers)))
+    cones = tuple(_cones(ring, true, parameters))
     closing = tuple(map(unknowns.index, true.unknowns)) if cones and true.closing else ()
     if closing:
         stability = []  # the determinant of the whole Jacobian
