@@ -36,7 +36,7 @@ from ptmcad.verification.exclusion import check, places
 from ptmcad.verification.exclusion.check import places_of
 from ptmcad.verification.exclusion.forms import CENTER, WIDTH, evaluate
 from ptmcad.verification.exclusion.places import SolutionPlaces
-from ptmcad.verification.exclusion.systems import halves_over, window_equations, window_of
+from ptmcad.verification.exclusion.systems import halves_over, window_equations
 from ptmcad.verification.exclusion.tapes import tape_of
 
 PAPER: dict[str, Any] = {
@@ -80,7 +80,7 @@ def a_map(name: str, count: str) -> RegionMap:
 def test_places_have_bounds_of_their_own_where_the_window_has_none() -> None:
     claims = CertifiedClaims(a_map("apart", "index"))
     with pytest.raises(Unproved, match="no bound of the unknown x"):
-        halves_over(claims, *window_of(claims))
+        halves_over(claims)
     find, rng = SolutionPlaces(claims), random.Random(1)
     (one, two), steps = at_random(claims, rng), claims.sweep.steps
     point, whole = find((one, one), (two, two)), find((Fraction(0), Fraction(steps)), (Fraction(0), Fraction(steps)))

@@ -25,7 +25,7 @@ from ptmcad.verification.certified.counted import CellCounts, CountedPoint, Wher
 from ptmcad.verification.certified.field import BallEquations, Matrix
 from ptmcad.verification.certified.kinks import Sides, sides
 from ptmcad.verification.certified.narrow import Function, judged, only
-from ptmcad.verification.certified.parameters import over
+from ptmcad.verification.certified.parameters import values_over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
 from ptmcad.verification.certified.waves import Form
@@ -156,11 +156,10 @@ class ModelCounting:
 
     def over(self, slice: Slice, x: arb, y: arb, there: CountedPoint, where: Where | None = None) -> CellCounts:
         """At all points of a box."""
-        values = {name: over(expression, x, y) for name, expression in slice.parameters.items()}
+        values = values_over(slice, x, y)
         for name, value in values.items():
             if not _is_in_domain(slice.model, name, value):
                 raise Unproved(f"{name} may be outside of its domain")
-        values = {name: arb(0) for name in slice.model.free_lengths} | values
         if not all(evaluated(cone.pull, values) >= 0 for cone in self.form.cones):
             raise Unproved("a stiffness times a free length may be negative")
         # boxes much smaller than the box of parameters are excluded no better than larger ones

@@ -93,6 +93,18 @@ def _expressions(slice: Slice) -> dict[str, Expression]:
     return {**named, **written(slice), **slice.parameters}
 
 
+def values_over(slice: Slice, x: arb, y: arb) -> dict[str, arb]:
+    """The values of all parameters over a box; of free lengths that are none 0.
+
+    Raises
+    ------
+    Unproved
+        When one may have a pole there.
+    """
+    zeros = {name: arb(0) for name in slice.model.free_lengths}
+    return zeros | {name: over(expression, x, y) for name, expression in slice.parameters.items()}
+
+
 def over(expression: Expression, x: arb, y: arb) -> arb:
     """A parameter's values over a box.
 

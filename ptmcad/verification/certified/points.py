@@ -106,12 +106,8 @@ def check_cell(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, pla
 def _near(claims: CertifiedClaims, cell: Cell) -> list[tuple[Fraction, Fraction]]:
     """Points of a sample's cell near the sample; none where it is very near to a rectangle of the cover."""
     u, v = claims.on_lattice(*cell.sample)
-    half, least = Fraction(claims.sweep.steps, _PARTS), Fraction(claims.sweep.steps, _MIN_PARTS)
-    while not claims.sweep.free_around(u, v, half):
-        half /= 2
-        if half < least:
-            return []
-    return [claims.off_lattice(u + half * i / 4, v + half * j / 4) for i, j in _PLACES]
+    half = claims.room(u, v, Fraction(claims.sweep.steps, _PARTS), Fraction(claims.sweep.steps, _MIN_PARTS))
+    return [claims.off_lattice(u + half * i / 4, v + half * j / 4) for i, j in (_PLACES if half else ())]
 
 
 def _counted_at(

@@ -23,7 +23,6 @@ from itertools import accumulate, product
 from math import ceil, isqrt
 
 from ptmcad.cover.rectangles import Cover, Rectangle
-from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.counted import CountedPoint, Places, differs, stored
@@ -224,15 +223,10 @@ def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None
     steps = claims.sweep.steps
     scale = max(1, MIN_WINDOW_PARTS // steps)
     u, v = Fraction(round(u * scale), scale), Fraction(round(v * scale), scale)
-    if not (0 < u < steps and 0 < v < steps):
+    if (cell := claims.cell_at(u, v)) is None:
         return None
-    component = claims.sweep.locate(u, v)
-    if component is None or component not in claims.cell_of:
-        return None
-    half, least = Fraction(steps, FIRST_BOX_PARTS), Fraction(steps, MIN_WINDOW_PARTS)
-    while half and not claims.sweep.free_around(u, v, half):
-        half = half / 2 if half > least else Fraction(0)
-    return SampleBox(u, v, half, claims.cell_of[component])
+    half = claims.room(u, v, Fraction(steps, FIRST_BOX_PARTS), Fraction(steps, MIN_WINDOW_PARTS))
+    return SampleBox(u, v, half, cell)
 
 
 def check_point(
@@ -288,8 +282,6 @@ def _prove(claims: CertifiedClaims, places: Places | None, box: SampleBox, half:
     Unproved
         When the box is too large, or the counts change in it.
     """
-    low, high = (claims.off_lattice(box.u + d, box.v + d) for d in (-half, half))
-    x, y = (ball_of(low[i]).union(ball_of(high[i])) for i in (0, 1))
-    where = places and places((box.u - half, box.u + half), (box.v - half, box.v + half))
-    true = counting_of(claims).over(claims.result.slice, x, y, there, where)
+    u, v = (box.u - half, box.u + half), (box.v - half, box.v + half)
+    true = counting_of(claims).over(claims.result.slice, *claims.balls(u, v), there, places and places(u, v))
     assert not differs(claims.result.cells[box.cell], true), "the box holds its middle, whose counts are the cell's"

@@ -10,9 +10,12 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
+from flint import arb
+
 from ptmcad.answer.regionmap import Status
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Slice
+from ptmcad.text.balls import ball_of
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.counted import check_region, contradiction_in, numbers_in
 from ptmcad.verification.certified.sweep import CoverSweep, sweep
@@ -71,6 +74,27 @@ class CertifiedClaims(Claims):
         """The inverse."""
         (one, two), (width, height) = self.result.slice.axes, self._square
         return one.low + u * width, two.low + v * height
+
+    def balls(self, u: tuple[Fraction, Fraction], v: tuple[Fraction, Fraction]) -> tuple[arb, arb]:
+        """Of both axes, over a rectangle in lattice steps."""
+        low, high = (self.off_lattice(*corner) for corner in zip(u, v, strict=True))
+        x, y = (ball_of(a).union(ball_of(b)) for a, b in zip(low, high, strict=True))
+        return x, y
+
+    def cell_at(self, u: Fraction, v: Fraction) -> int | None:
+        """The cell of a point in lattice steps; None where it is in none."""
+        if not (0 < u < self.sweep.steps and 0 < v < self.sweep.steps):
+            return None
+        component = self.sweep.locate(u, v)
+        return None if component is None else self.cell_of.get(component)
+
+    def room(self, u: Fraction, v: Fraction, half: Fraction, least: Fraction) -> Fraction:
+        """Half the width of a free square around a point, halved until there is one; 0 where none is wide enough."""
+        while not self.sweep.free_around(u, v, half):
+            half /= 2
+            if half < least:
+                return Fraction(0)
+        return half
 
     @cached_property
     def neighbours(self) -> tuple[dict[int, list[int]], dict[int, list[int]]]:

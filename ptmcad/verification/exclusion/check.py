@@ -174,9 +174,5 @@ def _places(boxes: Any, steps: int) -> Iterator[tuple[Fraction, Fraction, Fracti
 
 def _check_at(claims: CertifiedClaims, u: Fraction, v: Fraction) -> None:
     """The counts at a point are those of its cell, if it is in one and they can be proved."""
-    if not (0 < u < claims.sweep.steps and 0 < v < claims.sweep.steps):
-        return
-    component = claims.sweep.locate(u, v)
-    if component is None or component not in claims.cell_of:
-        return
-    check_point(claims, claims.cell_of[component], u, v, reason="; a critical curve was found there")
+    if (cell := claims.cell_at(u, v)) is not None:
+        check_point(claims, cell, u, v, reason="; a critical curve was found there")

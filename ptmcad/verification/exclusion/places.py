@@ -13,15 +13,13 @@ from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
-from flint import arb
 
-from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Box, Floats, Unproved
 from ptmcad.verification.certified.counted import Where
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.exclusion.pieces import Pieces, no_pieces
 from ptmcad.verification.exclusion.search import isolate
-from ptmcad.verification.exclusion.systems import CriticalSystem, halves_over, solutions_of, window_of
+from ptmcad.verification.exclusion.systems import CriticalSystem, halves_over, solutions_of
 from ptmcad.verification.exclusion.tapes import enclosing
 
 BUDGET = 16_000
@@ -54,7 +52,7 @@ class SolutionPlaces:
         self._claims = claims
         self._halves: Floats | None = None
         with suppress(Unproved):
-            self._halves = halves_over(claims, *window_of(claims))
+            self._halves = halves_over(claims)
         self._systems = solutions_of(claims, self._halves)
         self._steps = claims.cover.steps
         self._pieces = no_pieces(self._steps)
@@ -64,7 +62,7 @@ class SolutionPlaces:
         systems = self._systems
         if self._halves is None:
             try:
-                halves = halves_over(self._claims, *self._balls(u, v))
+                halves = halves_over(self._claims, u, v)
             except Unproved:
                 return None
             systems = [system.within(halves) for system in systems]
@@ -73,11 +71,6 @@ class SolutionPlaces:
         smallest = max(MIN_WIDTH, PER_SHARE * float(share))
         rectangle = [(enclosing(low)[0], enclosing(high)[1]) for low, high in (u, v)]
         return Where([_Isolated(system, rectangle, smallest, self._pieces) for system in systems], whole)
-
-    def _balls(self, u: Range, v: Range) -> tuple[arb, arb]:
-        low, high = (self._claims.off_lattice(*corner) for corner in zip(u, v, strict=True))
-        x, y = (ball_of(a).union(ball_of(b)) for a, b in zip(low, high, strict=True))
-        return x, y
 
 
 @dataclass(frozen=True)

@@ -14,15 +14,13 @@ from math import inf, pi
 from typing import Any, NamedTuple
 
 import numpy as np
-from flint import arb
 
 from ptmcad.errors import ExpressionError
-from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.boxes import Floats
 from ptmcad.verification.certified.equations import Equations, Pair, bases
 from ptmcad.verification.certified.formulas import Formulas
 from ptmcad.verification.certified.kinks import sides
-from ptmcad.verification.certified.parameters import over
+from ptmcad.verification.certified.parameters import values_over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import Waves, form_of
@@ -32,6 +30,9 @@ from ptmcad.verification.terms import evaluated
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its vector's factors."""
+
+
+Range = tuple[Fraction, Fraction]
 
 
 class Compiled(NamedTuple):
@@ -137,7 +138,7 @@ def systems_of(claims: CertifiedClaims) -> list[CriticalSystem]:
     Unproved
         When real unknowns have no bound over the window that can be proved, or where the systems are not known.
     """
-    return list(_Systems(claims, halves_over(claims, *window_of(claims))).all())
+    return list(_Systems(claims, halves_over(claims)).all())
 
 
 def solutions_of(claims: CertifiedClaims, halves: Floats | None) -> list[CriticalSystem]:
@@ -159,14 +160,8 @@ def solutions_of(claims: CertifiedClaims, halves: Floats | None) -> list[Critica
     return list(_Systems(claims, halves or (inf,) * form_of(claims.result.slice).size).solutions())
 
 
-def window_of(claims: CertifiedClaims) -> tuple[arb, arb]:
-    """Balls of both axes."""
-    one, two = (ball_of(axis.low).union(ball_of(axis.high)) for axis in claims.result.slice.axes)
-    return one, two
-
-
-def halves_over(claims: CertifiedClaims, x: arb, y: arb) -> Floats:
-    """Half the widths of ranges around zero that have the unknowns of all solutions over a part of the window.
+def halves_over(claims: CertifiedClaims, u: Range | None = None, v: Range | None = None) -> Floats:
+    """Half the widths of ranges around zero that have the unknowns of all solutions, over a part of the window or all.
 
     Raises
     ------
@@ -177,9 +172,8 @@ def halves_over(claims: CertifiedClaims, x: arb, y: arb) -> Floats:
     form = form_of(slice)
     if all(form.is_circle):
         return (_ANGLE[1],) * form.size
-    values = {n: arb(0) for n in slice.model.free_lengths}
-    values |= {n: over(e, x, y) for n, e in slice.parameters.items()}
-    return half_widths(form, values)
+    whole = (Fraction(0), Fraction(claims.cover.steps))
+    return half_widths(form, values_over(slice, *claims.balls(u or whole, v or whole)))
 
 
 def window_equations(claims: CertifiedClaims) -> Equations:
@@ -363,4 +357,4 @@ class _Systems:
         )
 
 
-__all__ = ["Compiled", "CriticalSystem", "halves_over", "solutions_of", "systems_of", "window_of"]
+__all__ = ["Compiled", "CriticalSystem", "halves_over", "solutions_of", "systems_of"]
