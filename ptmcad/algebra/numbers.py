@@ -28,7 +28,7 @@ def algebraic_number(root: RealRoot) -> AlgebraicNumber:
     return AlgebraicNumber(coefficients, to_fraction(root.low), to_fraction(root.high))
 
 
-class Isolated(Protocol):
+class IsolatedRoot(Protocol):
     """A root of a polynomial, between two numbers."""
 
     @property
@@ -41,7 +41,7 @@ class Isolated(Protocol):
     def high(self) -> Fraction: ...
 
 
-def root_of(number: Isolated) -> RealRoot:
+def root_of(number: IsolatedRoot) -> RealRoot:
     """The engine's form of a number."""
     return RealRoot(UnivariatePolynomial(list(number.polynomial)), *interval_of(number))
 

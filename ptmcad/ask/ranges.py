@@ -14,8 +14,6 @@ from ptmcad.answer.paths import Fate, PosePath, PosePaths
 from ptmcad.answer.widths import Maximum, OperationWidths, Place
 from ptmcad.errors import ConfigError
 from ptmcad.exact.ranges.line import intervals
-from ptmcad.exact.ranges.path import ExactFollower
-from ptmcad.exact.ranges.path import follower as exact_follower
 from ptmcad.exact.ranges.rows import operation_widths
 from ptmcad.options import Progress
 from ptmcad.question.line import has_free_lengths, on_line, varying_axis
@@ -24,6 +22,7 @@ from ptmcad.text.parsing import number_for
 
 if TYPE_CHECKING:
     from ptmcad.ask.paths import JoinedFollower
+    from ptmcad.exact.ranges.path import ExactFollower
 
 __all__ = [
     "Change",
@@ -73,12 +72,15 @@ def pose_paths(
         raise ConfigError(f"{begin} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path")
     joined = has_free_lengths(slice, along, at)
     follower: ExactFollower | JoinedFollower
+    # both bring numpy, which intervals and widths do without
     if joined:
         from ptmcad.ask import paths
 
         follower = paths.follower(slice, along, at, begin)
     else:
-        follower = exact_follower(slice, along, at, begin)
+        from ptmcad.exact.ranges import path
+
+        follower = path.follower(slice, along, at, begin)
     stable = [k for k, pose in enumerate(follower.poses, 1) if model.criterion.works(pose.stable)]
     if number is not None and number not in stable:
         what = f"{len(stable)} {model.criterion.poses}"

@@ -18,9 +18,9 @@ from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import FIRST, Problem
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
 from ptmcad.errors import ConfigError
+from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.graph import Formula, Graph, Operation, length
 from ptmcad.formulas.intervals import Floats, program, run
-from ptmcad.formulas.rational import expression_formula
 from ptmcad.formulas.tape import Tape, enclosing_floats, record
 from ptmcad.question.slice import Axis
 

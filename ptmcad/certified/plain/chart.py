@@ -25,8 +25,8 @@ from ptmcad.certified.plain.geometry import FactoredProblem
 from ptmcad.certified.plain.minors import Bent, bent
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.turning import Turn
+from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.formulas.rational import expression_formula
 from ptmcad.model.determinants import determinant
 
 

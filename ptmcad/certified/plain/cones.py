@@ -19,8 +19,8 @@ from ptmcad.certified.plain.angle import Unknown
 from ptmcad.certified.plain.problem import SpringCone
 from ptmcad.certified.plain.scaling import over
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
+from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.graph import Formula, Graph, direction, inverse_length, length, meet
-from ptmcad.formulas.rational import expression_formula
 from ptmcad.text.expressions import Expression
 
 Vector = tuple[Formula, Formula]

@@ -22,8 +22,8 @@ from ptmcad.certified.plain.frame import MirrorFrame
 from ptmcad.certified.plain.involution import image_of
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
+from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.graph import Formula, Graph, inverse_length, length
-from ptmcad.formulas.rational import expression_formula
 from ptmcad.formulas.values import substituted
 from ptmcad.text.expressions import Expression, constant
 

@@ -17,8 +17,8 @@ from itertools import combinations
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.errors import ConfigError, DegenerateSliceError
+from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.formulas.rational import expression_formula
 from ptmcad.model.closed import conditions_of
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.model.evaluate import evaluate

@@ -18,8 +18,8 @@ from typing import Any
 
 from ptmcad.certified.plain.angle import Unknown
 from ptmcad.errors import ExpressionError
+from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.rational import expression_formula
 from ptmcad.text.expressions import Expression, constant
 
 Vector = tuple["TrigonometricPolynomial", "TrigonometricPolynomial"]

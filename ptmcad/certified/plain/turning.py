@@ -22,8 +22,8 @@ from ptmcad.certified.plain.cones import ConeFormulas, Pair
 from ptmcad.certified.plain.problem import Problem, SpringCone
 from ptmcad.certified.plain.scaling import common_factor, divided, largest_factor, over
 from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
+from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.rational import expression_formula
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression
 
