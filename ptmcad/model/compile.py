@@ -14,10 +14,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.formulas.graph import Formula, Graph, length
 from ptmcad.formulas.values import values
 from ptmcad.model import crossed, loops
 from ptmcad.model.crossed import Follower
@@ -25,11 +25,87 @@ from ptmcad.model.description import Mechanism, Model, equations_in
 from ptmcad.model.determinants import gradient
 from ptmcad.model.elements import second_bar
 from ptmcad.model.evaluate import ByNames, Element, Ring, evaluate, evaluated
-from ptmcad.model.springs import AngularSpring, LinearSpring, Vector
 from ptmcad.model.work import split_moments
 from ptmcad.text.tree import Tree
 
+Vector = tuple[Formula, Formula]
 E = TypeVar("E", bound=Element)
+
+
+class LinearSpring(NamedTuple):
+    """A spring between two points: its energy is stiffness (|difference| - free)^2/2.
+
+    Attributes
+    ----------
+    difference : from its start to its end.
+    """
+
+    name: str
+    start: str
+    end: str
+    stiffness: Formula
+    free: Formula
+    difference: Vector
+
+    @property
+    def pull(self) -> Formula:
+        """What the energy lacks for each unit of length: stiffness times free length."""
+        return self.stiffness * self.free
+
+    @property
+    def square(self) -> Formula:
+        """Of its length."""
+        x, y = self.difference
+        return x * x + y * y
+
+    @property
+    def length(self) -> Formula:
+        return length(*self.difference)
+
+    @property
+    def force(self) -> Formula:
+        """Positive where it pulls."""
+        return self.stiffness * (self.length - self.free)
+
+    @property
+    def quantities(self) -> dict[str, Formula]:
+        """What poses say of it."""
+        return {"length": self.length, "force": self.force}
+
+    @property
+    def relaxed_energy(self) -> Formula:
+        """As if its free length were zero."""
+        return self.stiffness * self.square / 2
+
+    @property
+    def energy(self) -> Formula:
+        """Where the free length is the number zero without the length, so that short springs are nothing singular."""
+        if self.free.value == 0:
+            return self.relaxed_energy
+        return self.stiffness * (self.length - self.free).squared() / 2
+
+
+class AngularSpring(NamedTuple):
+    """A torsion spring: its energy is stiffness (1 - cos deflection), its moment stiffness sin deflection.
+
+    Attributes
+    ----------
+    cosine, sine : of its deflection, the angle less the one at rest.
+    """
+
+    name: str
+    stiffness: Formula
+    cosine: Formula
+    sine: Formula
+
+    @property
+    def moment(self) -> Formula:
+        return self.stiffness * self.sine
+
+    @property
+    def quantities(self) -> dict[str, Formula]:
+        """What poses say of it."""
+        return {"deflection.cos": self.cosine, "deflection.sin": self.sine, "moment": self.moment}
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +172,16 @@ class CompiledSystem:
     def elastic(self) -> tuple[tuple[LinearSpring, ...], tuple[AngularSpring, ...]]:
         """The springs between points, and those between directions."""
         return self.springs, self.torsion
+
+    @property
+    def summands(self) -> tuple[Formula, ...]:
+        """Of the smooth energy."""
+        return (*(spring.relaxed_energy for spring in self.springs), *self.others)
+
+    @property
+    def pulls(self) -> tuple[tuple[Formula, Formula], ...]:
+        """Of each spring what the energy lacks for each unit of its length, and the square of that."""
+        return tuple((spring.pull, spring.square) for spring in self.springs)
 
     @property
     def acting(self) -> dict[int, Formula]:
@@ -252,19 +338,19 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         turned_by = second_bar(bars, base, ring.cos(joint.angle), ring.sin(joint.angle))
         first, second = (ring.variables[angle].variable for angle in (joint.angle, joint.other))
         followers.append(Follower(first, second, *turned_by))
-    return replace(
+    known = replace(
         known,
         followers=tuple(followers),
         points=points,
         springs=tuple(springs),
         torsion=tuple(torsion),
         loads=tuple(loads),
-        smooth=sum((*(spring.relaxed_energy for spring in springs), *others), start=ring.constant(Fraction(0))),
         others=tuple(others),
         moments=tuple(steady[name] for name in (*mechanism.angles, *mechanism.reals)),
         heights=() if mechanism.closing or followers else tuple(points[name][1] for name in mechanism.rising),
         has_energy=mechanism.has_potential,
     )
+    return replace(known, smooth=sum(known.summands, start=ring.constant(Fraction(0))))
 
 
 def _of_system(known: CompiledSystem, model: Model, ring: _Ring) -> CompiledSystem:

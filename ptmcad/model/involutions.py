@@ -196,11 +196,10 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
         return system.values(tuple(formulas), ring)
 
     # how many are the same is said in their polynomial
-    pulls, squares = values(s.pull for s in system.springs), values(s.square for s in system.springs)
-    springs = Counter(zip(pulls, squares, strict=True))
+    pulls = Counter(tuple(values(pair)) for pair in system.pulls)
     lengths = [
         marked({"pull": pull, "square": square, "number": ring.constant(Fraction(number))})
-        for (pull, square), number in springs.items()
+        for (pull, square), number in pulls.items()
         if pull.terms
     ]
     kept: list[list[_Terms]] = [[p.terms for p in values(some)] for some in (system.inequalities, system.stability)]
