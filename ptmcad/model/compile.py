@@ -10,7 +10,7 @@ length takes off the energy is kept beside them, as that has a root.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -173,15 +173,18 @@ class CompiledSystem:
         """The springs between points, and those between directions."""
         return self.springs, self.torsion
 
-    @property
-    def summands(self) -> tuple[Formula, ...]:
-        """Of the smooth energy."""
-        return (*(spring.relaxed_energy for spring in self.springs), *self.others)
+    def summands(self, relaxed: Iterable[int] = ()) -> tuple[Formula, ...]:
+        """Of the energy with the free lengths of some springs."""
+        counted = set(relaxed)
+        parts = (s.energy if k in counted else s.relaxed_energy for k, s in enumerate(self.springs))
+        return (*parts, *self.others)
 
-    @property
-    def pulls(self) -> tuple[tuple[Formula, Formula], ...]:
-        """Of each spring what the energy lacks for each unit of its length, and the square of that."""
-        return tuple((spring.pull, spring.square) for spring in self.springs)
+    def pulling(self, ring: Ring[E]) -> Iterator[tuple[LinearSpring, E, tuple[E, E]]]:
+        """The springs that have a free length where parameters are in a ring, with pull and difference there."""
+        for spring in self.springs:
+            pull, x, y = self.values((spring.pull, *spring.difference), ring)
+            if pull != ring.constant(Fraction(0)):
+                yield spring, pull, (x, y)
 
     @property
     def acting(self) -> dict[int, Formula]:
@@ -214,9 +217,8 @@ class CompiledSystem:
         """The same, whatever acts beside it."""
         if self.smooth is None:
             return None
-        counted = set(range(len(self.springs)) if relaxed is None else relaxed)
-        parts = [s.energy if k in counted else s.relaxed_energy for k, s in enumerate(self.springs)]
-        return sum((*parts, *self.others), start=self.graph.constant(0))
+        counted = range(len(self.springs)) if relaxed is None else relaxed
+        return sum(self.summands(counted), start=self.graph.constant(0))
 
     def balance(self, relaxed: Iterable[int]) -> tuple[Formula, ...]:
         """The equations with the free lengths of some springs."""
@@ -350,7 +352,7 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         heights=() if mechanism.closing or followers else tuple(points[name][1] for name in mechanism.rising),
         has_energy=mechanism.has_potential,
     )
-    return replace(known, smooth=sum(known.summands, start=ring.constant(Fraction(0))))
+    return replace(known, smooth=sum(known.summands(), start=ring.constant(Fraction(0))))
 
 
 def _of_system(known: CompiledSystem, model: Model, ring: _Ring) -> CompiledSystem:
