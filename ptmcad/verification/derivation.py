@@ -194,14 +194,9 @@ def derivation_at(model: Model, values: Mapping[str, Fraction]) -> Derivation:
     return _derived(model, dict.fromkeys(model.free_lengths, fmpq(0)) | numbers)
 
 
+@lru_cache(maxsize=8)
 def derivation_of(model: Model) -> Derivation:
     """In the coordinates of the unknowns, and in all parameters."""
-    return _known(model, model.whole)
-
-
-@lru_cache(maxsize=8)
-def _known(model: Model, _mechanism: Mechanism | None) -> Derivation:
-    """Of models that are equal as systems the mechanisms may be different ones."""
     return _derived(model, {})
 
 

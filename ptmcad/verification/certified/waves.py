@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.model import Mechanism, Model
+from ptmcad.model import Model
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression
@@ -204,14 +204,11 @@ def _by(f: Waves, k: int) -> Waves:
 
 def form_of(slice: Slice) -> Form:
     """The form of a slice's model, with springs as one that are parallel all over the slice."""
-    return _form(slice.model, slice.model.whole, tuple(slice.parameters.items()), slice.axes)
+    return _form(slice.model, tuple(slice.parameters.items()), slice.axes)
 
 
 @lru_cache(maxsize=8)
-def _form(
-    model: Model, _mechanism: Mechanism | None, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis]
-) -> Form:
-    """Of models that are equal as systems the mechanisms may be different ones."""
+def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis]) -> Form:
     true = derivation_of(model)
     ring = _Exponentials(model, true.ring)
     unknowns = ring.unknowns
@@ -246,11 +243,11 @@ def _form(
 
 def margins_of(model: Model, count: Count) -> tuple[Margin, ...]:
     """What a kind of count asks of stable solutions: of all springs, of which none has a negative free length."""
-    return _margins(model, model.whole) if count is Count.ADMISSIBLE else ()
+    return _margins(model) if count is Count.ADMISSIBLE else ()
 
 
 @lru_cache(maxsize=8)
-def _margins(model: Model, _mechanism: Mechanism | None) -> tuple[Margin, ...]:
+def _margins(model: Model) -> tuple[Margin, ...]:
     true = derivation_of(model)
     ring, found = _Exponentials(model, true.ring), []
     for spring in true.springs:
