@@ -52,8 +52,7 @@ def terms_of(model: Model) -> int:
 
 
 def _terms(system: CompiledSystem, more: Iterable[Formula]) -> int:
-    summands = (*(spring.smooth for spring in system.springs), *system.others)
-    own = summands if system.are_slopes else system.equations
+    own = system.summands() if system.are_slopes else system.equations
     return sum(size.terms for size in system.values((*own, *more), Sizes()))
 
 

@@ -10,7 +10,7 @@ length takes off the energy is kept beside them, as that has a root.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -111,6 +111,19 @@ class CompiledSystem:
         """The springs between points, and those between directions."""
         return self.springs, self.torsion
 
+    def summands(self, relaxed: Iterable[int] = ()) -> tuple[Formula, ...]:
+        """Of the energy with the free lengths of some springs."""
+        counted = set(relaxed)
+        parts = (s.energy if k in counted else s.smooth for k, s in enumerate(self.springs))
+        return (*parts, *self.others)
+
+    def pulling(self, ring: Ring[E]) -> Iterator[tuple[ElasticLine, E, tuple[E, E]]]:
+        """The springs that have a free length where parameters are in a ring, with pull and difference there."""
+        for spring in self.springs:
+            pull, x, y = self.values((spring.pull, *spring.difference), ring)
+            if pull != ring.constant(Fraction(0)):
+                yield spring, pull, (x, y)
+
     @property
     def acting(self) -> dict[int, Formula]:
         """The moments that are not zero, by the unknowns' places, where the equations are slopes."""
@@ -146,9 +159,8 @@ class CompiledSystem:
         """The same, whatever acts beside it."""
         if self.smooth is None:
             return None
-        counted = set(range(len(self.springs)) if relaxed is None else relaxed)
-        parts = [s.energy if k in counted else s.smooth for k, s in enumerate(self.springs)]
-        return sum((*parts, *self.others), start=self.graph.constant(0))
+        counted = range(len(self.springs)) if relaxed is None else relaxed
+        return sum(self.summands(counted), start=self.graph.constant(0))
 
     def balance(self, relaxed: Iterable[int]) -> tuple[Formula, ...]:
         """The equations with the free lengths of some springs."""
@@ -266,19 +278,19 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         turned_by = second_bar(bars, base, ring.cos(joint.angle), ring.sin(joint.angle))
         first, second = (ring.variables[angle].variable for angle in (joint.angle, joint.other))
         followers.append(Follower(first, second, *turned_by))
-    return replace(
+    known = replace(
         known,
         followers=tuple(followers),
         points=points,
         springs=springs,
         torsion=tuple(torsion),
         loads=tuple(loads),
-        smooth=sum((*(spring.smooth for spring in springs), *others), start=ring.constant(Fraction(0))),
         others=tuple(others),
         moments=tuple(steady[name] for name in mechanism.sorted_unknowns),
         heights=() if mechanism.closing or followers else tuple(points[name][1] for name in mechanism.rising),
         has_energy=not mechanism.coupled,
     )
+    return replace(known, smooth=sum(known.summands(), start=ring.constant(Fraction(0))))
 
 
 def _of_system(known: CompiledSystem, model: Model, ring: _Ring) -> CompiledSystem:

@@ -196,12 +196,10 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
         return system.values(tuple(formulas), ring)
 
     # how many are the same is said in their polynomial
-    pulls, squares = values(s.pull for s in system.springs), values(s.square for s in system.springs)
-    springs = Counter(zip(pulls, squares, strict=True))
+    pulls = Counter((pull, x * x + y * y) for _, pull, (x, y) in system.pulling(ring))
     lengths = [
         marked({"pull": pull, "square": square, "number": ring.constant(Fraction(number))})
-        for (pull, square), number in springs.items()
-        if pull.terms
+        for (pull, square), number in pulls.items()
     ]
     kept: list[list[_Terms]] = [[p.terms for p in values(some)] for some in (system.inequalities, system.stability)]
     if system.are_slopes:

@@ -239,14 +239,10 @@ def _with_springs(problem: Problem, slice: Slice, system: CompiledSystem, ring: 
 def _pulls(slice: Slice, system: CompiledSystem, ring: Harmonics) -> list[tuple[str, Expression, Vector]]:
     """Name, K and d of each spring with a free length; of those side by side as of one."""
     found: list[tuple[str, Expression, Vector]] = []
-    for spring in system.kinked:
-        pull = constant_of(system.values([spring.pull], ring)[0])
-        if not pull.numerator:
-            continue
-        across, up = system.values(spring.difference, ring)
+    for spring, weight, (across, up) in system.pulling(ring):
         if not (across.terms or up.terms):
             continue
-        name = title_of(spring, slice.model)
+        name, pull = title_of(spring, slice.model), constant_of(weight)
         for k, (other, its_pull, its_vector) in enumerate(found):
             # each of K |d| and K' |d'| alone has a cone, and where both are short at once neither direction would be
             # balanced by the rest; but K f |e| and K' g |e| are one
