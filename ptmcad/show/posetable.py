@@ -20,10 +20,12 @@ from ptmcad.text.enclosure import Enclosure, exact_text
 
 WIDTH = 100
 
-Column = tuple[str, str, list[str]]
-"""Header, unit and entries."""
+Column = list[str]
+"""A header, with its unit in brackets, and entries."""
+
 Numbers = tuple[str, str, Sequence[Enclosure] | list[str]]
-"""The same before numbers are written."""
+"""Header, unit and entries before numbers are written."""
+
 _MAX_BOUNDS = 6
 """Numbers that may be zero that are listed."""
 
@@ -170,7 +172,8 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
 
     def written(quantity: Numbers) -> Column:
         header, unit, entries = quantity
-        return header, unit, [x if isinstance(x, str) else x.text(digits) for x in entries]
+        head = f"{header} [{unit}]" if unit else header
+        return [head, *(x if isinstance(x, str) else x.text(digits) for x in entries)]
 
     groups = [list(map(written, group)) for group in _groups(poses)]
     return [block for group in groups if group for block in _fitting(group, width)]
@@ -208,7 +211,7 @@ def _fitting(columns: Sequence[Column], used: int) -> list[list[Column]]:
     blocks: list[list[Column]] = [[]]
     width = used
     for column in columns:
-        wide = 2 + _width(column)
+        wide = 2 + max(map(len, column))
         if blocks[-1] and width + wide > WIDTH:
             blocks.append([])
             width = used
@@ -217,19 +220,9 @@ def _fitting(columns: Sequence[Column], used: int) -> list[list[Column]]:
     return blocks
 
 
-def _header(column: Column) -> str:
-    return f"{column[0]} [{column[1]}]" if column[1] else column[0]
-
-
-def _width(column: Column) -> int:
-    return max(len(_header(column)), *(len(entry) for entry in column[2]))
-
-
 def _laid_out(columns: Sequence[Column]) -> list[str]:
     """A block of columns as lines: headers, then one row for each equilibrium, each with its number."""
-    count = len(columns[0][2])
-    first = len(str(count))
-    rows = [["#", *map(_header, columns)]]
-    rows += [[str(k + 1), *(column[2][k] for column in columns)] for k in range(count)]
-    widths = [first, *map(_width, columns)]
+    numbered = [["#", *(str(k) for k in range(1, len(columns[0])))], *columns]
+    widths = [max(map(len, column)) for column in numbered]
+    rows = zip(*numbered, strict=True)
     return ["  ".join(entry.rjust(width) for entry, width in zip(row, widths, strict=True)) for row in rows]
