@@ -244,16 +244,13 @@ def contour_levels(critical: Sequence[float], low: float, high: float) -> list[f
 
 
 def _decorate(axes: Any, sides: Sequence[UnknownAxis]) -> None:
-    for side, set_limits, set_ticks in (
-        (sides[0], axes.set_xlim, axes.set_xticks),
-        (sides[1], axes.set_ylim, axes.set_yticks),
-    ):
-        set_limits(side.low, side.high)
-        if side.is_angle:
-            set_ticks(range(-180, 181, 60))
+    across, up = sides
+    axes.set(xlim=(across.low, across.high), ylim=(up.low, up.high))
     axes.tick_params(labelsize=9, direction="out", length=3.5)
-    axes.set_xlabel(sides[0].label, fontsize=11)
-    axes.set_ylabel(sides[1].label, fontsize=11)
+    for axis, side in ((axes.xaxis, across), (axes.yaxis, up)):
+        if side.is_angle:
+            axis.set_ticks(range(-180, 181, 60))
+        axis.set_label_text(side.label, fontsize=11)
 
 
 def _mark(axes: Any, sides: Sequence[UnknownAxis], shown: Sequence[Pose]) -> None:
