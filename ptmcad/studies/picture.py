@@ -70,8 +70,7 @@ def draw(title: str, x: str, y: str, panels: Mapping[str, Sequence[Curve]], belo
             axes = figure.add_subplot(rows, columns, number + 1)
             _scales(axes, [mark for curve in panel for mark in curve.marks], heights)
             axes.set_title(name, fontsize=10)
-            axes.set_xlabel(x)
-            axes.set_ylabel("" if number % columns else y)
+            axes.set(xlabel=x, ylabel="" if number % columns else y)
             for curve in panel:
                 _curve(axes, curve)
         shown = figure.axes[0].get_legend_handles_labels() if panels else ([], [])

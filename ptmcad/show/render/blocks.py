@@ -144,8 +144,16 @@ def arranged(result: RegionMap, points: Sequence[PointPoses], style: PictureStyl
         except ConfigError as error:
             refused = refused or error
             continue
-        blocks = [_block(result, n, points[n], shown[n], page, style) for n in range(len(points))]
-        plan = Plan(page, _frame(shown, page.panel), blocks, sides)
+        blocks = []
+        for n, (at, poses) in enumerate(points):
+            wide = max(min(max(1, len(shown[n])), page.across) * page.panel, MIN_PANEL) / 72
+            head = wrapped(_head(result, n + 1, at, poses), wide, style.base_font, True)
+            blocks.append(Block(n + 1, at, head, poses, shown[n], page.across))
+        every = [pose for own in shown for pose in own]
+        frame = PanelFrame(Fraction(1), 0.0, page.panel)
+        if every:
+            frame = frame_of(every, page.panel, min(_TALLEST, 0.9 * page.panel))
+        plan = Plan(page, frame, blocks, sides)
         found.append((plan.tall(style.base_font / 72), plan))
         if most is None or found[-1][0] <= most:
             return plan
@@ -176,14 +184,6 @@ class BlockColumn:
 
     def berths(self, order: Order) -> list[Berth]:
         return [slot.berth(block, self.frame, self.em) for block, slot in self.placed(order)]
-
-
-def _block(
-    result: RegionMap, n: int, point: PointPoses, shown: tuple[Pose, ...], page: _PosePage, style: PictureStyle
-) -> Block:
-    at, poses = point
-    wide = min(max(1, len(shown)), page.across) * page.panel
-    return Block(n + 1, at, _lines(_head(result, n + 1, at, poses), wide, style), poses, shown, page.across)
 
 
 def _sides(points: Sequence[Point], left: int) -> tuple[list[int], list[int]]:
@@ -220,14 +220,6 @@ def _page(style: PictureStyle, numbers: Sequence[Sequence[int]]) -> _PosePage:
     )
 
 
-def _frame(shown: Sequence[tuple[Pose, ...]], panel: float) -> PanelFrame:
-    """The panels' sides and scale."""
-    everything = [pose for poses in shown for pose in poses]
-    if not everything:
-        return PanelFrame(Fraction(1), 0.0, panel)
-    return frame_of(everything, panel, min(_TALLEST, 0.9 * panel))
-
-
 def _height(page: _PosePage, tall: float, inner: float, style: PictureStyle, points: int) -> float:
     """Of the page, whose poses are so tall and whose map is so wide with its numbers."""
     natural = max(_MAP[1] / _MAP[0] * inner, tall)
@@ -246,8 +238,3 @@ def _head(result: RegionMap, number: int, at: Point, poses: Poses) -> str:
     stable = poses.known_stable
     what = counted(poses.model, len(poses.equilibria)) if stable is None else f"{stable}\N{NO-BREAK SPACE}stable"
     return f"{number}:  {where}; {what}"
-
-
-def _lines(head: str, points: float, style: PictureStyle) -> Sequence[str]:
-    """A head over poses of this width in points, or over the room for one."""
-    return wrapped(head, max(points, MIN_PANEL) / 72, style.base_font, True)

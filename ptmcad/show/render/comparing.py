@@ -27,7 +27,7 @@ from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import seen_thin_walls
-from ptmcad.show.render.textwidth import wrapped
+from ptmcad.show.render.textwidth import few, wrapped
 from ptmcad.show.render.thinmarks import Marks, draw_chart, marks_of
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
@@ -211,8 +211,7 @@ def _assignments(values: Mapping[str, Fraction], names: Sequence[str]) -> str:
 
 
 def _head(title: str, side: float, type: Type) -> list[str]:
-    lines = wrapped(title, side, type.head, True)
-    return lines if len(lines) <= _MAX_HEAD else [*lines[: _MAX_HEAD - 1], f"{lines[_MAX_HEAD - 1]} …"]
+    return few(wrapped(title, side, type.head, True), _MAX_HEAD)
 
 
 def _fills(comparison: Comparison, style: PictureStyle) -> dict[int, Fill]:

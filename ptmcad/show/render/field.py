@@ -228,7 +228,7 @@ class _FieldPage:
         side = SIDE * scale
         wide, tall = size or (side + 2.2 * scale, side + 1.5 * scale)
         title_font = max(MIN_FONT, 1.22 * font)
-        lines = wrapped(self.title, wide - 1.5 * em, title_font) if self.title else []
+        lines = wrapped(self.title, wide - 1.5 * em, title_font)
         rows = in_rows(self.legend, wide - 1.5 * em, type)
         head = 1.35 * title_font / 72 * len(lines) + (0.7 if lines else 0.4) * em
         foot = 1.35 * type.line * len([row for row in rows if row]) + 0.5 * em

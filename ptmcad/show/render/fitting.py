@@ -25,7 +25,7 @@ from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.inches import Box
 from ptmcad.show.render.layout import Layout, Texts
 from ptmcad.show.render.legend import Entry, Type
-from ptmcad.show.render.textwidth import ALLOWANCE, wrapped
+from ptmcad.show.render.textwidth import ALLOWANCE, few, wrapped
 from ptmcad.show.render.view import Same, View
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 
@@ -138,10 +138,7 @@ class _PageLayout:
 
     def title(self) -> list[str]:
         title = self.parts.title
-        lines = wrapped(title, self.size[0] - 2 * self.rim, self.texts.title) if title else []
-        if len(lines) > MAX_TITLE_LINES:
-            lines = [*lines[: MAX_TITLE_LINES - 1], f"{lines[MAX_TITLE_LINES - 1]} …"]
-        return lines
+        return few(wrapped(title, self.size[0] - 2 * self.rim, self.texts.title), MAX_TITLE_LINES)
 
     @property
     def title_line(self) -> float:

@@ -33,7 +33,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.model import Model
 from ptmcad.model.work import moments_at
 from ptmcad.show.drawable import no_landscape
-from ptmcad.show.render.axes import Scale, scale_of, symbol
+from ptmcad.show.render.axes import scale_of, symbol
 from ptmcad.show.render.clearance import Box, Label, Position, Stroke, place
 from ptmcad.show.render.energy import Energy, drawn, energy_of, is_cut
 from ptmcad.show.render.inches import axes_at
@@ -142,8 +142,7 @@ def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
         axes.set(xlim=(side.low, side.high), ylim=(low, high), xlabel=side.label)
         if side.is_angle:
             axes.set_xticks(range(-180, 181, 60))
-        scale = _energy_scale(energy, (low, high))
-        _energy_ticks(axes, scale, energy, energy_unit(poses.model, poses.units))
+        _energy_ticks(axes, energy, low, high, energy_unit(poses.model, poses.units))
         for number, pose in enumerate(shown, 1):
             (value,) = place_of(pose)
             for k, x in enumerate(side.copies(value)):
@@ -176,7 +175,9 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
     critical = sorted({level for pose in shown for level in _levels(energy, sides, pose)})
     levels = contour_levels(critical, float(heights.min()), float(heights.max()))
     with settings():
-        figure, axes = _page(poses, BAR + KEY + MARGIN, f"{_what(sides)} as contours")
+        turning = all(side.is_angle for side in sides)
+        what = "the two angles" if turning else " and ".join(side.name for side in sides)
+        figure, axes = _page(poses, BAR + KEY + MARGIN, f"{what} as contours")
         colours = LinearSegmentedColormap.from_list("energy", _COLOURS, N=256)
         norm = BoundaryNorm(levels, colours.N)
         clipped = np.clip(heights, levels[0], levels[-1])
@@ -187,10 +188,9 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
         axes.contour(*finer, fine_heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
         _decorate(axes, sides)
         _mark(axes, sides, shown)
-        scale = _energy_scale(energy, levels)
         bar = axes_at(figure, (LEFT + SIDE + 0.2, BOTTOM, 0.16, SIDE))
         figure.colorbar(filled, cax=bar, spacing="proportional", drawedges=False, ticks=[])
-        _energy_ticks(bar, scale, energy, energy_unit(poses.model, poses.units))
+        _energy_ticks(bar, energy, levels[0], levels[-1], energy_unit(poses.model, poses.units))
         for value in through:
             bar.axhline(value, color=INK, linewidth=1.2)
         left = LEFT + SIDE + BAR + 0.1
@@ -225,10 +225,6 @@ def _sampled(energy: Energy, sides: Sequence[UnknownAxis], number: int) -> tuple
     return (across, up), energy(first[None, :], second[:, None])
 
 
-def _what(sides: Sequence[UnknownAxis]) -> str:
-    return "the two angles" if all(side.is_angle for side in sides) else " and ".join(side.name for side in sides)
-
-
 def contour_levels(critical: Sequence[float], low: float, high: float) -> list[float]:
     """Increasing levels from the least to the largest energy, all critical ones and some between any two."""
     marks = [low]
@@ -244,16 +240,13 @@ def contour_levels(critical: Sequence[float], low: float, high: float) -> list[f
 
 
 def _decorate(axes: Any, sides: Sequence[UnknownAxis]) -> None:
-    for side, set_limits, set_ticks in (
-        (sides[0], axes.set_xlim, axes.set_xticks),
-        (sides[1], axes.set_ylim, axes.set_yticks),
-    ):
-        set_limits(side.low, side.high)
-        if side.is_angle:
-            set_ticks(range(-180, 181, 60))
+    across, up = sides
+    axes.set(xlim=(across.low, across.high), ylim=(up.low, up.high))
     axes.tick_params(labelsize=9, direction="out", length=3.5)
-    axes.set_xlabel(sides[0].label, fontsize=11)
-    axes.set_ylabel(sides[1].label, fontsize=11)
+    for axis, side in ((axes.xaxis, across), (axes.yaxis, up)):
+        if side.is_angle:
+            axis.set_ticks(range(-180, 181, 60))
+        axis.set_label_text(side.label, fontsize=11)
 
 
 def _mark(axes: Any, sides: Sequence[UnknownAxis], shown: Sequence[Pose]) -> None:
@@ -312,13 +305,10 @@ def _kind(pose: Pose) -> str:
     return "degenerate" if pose.index is None else kind(pose)
 
 
-def _energy_scale(energy: Energy, levels: Sequence[float]) -> Scale:
-    low, high = (energy.offset + energy.unit * Fraction(v) for v in (levels[0], levels[-1]))
-    return scale_of(low, high)
-
-
-def _energy_ticks(axes: Any, scale: Scale, energy: Energy, unit: str) -> None:
-    """Energies along a vertical axis."""
+def _energy_ticks(axes: Any, energy: Energy, low: float, high: float, unit: str) -> None:
+    """Energies along a vertical axis between two levels."""
+    least, largest = (energy.offset + energy.unit * Fraction(v) for v in (low, high))
+    scale = scale_of(least, largest)
     power = Fraction(10) ** scale.exponent
 
     def position(shown: float) -> float:

@@ -159,7 +159,7 @@ def titles_and_rows(
     """The lines of the title and the rows of the legend of a figure of a width in inches, as the style wants them."""
     title = title_of(family) if style.title is None else style.title
     inner = wide - 1.2 * style.base_font / 72
-    titles = wrapped(title, inner, style.base_font, True) if title else []
+    titles = wrapped(title, inner, style.base_font, True)
     return titles, [] if style.legend is LegendPlace.NONE else in_rows(told, inner, type)
 
 

@@ -67,9 +67,8 @@ def _chart(pixels: Grid | Field, dpi: int) -> tuple[Figure, Any]:
     figure = Figure(figsize=SIZE, dpi=dpi, facecolor="white", layout="constrained")
     axes: Any = figure.add_subplot()
     left, right, bottom, top = pixels.extent
-    axes.set(xlim=(left, right), ylim=(bottom, top))
-    axes.set_xlabel(symbol(pixels.names[0]))
-    axes.set_ylabel(symbol(pixels.names[1]))
+    across, up = map(symbol, pixels.names)
+    axes.set(xlim=(left, right), ylim=(bottom, top), xlabel=across, ylabel=up)
     return figure, axes
 
 

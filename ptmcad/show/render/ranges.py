@@ -75,16 +75,11 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
         for span in found.operation:
             ends = [_place(end, found.along) for end in (span.low, span.high)]
             axes.plot(ends, [1.2, 1.2], color=INK, linewidth=1.6, clip_on=False, marker="|", markersize=6)
-        axes.set_xlim(0, 1)
-        axes.set_ylim(0, 1)
-        axes.set_yticks([])
-        axes.set_xticks([])
+        axes.set(xlim=(0, 1), ylim=(0, 1), xticks=[], yticks=[])
         _labels(figure, axes, [_place(c.at, found.along) for c in found.changes], texts, below, upright)
         ruler = axes_in(figure, (LEFT, ROOM + 0.2, WIDE, 0.01))
-        ruler.set_xlim(scale.low, scale.high)
-        ruler.set_yticks([])
-        for side in ("left", "right", "top"):
-            ruler.spines[side].set_visible(False)
+        ruler.set(xlim=(scale.low, scale.high), yticks=[])
+        ruler.spines[["left", "right", "top"]].set_visible(False)
         ruler.tick_params(labelsize=SIZE + 1)
         ruler.set_xlabel(axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=1)
         draw_legend(figure, legend, LEFT + WIDE + RIGHT, tall - 0.05)

@@ -172,6 +172,11 @@ class MapDrawing(NamedTuple):
     samples: bool = False
     overlay: Overlay = ()
 
+    @property
+    def title(self) -> str:
+        """The style's, or the slice's heading."""
+        return whole_title(self.result) if self.style.title is None else self.style.title
+
     def figure(self, room: FreeSpace = NO_ROOM) -> Figure:
         """The picture."""
         return self.drawn(room)[0]
@@ -183,11 +188,12 @@ class MapDrawing(NamedTuple):
             seen = _seen(shapes(result), (SIDE, SIDE), self.dpi)
             type = Type(strong=style.strong, thin=style.strong * THIN / STRONG, thin_lines=style.thin_lines)
             legend = self.legend(seen)[0]
-            layout = flowing(_title_lines(result, style), legend, type, len(seen.views), room.beside, room.tallest)
+            title = _lines(self.title)
+            layout = flowing(title, legend, type, len(seen.views), room.beside, room.tallest)
         else:
             seen, layout = self.fit()
         figure = Figure(figsize=layout.size, dpi=self.dpi, facecolor="white")
-        figure.set_label(f"{' '.join(_title(result))}\n{description(result)}")
+        figure.set_label(f"{' '.join(_lines(whole_title(result)))}\n{description(result)}")
         self.draw_parts(figure, seen, layout)
         return figure, left_out(seen, layout)
 
@@ -202,7 +208,7 @@ class MapDrawing(NamedTuple):
         while True:
             parts = PageParts(
                 result.slice,
-                whole_title(result) if style.title is None else style.title,
+                self.title,
                 self.legend(seen),
                 (whole.view, *(zoom.outline.view for zoom in seen.views)),
             )
@@ -291,15 +297,9 @@ def whole_title(result: RegionMap) -> str:
     return "".join(c if c.isprintable() else " " for c in heading_of(result.slice))
 
 
-def _title(result: RegionMap) -> list[str]:
-    return textwrap.wrap(whole_title(result), TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …") or [""]
-
-
-def _title_lines(result: RegionMap, style: PictureStyle) -> list[str]:
-    """Lines over a picture that grows with what it shows."""
-    if style.title is None:
-        return _title(result)
-    return textwrap.wrap(style.title, TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …")
+def _lines(title: str) -> list[str]:
+    """Of a title over a picture that grows with what it shows."""
+    return textwrap.wrap(title, TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …")
 
 
 def _name_of(result: RegionMap, sliver: Sliver, number: int | None) -> str:

@@ -22,7 +22,7 @@ from ptmcad.show.render.legend import head_of
 from ptmcad.show.render.painting import fills_by_count, paint_of
 from ptmcad.show.render.plotting import draw_on, handles_of
 from ptmcad.show.render.stage import Pixels
-from ptmcad.show.style import LegendPlace, PictureStyle
+from ptmcad.show.style import DEFAULT, LegendPlace
 from ptmcad.show.table import in_order
 from ptmcad.text.numerals import fraction_of, shortest_text
 
@@ -30,6 +30,8 @@ SIZE = (7.0, 5.2)
 """Inches of a picture."""
 _BOX = (0.11, 0.12, 0.62, 0.76)
 """Of the map, as shares of the picture's sides: left, bottom, width, height."""
+_STYLE, _DPI = DEFAULT._replace(legend=LegendPlace.NONE, title=""), 100
+
 _MAX_LENGTH = 90
 """Characters of the values above a map."""
 
@@ -43,15 +45,12 @@ class SweepFilm:
     values : of what is swept, for each map.
     """
 
-    def __init__(
-        self, maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]], style: PictureStyle, dpi: int
-    ) -> None:
-        self.maps, self.values, self.dpi = maps, values, dpi
-        self.style = style._replace(legend=LegendPlace.NONE, title="")
+    def __init__(self, maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]]) -> None:
+        self.maps, self.values = maps, values
         self.head, fills = "", dict[str, Fill]()
         for number in range(len(values)):
             result = maps(number)
-            fills |= fills_by_count(paint_of(style, result), result)
+            fills |= fills_by_count(paint_of(DEFAULT, result), result)
             self.head = head_of(result.slice)[0]
         self.legend = handles_of({text: fills[text] for text in sorted(fills, key=in_order)})
 
@@ -59,9 +58,9 @@ class SweepFilm:
         return len(self.values)
 
     def frame(self, number: int) -> Pixels:
-        figure = Figure(figsize=SIZE, dpi=self.dpi, facecolor="white")
+        figure = Figure(figsize=SIZE, dpi=_DPI, facecolor="white")
         axes: Any = figure.add_axes(_BOX)
-        draw_on(axes, self.maps(number), False, self.style)
+        draw_on(axes, self.maps(number), False, _STYLE)
         text = ",  ".join(f"{symbol(n)} = {shortest_text(fraction_of(v))}" for n, v in self.values[number].items())
         figure.text(_BOX[0], 0.93, text if len(text) <= _MAX_LENGTH else f"{text[:_MAX_LENGTH]}…", fontsize=12)
         figure.legend(
@@ -74,12 +73,7 @@ class SweepFilm:
 
 
 def save_sweep_film(
-    maps: Callable[[int], RegionMap],
-    values: Sequence[Mapping[str, str]],
-    path: Path,
-    style: PictureStyle,
-    fps: int,
-    dpi: int = 100,
+    maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]], path: Path, fps: int
 ) -> None:
     """Write the maps as a GIF or, with the program ffmpeg, as MP4, by the file's suffix.
 
@@ -90,4 +84,4 @@ def save_sweep_film(
     OSError
         When the file cannot be written.
     """
-    save_pictures(lambda: SweepFilm(maps, values, style, dpi), path, style, fps)
+    save_pictures(lambda: SweepFilm(maps, values), path, DEFAULT, fps)

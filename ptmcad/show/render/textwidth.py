@@ -25,6 +25,11 @@ def wrapped(text: str, width: float, size: float, strong: bool = False) -> list[
     return lines
 
 
+def few(lines: list[str], most: int) -> list[str]:
+    """So many lines at most; the last one says where there are more."""
+    return lines if len(lines) <= most else [*lines[: most - 1], f"{lines[most - 1]} …"]
+
+
 def text_width(text: str, size: float, strong: bool = False) -> float:
     """Inches that a line of text takes in the font of the settings."""
     return _text_width(text, strong, tuple(rcParams["font.family"])) * size / 72 * ALLOWANCE

@@ -130,7 +130,8 @@ def legend(result: RegionMap, chart: MapPictures) -> str:
     for entry in entries(result, chart.thin_walls, samples=False, hidden=chart.hidden):
         match entry.mark:
             case Fill() as fill:
-                parts.append(f"<li>{swatch(fill)}<span>{escape(': '.join(_head_and_rest(entry.lines)))}</span></li>")
+                head, rest = entry.lines[0], " ".join(entry.lines[1:])  # a count, and what is said of its regions
+                parts.append(f"<li>{swatch(fill)}<span>{escape(f'{head}: {rest}' if rest else head)}</span></li>")
             case float(width):
                 parts.append(_line_entry('"wall strong"' if width > 1 else '"wall"', entry))
             case _ if callable(entry.mark):  # of curves on which solutions are not isolated
@@ -144,11 +145,6 @@ def _line_entry(look: str, entry: Entry) -> str:
     line = f'<path class={look} d="M0 9H30"/>'
     mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true">{line}</svg>'
     return f"<li>{mark}<span>{escape(' '.join(entry.lines))}</span></li>"
-
-
-def _head_and_rest(lines: tuple[str, ...]) -> tuple[str, ...]:
-    """A count, and what is said about its regions in one line."""
-    return tuple(" ".join(part) for part in (lines[:1], lines[1:]) if part)
 
 
 def regions(result: RegionMap) -> str:
