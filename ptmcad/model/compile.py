@@ -102,11 +102,6 @@ class CompiledSystem:
         return tuple((spring.length, spring.free, spring.force) for spring in self.springs)
 
     @property
-    def kinked(self) -> tuple[ElasticLine, ...]:
-        """The springs whose energy has a kink where they have no length: those with a free length."""
-        return tuple(spring for spring in self.springs if spring.pull.value != 0)
-
-    @property
     def elastic(self) -> tuple[tuple[ElasticLine, ...], tuple[AngularSpring, ...]]:
         """The springs between points, and those between directions."""
         return self.springs, self.torsion

@@ -86,7 +86,7 @@ def energy_of(model: Model, parameters: Mapping[str, Fraction]) -> Energy:
     moments = known.values(tuple(known.acting.values()), given)
     unit = Fraction(10) ** magnitude(max(map(abs, (*exact.values(), *moments)), default=Fraction(1)))
     roots = []
-    for spring in known.kinked:
+    for spring in known.springs:
         pull, collapsed = known.values((spring.pull, spring.collapsed), given)
         if pull:
             offset += collapsed
