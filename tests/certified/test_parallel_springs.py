@@ -23,8 +23,8 @@ from ptmcad.certified.plain.problem import problem_of
 from ptmcad.model import Mechanism
 from ptmcad.options import Options
 from ptmcad.verification import verify
-from ptmcad.verification.terms import monomials
 from ptmcad.verification.certified.waves import form_of
+from ptmcad.verification.terms import monomials
 
 Springs = list[dict[str, Any]]
 TOGETHER: Springs = [{"between": ["A", "P"], "k": 3, "free": "2/3"}, {"between": ["B", "P"], "k": 1, "free": "1/3"}]
