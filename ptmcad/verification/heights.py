@@ -18,16 +18,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, pairwise
 from math import prod
 
-from flint import arb_poly, ctx, fmpq, fmpz_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
 from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.verification.claims import PlaneCurve, ball, is_root
 from ptmcad.verification.elimination import discriminant, resultant
 from ptmcad.verification.structure import points_over
-from ptmcad.verification.sturm import ball_chain, ball_variations, ends_of, isolated, parting, real_roots
+from ptmcad.verification.sturm import ball_chain, ends_of, isolated, parting, real_roots
 
 _BITS = (256, 1024, 4096)
 _FINEST = 512
@@ -87,11 +87,13 @@ class Heights:
         ------
         _Undecided
         """
-        # at a simple root the first term alone is zero; at a multiple one all are
-        found = ball_variations(self._sequence(bits)[self._is_point(v) :], v, 0)
-        if found is None:
+        values = [q(arb(v)) for q in self._sequence(bits)]
+        if self._is_point(v):
+            # at a simple root the first term alone is zero; at a multiple one all are
+            values = values[1:]
+        if any(x.contains(0) for x in values):
             raise _Undecided
-        return found
+        return sum((x > 0) != (y > 0) for x, y in pairwise(values))
 
     @cached_property
     def _sequences(self) -> dict[int, list[arb_poly] | None]:

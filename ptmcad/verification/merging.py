@@ -32,16 +32,9 @@ def check_shape(claims: Claims) -> str:
     named = set(r.slice.parameters) - set(shorthands_of(model))
     if not model.unknowns or named != set(parameters_of(model)):
         raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
-    kind = kind_of(r.slice.count)
-    if not kind.has_exact_maps or (kind.is_predicate and not claims.meaning.order):
-        raise Violation(f"an exact map has no {r.slice.count.value} counts by which its regions could be distinguished")
-    if not kind.is_of(model):
-        raise Violation(f"{model.name} has no {r.slice.count.value} counts by which regions could be distinguished")
     if any(a.low >= a.high for a in r.slice.axes) or r.base not in (0, 1):
         raise Violation("the window is empty")
-    known = {r.slice.count.value} if kind.is_predicate else set()
-    if further := {name for item in (*r.cells, *r.regions) for name in item.further} - known:
-        raise Violation(f"an exact map has counts of {further.pop()} equilibria")
+    _check_count(claims)
     if not r.stacks:
         if r.status is Status.EXACT or r.critical_values or r.cells or r.adjacencies or r.non_adjacencies or r.regions:
             raise Violation("there are no stacks")
@@ -79,6 +72,19 @@ def check_shape(claims: Claims) -> str:
         if not _is_index(cell.region, len(r.regions)):
             raise Violation(f"cell {n} is in region {cell.region}, which is not there")
     return f"{len(r.stacks)} stacks, {len(r.cells)} cells, {len(r.adjacencies)} adjacencies, {len(r.regions)} regions"
+
+
+def _check_count(claims: Claims) -> None:
+    """The model has counts of the kind, exact maps may be by it, and no others are stored."""
+    r, count = claims.result, claims.result.slice.count
+    kind = kind_of(count)
+    if not kind.has_exact_maps or (kind.is_predicate and not claims.meaning.order):
+        raise Violation(f"an exact map has no {count.value} counts by which its regions could be distinguished")
+    if not kind.is_of(claims.model):
+        raise Violation(f"{claims.model.name} has no {count.value} counts by which regions could be distinguished")
+    known = {count.value} if kind.is_predicate else set()
+    if further := {name for item in (*r.cells, *r.regions) for name in item.further} - known:
+        raise Violation(f"an exact map has counts of {further.pop()} equilibria")
 
 
 def _is_index(value: object, length: int) -> bool:

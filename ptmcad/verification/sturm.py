@@ -100,7 +100,7 @@ def _changes(p: fmpz_poly, coefficients: tuple[int, ...], at: fmpq) -> int | Non
             return None
         if chain:
             with ctx.workprec(bits):
-                found = ball_variations(chain, at, int(p(at) > 0) - int(p(at) < 0))
+                found = _ball_variations(p, chain, at)
             if found is not None:
                 return found
         bits *= 2
@@ -139,18 +139,15 @@ def ball_chain(p: arb_poly, degree: int, last: int) -> list[arb_poly] | None:
     return chain
 
 
-def ball_variations(chain: Sequence[arb_poly], at: fmpq, first: int) -> int | None:
-    """Changes of sign at a point, of a polynomial and its sequence; None where a sign is not known.
-
-    Parameters
-    ----------
-    first : the sign of the polynomial, which comes before the sequence.
-    """
+def _ball_variations(p: fmpz_poly, chain: Sequence[arb_poly], at: fmpq) -> int | None:
+    """Changes of sign at a point, of the polynomial and its sequence; None where a sign is not known."""
     values = [q(arb(at)) for q in chain]
     if any(value.contains(0) and not value.is_zero() for value in values):
         return None
-    signs = [first, *(1 if value > 0 else -1 for value in values if not value.is_zero())]
-    return sum(a != b for a, b in pairwise(filter(None, signs)))
+    signs = [1 if value > 0 else -1 for value in values if not value.is_zero()]
+    if (first := p(at)) != 0:
+        signs.insert(0, 1 if first > 0 else -1)
+    return sum(a != b for a, b in pairwise(signs))
 
 
 def _balls_between(coefficients: tuple[int, ...], low: fmpq, high: fmpq, ends: Sequence[fmpq]) -> int:

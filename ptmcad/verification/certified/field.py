@@ -190,7 +190,7 @@ class BallJet:
         return [entries[n * i : n * i + n] for i in range(n)]
 
     @property
-    def springs(self) -> range:
+    def pulling(self) -> range:
         """The numbers of the springs that pull."""
         return range(len(self.formulas.squared))
 

@@ -75,7 +75,7 @@ class ModelCounting:
     ) -> CountedPoint:
         """At the context's precision."""
         numbers = _balls(values)
-        found = self._found(numbers, count, where, smallest, self._budget)
+        found = self._found(numbers, count, where, smallest)
         return CountedPoint(self._counts(numbers, found, count), found, values)
 
     def _found(
@@ -84,16 +84,16 @@ class ModelCounting:
         count: Count,
         where: Where | None,
         smallest: float,
-        budget: int,
-        near: Sequence[Zero] = (),
+        there: CountedPoint | None = None,
     ) -> list[Zero]:
         """The solutions that count, with springs on one line each on all sides of length zero.
 
         Parameters
         ----------
-        near : solutions for some of the parameters, which are proved first for all of them.
+        there : those for some of the parameters, which are proved first for all of them.
         """
-        found = list[Zero]()
+        found, near = list[Zero](), () if there is None else there.found
+        budget = self._budget // (1 if there is None else BOX_BUDGET_SHARE)
         for k, side in enumerate(sides(self.form)):
             field = _field(self.form, values, count, side)
             start, whole = ([_start(field)], None) if where is None else (where.boxes[k], where.whole)
@@ -164,8 +164,7 @@ class ModelCounting:
             raise Unproved("a stiffness times a free length may be negative")
         # boxes much smaller than the box of parameters are excluded no better than larger ones
         smallest = max(float(max(x.rad(), y.rad())) / 256, 2.0**-32)
-        budget = self._budget // BOX_BUDGET_SHARE
-        found = self._found(values, slice.count, where, smallest, budget, there.found)
+        found = self._found(values, slice.count, where, smallest, there)
         return self._counts(values, found, slice.count)
 
     @property

@@ -124,7 +124,7 @@ def _excluded(jet: BallJet, box: Box, minima: bool) -> bool:
     short = jet.short
     if minima and not short and is_no_minimum(jet.jacobian):
         return True
-    for k in jet.springs if max(box[1]) < 1 else ():
+    for k in jet.pulling if max(box[1]) < 1 else ():
         change = sum(slope.upper() * r for slope, r in zip(jet.slopes(k), box[1], strict=True))
         if not jet.length(k) > _NEAR * change and any(not b.contains(0) for b in jet.balances(k)):
             return True
