@@ -76,9 +76,9 @@ class SignMeaning:
 
     def is_stable(self, signs: str) -> bool | None:
         """Whether a solution is stable; None where nothing says so."""
-        return self.told(not {*signs} & {"-", "0"})
+        return self.about_stability(not {*signs} & {"-", "0"})
 
-    def told(self, what: T) -> T | None:
+    def about_stability(self, what: T) -> T | None:
         """Something about stability; None where nothing says what is stable."""
         return what if Count.STABLE in self.kinds else None
 
