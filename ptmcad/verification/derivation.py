@@ -76,9 +76,9 @@ class SignMeaning:
 
     def is_stable(self, signs: str) -> bool | None:
         """Whether a solution is stable; None where nothing says so."""
-        return self.told(not {*signs} & {"-", "0"})
+        return self.about_stability(not {*signs} & {"-", "0"})
 
-    def told(self, what: T) -> T | None:
+    def about_stability(self, what: T) -> T | None:
         """Something about stability; None where nothing says what is stable."""
         return what if Count.STABLE in self.kinds else None
 
@@ -265,9 +265,11 @@ class Derivation:
         return energy
 
     @property
-    def is_definite(self) -> bool:
-        """Whether the conditions for stability are those for a matrix to be definite, the last one its determinant."""
-        return self.energy is not None and not self.from_energy
+    def decisive(self) -> range:
+        """The numbers of the conditions for stability off whose zeros no solution loses it: of those for a matrix to be
+        definite the last one, its determinant."""
+        is_definite, number = self.energy is not None and not self.from_energy, len(self.stability)
+        return range(max(number - 1, 0) if is_definite else 0, number)
 
     def generators(self) -> list[fmpq_mpoly]:
         """Of the ideal of all solutions."""

@@ -98,7 +98,7 @@ def _map_of(found: Poses) -> RegionMap:
     boxes = tuple(_box(pose, slice.has_free_lengths) for pose in found.equilibria)
     meaning = meaning_of(found.model)
     index = meaning.indices([pose.index for pose in found.equilibria])
-    stable = meaning.told(found.stable)
+    stable = meaning.about_stability(found.stable)
     sample = Point(slice.axis_names, Fraction(1, 2), Fraction(1, 2))
     return map_of(slice, (Cell(None, 0, sample, 0, len(boxes), stable, index, boxes),), found.status)
 

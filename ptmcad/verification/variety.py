@@ -187,10 +187,9 @@ def _conditions(claims: Claims) -> dict[int, str]:
     its determinant: where that is not zero the matrix does not stop or begin to be definite.
     """
     true = claims.derivation
-    inequalities, stability = len(true.inequalities), len(true.stability)
-    first = max(stability - 1, 0) if true.is_definite else 0
+    inequalities = len(true.inequalities)
     return {k: f"inequality {k}" for k in range(inequalities)} | {
-        inequalities + k: f"condition {k} for stability" for k in range(first, stability)
+        inequalities + k: f"condition {k} for stability" for k in true.decisive
     }
 
 
