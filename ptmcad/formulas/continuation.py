@@ -51,7 +51,7 @@ class BranchEquations:
     angles: int
     tape: Tape
 
-    def equations(self, value: arb, point: arb_mat) -> arb_mat:
+    def residuals(self, value: arb, point: arb_mat) -> arb_mat:
         return arb_mat(self.size, 1, self._outputs(0, value, point))
 
     def jacobian(self, value: arb, point: arb_mat) -> arb_mat:
@@ -146,7 +146,7 @@ class BranchTube:
 
 
 def enclose(
-    family: BranchEquations, low: Fraction, high: Fraction, guess: Vector, room: Fraction = Fraction(0)
+    equations: BranchEquations, low: Fraction, high: Fraction, guess: Vector, room: Fraction = Fraction(0)
 ) -> BranchTube | None:
     """A tube around the branch near a guess for the middle of the range; None when not proved.
 
@@ -165,34 +165,34 @@ def enclose(
     """
     with ctx.workprec(BITS):
         middle, over = ball_of((low + high) / 2), ball_over(low, high)
-        center = _polished(family, middle, arb_mat(family.size, 1, guess))
-        jacobian = family.jacobian(middle, center)
+        center = _polished(equations, middle, arb_mat(equations.size, 1, guess))
+        jacobian = equations.jacobian(middle, center)
         inverse = _inverse(jacobian)
         if inverse is None:
             return None
-        slope = family.slope(middle, center)
+        slope = equations.slope(middle, center)
         velocity = (-(inverse * slope)).mid()
         ahead = ball_of((high - low) / 2) * arb(0, 1)
-        swept, start = center + velocity * ahead, inverse * family.equations(middle, center)
-        least = [e + ball_of(room) for e in _least(center, family.angles)]
+        swept, start = center + velocity * ahead, inverse * equations.residuals(middle, center)
+        least = [e + ball_of(room) for e in _least(center, equations.angles)]
 
         def slopes(spread: arb_mat) -> arb_mat:
-            return inverse * family.jacobian(over, swept + spread)
+            return inverse * equations.jacobian(over, swept + spread)
 
         def centered_slopes(spread: arb_mat) -> arb_mat:
             """From the Jacobian at the center and its derivatives in the whole box."""
-            mixed, by, _ = family.second(over, swept + spread)
+            mixed, by, _ = equations.second(over, swept + spread)
             by = [inverse * derivative for derivative in by]
             along, beside = inverse * mixed, inverse * jacobian
             for derivative, speed, reach in zip(by, velocity.entries(), spread.entries(), strict=True):
                 along, beside = along + derivative * speed, beside + derivative * reach
             return beside + along * ahead
 
-        drift = inverse * family.slope(over, swept) + inverse * family.jacobian(over, swept) * velocity
-        found = _krawczyk(family.angles, start + drift * ahead, least, slopes)
+        drift = inverse * equations.slope(over, swept) + inverse * equations.jacobian(over, swept) * velocity
+        found = _krawczyk(equations.angles, start + drift * ahead, least, slopes)
         if found is None and low < high:
-            drift = inverse * (slope + jacobian * velocity) + inverse * family.bend(over, swept, velocity) * ahead
-            found = _krawczyk(family.angles, start + drift * ahead, least, centered_slopes)
+            drift = inverse * (slope + jacobian * velocity) + inverse * equations.bend(over, swept, velocity) * ahead
+            found = _krawczyk(equations.angles, start + drift * ahead, least, centered_slopes)
         return None if found is None else BranchTube(low, high, center, velocity, *found)
 
 
@@ -237,15 +237,15 @@ def _inverse(matrix: arb_mat) -> arb_mat | None:
     return found if all(x.is_finite() for x in found.entries()) else None
 
 
-def _polished(family: BranchEquations, value: arb, guess: arb_mat) -> arb_mat:
+def _polished(equations: BranchEquations, value: arb, guess: arb_mat) -> arb_mat:
     """A few steps of Newton's method, without guarantee."""
     point = guess.mid()
     for _ in range(5):
-        inverse = _inverse(family.jacobian(value, point))
+        inverse = _inverse(equations.jacobian(value, point))
         if inverse is None:
             break
-        move = inverse * family.equations(value, point)
-        if not all(abs(m) < 1 for m in move.entries()[: family.angles]):
+        move = inverse * equations.residuals(value, point)
+        if not all(abs(m) < 1 for m in move.entries()[: equations.angles]):
             break
         point = (point - move).mid()
     return point
@@ -266,14 +266,14 @@ class Reached:
 
 
 def at_value(
-    family: BranchEquations, value: Fraction, guess: Vector, room: Fraction = Fraction(0)
+    equations: BranchEquations, value: Fraction, guess: Vector, room: Fraction = Fraction(0)
 ) -> BranchTube | None:
     """The place of the solution near a guess, at one value of the parameter."""
-    return enclose(family, value, value, guess, room)
+    return enclose(equations, value, value, guess, room)
 
 
 def follow(
-    family: BranchEquations, start: Reached, end: Fraction, longest: Fraction, most: int | None = None
+    equations: BranchEquations, start: Reached, end: Fraction, longest: Fraction, most: int | None = None
 ) -> tuple[list[Reached], bool]:
     """Follow a branch from one value of the parameter to another, in steps no longer than ``longest``.
 
@@ -294,7 +294,7 @@ def follow(
         # a rational of few digits about a step away: otherwise each step would make the value's digits more
         last = abs(step) >= abs(end - current.value)
         goal = end if last else simplest_fraction(current.value + step * 15 / 16, current.value + step)
-        reached = bridge(family, current, goal)
+        reached = bridge(equations, current, goal)
         if reached is not None:
             found.append(reached)
             current, step = reached, max(-longest, min(longest, step * 3 / 2))
@@ -305,29 +305,29 @@ def follow(
     return found, True
 
 
-def nearer(family: BranchEquations, place: Reached, value: Fraction) -> Reached:
+def nearer(equations: BranchEquations, place: Reached, value: Fraction) -> Reached:
     """The branch at a value, or as near to it as it can be followed."""
-    steps, _ = follow(family, place, value, abs(value - place.value), _MAX_NEAR)
+    steps, _ = follow(equations, place, value, abs(value - place.value), _MAX_NEAR)
     return steps[-1] if steps else place
 
 
-def bridge(family: BranchEquations, start: Reached, value: Fraction) -> Reached | None:
+def bridge(equations: BranchEquations, start: Reached, value: Fraction) -> Reached | None:
     """The same branch at another value, if one tube proves it for all values between; else None."""
     with ctx.workprec(BITS):
         half = ball_of((value - start.value) / 2)
         guess = tuple(a + v * half for a, v in zip(start.point, start.place.velocity.entries(), strict=True))
-    over = enclose(family, min(start.value, value), max(start.value, value), guess)
+    over = enclose(equations, min(start.value, value), max(start.value, value), guess)
     if over is None or not over.holds(start.place, start.value):
         return None
-    place = at_value(family, value, over.at(value))
+    place = at_value(equations, value, over.at(value))
     return Reached(value, place, over) if place is not None and over.holds(place, value) else None
 
 
-def over_range(family: BranchEquations, start: Reached, low: Fraction, high: Fraction) -> BranchTube | None:
+def over_range(equations: BranchEquations, start: Reached, low: Fraction, high: Fraction) -> BranchTube | None:
     """The branch at all values of a range at one side of its place; None where that is not proved."""
     end = low if start.value > high else high
-    across = bridge(family, start, end)
-    tube = None if across is None else enclose(family, low, high, across.point)
+    across = bridge(equations, start, end)
+    tube = None if across is None else enclose(equations, low, high, across.point)
     return tube if across is not None and tube is not None and across.over.holds(tube, end) else None
 
 

@@ -22,7 +22,17 @@ from ptmcad.exact.models.system import on_slice
 from ptmcad.exact.ranges.equations import line_system
 from ptmcad.exact.ranges.line import system_on
 from ptmcad.exact.ranges.mirror import Mirror, mirror_of
-from ptmcad.formulas.continuation import BITS, BranchEquations, Reached, at_value, bridge, enclose, follow
+from ptmcad.formulas.continuation import (
+    BITS,
+    BranchEquations,
+    Reached,
+    at_value,
+    branch_equations,
+    bridge,
+    enclose,
+    follow,
+)
+from ptmcad.formulas.graph import Graph
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.document import document, part
@@ -263,6 +273,19 @@ def test_a_tube_holds_one_branch_only() -> None:
     assert bridge(mechanism, steps[-1], Fraction(105, 100)) is None
     assert not follow(mechanism, steps[-1], Fraction(105, 100), Fraction(1, 10))[1]
     assert enclose(mechanism, Fraction(1), Fraction(11, 10), steps[-1].point) is None
+
+
+def test_a_box_without_another_solution_reaches_as_far_as_is_asked_or_there_is_none() -> None:
+    """x^2 = p at p = 1: about 1 there is no other one within 1/2, and within 3 there is -1."""
+    graph = Graph()
+    p, x = graph.variable(0), graph.variable(1)
+    equations = branch_equations([x * x - p], 0)
+    place = at_value(equations, Fraction(1), (arb("1.001"),), Fraction(1, 2))
+    assert place is not None
+    assert place.alone(Fraction(1))[0].contains(arb(1, "0.499"))
+    assert place.at(Fraction(1))[0].contains(1)
+    wide = at_value(equations, Fraction(1), (arb("1.001"),), Fraction(3))
+    assert wide is None or not wide.alone(Fraction(1))[0].contains(-1)
 
 
 @pytest.mark.parametrize(

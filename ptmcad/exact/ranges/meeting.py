@@ -246,7 +246,7 @@ def _isolates(
     while stack:
         piece, depth = stack.pop()
         pieces += 1
-        if any(not f.contains(0) for f in family.branches.equations(at, arb_mat(size, 1, piece)).entries()):
+        if any(not f.contains(0) for f in family.branches.residuals(at, arb_mat(size, 1, piece)).entries()):
             continue
         if depth == _MAX_DEPTH or pieces > _MAX_PIECES:
             return False
