@@ -105,9 +105,17 @@ def _answers(slice: Slice, request: RangeRequest) -> Iterator[tuple[Any, str, st
 
         found = intervals(slice, along, at)
         yield found, table.table(found, digits), "", lambda: render.draw_range(slice, found)
-    if request.over:
-        widths, text = (_bands if enclosed else _widths)(slice, request)
-        yield widths, text, "-over", lambda: render.draw_widths(slice, widths)
+    if request.over and enclosed:
+        from ptmcad.ask.bands import certified_widths
+
+        with ProgressBar() as progress:
+            bands = certified_widths(slice, along, request.rows, digits, progress)
+        yield bands, certified.width_table(bands, digits), "-over", lambda: render.draw_widths(slice, bands)
+    elif request.over:
+        from ptmcad.ask.ranges import operation_widths
+
+        widths = operation_widths(slice, along, request.rows)
+        yield widths, table.width_table(widths, digits), "-over", lambda: render.draw_widths(slice, widths)
 
     @cache
     def line() -> SolutionsOnLine:  # a picture of the paths shows branches too: those of the same solutions
@@ -127,25 +135,6 @@ def _answers(slice: Slice, request: RangeRequest) -> Iterator[tuple[Any, str, st
         with ProgressBar() as progress:
             diagram = branch_diagram(slice, along, at, request.quantities, progress, line())
         yield diagram, branches.table(diagram), "-branches", lambda: render.draw_branches(slice, diagram)
-
-
-def _widths(slice: Slice, request: RangeRequest) -> tuple[Any, str]:
-    """The operation ranges over the other axis, and their table."""
-    from ptmcad.ask.ranges import operation_widths
-    from ptmcad.show.ranges.table import width_table
-
-    found = operation_widths(slice, request.along, request.rows)
-    return found, width_table(found, request.digits)
-
-
-def _bands(slice: Slice, request: RangeRequest) -> tuple[Any, str]:
-    """The same where springs have free lengths."""
-    from ptmcad.ask.bands import certified_widths
-    from ptmcad.show.ranges.certified import width_table
-
-    with ProgressBar() as progress:
-        found = certified_widths(slice, request.along, request.rows, request.digits, progress)
-    return found, width_table(found, request.digits)
 
 
 def is_enclosed(slice: Slice, request: RangeRequest) -> bool:

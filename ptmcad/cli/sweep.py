@@ -28,6 +28,7 @@ from ptmcad.process.handover import Topic, send
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config.sweeps import Sweeping, load_sweep
 from ptmcad.show import render
+from ptmcad.show.style import DEFAULT
 
 FORMATS = ("csv", "html", "gif", "mp4")
 RETRIES = 2
@@ -168,7 +169,8 @@ def _film(sweep: Sweep, fps: int, progress: ProgressBar, path: Path) -> None:
         return sweep.result(shown[number].number)
 
     _some(sweep)
-    render.save_sweep_film(seen, [member.parameters for member in shown], path, fps)
+    values = [member.parameters for member in shown]
+    render.save_pictures(lambda: render.SweepFilm(seen, values), path, DEFAULT, fps)
 
 
 def _some(sweep: Sweep) -> RegionMap:

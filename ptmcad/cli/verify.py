@@ -136,10 +136,12 @@ def _clock(seconds: float | None) -> Iterator[Callable[[], bool]]:
 def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]:
     """What there is to check in a file, each with a heading where there are several; ``how`` are `verify`'s options."""
 
+    from ptmcad.verification import verify
+
     def of_map(stored: RegionMap) -> Verify:
         exact = stored.cover is None
         report_idle([(name, exact, "an exact map is checked whole") for name in ("boxes", "effort")])
-        return partial(_verified_map, stored, how)
+        return lambda progress: verify(stored, progress=progress, **how)
 
     if path.is_dir():
         yield "", partial(_verified_sweep, path, how)
@@ -148,7 +150,8 @@ def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]
     if kind in ("design", "poses", "range"):
         report_idle([(name, how[name] is not None, "all that is stored is checked") for name in ("boxes", "effort")])
     if kind == "design":
-        design, versions = read_other(path, _design_in, "ptmcad-design/1")
+        design = read_other(path, BestDesign.from_json, "ptmcad-design/1")
+        versions = json.loads(path.read_text(encoding="utf-8")).get("versions")
         yield "", partial(_verified_design, design, versions, how["seed"])
     elif kind == "poses":
         poses = read_other(path, Poses.from_json, "ptmcad-poses/1")
@@ -165,11 +168,6 @@ def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]
         yield "", of_map(read_result(path, whole=False))
 
 
-def _design_in(text: str) -> tuple[BestDesign, Any]:
-    """A design, and the versions that made it."""
-    return BestDesign.from_json(text), json.loads(text).get("versions")
-
-
 def _range_in(text: str) -> dict[str, Any]:
     return {"format": "ptmcad-range/1", **opened(text, "ptmcad-range/1", MAX_BYTES, "ptmcad range").value}
 
@@ -179,12 +177,6 @@ def _meet(one: Bounds | None, other: Bounds | None) -> bool:
     if one is None or other is None:
         return one == other
     return max(Fraction(one[0]), Fraction(other[0])) <= min(Fraction(one[1]), Fraction(other[1]))
-
-
-def _verified_map(stored: RegionMap, how: Mapping[str, Any], progress: Progress) -> VerifyReport:
-    from ptmcad.verification import verify
-
-    return verify(stored, progress=progress, **how)
 
 
 def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) -> VerifyReport:

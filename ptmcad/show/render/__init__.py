@@ -8,7 +8,7 @@ _FUNCTIONS = {
     "comparing": ("comparison_figure", "difference_words", "traced"),
     "design": ("figure_of_design",),
     "field": ("description", "field_figure"),
-    "film": ("gif_bytes", "save_film"),
+    "film": ("gif_bytes", "save_film", "save_pictures"),
     "fonts": ("check_families",),
     "landscape": ("draw_landscape",),
     "multiples": ("multiples_figure",),
@@ -20,7 +20,7 @@ _FUNCTIONS = {
     "ranges": ("draw_range", "draw_widths"),
     "regionmap": ("draw",),
     "solid": ("solid_figure",),
-    "sweepfilm": ("save_sweep_film",),
+    "sweepfilm": ("SweepFilm",),
 }
 """What other rooms draw with, by the modules that have it: the report needs outlines and colours only."""
 _MODULES = {function: module for module, functions in _FUNCTIONS.items() for function in functions}

@@ -7,7 +7,6 @@ above a map are exact.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,6 @@ from matplotlib.figure import Figure
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import Fill
-from ptmcad.show.render.film import save_pictures
 from ptmcad.show.render.legend import head_of
 from ptmcad.show.render.painting import fills_by_count, paint_of
 from ptmcad.show.render.plotting import draw_on, handles_of
@@ -70,18 +68,3 @@ class SweepFilm:
         canvas: Any = FigureCanvasAgg(figure)
         canvas.draw()
         return np.asarray(canvas.buffer_rgba())[..., :3].copy()
-
-
-def save_sweep_film(
-    maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]], path: Path, fps: int
-) -> None:
-    """Write the maps as a GIF or, with the program ffmpeg, as MP4, by the file's suffix.
-
-    Raises
-    ------
-    ConfigError
-        For another suffix, or MP4 without ffmpeg.
-    OSError
-        When the file cannot be written.
-    """
-    save_pictures(lambda: SweepFilm(maps, values), path, DEFAULT, fps)
