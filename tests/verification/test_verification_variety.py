@@ -9,15 +9,16 @@ from math import prod
 from random import Random
 
 import pytest
-from flint import fmpq, fmpq_mpoly, fmpz_mpoly
+from flint import fmpq, fmpq_mpoly
 from support.shipped_records import EXACT
 
 import ptmcad
 from ptmcad.answer.regionmap import HARMLESS, Component, Kind, RegionMap
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import variety
-from ptmcad.verification.claims import Claims, PlaneCurve
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.plane import polynomial
 from ptmcad.verification.report import Violation
 from ptmcad.verification.variety import check_norm
 
@@ -225,10 +226,10 @@ class Shortened:
 
     result: RegionMap
     exponents: Sequence[int]
-    polynomials: Sequence[fmpz_mpoly]
+    polynomials: Sequence[fmpq_mpoly]
 
     def values(self, x: Fraction, y: Fraction) -> list[Fraction]:
-        return [Fraction(int(p(int(x), int(y)))) for p in self.polynomials]
+        return [to_fraction(p(from_fraction(x), from_fraction(y))) for p in self.polynomials]
 
     def fibre_at(self, x: Fraction, y: Fraction) -> KnownFibre:
         norm = prod((v**e for v, e in zip(self.values(x, y), self.exponents, strict=True)), start=Fraction(1))
@@ -244,7 +245,7 @@ def points(claims: object, seed: int) -> Iterator[variety.FibrePoint]:
 def test_no_seed_rejects_a_shipped_map(name: str, shipped: Shipped) -> None:
     claims = Claims(shipped(name))
     _, exponents = variety.check_identity(claims, points(claims, 0))
-    polynomials = [PlaneCurve.of(n, c.polynomial, 0).flint() for n, c in enumerate(claims.result.components)]
+    polynomials = [polynomial(c.polynomial.terms) for c in claims.result.components]
     short = Shortened(claims.result, exponents, polynomials)
     for seed in range(SEEDS):
         assert variety.check_identity(short, points(short, seed))[1] == exponents  # type: ignore[arg-type]
