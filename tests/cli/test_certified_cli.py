@@ -248,9 +248,9 @@ for name in ("compiled", "loading", "engine"):
     sys.modules["ptmcad.certified." + name] = ModuleType(name)
 sys.modules["ptmcad.certified.loading"].load = load
 sys.modules["ptmcad.certified.engine"].certified_map = certified_map
-sys.modules["ptmcad.show.render"] = ModuleType("render")
-sys.modules["ptmcad.show.render"].draw = draw
 from ptmcad.__main__ import main
+from ptmcad.show import render
+render.draw = draw
 main()
 """
 

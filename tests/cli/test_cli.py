@@ -26,6 +26,7 @@ from ptmcad.cli import COMMANDS, group, run
 from ptmcad.errors import ConfigError, LimitReached, OutputError
 from ptmcad.options import Options
 from ptmcad.process.output import check_writable, text_writer, write_files
+from ptmcad.show import render
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG4 = ROOT / "configs" / "fig4.yaml"
@@ -73,10 +74,8 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     pipeline = ModuleType("ptmcad.ask.classification")
     pipeline.region_map = region_map  # type: ignore[attr-defined]
     pipeline.prepare = lambda *_: None  # type: ignore[attr-defined]
-    render = ModuleType("ptmcad.show.render")
-    render.draw = draw  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "ptmcad.ask.classification", pipeline)
-    monkeypatch.setitem(sys.modules, "ptmcad.show.render", render)
+    monkeypatch.setitem(vars(render), "draw", draw)
     return calls
 
 

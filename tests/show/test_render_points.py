@@ -40,7 +40,7 @@ def around(texts: tuple[str, ...], style: PictureStyle) -> Figure:
     result = shipped("fig4")
     points = [(at, poses_at(result, at)) for at in places(result, texts)]
     with settings(style):
-        made, _ = draw_around(result, points, style, 100)
+        made, _ = draw_around(MapDrawing(result, style, 100), points)
         FigureCanvasAgg(made).draw()
     return made
 
