@@ -78,7 +78,7 @@ class ElasticLine(NamedTuple):
 
 
 class AngularSpring(NamedTuple):
-    """A torsion spring: its energy is stiffness (1 - cos deflection), its moment stiffness sin deflection.
+    """A spring between directions: its energy is stiffness (1 - cos deflection), its moment stiffness sin deflection.
 
     Attributes
     ----------

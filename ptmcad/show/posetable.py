@@ -60,7 +60,8 @@ def _units(poses: Poses) -> list[str]:
         for what, name in zip(("length", "force"), mechanism.units, strict=True)
     )
     pose, product = poses.equilibria[0], declared_units(mechanism, units).get("energy", "their product")
-    parts = {"energies": pose.energy, "moments": pose.torsion, "the Hessian's eigenvalues": pose.eigenvalues}
+    turning = mechanism.energy_unit in {spring.unit for spring in mechanism.elastic}
+    parts = {"energies": pose.energy, "moments": turning, "the Hessian's eigenvalues": pose.eigenvalues}
     measured = {
         "lengths and coordinates": length,
         "forces": force,
