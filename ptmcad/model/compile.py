@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
+from operator import sub
 from typing import TypeVar
 
 from ptmcad.errors import ExpressionError
@@ -128,8 +129,7 @@ class CompiledSystem:
     def forces(self) -> tuple[Formula, ...]:
         """The smooth energy's slopes by the unknowns, less the moments."""
         assert self.smooth is not None
-        slopes = gradient(self.smooth, self.unknowns)
-        return tuple(slope - moment for slope, moment in zip(slopes, self.moments, strict=True))
+        return tuple(map(sub, gradient(self.smooth, self.unknowns), self.moments))
 
     @property
     def work(self) -> Formula:
