@@ -125,7 +125,7 @@ def test_quantities_have_the_declared_units(
     assert json.loads((tmp_path / "u-range.json").read_text())["branches"]["units"] == [energy, force, "degrees"]
     length = units.get("length", "length")
     for part, words in {
-        "-branches": [f"energy ({energy})", f"force:k1 ({force})", "θ₁ (degrees)", f"ρ ({length})"],
+        "-branches": [f"energy ({energy})", f"force k₁ ({force})", "θ₁ (degrees)", f"ρ ({length})"],
         "-over": [f"L₂ ({length})", f"ρ ({length})", f"operation range ({length})"],
         "-path": ["θ₁ (degrees)", f"ρ ({length})"],
     }.items():
