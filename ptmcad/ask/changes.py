@@ -170,7 +170,7 @@ def _same(a: Picture, b: Picture) -> bool:
 def _compared(members: Members, critical: Sequence[RealRoot], tolerance: Fraction) -> Changes:
     """Of all values at which the arrangement can change those at which it does."""
     free = members.family.free
-    roots = [refine(r, from_fraction(tolerance * (free.high - free.low))) for r in critical]
+    roots = [refine(r, from_fraction(tolerance * free.width)) for r in critical]
     lows = [from_fraction(free.low), *(r.high for r in roots)]
     highs = [*(r.low for r in roots), from_fraction(free.high)]
     pictures = []
@@ -232,7 +232,7 @@ def _middle(low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
 def _at_ends(members: Members, tolerance: Fraction) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What is otherwise at the ends of the range than beside them."""
     free = members.family.free
-    gap = tolerance * (free.high - free.low)
+    gap = tolerance * free.width
     places = ((free.low, free.low, free.low + gap), (free.high, free.high - gap, free.high))
     found: list[tuple[str, ...]] = []
     for end, low, high in places:
@@ -246,7 +246,7 @@ def _near(
 ) -> tuple[Fraction, Fraction]:
     """Simple values on both sides of a root, as near as the tolerance says, between the neighbouring ones."""
     free = members.family.free
-    gap = from_fraction(tolerance * (free.high - free.low))
+    gap = from_fraction(tolerance * free.width)
     below = simplest_between(max(around[0], root.low - gap), root.low)
     above = simplest_between(root.high, min(around[1], root.high + gap))
     return to_fraction(below), to_fraction(above)
@@ -275,9 +275,8 @@ def _words(
 def _bisected(members: Members, tolerance: Fraction, reason: str) -> Changes:
     """Changes between members that differ, enclosed."""
     free = members.family.free
-    width = free.high - free.low
-    inner = {free.low + width * Fraction(2 * k + 1, 2 * SAMPLES) for k in range(SAMPLES)}
-    wanted = sorted(inner | {v for v in members.family.values if free.low < v < free.high})
+    inner = {free.middle(k, SAMPLES) for k in range(SAMPLES)}
+    wanted = sorted(inner | {v for v in members.family.values if free.holds(v)})
     values = []
     for number, value in enumerate(wanted):
         members.report("arrangements", number, len(wanted))
@@ -286,7 +285,7 @@ def _bisected(members: Members, tolerance: Fraction, reason: str) -> Changes:
     if not values:
         members.at(wanted[0])  # raises, as no member has an arrangement
     found, between, place = [], [], values[0]
-    for low, high in _brackets(members, values, tolerance * width):
+    for low, high in _brackets(members, values, tolerance * free.width):
         between.append(_simple_alike(members, place, low))
         found.append(Change(Enclosure(low, high), described(members.at(low), members.at(high))))
         place = high

@@ -160,7 +160,7 @@ class _DesignSearch:
                 return
             point = []
             for axis, at in zip(self.asked.over, self.best[0], strict=True):
-                reach = (axis.high - axis.low) * share
+                reach = axis.width * share
                 low, high = (from_fraction(end) for end in (at - reach, at + reach))
                 point.append(min(max(to_fraction(simplest_between(low, high)), axis.low), axis.high))
             self.look(tuple(point))
@@ -210,10 +210,10 @@ class _DesignSearch:
         places = [place_of(m) for m in maxima]
         inside = [min(max(p, axis.low), axis.high) for p in places]
         steps = evaluations
-        wanted = [*inside, *(axis.low + (axis.high - axis.low) * Fraction(k, steps) for k in range(1, steps))]
-        nearby = (axis.high - axis.low) / 2**30
+        wanted = [*inside, *(axis.at(Fraction(k, steps)) for k in range(1, steps))]
+        nearby = axis.width / 2**30
         for place in inside:  # where a place is itself none to count at, next to it
-            wanted += [p for p in (place - nearby, place + nearby) if axis.low < p < axis.high]
+            wanted += [p for p in (place - nearby, place + nearby) if axis.holds(p)]
         for number, value in enumerate(wanted):
             if self.over_time:
                 break

@@ -130,7 +130,7 @@ class _Builder:
 
     def point(self, base: int, u: Fraction, v: Fraction) -> tuple[float, float]:
         pair = (u, v) if base == 0 else (v, u)
-        x, y = (float((c - a.low) / (a.high - a.low)) for c, a in zip(pair, self.axes, strict=True))
+        x, y = (float(a.share(c)) for c, a in zip(pair, self.axes, strict=True))
         return x, y
 
     def sheet(self, counts: tuple[Key, Key], run: Joined) -> int:
@@ -174,7 +174,7 @@ class _Builder:
         values = np.array([float(value) for value in self.numbers])
         found = np.array(self.points, dtype=float).reshape(-1, 3)
         member = found[:, 2].astype(np.int64)
-        scaled = [float(a.low) + found[:, k] * float(a.high - a.low) for k, a in enumerate(self.axes)]
+        scaled = [float(a.low) + found[:, k] * float(a.width) for k, a in enumerate(self.axes)]
         heights = values[member] if len(member) else np.zeros(0)
         vertices = np.column_stack([*scaled, heights])
         faces = np.array(self.faces, dtype=np.int64).reshape(-1, 3)

@@ -36,6 +36,27 @@ class Axis:
     def __str__(self) -> str:
         return f"{self.name} in [{self.low}, {self.high}]"
 
+    @property
+    def width(self) -> Fraction:
+        """The length of the range."""
+        return self.high - self.low
+
+    def at(self, share: Fraction) -> Fraction:
+        """The value that lies at a share of the range, from the lower end."""
+        return self.low + self.width * share
+
+    def middle(self, number: int = 0, parts: int = 1) -> Fraction:
+        """The middle of one of so many equal parts of the range, counted from 0."""
+        return self.at(Fraction(2 * number + 1, 2 * parts))
+
+    def share(self, value: Fraction) -> Fraction:
+        """At which share of the range a value lies."""
+        return (value - self.low) / self.width
+
+    def holds(self, value: Fraction) -> bool:
+        """Whether a value lies inside of the range, and not at its ends."""
+        return self.low < value < self.high
+
 
 @dataclass(frozen=True, slots=True)
 class Slice:
@@ -72,6 +93,11 @@ class Slice:
     @property
     def axis_names(self) -> tuple[str, str]:
         return (self.axes[0].name, self.axes[1].name)
+
+    @property
+    def area(self) -> Fraction:
+        """Of the window."""
+        return self.axes[0].width * self.axes[1].width
 
     @property
     def mechanism(self) -> str:

@@ -301,10 +301,7 @@ def complete(
 def centre(result: RegionMap, grid: Grid | GridPoints, row: int, column: int) -> tuple[Fraction, Fraction]:
     """A pixel's centre, exactly."""
     (x, y), (rows, columns) = result.slice.axes, grid.cell.shape
-    return (
-        x.low + (x.high - x.low) * Fraction(2 * column + 1, 2 * columns),
-        y.low + (y.high - y.low) * Fraction(2 * row + 1, 2 * rows),
-    )
+    return x.middle(column, columns), y.middle(row, rows)
 
 
 def exact_at(result: RegionMap, x: Fraction, y: Fraction) -> Poses:

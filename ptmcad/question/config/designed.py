@@ -77,6 +77,11 @@ class Design:
         return tuple(axis_of(name, self.record.axes[name], self.model) for name in names)
 
     @property
+    def middle(self) -> dict[str, Fraction]:
+        """The design in the middle of the bounds."""
+        return {axis.name: axis.middle() for axis in self.over}
+
+    @property
     def text(self) -> dict[str, str]:
         """The parameters that the record gives, as they are written, without those of the design."""
         return {name: scalar.text for name, scalar in _without(self.record, self.over).values.items()}

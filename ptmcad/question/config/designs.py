@@ -221,8 +221,7 @@ def _design(record: Record, asked: Node) -> Design:
     if faults.found:
         note_values(record, faults, _entries(asked.at("over").value))
     # read in the middle of the bounds, so that what no design can be asked is said at once
-    middle = {axis.name: (axis.low + axis.high) / 2 for axis in over}
-    _ = found.slice(middle) if found.aim in (Aim.RANGE, Aim.AREA) else found.point(middle)
+    _ = found.slice(found.middle) if found.aim in (Aim.RANGE, Aim.AREA) else found.point(found.middle)
     return found
 
 

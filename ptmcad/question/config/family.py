@@ -229,4 +229,4 @@ def _values(free: Axis, members: Written | None, faults: Faults) -> tuple[Fracti
 
 
 def _spaced(free: Axis, number: int) -> tuple[Fraction, ...]:
-    return tuple(free.low + (free.high - free.low) * k / (number - 1) for k in range(number))
+    return tuple(free.at(Fraction(k, number - 1)) for k in range(number))
