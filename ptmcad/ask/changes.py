@@ -6,13 +6,11 @@ members of different arrangements, and it is said that others may be missing.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import partial
 from itertools import pairwise
-from pathlib import Path
 from time import perf_counter
-from typing import Any
 
 from flint import fmpq
 
@@ -30,6 +28,7 @@ from ptmcad.exact.familyprojection import critical_values
 from ptmcad.exact.surfaces import surfaces_of
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.config import Family, family_from
+from ptmcad.question.shipped import RecordSource
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, simplest_fraction, to_fraction
 from ptmcad.text.numerals import text_of
@@ -40,7 +39,7 @@ SAMPLES = 64
 
 
 def changes(
-    question: str | Path | Mapping[str, Any] | Family,
+    question: RecordSource | Family,
     tolerance: Fraction | float | str = TOLERANCE,
     *,
     timeout: float | None = None,

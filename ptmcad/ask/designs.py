@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -23,6 +22,7 @@ from ptmcad.extras import Extra, require
 from ptmcad.options import Options, Progress
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.designs import design_from
+from ptmcad.question.shipped import RecordSource
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 from ptmcad.text.parsing import share_for
 
@@ -39,7 +39,7 @@ UNPROVED = 3
 
 
 def design(
-    question: str | Path | Mapping[str, Any] | Design,
+    question: RecordSource | Design,
     maximise: str | None = None,
     over: Mapping[str, Sequence[Any]] | None = None,
     *,

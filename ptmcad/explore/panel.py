@@ -23,7 +23,7 @@ from ptmcad.question.config.resolution import slice_of, written_in
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar, Sequence
-from ptmcad.text.numerals import text_of
+from ptmcad.text.numerals import Numbers, text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import names_in
 
@@ -35,7 +35,7 @@ MAX_NAME = 100
 REMEMBERED = 4
 """Families whose variety is kept: one is left and come back to when another parameter is dragged to and fro."""
 
-Values = Mapping[str, Fraction]
+Values = Numbers
 
 
 @dataclass(frozen=True, slots=True)

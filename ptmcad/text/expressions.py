@@ -163,6 +163,10 @@ class Expression:
         return _as_expression(other) / self
 
 
+Expressions = Mapping[str, Expression]
+"""Functions of the axes by the names of the parameters that they are."""
+
+
 def constant(value: Fraction | int) -> Expression:
     """The constant function."""
     return Expression(((0, 0, Fraction(value)),) if value else ())

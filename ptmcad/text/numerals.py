@@ -8,11 +8,14 @@ discriminant can have; here they are split at powers of ten.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from fractions import Fraction
 from numbers import Rational
 from operator import index
 from typing import SupportsIndex
 
+Numbers = Mapping[str, Fraction]
+"""Exact numbers by the names of what has these values."""
 MAX_DIGITS = 200_000
 """Of a numerator, a denominator or a decimal: longer ones are refused when reading."""
 MAX_EXPONENT = 20_000
