@@ -11,7 +11,7 @@ from ptmcad.algebra.numbers import refined
 from ptmcad.answer.intervals import End, Span
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import Numbers, magnitude, shortest_text
+from ptmcad.text.numerals import Numbers, equalities, magnitude, shortest_text
 
 MAX_DIGITS = 1000
 """That may be asked for."""
@@ -26,7 +26,7 @@ def line_head(along: Axis, at: Numbers) -> str:
 
 def fixed(at: Numbers) -> str:
     """What is fixed on a line."""
-    return ", ".join(f"{name} = {shortest_text(value)}" for name, value in at.items())
+    return equalities(at, shortest_text)
 
 
 def end_text(end: End | Enclosure, digits: int) -> str:
