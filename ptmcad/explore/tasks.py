@@ -28,6 +28,7 @@ from ptmcad.process.output import Writer, check_writable, text_writer, write_fil
 from ptmcad.question.config import file_name
 from ptmcad.question.slice import Slice
 from ptmcad.show.report.reproduction import reproduction
+from ptmcad.text.expressions import values_at
 from ptmcad.text.numerals import Numbers
 
 EXACT_SECONDS = 50.0
@@ -122,7 +123,7 @@ class Tasks:
             raise ConfigError(f"a point has {' and '.join(axes)}")
         at = {name: number_within(name, job["at"][name], axes[name].low, axes[name].high) for name in axes}
         place: tuple[Fraction, Fraction] = (at[slice.axes[0].name], at[slice.axes[1].name])
-        parameters = {name: e.evaluate(*place) for name, e in slice.parameters.items()}
+        parameters = values_at(slice.parameters, *place)
         for name, value in parameters.items():
             kind = slice.model.kind(name)
             if kind.excludes(value):

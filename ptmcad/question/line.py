@@ -16,7 +16,7 @@ from ptmcad.formulas.graph import Graph
 from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled_with
 from ptmcad.question.slice import Axis, Slice, have_free_lengths, without_free_lengths
-from ptmcad.text.expressions import Expression, Expressions, axis, constant
+from ptmcad.text.expressions import Expression, Expressions, axis, constant, values_at
 from ptmcad.text.numerals import Numbers, shortest_text
 from ptmcad.text.parsing import number_for
 
@@ -32,7 +32,7 @@ class Line:
 
     def values(self, value: Fraction) -> dict[str, Fraction]:
         """The parameters at a value of the axis that varies."""
-        return {name: e.evaluate(value, Fraction(0)) for name, e in self.parameters.items()}
+        return values_at(self.parameters, value)
 
     def place(self, value: Fraction) -> str:
         """A point of the line in words."""

@@ -28,6 +28,7 @@ from ptmcad.model.compile import compiled
 from ptmcad.model.work import acting
 from ptmcad.options import Progress
 from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import values_at
 
 BATCH, LARGE_BATCH = 300, 20_000
 """Pixels at a time: what they take stays in the processor's cache; of descents few are long, which go on together."""
@@ -306,9 +307,7 @@ def centre(result: RegionMap, grid: Grid | GridPoints, row: int, column: int) ->
 
 def exact_at(result: RegionMap, x: Fraction, y: Fraction) -> Poses:
     """All solutions at a point of the slice."""
-    model = result.slice.model
-    values = {name: e.evaluate(x, y) for name, e in result.slice.parameters.items()}
-    return poses_at(model, values, DIGITS)
+    return poses_at(result.slice.model, values_at(result.slice.parameters, x, y), DIGITS)
 
 
 def unknowns_of(pose: Pose) -> Floats:

@@ -227,7 +227,7 @@ def _design(record: Record, asked: Node) -> Design:
 
 def _along(along: str, axes: tuple[str, ...], entry: Node) -> str:
     if along not in axes:
-        hint = did_you_mean(along, axes) or f": choose {' or '.join(axes)}"
+        hint = did_you_mean(along, axes, ": choose ", " or ")
         raise entry.fault(f"{along[:40]!r} is not an axis{hint}")
     return along
 

@@ -48,8 +48,8 @@ def resolved(record: Record, free: Expressions, faults: Faults) -> tuple[dict[st
         misnamed = [other for other in names if other not in known and other.lower() not in NOT_NUMBERS]
         for other in misnamed[:1]:
             with faults:
-                those = f"; the names are {', '.join(known)}" if known else "; no name is known here"
-                raise scalar.place.error(f"unknown name '{other[:40]}'{did_you_mean(other, known) or those}")
+                hint = did_you_mean(other, known, "; the names are " if known else "; no name is known here")
+                raise scalar.place.error(f"unknown name '{other[:40]}'{hint}")
         values = {other: value(other, (*chain, name)) for other in names if other in known}
         if misnamed or values.keys() & faulty:
             faulty.add(name)

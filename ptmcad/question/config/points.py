@@ -17,6 +17,7 @@ from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.shipped import RecordSource, record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar, from_python
+from ptmcad.text.expressions import values_at
 
 _EXPECTED = f"{A_SLICE}, {A_RECORD}"
 
@@ -94,8 +95,7 @@ def point_from(question: RecordSource | Slice, values: Mapping[str, object]) -> 
     if missing := [name for name in names if name not in given]:
         raise ConfigError("is an axis of the slice and has no value", key=missing[0])
     x, y = (number_of(given[name], "the value of this axis") for name in names)
-    values_there = {name: expression.evaluate(x, y) for name, expression in question.parameters.items()}
-    return question.model, without_shorthands(values_there, question.model)
+    return question.model, without_shorthands(values_at(question.parameters, x, y), question.model)
 
 
 def units_of(question: RecordSource | Slice) -> Mapping[str, str]:
