@@ -21,12 +21,9 @@ NARROW = Fraction(1, 10**20)
 
 def line_head(along: Axis, at: Numbers) -> str:
     """The window along a line, and what is fixed on it."""
-    return f"{along.name} in ({shortest_text(along.low)}, {shortest_text(along.high)}) at {fixed(at)}"
-
-
-def fixed(at: Numbers) -> str:
-    """What is fixed on a line."""
-    return equalities(at, shortest_text)
+    return (
+        f"{along.name} in ({shortest_text(along.low)}, {shortest_text(along.high)}) at {equalities(at, shortest_text)}"
+    )
 
 
 def end_text(end: End | Enclosure, digits: int) -> str:
