@@ -70,7 +70,7 @@ def _of_cells(result: RegionMap) -> Iterator[str]:
         for count in result.slice.count.kind.implied:
             if cell.number(count) != region.number(count):
                 yield f"cell {n} and its region {cell.region} differ in their counts"
-        if not all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, cell.sample, strict=True)):
+        if not all(axis.holds(value) for axis, value in zip(result.slice.axes, cell.sample, strict=True)):
             yield f"the sample of cell {n} is not in the window"
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from ptmcad.answer import with_methods
 from ptmcad.answer.changes import Changes
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.question.slice import Axis
+from ptmcad.question.slice import Axes, Axis
 from ptmcad.text.terms import terms_text
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class FamilyMap:
     text: Mapping[str, str] = field(default_factory=dict)
 
     @property
-    def axes(self) -> tuple[Axis, Axis]:
+    def axes(self) -> Axes:
         """Of every member."""
         return self.members[0].slice.axes
 

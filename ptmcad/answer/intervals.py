@@ -5,7 +5,6 @@ Guarantee: ends are exact, or enclosures where the certified engine found them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
@@ -18,7 +17,8 @@ from ptmcad.model import Model
 from ptmcad.model.criterion import critical_point
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.expressions import Expression
+from ptmcad.text.expressions import Expressions
+from ptmcad.text.numerals import Numbers
 
 End = AlgebraicNumber | Fraction
 """A critical value, or the window's edge."""
@@ -166,8 +166,8 @@ class CountIntervals:
     name: str
     model: Model
     along: Axis
-    at: Mapping[str, Fraction]
-    parameters: Mapping[str, Expression]
+    at: Numbers
+    parameters: Expressions
     intervals: tuple[CountInterval, ...]
     changes: tuple[Change, ...]
     working: int
@@ -241,7 +241,7 @@ class CertifiedIntervals:
     """The answer for a line, from the window's lower edge to its upper one."""
 
     along: Axis
-    at: Mapping[str, Fraction]
+    at: Numbers
     intervals: tuple[CertifiedInterval, ...]
     changes: tuple[CertifiedChange, ...]
 

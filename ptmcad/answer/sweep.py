@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from ptmcad.answer import with_methods
 from ptmcad.answer.widths import Attainment
 from ptmcad.errors import ConfigError
+from ptmcad.text.numerals import equalities
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -115,7 +116,7 @@ class Member:
     attempts: int = field(default=0, compare=False)
 
     def __repr__(self) -> str:
-        values = ", ".join(f"{name} = {value}" for name, value in self.parameters.items())
+        values = equalities(self.parameters)
         found = "" if self.summary is None else f", {self.summary.regions} regions"
         return f"<Member {self.number}: {values[:100]}; {self.state.value}{found}>"
 

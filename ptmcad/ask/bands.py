@@ -37,7 +37,7 @@ def certified_widths(
     over = slice.axes[1 - number]
     found: list[tuple[Fraction, tuple[CertifiedInterval, ...], str]] = []
     for k in range(1, rows + 1):
-        value = over.low + (over.high - over.low) * Fraction(k, rows + 1)
+        value = over.at(Fraction(k, rows + 1))
         try:
             found.append((value, certified_intervals(slice, along, {over.name: value}, digits).intervals, ""))
         except HypothesisError as error:

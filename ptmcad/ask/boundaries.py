@@ -140,17 +140,13 @@ def _drawn(result: RegionMap, piece: _Polyline) -> Boundary:
     """In the axes' order and units."""
     base = result.base
     axes = (result.slice.axes[base], result.slice.axes[1 - base])
-    units = [
-        [a.low + (a.high - a.low) * c for c in column]
-        for a, column in zip(axes, zip(*piece.points, strict=True), strict=True)
-    ]
+    units = [[a.at(c) for c in column] for a, column in zip(axes, zip(*piece.points, strict=True), strict=True)]
     points = np.array([[float(v) for v in column] for column in (units if base == 0 else units[::-1])]).T
     # along x what is above is at the left hand; along y what is at smaller x is
     below, above = piece.regions
     swapped = (base == 0) == piece.across
     left, right = (below, above) if swapped else (above, below)
-    side = axes[0 if piece.across else 1]
-    distance = piece.distance * (side.high - side.low)
+    distance = piece.distance * axes[0 if piece.across else 1].width
     component = result.components[piece.component]
     return Boundary(points, left, right, piece.component, component.kind, _upper(distance))
 
@@ -166,7 +162,7 @@ def _outlines(result: RegionMap, cover: Cover) -> Iterator[Boundary]:
     complement, cells = component_cells(result, cover)
     complement = shown(complement)
     numbers = [n for n in cells if n is not None]
-    scale = [((a.high - a.low) / cover.steps, a.low) for a in result.slice.axes]
+    scale = [(a.width / cover.steps, a.low) for a in result.slice.axes]
     for number, polygons in zip(numbers, outlines(complement, numbers), strict=True):
         region = result.cells[cells[number]].region
         for corners in polygons:

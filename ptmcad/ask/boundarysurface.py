@@ -160,9 +160,9 @@ class _SurfaceSearch:
         self.members = Members(common, options, base)
         self.tolerance, self.max_members = tolerance, max_members
         self.slabs = _slabs(changes, self.members)
-        self.width = changes.free.high - changes.free.low
+        self.width = changes.free.width
         self.stated = common.family.values
-        self.sizes = tuple(a.high - a.low for a in common.family.axes)
+        self.sizes = tuple(a.width for a in common.family.axes)
         self.joined: set[tuple[Fraction, Fraction]] = set()
         self.deviation, self.unresolved = 0.0, 0
         self._known: dict[Fraction, BoundaryStrips | None] = {}
@@ -278,7 +278,7 @@ def _place(slab: tuple[Fraction, Fraction], value: Fraction) -> float:
 def _slabs(changes: Changes, members: Members) -> list[tuple[Fraction, Fraction]]:
     """The intervals between changes, from member to member, without the nearest surroundings of changes."""
     free = changes.free
-    near = NEAR * (free.high - free.low)
+    near = NEAR * free.width
 
     def end(value: Fraction, words: Sequence[str], inner: Fraction) -> Fraction:
         return simplest_fraction(value, inner) if words or members.tried(value) is None else value

@@ -22,6 +22,7 @@ from ptmcad.ask.solving import poses_at
 from ptmcad.options import Progress
 from ptmcad.question.line import has_free_lengths, on_line, varying_axis
 from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import values_at
 
 SAMPLES = 24
 """Values in each interval, closer to its ends, where branches turn."""
@@ -122,7 +123,7 @@ class SolutionsOnLine:
         return self._known[value]
 
     def _found(self, value: Fraction) -> Sample | None:
-        parameters = {name: e.evaluate(value, Fraction(0)) for name, e in self.parameters.items()}
+        parameters = values_at(self.parameters, value)
         found = poses_at(self.model, parameters, self.digits)
         if found.status not in (Status.EXACT, Status.CERTIFIED):
             self.undecided.append(value)

@@ -6,13 +6,11 @@ members of different arrangements, and it is said that others may be missing.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import partial
 from itertools import pairwise
-from pathlib import Path
 from time import perf_counter
-from typing import Any
 
 from flint import fmpq
 
@@ -30,6 +28,7 @@ from ptmcad.exact.familyprojection import critical_values
 from ptmcad.exact.surfaces import surfaces_of
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.config import Family, family_from
+from ptmcad.question.shipped import RecordSource
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, simplest_fraction, to_fraction
 from ptmcad.text.numerals import text_of
@@ -40,7 +39,7 @@ SAMPLES = 64
 
 
 def changes(
-    question: str | Path | Mapping[str, Any] | Family,
+    question: RecordSource | Family,
     tolerance: Fraction | float | str = TOLERANCE,
     *,
     timeout: float | None = None,
@@ -170,7 +169,7 @@ def _same(a: Picture, b: Picture) -> bool:
 def _compared(members: Members, critical: Sequence[RealRoot], tolerance: Fraction) -> Changes:
     """Of all values at which the arrangement can change those at which it does."""
     free = members.family.free
-    roots = [refine(r, from_fraction(tolerance * (free.high - free.low))) for r in critical]
+    roots = [refine(r, from_fraction(tolerance * free.width)) for r in critical]
     lows = [from_fraction(free.low), *(r.high for r in roots)]
     highs = [*(r.low for r in roots), from_fraction(free.high)]
     pictures = []
@@ -232,7 +231,7 @@ def _middle(low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
 def _at_ends(members: Members, tolerance: Fraction) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What is otherwise at the ends of the range than beside them."""
     free = members.family.free
-    gap = tolerance * (free.high - free.low)
+    gap = tolerance * free.width
     places = ((free.low, free.low, free.low + gap), (free.high, free.high - gap, free.high))
     found: list[tuple[str, ...]] = []
     for end, low, high in places:
@@ -246,7 +245,7 @@ def _near(
 ) -> tuple[Fraction, Fraction]:
     """Simple values on both sides of a root, as near as the tolerance says, between the neighbouring ones."""
     free = members.family.free
-    gap = from_fraction(tolerance * (free.high - free.low))
+    gap = from_fraction(tolerance * free.width)
     below = simplest_between(max(around[0], root.low - gap), root.low)
     above = simplest_between(root.high, min(around[1], root.high + gap))
     return to_fraction(below), to_fraction(above)
@@ -275,9 +274,8 @@ def _words(
 def _bisected(members: Members, tolerance: Fraction, reason: str) -> Changes:
     """Changes between members that differ, enclosed."""
     free = members.family.free
-    width = free.high - free.low
-    inner = {free.low + width * Fraction(2 * k + 1, 2 * SAMPLES) for k in range(SAMPLES)}
-    wanted = sorted(inner | {v for v in members.family.values if free.low < v < free.high})
+    inner = {free.middle(k, SAMPLES) for k in range(SAMPLES)}
+    wanted = sorted(inner | {v for v in members.family.values if free.holds(v)})
     values = []
     for number, value in enumerate(wanted):
         members.report("arrangements", number, len(wanted))
@@ -286,7 +284,7 @@ def _bisected(members: Members, tolerance: Fraction, reason: str) -> Changes:
     if not values:
         members.at(wanted[0])  # raises, as no member has an arrangement
     found, between, place = [], [], values[0]
-    for low, high in _brackets(members, values, tolerance * width):
+    for low, high in _brackets(members, values, tolerance * free.width):
         between.append(_simple_alike(members, place, low))
         found.append(Change(Enclosure(low, high), described(members.at(low), members.at(high))))
         place = high

@@ -110,7 +110,7 @@ def check(slice: Slice, sized: bool = True) -> CheckedSlice:
     """
     slice = proved(slice)
     # thirds and sevenths of the window: rarely on a curve that a person has in mind
-    sample = tuple(a.low + (a.high - a.low) * share for a, share in zip(slice.axes, (_ACROSS, _UP), strict=True))
+    sample = tuple(a.at(share) for a, share in zip(slice.axes, (_ACROSS, _UP), strict=True))
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
         cost, flat = _CERTIFIED, flat_loops(slice)

@@ -9,13 +9,12 @@ Only the engine that is used is loaded.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
-from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.timings import with_compilation
@@ -28,6 +27,7 @@ from ptmcad.process.memory import loading
 from ptmcad.question.config import slice_from
 from ptmcad.question.counts import Count
 from ptmcad.question.savings import load_all, switched_off
+from ptmcad.question.shipped import RecordSource
 from ptmcad.question.slice import Slice, count_fault, without_free_lengths
 from ptmcad.text.parsing import share_for
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 def classify(
-    slice: Slice | str | Path | Mapping[str, Any],
+    slice: Slice | RecordSource,
     engine: str = "auto",
     count: Count | str | None = None,
     timeout: float | None = None,

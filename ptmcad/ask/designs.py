@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -23,6 +22,7 @@ from ptmcad.extras import Extra, require
 from ptmcad.options import Options, Progress
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.designs import design_from
+from ptmcad.question.shipped import RecordSource
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 from ptmcad.text.parsing import share_for
 
@@ -39,7 +39,7 @@ UNPROVED = 3
 
 
 def design(
-    question: str | Path | Mapping[str, Any] | Design,
+    question: RecordSource | Design,
     maximise: str | None = None,
     over: Mapping[str, Sequence[Any]] | None = None,
     *,
@@ -160,7 +160,7 @@ class _DesignSearch:
                 return
             point = []
             for axis, at in zip(self.asked.over, self.best[0], strict=True):
-                reach = (axis.high - axis.low) * share
+                reach = axis.width * share
                 low, high = (from_fraction(end) for end in (at - reach, at + reach))
                 point.append(min(max(to_fraction(simplest_between(low, high)), axis.low), axis.high))
             self.look(tuple(point))
@@ -210,10 +210,10 @@ class _DesignSearch:
         places = [place_of(m) for m in maxima]
         inside = [min(max(p, axis.low), axis.high) for p in places]
         steps = evaluations
-        wanted = [*inside, *(axis.low + (axis.high - axis.low) * Fraction(k, steps) for k in range(1, steps))]
-        nearby = (axis.high - axis.low) / 2**30
+        wanted = [*inside, *(axis.at(Fraction(k, steps)) for k in range(1, steps))]
+        nearby = axis.width / 2**30
         for place in inside:  # where a place is itself none to count at, next to it
-            wanted += [p for p in (place - nearby, place + nearby) if axis.low < p < axis.high]
+            wanted += [p for p in (place - nearby, place + nearby) if axis.holds(p)]
         for number, value in enumerate(wanted):
             if self.over_time:
                 break

@@ -5,8 +5,7 @@ Guarantee: that of `ptmcad.ask.members`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from pathlib import Path
+from collections.abc import Iterable
 from typing import Any, Literal
 
 from ptmcad.answer.family import FamilyMap
@@ -14,11 +13,12 @@ from ptmcad.ask.members import in_common, members_of
 from ptmcad.errors import ConfigError, expect
 from ptmcad.options import Options, Progress
 from ptmcad.question.config import Family, family_from
+from ptmcad.question.shipped import RecordSource
 from ptmcad.text.parsing import number_for
 
 
 def family(
-    question: str | Path | Mapping[str, Any] | Family,
+    question: RecordSource | Family,
     values: Iterable[Any] | Literal["between"] | None = None,
     *,
     changes: bool = False,

@@ -44,7 +44,7 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     names = result.slice.axis_names
     expect(at, (Mapping, Point), "point", f"the values of {names[0]} and {names[1]} by name, or a mapping of them")
     point = _point(result, at)
-    inside = all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, point, strict=True))
+    inside = all(axis.holds(value) for axis, value in zip(result.slice.axes, point, strict=True))
     if not inside:  # of the open window, which is what a map is of
         on_edge = all(axis.low <= value <= axis.high for axis, value in zip(result.slice.axes, point, strict=True))
         return Location(Status.ON_EDGE if on_edge else Status.OUTSIDE)
@@ -163,7 +163,7 @@ def _locate_outside_cover(result: RegionMap, cover: Cover, point: tuple[Fraction
 
 def in_steps(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
     """Lattice coordinates."""
-    u, v = ((x - a.low) / (a.high - a.low) * cover.steps for a, x in zip(result.slice.axes, point, strict=True))
+    u, v = (a.share(x) * cover.steps for a, x in zip(result.slice.axes, point, strict=True))
     return u, v
 
 

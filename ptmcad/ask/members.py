@@ -20,7 +20,7 @@ from ptmcad.errors import ConfigError, DegenerateSliceError, ExpressionError, In
 from ptmcad.model import Model
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.question.config import member_like
-from ptmcad.question.slice import Axis, Slice
+from ptmcad.question.slice import Axes, Axis, Slice
 from ptmcad.text.numerals import text_of
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class AskedFamily(Protocol):
     def values(self) -> tuple[Fraction, ...]: ...
 
     @property
-    def axes(self) -> tuple[Axis, Axis]: ...
+    def axes(self) -> Axes: ...
 
     @property
     def text(self) -> Mapping[str, str]: ...
@@ -65,7 +65,7 @@ class Restored:
         return self.maps.values
 
     @property
-    def axes(self) -> tuple[Axis, Axis]:
+    def axes(self) -> Axes:
         return self.maps.axes
 
     @property

@@ -46,8 +46,7 @@ def grid(result: RegionMap, columns: int = 200, rows: int | None = None) -> Grid
     if not result.cells:
         raise ConfigError(f"the map {result.slice.name} was stopped before it had cells: there is nothing to show")
     centres = [
-        [a.low + (a.high - a.low) * Fraction(2 * k + 1, 2 * int(n)) for k in range(int(n))]
-        for a, n in zip(result.slice.axes, (columns, down), strict=True)
+        [a.middle(k, int(n)) for k in range(int(n))] for a, n in zip(result.slice.axes, (columns, down), strict=True)
     ]
     cells = _exact(result, centres) if result.cover is None else _certified(result, result.cover, centres)
     with within_doubles(result.slice):

@@ -6,7 +6,6 @@ and `ptmcad.ask.fields.quantities` computes them in floating point, for many sol
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -75,7 +74,7 @@ def quantity(model: Model, text: str, key: str = OPTION) -> Quantity:
         found = unknown(model, text.strip())
     if found is None:
         known = quantities(model)
-        hint = did_you_mean(text.strip(), known) or _there_are(tuple(known))
+        hint = did_you_mean(text.strip(), known, "; there are " if known else "")
         raise ConfigError(f"{text[:60]!r} is no quantity of {model.name}{hint}", key=key)
     if found.kind is QuantityKind.BARRIER:
         raise ConfigError("a barrier is no number of a pose alone: `ptmcad map --value barrier` has it", key=key)
@@ -154,7 +153,8 @@ def unknown(model: Model, name: str) -> Quantity | None:
 
 def _of_energy(model: Model, kind: QuantityKind, key: str) -> Quantity:
     if kind.value not in (*model.criterion.numbers, *model.criterion.differences):
-        raise ConfigError(f"solutions of {model.name} have no energy{_there_are(tuple(quantities(model)))}", key=key)
+        there = ", ".join(quantities(model))
+        raise ConfigError(f"solutions of {model.name} have no energy{there and f'; there are {there}'}", key=key)
     return Quantity(kind.value, kind, f"force{_TIMES}length" if model.whole else "")
 
 
@@ -181,7 +181,3 @@ def _of_part(model: Model, kind: QuantityKind, name: str, key: str) -> Quantity:
         raise ConfigError(f"{model.name} has no {what} {name[:60]!r}{did_you_mean(name, known) or there}", key=key)
     number = model.angles.index(name) if kind is QuantityKind.ANGLE else springs.get(name, 0)
     return Quantity(f"{kind.value}:{name}", kind, unit, part=name, number=number)
-
-
-def _there_are(names: Sequence[str]) -> str:
-    return f"; there are {', '.join(names)}" if names else ""

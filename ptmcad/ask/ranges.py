@@ -68,7 +68,7 @@ def pose_paths(
     """
     varying, other, value = varying_axis(slice, along, at)
     axis, begin, model = slice.axes[varying], number_for("--path", start), slice.model
-    if not axis.low < begin < axis.high:
+    if not axis.holds(begin):
         raise ConfigError(f"{begin} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path")
     joined = has_free_lengths(slice, along, at)
     follower: ExactFollower | JoinedFollower

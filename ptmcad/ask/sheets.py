@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.boundarysurface import Sheet
 from ptmcad.exact.strips import JUMP, BoundaryOpening, BoundaryStrips, Key
-from ptmcad.question.slice import Axis
+from ptmcad.question.slice import Axes
 
 Joined = list[tuple[Fraction, BoundaryStrips]]
 """Members with their values, in increasing order, whose boundaries have the same shape."""
@@ -37,7 +37,7 @@ class Mesh(NamedTuple):
     sheets: tuple[Sheet, ...]
 
 
-def mesh_of(runs: Sequence[Joined], axes: tuple[Axis, Axis], tolerance: Fraction) -> Mesh:
+def mesh_of(runs: Sequence[Joined], axes: Axes, tolerance: Fraction) -> Mesh:
     """The mesh over all members that are joined.
 
     Parameters
@@ -120,7 +120,7 @@ def _deviation(first: NDArray[np.float64], middle: NDArray[np.float64], last: ND
 class _Builder:
     """What there is of the mesh so far; points are of the window's unit square, in the axes' order."""
 
-    def __init__(self, axes: tuple[Axis, Axis], numbers: dict[Fraction, int]) -> None:
+    def __init__(self, axes: Axes, numbers: dict[Fraction, int]) -> None:
         self.axes, self.numbers = axes, numbers
         self.points: list[tuple[float, float, int]] = []
         self.faces: list[tuple[int, int, int]] = []
@@ -130,7 +130,7 @@ class _Builder:
 
     def point(self, base: int, u: Fraction, v: Fraction) -> tuple[float, float]:
         pair = (u, v) if base == 0 else (v, u)
-        x, y = (float((c - a.low) / (a.high - a.low)) for c, a in zip(pair, self.axes, strict=True))
+        x, y = (float(a.share(c)) for c, a in zip(pair, self.axes, strict=True))
         return x, y
 
     def sheet(self, counts: tuple[Key, Key], run: Joined) -> int:
@@ -174,7 +174,7 @@ class _Builder:
         values = np.array([float(value) for value in self.numbers])
         found = np.array(self.points, dtype=float).reshape(-1, 3)
         member = found[:, 2].astype(np.int64)
-        scaled = [float(a.low) + found[:, k] * float(a.high - a.low) for k, a in enumerate(self.axes)]
+        scaled = [float(a.low) + found[:, k] * float(a.width) for k, a in enumerate(self.axes)]
         heights = values[member] if len(member) else np.zeros(0)
         vertices = np.column_stack([*scaled, heights])
         faces = np.array(self.faces, dtype=np.int64).reshape(-1, 3)

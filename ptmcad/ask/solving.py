@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from fractions import Fraction
-from pathlib import Path
-from typing import Any
 
 from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
@@ -15,12 +11,14 @@ from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.model import Model, ptm
 from ptmcad.process.memory import loading
 from ptmcad.question.config import point_from, point_from_mapping, units_of
+from ptmcad.question.shipped import RecordSource
 from ptmcad.question.slice import Slice, have_free_lengths
 from ptmcad.text.expressions import constant
+from ptmcad.text.numerals import Numbers
 
 
 def solve(
-    question: str | Path | Mapping[str, Any] | Slice | None = None,
+    question: RecordSource | Slice | None = None,
     /,
     digits: int = DIGITS,
     model: Model | None = None,
@@ -63,7 +61,7 @@ def solve(
     return poses_at(model, point_from_mapping(parameters, model), digits)
 
 
-def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> Poses:
+def poses_at(model: Model, parameters: Numbers, digits: int) -> Poses:
     """All solutions of a model; only the engine that is used is loaded.
 
     Of a mechanism with more than three angles whose basis grows too large it is the certified one, see `manyangles`;
@@ -100,6 +98,6 @@ def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> P
         return found
 
 
-def needs_intervals(model: Model, parameters: Mapping[str, Fraction]) -> bool:
+def needs_intervals(model: Model, parameters: Numbers) -> bool:
     """Whether some spring has a free length at a point."""
     return have_free_lengths(model, {name: constant(value) for name, value in parameters.items()})

@@ -7,10 +7,7 @@ tell, one from a basis by msolve, proved, if that is installed.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
 from time import monotonic
-from typing import Any
 
 from ptmcad.algebra.bases import MISSING
 from ptmcad.answer.counts import Counts
@@ -24,13 +21,14 @@ from ptmcad.exact.stages import decomposition_of, problem_of
 from ptmcad.model import Model
 from ptmcad.question.config import point_from_mapping, slice_from
 from ptmcad.question.domain import proved
+from ptmcad.question.shipped import RecordSource
 from ptmcad.question.slice import Point, Slice, without_free_lengths
 from ptmcad.text.expressions import constant
 from ptmcad.text.flint_numbers import from_fraction
 
 TIMEOUT = 60.0
 """Seconds for a search where algebra does not count."""
-Question = Slice | str | Path | Mapping[str, Any]
+Question = Slice | RecordSource
 
 
 def discriminant_variety(question: Question) -> SliceVariety:

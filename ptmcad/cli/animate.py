@@ -30,6 +30,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.show import render
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.style import PictureStyle, styled
+from ptmcad.text.numerals import equalities
 
 FORMATS = ("gif", "mp4")
 MAX_FPS = 60
@@ -126,7 +127,7 @@ def summary(motion: Motion) -> str:
 def _in_words(motion: Motion, fall: Fall) -> str:
     slice = motion.result.slice
     model = slice.model
-    where = ", ".join(f"{n} = {v:.6g}" for n, v in zip(slice.axis_names, fall.at, strict=True))
+    where = equalities(dict(zip(slice.axis_names, fall.at, strict=True)), "{:.6g}".format)
     turns = len(model.angles)
     angles = (f"{remainder(degrees(angle), 360):.2f}°" for angle in fall.after[:turns])
     unknowns = assignments(model, angles, (f"{x:.6g}" for x in fall.after[turns:]))

@@ -22,6 +22,7 @@ from ptmcad.process.streams import reader_left
 from ptmcad.question.counts import further_names
 from ptmcad.question.examples import POINT
 from ptmcad.show.table import stability_in_words
+from ptmcad.text.numerals import equalities
 from ptmcad.text.textfile import lines_of
 
 MAX_ROW = 100_000
@@ -148,7 +149,7 @@ def _table(result: RegionMap, points: Iterator[CsvRow], path: Path) -> None:
 def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str], unknown: bool = False) -> Iterator[str]:
     """What is said of a point; ``unknown`` is whether the map does not know how many solutions are stable."""
     width = max(map(len, fields)) + 2
-    yield f"{'point':{width}}{', '.join(f'{name} = {value}' for name, value in point.items())}"
+    yield f"{'point':{width}}{equalities(point)}"
     for name, value in zip(fields, answer(location, fields), strict=True):
         if value:
             note = "" if name != "index" or location.index is None else f" ({index_words(len(location.index))})"

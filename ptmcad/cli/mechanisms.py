@@ -33,7 +33,7 @@ def known_starter(name: str, option: str) -> str:
         When none has it.
     """
     if name not in NAMES:
-        hint = did_you_mean(name, NAMES) or f"; there are {', '.join(NAMES)}"
+        hint = did_you_mean(name, NAMES, "; there are ")
         raise ConfigError(f"{quoted(name)} is no built-in mechanism{hint}", key=option)
     return name
 

@@ -16,7 +16,7 @@ from ptmcad.errors import ConfigError, ExpressionError, blamed, shown
 from ptmcad.question.config import point_from_mapping
 from ptmcad.question.counts import Shades
 from ptmcad.show.table import count_text, index_text
-from ptmcad.text.numerals import shortest_text
+from ptmcad.text.numerals import equalities, shortest_text
 from ptmcad.text.parsing import rational
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def disagreements(result: RegionMap, found: Sequence[Measured]) -> list[str]:
     others = [point for point in found if point.agreement is Agreement.OTHER]
     lines = []
     for point in others[:MAX_TOLD]:
-        where = ", ".join(f"{n} = {shortest_text(v)}" for n, v in zip(result.slice.axis_names, point.at, strict=True))
+        where = equalities(dict(zip(result.slice.axis_names, point.at, strict=True)), shortest_text)
         lines.append(f"another count than in the map: {f'{point.label}, ' if point.label else ''}at {where}")
     if len(others) > MAX_TOLD:
         lines.append(f"and at {len(others) - MAX_TOLD} more points")

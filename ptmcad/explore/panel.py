@@ -23,7 +23,7 @@ from ptmcad.question.config.resolution import slice_of, written_in
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar, Sequence
-from ptmcad.text.numerals import text_of
+from ptmcad.text.numerals import Numbers, text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import names_in
 
@@ -34,8 +34,6 @@ MAX_TEXT = 80
 MAX_NAME = 100
 REMEMBERED = 4
 """Families whose variety is kept: one is left and come back to when another parameter is dragged to and fro."""
-
-Values = Mapping[str, Fraction]
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +87,7 @@ class SliderPanel:
             values[name] = number_within(name, text, known[name].low, known[name].high)
         return values
 
-    def record_at(self, values: Values) -> Record:
+    def record_at(self, values: Numbers) -> Record:
         """The record with the values of all sliders but the free one's."""
         changed = {
             slider.name: values[slider.name]
@@ -107,7 +105,7 @@ class SliderPanel:
             reference={},
         )
 
-    def slice(self, values: Values) -> Slice:
+    def slice(self, values: Numbers) -> Slice:
         """The slice at the values, complete.
 
         Raises
@@ -129,7 +127,7 @@ class Families:
         self.panel = panel
         self.known: OrderedDict[tuple[Fraction, ...], Common] = OrderedDict()
 
-    def common(self, values: Values, options: Options) -> Common:
+    def common(self, values: Numbers, options: Options) -> Common:
         """Of the family that the values are in; its only stated member is the one at the free value."""
         others = tuple(values[slider.name] for slider in self.panel.sliders if not slider.free)
         if others not in self.known:

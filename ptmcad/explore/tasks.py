@@ -21,13 +21,15 @@ from ptmcad.ask.engines import is_certified
 from ptmcad.ask.members import member_map
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.explore.panel import Families, SliderPanel, Values, number_within
+from ptmcad.explore.panel import Families, SliderPanel, number_within
 from ptmcad.explore.views import map_view, point_view
 from ptmcad.options import Options, Progress
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name
 from ptmcad.question.slice import Slice
 from ptmcad.show.report.reproduction import reproduction
+from ptmcad.text.expressions import values_at
+from ptmcad.text.numerals import Numbers
 
 EXACT_SECONDS = 50.0
 """For one exact map."""
@@ -70,7 +72,7 @@ class Tasks:
         do = {"map": self._map, "point": self._point, "record": self._record, "save": self._save}[job["kind"]]
         return do(self.panel.values(job["values"]), job)
 
-    def _map(self, values: Values, job: Job) -> dict[str, Any]:
+    def _map(self, values: Numbers, job: Job) -> dict[str, Any]:
         fine = bool(job["fine"])
         slice = self.panel.slice(values)
         if is_certified(slice, "auto"):
@@ -79,7 +81,7 @@ class Tasks:
             result = self._exact(slice, values, areas=fine, sparing=True)
         return map_view(result, fine=fine, framed=bool(job["framed"]))
 
-    def _exact(self, slice: Slice, values: Values, *, areas: bool, sparing: bool) -> RegionMap:
+    def _exact(self, slice: Slice, values: Numbers, *, areas: bool, sparing: bool) -> RegionMap:
         """The exact map; by the family's variety, where there is a family."""
         options = Options(timeout=EXACT_SECONDS, progress=self._progress, areas=areas, sparing=sparing)
         free = self.panel.record.free
@@ -114,21 +116,21 @@ class Tasks:
     def _progress(self) -> Progress:
         return lambda _stage, _done, _total: self.check()
 
-    def _point(self, values: Values, job: Job) -> dict[str, Any]:
+    def _point(self, values: Numbers, job: Job) -> dict[str, Any]:
         slice = self.panel.slice(values)
         axes = {axis.name: axis for axis in slice.axes}
         if set(job["at"]) != set(axes):
             raise ConfigError(f"a point has {' and '.join(axes)}")
         at = {name: number_within(name, job["at"][name], axes[name].low, axes[name].high) for name in axes}
         place: tuple[Fraction, Fraction] = (at[slice.axes[0].name], at[slice.axes[1].name])
-        parameters = {name: e.evaluate(*place) for name, e in slice.parameters.items()}
+        parameters = values_at(slice.parameters, *place)
         for name, value in parameters.items():
             kind = slice.model.kind(name)
             if kind.excludes(value):
                 raise ConfigError(f"{name} is {value} there, where the geometry ends")
         return point_view(poses_at(slice.model, parameters, DIGITS), at)
 
-    def _record(self, values: Values, _job: Job) -> dict[str, Any]:
+    def _record(self, values: Numbers, _job: Job) -> dict[str, Any]:
         slice = self.panel.slice(values)
         record, command = reproduction(slice)
         if record is None:
@@ -136,7 +138,7 @@ class Tasks:
         return {"name": slice.name, "record": record, "command": f"ptmcad classify {slice.name}.yaml",
                 "alone": command or ""}  # fmt: skip
 
-    def _save(self, values: Values, job: Job) -> dict[str, Any]:
+    def _save(self, values: Numbers, job: Job) -> dict[str, Any]:
         """The figure, its result and its record as files, all or none; nothing that is there is written over."""
         name = file_name(job["name"], "the name")
         slice = replace(self.panel.slice(values), name=name)

@@ -6,8 +6,6 @@ curves. Nothing here chooses or computes an answer.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from fractions import Fraction
 from typing import Any
 
 from ptmcad.answer.poses import Pose, Poses
@@ -24,7 +22,7 @@ from ptmcad.show.render.view import Shapes
 from ptmcad.show.report.chart import counts_text, hatch_id, pattern_defs, region_labels, region_outlines, wall_lines
 from ptmcad.show.report.frame import SIDE, frame, room
 from ptmcad.show.table import area_digits, count_text
-from ptmcad.text.numerals import approximate_text
+from ptmcad.text.numerals import Numbers, approximate_text
 
 COARSE = 5e-4
 """How far a chord may miss its curve while the map is dragged, as a share of the window: a third of a pixel."""
@@ -83,7 +81,7 @@ def _digest(result: RegionMap) -> list[list[Any]]:
     return [[region.stable, region.total, len(region.cells)] for region in result.regions]
 
 
-def point_view(poses: Poses, at: Mapping[str, Fraction]) -> dict[str, Any]:
+def point_view(poses: Poses, at: Numbers) -> dict[str, Any]:
     """The solutions at a point: in numbers, and as `mechanism.js` draws them.
 
     Parameters

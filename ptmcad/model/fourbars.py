@@ -12,7 +12,7 @@ Source: elementary; the product over all signs is a polynomial in the squares.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
@@ -23,7 +23,7 @@ from ptmcad.model.description import Mechanism
 from ptmcad.model.elements import Closing
 from ptmcad.model.identities import Points
 from ptmcad.model.involutions import SliceRing
-from ptmcad.text.expressions import Expression
+from ptmcad.text.expressions import Expressions
 
 IN_TWO_WAYS = (
     ", as lengths of its bars add up alike: two ways of assembling it meet there, and flat poses are multiple "
@@ -77,7 +77,7 @@ class FourBar:
     closing: Closing
     corners: tuple[str, str, str, str]
 
-    def fold(self, parameters: Mapping[str, Expression]) -> Fold | None:
+    def fold(self, parameters: Expressions) -> Fold | None:
         """Why the loop folds flat at all values of the axes; None where it does not, or that is not shown."""
         try:
             return self._fold(Points(self.mechanism, SliceRing(self.mechanism.unknowns, parameters)))
@@ -171,7 +171,7 @@ def four_bars(mechanism: Mechanism) -> Iterator[FourBar]:
                     yield FourBar(mechanism, closing, (a, p, q, b))
 
 
-def flat_everywhere(mechanism: Mechanism, parameters: Mapping[str, Expression]) -> tuple[FourBar, Fold] | None:
+def flat_everywhere(mechanism: Mechanism, parameters: Expressions) -> tuple[FourBar, Fold] | None:
     """The loop that has flat poses for all values of the axes, and why; None where there is none, or no proof."""
     for loop in four_bars(mechanism) if len(mechanism.closing) == 1 else ():
         fold = loop.fold(parameters)
@@ -180,7 +180,7 @@ def flat_everywhere(mechanism: Mechanism, parameters: Mapping[str, Expression]) 
     return None
 
 
-def may_be_flat(mechanism: Mechanism, parameters: Mapping[str, Expression]) -> str:
+def may_be_flat(mechanism: Mechanism, parameters: Expressions) -> str:
     """What to say of four-bar loops among others that fold flat where these let them; empty where there are none."""
     found = ((loop, loop.fold(parameters)) for loop in four_bars(mechanism))
     said = {loop.closing: f"{' '.join(loop.corners)} is {fold.words}" for loop, fold in found if fold is not None}

@@ -27,7 +27,7 @@ from ptmcad.model.compile import compiled
 from ptmcad.model.elements import UnknownKind
 from ptmcad.model.identities import Monomial, Polynomial, Ring
 from ptmcad.model.parametric import Model
-from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.expressions import Expressions, constant
 
 MAX_WORK = 100_000
 """Products of terms, about half a second; the bars and springs of shipped mechanisms take some hundred."""
@@ -120,7 +120,7 @@ class Involution:
         return ", ".join(f"{name} -> {image}" for name, image in moves.items() if image != name)
 
 
-def involutions(model: Model, parameters: Mapping[str, Expression], window: Window | None = None) -> list[Involution]:
+def involutions(model: Model, parameters: Expressions, window: Window | None = None) -> list[Involution]:
     """The involutions of a model over a window, but for the identity.
 
     Parameters
@@ -159,9 +159,7 @@ class SliceRing(Ring):
     A denominator's inverse is a variable. What becomes of it where the axes change is not known.
     """
 
-    def __init__(
-        self, unknowns: Collection[str], parameters: Mapping[str, Expression], window: Window | None = None
-    ) -> None:
+    def __init__(self, unknowns: Collection[str], parameters: Expressions, window: Window | None = None) -> None:
         super().__init__(MAX_WORK)
         self.unknowns, self.parameters = unknowns, parameters
         self.has_denominators = False

@@ -255,7 +255,7 @@ class Context:
     def known_unknown(self, entry: Node, name: str) -> str:
         """The name of an unknown that there is."""
         if name not in self.unknowns:
-            hint = did_you_mean(name, self.unknowns) or f"; they are {', '.join(self.unknowns)}"
+            hint = did_you_mean(name, self.unknowns, "; they are ")
             raise entry.fault(f"there is no unknown {quoted(name)}{hint}")
         return name
 

@@ -9,7 +9,7 @@ for moments first.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
@@ -19,6 +19,7 @@ from ptmcad.model.elements import Moment
 from ptmcad.model.evaluate import evaluate, value_at
 from ptmcad.model.identities import Monomial, Polynomial, Ring
 from ptmcad.model.trees import product, total
+from ptmcad.text.numerals import Numbers
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, names_of
 
 MAX_WORK = 200_000
@@ -89,7 +90,7 @@ def foreign(model: Model) -> str:
     return "".join([f"the force on {name}" for name in model.unknowns if name in model.coupled][:1])
 
 
-def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fraction]:
+def moments_at(model: Model, parameters: Numbers) -> dict[str, Fraction]:
     """The unknowns on which a moment that is not zero works, to the moment.
 
     Parameters
@@ -115,7 +116,7 @@ class PointForce(NamedTuple):
     force: tuple[Fraction, Fraction]
 
 
-def loads_at(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[PointForce, ...]:
+def loads_at(mechanism: Mechanism, parameters: Numbers) -> tuple[PointForce, ...]:
     """The loads in the description's order; variables that are not among the parameters are zero."""
     known = dict.fromkeys(mechanism.variables, Fraction(0)) | dict(parameters)
     return tuple(

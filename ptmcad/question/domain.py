@@ -15,10 +15,10 @@ from dataclasses import replace
 from ptmcad.errors import ExpressionError, GeometryError
 from ptmcad.model import Kind, Model
 from ptmcad.model.elements import Part
-from ptmcad.question.positivity import Axes, Need, decide, middle_of, named, number, place, window_of
+from ptmcad.question.positivity import Need, decide, middle_of, named, number, place, window_of
 from ptmcad.question.signs import PROVED, Finding, Subject, Undecided, Witness
-from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import Expression, constant
+from ptmcad.question.slice import Axes, Slice
+from ptmcad.text.expressions import Expression, Expressions, constant
 from ptmcad.text.parsing import value_in_axes
 
 _NOTHING: Mapping[Subject, Finding] = {}
@@ -72,7 +72,7 @@ def _refutation(subject: Subject, asked: Need, witness: Witness, axes: Axes) -> 
 def sign_of_part(
     model: Model,
     part: Part,
-    parameters: Mapping[str, Expression],
+    parameters: Expressions,
     axes: Axes,
     max_work: int | None = None,
     known: Mapping[Subject, Finding] = _NOTHING,

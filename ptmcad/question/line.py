@@ -16,8 +16,8 @@ from ptmcad.formulas.graph import Graph
 from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled_with
 from ptmcad.question.slice import Axis, Slice, have_free_lengths, without_free_lengths
-from ptmcad.text.expressions import Expression, axis, constant
-from ptmcad.text.numerals import shortest_text
+from ptmcad.text.expressions import Expression, Expressions, axis, constant, values_at
+from ptmcad.text.numerals import Numbers, shortest_text
 from ptmcad.text.parsing import number_for
 
 
@@ -26,13 +26,13 @@ class Line:
     """The part of a slice that lies on a line: parameters as expressions in ``along``, the first axis."""
 
     along: Axis
-    at: Mapping[str, Fraction]
-    parameters: Mapping[str, Expression]
+    at: Numbers
+    parameters: Expressions
     model: Model
 
     def values(self, value: Fraction) -> dict[str, Fraction]:
         """The parameters at a value of the axis that varies."""
-        return {name: e.evaluate(value, Fraction(0)) for name, e in self.parameters.items()}
+        return values_at(self.parameters, value)
 
     def place(self, value: Fraction) -> str:
         """A point of the line in words."""
@@ -109,7 +109,7 @@ def _restricted(expression: Expression, varying: int, value: Fraction) -> Expres
     return along(expression.numerator) / along(expression.denominator)
 
 
-def compiled_on(model: Model, parameters: Mapping[str, Expression]) -> CompiledSystem:
+def compiled_on(model: Model, parameters: Expressions) -> CompiledSystem:
     """A model's formulas on a line: variable 0 is the axis that varies, the next ones are the unknowns.
 
     Parameters

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 from ptmcad.cover.tubes import halved
 from ptmcad.question.signs import PROVED, Box, Corner, Interval, Undecided, Verdict, Witness
-from ptmcad.question.slice import Axis
+from ptmcad.question.slice import Axes
 from ptmcad.text.expressions import Expression, Term, polynomial_value
 from ptmcad.text.numerals import approximate_text
 
@@ -36,8 +36,6 @@ A reader answers at once and knows no time limit; an engine, which does, asks ag
 """
 MAX_SHOWN = 10**40
 """Numerators and denominators from here on are shown rounded."""
-
-Axes = tuple[Axis, Axis]
 
 
 class Need(Enum):

@@ -6,12 +6,17 @@ Guarantee: a name is found from anywhere, in a wheel and in a source tree; a fil
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from ptmcad.errors import ConfigError
 from ptmcad.text.entry import Tree
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import read_file
+
+RecordSource = str | Path | Mapping[str, Any]
+"""What a record is read from: its file, or a mapping like one."""
 
 
 def shipped_records() -> dict[str, Path]:

@@ -17,7 +17,7 @@ from ptmcad.model.evaluate import value_among
 from ptmcad.model.work import foreign, split_moments
 from ptmcad.question.counts import USUAL, Count
 from ptmcad.question.signs import Finding
-from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.expressions import Expression, Expressions, constant
 
 QUANTITIES = ("length", "force")
 """Whose units a record may declare."""
@@ -35,6 +35,31 @@ class Axis:
 
     def __str__(self) -> str:
         return f"{self.name} in [{self.low}, {self.high}]"
+
+    @property
+    def width(self) -> Fraction:
+        """The length of the range."""
+        return self.high - self.low
+
+    def at(self, share: Fraction) -> Fraction:
+        """The value that lies at a share of the range, from the lower end."""
+        return self.low + self.width * share
+
+    def middle(self, number: int = 0, parts: int = 1) -> Fraction:
+        """The middle of one of so many equal parts of the range, counted from 0."""
+        return self.at(Fraction(2 * number + 1, 2 * parts))
+
+    def share(self, value: Fraction) -> Fraction:
+        """At which share of the range a value lies."""
+        return (value - self.low) / self.width
+
+    def holds(self, value: Fraction) -> bool:
+        """Whether a value lies inside of the range, and not at its ends."""
+        return self.low < value < self.high
+
+
+Axes = tuple[Axis, Axis]
+"""Those of a window, the horizontal one first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +85,8 @@ class Slice:
 
     name: str
     model: Model
-    axes: tuple[Axis, Axis]
-    parameters: Mapping[str, Expression]
+    axes: Axes
+    parameters: Expressions
     count: Count = USUAL
     title: str = ""
     reference: Mapping[str, Any] = field(default_factory=dict)
@@ -72,6 +97,11 @@ class Slice:
     @property
     def axis_names(self) -> tuple[str, str]:
         return (self.axes[0].name, self.axes[1].name)
+
+    @property
+    def area(self) -> Fraction:
+        """Of the window."""
+        return self.axes[0].width * self.axes[1].width
 
     @property
     def mechanism(self) -> str:
@@ -141,19 +171,19 @@ def check_names(model: Model, parameters: Mapping[str, object]) -> None:
             raise ValueError(f"there is no parameter {name}")
 
 
-def have_free_lengths(model: Model, parameters: Mapping[str, Expression]) -> bool:
+def have_free_lengths(model: Model, parameters: Expressions) -> bool:
     """Whether some spring has a free length that is not zero everywhere; a parameter that is missing is zero."""
     return bool(relaxed_springs(model, parameters))
 
 
-def relaxed_springs(model: Model, parameters: Mapping[str, Expression]) -> tuple[int, ...]:
+def relaxed_springs(model: Model, parameters: Expressions) -> tuple[int, ...]:
     """The numbers of those springs."""
     known = dict.fromkeys(model.parameters, constant(0)) | dict(parameters)
     free = () if model.whole is None else model.whole.written(Kind.FREE_LENGTH)
     return tuple(k for k, tree in enumerate(free) if value_among(tree, known, constant).numerator)
 
 
-def count_fault(count: Count, model: Model, parameters: Mapping[str, Expression]) -> str:
+def count_fault(count: Count, model: Model, parameters: Expressions) -> str:
     """Why a count makes no sense for a model; empty where it does."""
     kind, mechanism, predicate = count.kind, model.whole, count.kind.predicate
     if predicate is not None and mechanism is None:
@@ -171,7 +201,7 @@ def count_fault(count: Count, model: Model, parameters: Mapping[str, Expression]
     )
 
 
-def moved(model: Model, parameters: Mapping[str, Expression]) -> tuple[str, ...]:
+def moved(model: Model, parameters: Expressions) -> tuple[str, ...]:
     """The unknowns on which a moment, or a force on a length, does work that is in no stored energy."""
     known = dict.fromkeys(model.parameters, constant(0)) | dict(parameters)
     split = split_moments(model)
@@ -182,7 +212,7 @@ def moved(model: Model, parameters: Mapping[str, Expression]) -> tuple[str, ...]
 
 def without_free_lengths(
     model: Model,
-    parameters: Mapping[str, Expression],
+    parameters: Expressions,
     what: str,
     instead: str = "ptmcad classify encloses them",
 ) -> dict[str, Expression]:

@@ -10,7 +10,7 @@ from fractions import Fraction
 from ptmcad.answer.design import BestDesign
 from ptmcad.answer.words import sought
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import decimal, shortest_text
+from ptmcad.text.numerals import decimal, equalities, shortest_text
 
 DIGITS = 10
 _BOUND_DIGITS = 7
@@ -26,7 +26,7 @@ def design_table(found: BestDesign) -> str:
     if found.best is None or found.value is None:
         rows.append(("best", "none: no design that was looked at has such a value"))
     else:
-        rows.append(("best", ", ".join(f"{name} = {shortest_text(value)}" for name, value in found.best.items())))
+        rows.append(("best", equalities(found.best, shortest_text)))
         rows.append(("value", value_text(found.value) + _span(found)))
     rows.append(("proof", _proof(found)))
     rows.append(("searched", f"{found.evaluations} designs, seed {found.seed}"))

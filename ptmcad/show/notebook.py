@@ -18,6 +18,7 @@ from ptmcad.show import render
 from ptmcad.show.style import DEFAULT
 from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, count_text
 from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.numerals import equalities
 
 if TYPE_CHECKING:
     from ptmcad.answer.boundaries import Grid
@@ -71,7 +72,7 @@ def poses_html(poses: Poses) -> str:
         )
         for k, p in enumerate(poses.equilibria, 1)
     ]  # fmt: skip
-    given = ", ".join(f"{name} = {value}" for name, value in poses.parameters.items())
+    given = equalities(poses.parameters)
     note = f"<div>{escape(poses.remark)}</div>" if poses.remark else ""
     return f"<div><b>{escape(model.name)}</b>: {escape(given)}, {poses.status.value}</div>{_table(head, rows)}{note}"
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from ptmcad.model import Model
 from ptmcad.model.elements import Unit
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.expressions import Expressions, axis
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import names_in
 
@@ -23,7 +23,7 @@ def _quantities(slice: Slice, axis: int) -> Unit:
     return _quantities_in(slice, slice.parameters, (1, 0) if axis == 0 else (0, 1))
 
 
-def _quantities_in(slice: Slice, parameters: Mapping[str, Expression], exponents: tuple[int, int]) -> Unit:
+def _quantities_in(slice: Slice, parameters: Expressions, exponents: tuple[int, int]) -> Unit:
     """Those of the parameters that are a number times the axis with these exponents."""
     found = {
         slice.model.unit_of(name)

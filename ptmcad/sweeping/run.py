@@ -25,6 +25,7 @@ from ptmcad.errors import ConfigError, LimitReached, OutputError, PtmcadError
 from ptmcad.extras import Extra, require
 from ptmcad.options import Progress
 from ptmcad.question.config.sweeps import Sweeping, sweep_from
+from ptmcad.question.shipped import RecordSource
 from ptmcad.question.slice import Slice
 from ptmcad.question.sweep import Values
 from ptmcad.sweeping.index import Index, opened, read_sweep
@@ -43,7 +44,7 @@ _AT_ONCE = 100
 
 
 def sweep(
-    config: str | Path | Mapping[str, Any] | Sweeping,
+    config: RecordSource | Sweeping,
     folder: str | Path | None = None,
     jobs: int | None = None,
     scheduler: str | None = None,

@@ -163,6 +163,21 @@ class Expression:
         return _as_expression(other) / self
 
 
+Expressions = Mapping[str, Expression]
+"""Functions of the axes by the names of the parameters that they are."""
+
+
+def values_at(parameters: Expressions, x: Fraction, y: Fraction = Fraction(0)) -> dict[str, Fraction]:
+    """The exact values of parameters at a point; of those on a line it has no second coordinate.
+
+    Raises
+    ------
+    PoleError
+        If a denominator vanishes there.
+    """
+    return {name: expression.evaluate(x, y) for name, expression in parameters.items()}
+
+
 def constant(value: Fraction | int) -> Expression:
     """The constant function."""
     return Expression(((0, 0, Fraction(value)),) if value else ())

@@ -175,7 +175,7 @@ class Node(NamedTuple):
         if found.keys() >= {*needed} and found.keys() <= {*known}:
             return found
         for name in (name for name in found if name not in known):
-            hint = did_you_mean(name, known) or f"; the keys are {', '.join(known)}"
+            hint = did_you_mean(name, known, "; the keys are ")
             self.note(self._about(name, f"unknown key{hint}", f"has the unknown key {name[:40]!r}"))
         for name in (name for name in needed if name not in found):
             self.note(self._about(name, "is missing", f"lacks the key {name!r}"))

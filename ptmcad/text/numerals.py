@@ -8,11 +8,14 @@ discriminant can have; here they are split at powers of ten.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from numbers import Rational
 from operator import index
-from typing import SupportsIndex
+from typing import Any, SupportsIndex
 
+Numbers = Mapping[str, Fraction]
+"""Exact numbers by the names of what has these values."""
 MAX_DIGITS = 200_000
 """Of a numerator, a denominator or a decimal: longer ones are refused when reading."""
 MAX_EXPONENT = 20_000
@@ -115,6 +118,15 @@ def decimal_places(value: Fraction) -> int | None:
     rest = value.denominator >> twos
     fives = rest.bit_length() * 43067655807 // 10**11  # divided by the logarithm of 5 to base 2, so off by one at most
     return next((max(twos, k) for k in range(max(0, fives - 1), fives + 2) if 5**k == rest), None)
+
+
+def equalities(values: Mapping[str, Any], text: Callable[[Any], str] = str) -> str:
+    """Values by name in words.
+
+    >>> equalities({"rho": Fraction(1, 8), "L2": Fraction(2)}, shortest_text)
+    'rho = 0.125, L2 = 2'
+    """
+    return ", ".join(f"{name} = {text(value)}" for name, value in values.items())
 
 
 def shortest_text(value: Fraction) -> str:

@@ -14,7 +14,7 @@ True
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
 from functools import partial
@@ -22,7 +22,7 @@ from math import comb
 from operator import add, mul, sub, truediv
 
 from ptmcad.errors import ConfigError, ExpressionError, shown
-from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.expressions import Expression, Expressions, constant
 from ptmcad.text.numerals import exactly
 from ptmcad.text.syntax import NOT_INTEGER, unknown_name
 from ptmcad.text.syntax import parse as tree_of
@@ -37,7 +37,7 @@ MAX_WORK = 100_000
 _OPERATION: dict[str, Callable[[Expression, Expression], Expression]] = {"+": add, "-": sub, "*": mul, "/": truediv}
 
 
-def parse(text: object, names: Mapping[str, Expression] | None = None) -> Expression:
+def parse(text: object, names: Expressions | None = None) -> Expression:
     """Read an arithmetic expression: numbers, names, ``+ - * /``, integer powers ``^`` or ``**``, parentheses.
 
     ``^`` binds tighter than a sign on its left and groups to the right, as in mathematics: ``-x^2`` is -(x^2).
@@ -62,7 +62,7 @@ def parse(text: object, names: Mapping[str, Expression] | None = None) -> Expres
         raise ExpressionError(str(error)) from error
 
 
-def value_in_axes(tree: Tree, names: Mapping[str, Expression]) -> Expression:
+def value_in_axes(tree: Tree, names: Expressions) -> Expression:
     """The function of the axes that a tree is.
 
     Parameters
@@ -122,7 +122,7 @@ def share_for(key: str, value: object) -> Fraction:
 class _InTheAxes:
     """The interpretation of a text as a rational function of the axes, with a budget for the arithmetic."""
 
-    def __init__(self, names: Mapping[str, Expression]):
+    def __init__(self, names: Expressions):
         self.names = names
         self.work = 0
 

@@ -105,8 +105,14 @@ def names_in(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(token.text for token in _tokens(text) if token.kind == "name"))
 
 
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """``"; did you mean 'rho'?"``, what to write in place of a name such as ``sqrt``, or the empty string."""
+def did_you_mean(name: str, known: Iterable[str], otherwise: str = "", between: str = ", ") -> str:
+    """``"; did you mean 'rho'?"``, what to write in place of a name such as ``sqrt``, or the names that there are.
+
+    Parameters
+    ----------
+    otherwise : words before the names that there are; they are not listed without.
+    between : what stands between these names.
+    """
     if name.lower() in _REMEDIES:
         return f"; {_REMEDIES[name.lower()]}"
     from difflib import get_close_matches  # for messages only
@@ -114,7 +120,9 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     names = list(known)
     close = [other for other in names if other.lower() == name.lower()]
     close = close or get_close_matches(name[:100], names, n=1)
-    return f"; did you mean '{close[0]}'?" if close else ""
+    if close:
+        return f"; did you mean '{close[0]}'?"
+    return otherwise and otherwise + between.join(names)
 
 
 def unknown_name(name: str, position: int, known: Iterable[str]) -> ExpressionError:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from math import prod
 from typing import NamedTuple
 
 from flint import fmpq
@@ -138,7 +139,7 @@ def bounded(design: Design, bounder: Bounder, look: Look, limits: ProofLimits) -
     def check(boxes: int, bound: fmpq, best: fmpq) -> bool:
         return limits.go_on(boxes, float(to_fraction(bound)), float(to_fraction(best)))
 
-    size = _size(design)
+    size = prod((axis.width for axis in design.axes), start=Fraction(1))  # of the window
     wanted = Goal(from_fraction(limits.tolerance), from_fraction(limits.tolerance * size), limits.boxes)
     whole = tuple(interval_of(axis) for axis in design.over)
     try:
@@ -157,12 +158,3 @@ def _proof(outcome: Outcome) -> Proof:
     if outcome.complete:
         return Proof(to_fraction(outcome.bound), f"by branch and bound, over {number}", boxes)
     return Proof(to_fraction(outcome.bound), f"by branch and bound, which was stopped at {number}", boxes)
-
-
-def _size(design: Design) -> Fraction:
-    """The largest value that there can be: the window's length, or its area."""
-    axes = design.axes
-    size = Fraction(1)
-    for axis in axes:
-        size *= axis.high - axis.low
-    return size

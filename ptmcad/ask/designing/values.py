@@ -26,6 +26,7 @@ from ptmcad.question.config.designed import Aim, Design
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.numerals import Numbers
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret, names_of
 
@@ -43,7 +44,7 @@ class Value(NamedTuple):
     span: tuple[Enclosure, Enclosure] | None = None
 
 
-Evaluate = Callable[[Mapping[str, Fraction]], Value | None]
+Evaluate = Callable[[Numbers], Value | None]
 
 
 def evaluator(design: Design, common: Common | None = None, space: Space | None = None) -> Evaluate:
@@ -71,9 +72,9 @@ def evaluator(design: Design, common: Common | None = None, space: Space | None 
             found = _expression_of(design)
 
     with suppress(HypothesisError):
-        found({axis.name: (axis.low + axis.high) / 2 for axis in design.over})  # raises what no design can be asked
+        found(design.middle)  # raises what no design can be asked
 
-    def evaluate(values: Mapping[str, Fraction]) -> Value | None:
+    def evaluate(values: Numbers) -> Value | None:
         if not design.holds(values):
             return None
         try:
@@ -90,7 +91,7 @@ def _range_of(design: Design) -> Evaluate:
 
     first = design.over[0].name
 
-    def evaluate(values: Mapping[str, Fraction]) -> Value | None:
+    def evaluate(values: Numbers) -> Value | None:
         slice = design.slice(values)
         found: Sequence[Span]
         try:
@@ -116,7 +117,7 @@ def _range_in(design: Design, space: Space) -> Evaluate:
 
     names = [axis.name for axis in design.over]
 
-    def evaluate(values: Mapping[str, Fraction]) -> Value | None:
+    def evaluate(values: Numbers) -> Value | None:
         found = longest_on_line(space, tuple(from_fraction(values[name]) for name in names))
         if found is None:
             return None
@@ -129,7 +130,7 @@ def _range_in(design: Design, space: Space) -> Evaluate:
 def _area_of(design: Design, common: Common | None) -> Evaluate:
     options = Options(engine="exact", area_tolerance=AREA_TOLERANCE)
 
-    def evaluate(values: Mapping[str, Fraction]) -> Value | None:
+    def evaluate(values: Numbers) -> Value | None:
         found: RegionMap
         if common is not None:
             found = member_map(common, values[common.family.free.name], options)
@@ -141,7 +142,7 @@ def _area_of(design: Design, common: Common | None) -> Evaluate:
     return evaluate
 
 
-def _poses(design: Design, values: Mapping[str, Fraction]) -> Poses | None:
+def _poses(design: Design, values: Numbers) -> Poses | None:
     """The poses of a design that has as many stable ones as is asked."""
     from ptmcad.ask.solving import poses_at
 
@@ -170,7 +171,7 @@ def _barrier_of(design: Design) -> Evaluate:
     if choice_of(design.pose, design.model).kind != "stable":
         raise ConfigError("a barrier is that of a stable pose: ask for stable:1", key="design.pose")
 
-    def evaluate(values: Mapping[str, Fraction]) -> Value | None:
+    def evaluate(values: Numbers) -> Value | None:
         import numpy as np
 
         from ptmcad.ask.fields.barrier import barriers
@@ -207,7 +208,7 @@ def _expression_of(design: Design) -> Evaluate:
     tree = _tree(design)
     needs_pose = bool(model.unknowns.keys() & set(names_of(tree)))
 
-    def evaluate(values: Mapping[str, Fraction]) -> Value | None:
+    def evaluate(values: Numbers) -> Value | None:
         poses = _poses(design, values)
         if poses is None:
             return None
@@ -225,7 +226,7 @@ def _expression_of(design: Design) -> Evaluate:
 
 
 def _quantity_of(design: Design, quantity: Quantity) -> Evaluate:
-    def evaluate(values: Mapping[str, Fraction]) -> Value | None:
+    def evaluate(values: Numbers) -> Value | None:
         poses = _poses(design, values)
         number = None if poses is None else chosen(design, poses)
         found = None if poses is None or number is None else of_pose(quantity, poses.equilibria[number])

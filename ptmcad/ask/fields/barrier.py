@@ -11,9 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ptmcad.ask.fields.equations import Floats, ModelState, apart, eigenvalues
+from ptmcad.ask.fields.equations import Flags, Floats, Integers, ModelState, apart, eigenvalues
 
 STEPS = 200
 """Of a descent."""
@@ -24,8 +23,6 @@ MAX_STEP = 0.3
 NEAR = 0.05
 """Of a stable pose: there the descent ends, where the energy is convex."""
 
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 Evaluate = Callable[[Integers, Floats], ModelState]
 """The model at pixels, given by their numbers, and points of shape (n, pixels), or (n, pixels, k)."""
 

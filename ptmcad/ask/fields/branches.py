@@ -15,17 +15,23 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.ask.fields.equations import Floats, ModelState, apart, determinant, eigenvalues, newton, state_at
+from ptmcad.ask.fields.equations import (
+    Flags,
+    Floats,
+    Integers,
+    ModelState,
+    apart,
+    determinant,
+    eigenvalues,
+    newton,
+    state_at,
+)
 from ptmcad.model import Model
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.slice import Slice
-
-Labels = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 BATCH = 300
 """Pixels at a time: what they take stays in the processor's cache."""
@@ -47,8 +53,8 @@ class PixelCounts:
     index : for each cell its counts by index; None where they are not known.
     """
 
-    total: Labels
-    cell: Labels
+    total: Integers
+    cell: Integers
     index: tuple[tuple[int, ...] | None, ...]
     only_stable: bool
 
@@ -62,7 +68,7 @@ class GridPoints:
 
     x: Floats
     y: Floats
-    cell: Labels
+    cell: Integers
 
 
 def places_of(grid: Grid) -> GridPoints:
@@ -79,7 +85,7 @@ class Filling:
     done: Flags
 
 
-def wanted_of(result: RegionMap, cell: Labels) -> PixelCounts:
+def wanted_of(result: RegionMap, cell: Integers) -> PixelCounts:
     """What the exact map says of each pixel, by the numbers of their cells."""
     only_stable = result.only_stable
     counts = [c.stable if only_stable else c.total for c in result.cells]
@@ -111,12 +117,12 @@ class PixelSolver:
         self.values = parameters_at(result.slice, places.x, places.y)
         self.angles = len(self.model.angles)
 
-    def state(self, rows: Labels, columns: Labels, at: Floats) -> ModelState:
+    def state(self, rows: Integers, columns: Integers, at: Floats) -> ModelState:
         """At pixels, points of shape (n, pixels, solutions)."""
         values = {name: v[rows, columns] if np.ndim(v) else v for name, v in self.values.items()}
         return state_at(self.model, values, at)
 
-    def solved(self, rows: Labels, columns: Labels, start: Floats) -> tuple[Floats, Flags]:
+    def solved(self, rows: Integers, columns: Integers, start: Floats) -> tuple[Floats, Flags]:
         """Where Newton's method leads from points of shape (n, pixels, solutions), and where these are all."""
         empty = np.isnan(start[0])
         at, length, converged = self._led(rows, columns, start)
@@ -126,13 +132,13 @@ class PixelSolver:
         at[:, empty] = np.nan
         return at, good
 
-    def converged(self, rows: Labels, columns: Labels, start: Floats) -> Floats:
+    def converged(self, rows: Integers, columns: Integers, start: Floats) -> Floats:
         """Where Newton's method leads from points of shape (n, pixels, solutions), each alone; nan if nowhere."""
         at, _, converged = self._led(rows, columns, start)
         at[:, ~converged | np.isnan(start[0])] = np.nan
         return at
 
-    def _led(self, rows: Labels, columns: Labels, start: Floats) -> tuple[Floats, Floats, Flags]:
+    def _led(self, rows: Integers, columns: Integers, start: Floats) -> tuple[Floats, Floats, Flags]:
         """Where Newton's method leads, the lengths of its last steps, and where it has converged or had no start."""
         at, length = newton(lambda at: self.state(rows, columns, at), start, STEPS, SMALL / 100)
         converged = (length <= SMALL * (1 + np.sqrt((at**2).sum(axis=0)))) | np.isnan(start[0])
@@ -148,7 +154,7 @@ class PixelSolver:
                 good &= ~near | empty[:, a] | empty[:, b]
         return good
 
-    def _right_kinds(self, rows: Labels, columns: Labels, at: Floats, empty: Flags) -> Flags:
+    def _right_kinds(self, rows: Integers, columns: Integers, at: Floats, empty: Flags) -> Flags:
         """Whether the solutions count, and as many have each index as the map says."""
         state = self.state(rows, columns, np.nan_to_num(at))
         good = np.asarray((state.counts | empty).all(axis=1))
@@ -255,7 +261,7 @@ def _spread(filling: Filling, follower: PixelSolver, seen: Flags, stride: int, c
                 moved |= _take(filling, follower, rows, columns, filling.at[:, s, t])
 
 
-def _take(filling: Filling, follower: PixelSolver, rows: Labels, columns: Labels, guess: Floats) -> bool:
+def _take(filling: Filling, follower: PixelSolver, rows: Integers, columns: Integers, guess: Floats) -> bool:
     """Solutions at pixels from a guess, kept where they are all; whether some are."""
     found = False
     for first in range(0, len(rows), BATCH):

@@ -40,7 +40,7 @@ def corners_of(slice: Slice, path: str | Mapping[str, Any]) -> tuple[Place, ...]
         raise ConfigError(f"give values of both axes, as in {names[0]}=FROM:TO,{names[1]}=VALUE", key=OPTION)
     values = [[number_for(OPTION, value) for value in given[name]] for name in names]
     for axis, own in zip(slice.axes, values, strict=True):
-        outside = [value for value in own if not axis.low < value < axis.high]
+        outside = [value for value in own if not axis.holds(value)]
         if outside:
             raise ConfigError(
                 f"{axis.name} = {shown(str(outside[0]), 40)} is not inside the window, {axis.low} to {axis.high}",
@@ -91,7 +91,7 @@ class Course:
 
     @classmethod
     def through(cls, slice: Slice, corners: tuple[Place, ...]) -> Course:
-        sides = [axis.high - axis.low for axis in slice.axes]
+        sides = [axis.width for axis in slice.axes]
         lengths = [
             hypot(*(float((b - a) / side) for a, b, side in zip(p, q, sides, strict=True)))
             for p, q in pairwise(corners)

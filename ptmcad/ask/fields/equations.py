@@ -18,6 +18,8 @@ from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 
 class ModelState(NamedTuple):
@@ -47,7 +49,7 @@ class ModelState(NamedTuple):
     hessian: Floats = np.empty((0, 1))
 
     @property
-    def counts(self) -> NDArray[np.bool_]:
+    def counts(self) -> Flags:
         """Where all conditions hold, shape S; one for all where there is no condition."""
         return np.asarray(np.all([condition > 0 for condition in self.conditions], axis=0))
 
@@ -63,7 +65,7 @@ class ModelState(NamedTuple):
         return self.energy if self.energy is None or self.work is None else self.energy - self.work
 
     @property
-    def stable(self) -> NDArray[np.bool_]:
+    def stable(self) -> Flags:
         """Where solutions are stable, shape S; nowhere where nothing says which are."""
         margins = (*self.stability, *eigenvalues(self.hessian)[:1])
         if not margins:
@@ -71,7 +73,7 @@ class ModelState(NamedTuple):
         return np.asarray(np.logical_and.reduce([margin > 0 for margin in margins]))
 
     @property
-    def negatives(self) -> NDArray[np.int64]:
+    def negatives(self) -> Integers:
         """The numbers of negative eigenvalues of the Hessian, shape S."""
         return np.asarray((eigenvalues(self.jacobian) < 0).sum(axis=0))
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.field import Field
@@ -17,7 +16,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.fields.barrier import barriers
 from ptmcad.ask.fields.branches import Filling, GridPoints, PixelSolver, filled, places_of
-from ptmcad.ask.fields.equations import Floats, ModelState
+from ptmcad.ask.fields.equations import Flags, Floats, Integers, ModelState
 from ptmcad.ask.fields.jumps import jumps
 from ptmcad.ask.fields.quantities import OPTION, Valued, quantity_of
 from ptmcad.ask.pixels import grid as grid_of
@@ -28,6 +27,7 @@ from ptmcad.model.compile import compiled
 from ptmcad.model.work import acting
 from ptmcad.options import Progress
 from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import values_at
 
 BATCH, LARGE_BATCH = 300, 20_000
 """Pixels at a time: what they take stays in the processor's cache; of descents few are long, which go on together."""
@@ -215,9 +215,9 @@ def _at_pixels(
     quantity: Valued,
     choice: Choice,
     follower: PixelSolver,
-    places: tuple[NDArray[np.int64], NDArray[np.int64]],
+    places: tuple[Integers, Integers],
     at: Floats,
-) -> tuple[Floats, NDArray[np.int64]]:
+) -> tuple[Floats, Integers]:
     """The quantity of the chosen solution at pixels, and its number there, `NONE` without one; at : shape (n, pixels,
     most)."""
     rows, columns = places
@@ -235,7 +235,7 @@ def _at_pixels(
     k = order[own, hit.argmax(axis=1)]
     if quantity.is_barrier:
 
-        def evaluate(pixels: NDArray[np.int64], points: Floats) -> ModelState:
+        def evaluate(pixels: Integers, points: Floats) -> ModelState:
             return follower.state(rows[pixels], columns[pixels], points)
 
         values = barriers(evaluate, at, k, len(model.angles))
@@ -248,9 +248,7 @@ def _at_pixels(
     return np.where(found, values, np.nan), np.where(found, k, NONE)
 
 
-def _in_order(
-    state: ModelState, at: Floats, there: NDArray[np.bool_], choice: Choice
-) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+def _in_order(state: ModelState, at: Floats, there: Flags, choice: Choice) -> tuple[Integers, Flags]:
     """The solutions in the order of `Poses`, shape (pixels, most), and which are of the chosen kind."""
     stable = state.stable & there
     energy = np.zeros(there.shape) if state.energy is None else np.where(there, state.energy, np.inf)
@@ -276,7 +274,7 @@ def complete(
     result: RegionMap,
     point: Callable[[int, int], tuple[Fraction, Fraction]],
     solutions: Filling,
-    total: NDArray[np.int64],
+    total: Integers,
     check: Callable[[], None],
 ) -> int:
     """Exact poses where neighbours led nowhere; the number of places that stay without their solutions.
@@ -301,17 +299,12 @@ def complete(
 def centre(result: RegionMap, grid: Grid | GridPoints, row: int, column: int) -> tuple[Fraction, Fraction]:
     """A pixel's centre, exactly."""
     (x, y), (rows, columns) = result.slice.axes, grid.cell.shape
-    return (
-        x.low + (x.high - x.low) * Fraction(2 * column + 1, 2 * columns),
-        y.low + (y.high - y.low) * Fraction(2 * row + 1, 2 * rows),
-    )
+    return x.middle(column, columns), y.middle(row, rows)
 
 
 def exact_at(result: RegionMap, x: Fraction, y: Fraction) -> Poses:
     """All solutions at a point of the slice."""
-    model = result.slice.model
-    values = {name: e.evaluate(x, y) for name, e in result.slice.parameters.items()}
-    return poses_at(model, values, DIGITS)
+    return poses_at(result.slice.model, values_at(result.slice.parameters, x, y), DIGITS)
 
 
 def unknowns_of(pose: Pose) -> Floats:

@@ -13,25 +13,24 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.ask.fields.branches import BATCH, Filling, Flags, GridPoints, Labels, PixelSolver
-from ptmcad.ask.fields.equations import Floats, apart
+from ptmcad.ask.fields.branches import BATCH, Filling, GridPoints, PixelSolver
+from ptmcad.ask.fields.equations import Flags, Floats, Integers, apart
 
 PARTS = (1, 4, 16, 64)
 """Of the way between two pixels: more are taken while the neighbour's solution is not met."""
 
-Pixels = tuple[Labels, Labels]
+Pixels = tuple[Integers, Integers]
 
 
 def jumps(
     result: RegionMap,
     follower: PixelSolver,
     solutions: Filling,
-    chosen: Labels,
-    region: Labels,
+    chosen: Integers,
+    region: Integers,
     check: Callable[[], None] = lambda: None,
 ) -> tuple[Flags, Flags]:
     """Between which neighbours of one region the branch of the chosen solution changes.
@@ -65,7 +64,7 @@ def jumps(
 
 
 def _differ(
-    result: RegionMap, follower: PixelSolver, solutions: Filling, chosen: Labels, start: Pixels, end: Pixels
+    result: RegionMap, follower: PixelSolver, solutions: Filling, chosen: Integers, start: Pixels, end: Pixels
 ) -> Flags:
     """Whether following the chosen solutions from pixels does not lead to those that are chosen at others."""
     apart = np.ones(len(start[0]), dtype=np.bool_)
@@ -94,7 +93,7 @@ def _followed(result: RegionMap, follower: PixelSolver, at: Floats, ends: tuple[
     return at
 
 
-def _nearest(at: Floats, solutions: Floats, angles: int) -> NDArray[np.int64]:
+def _nearest(at: Floats, solutions: Floats, angles: int) -> Integers:
     """The number of the nearest of a pixel's solutions, shape (n, pixels, most); `NONE` for no point."""
     far = np.sqrt((apart(at[:, :, None], solutions, angles) ** 2).sum(axis=0))
     nearest = np.where(np.isnan(far), np.inf, far).argmin(axis=1)

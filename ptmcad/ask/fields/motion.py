@@ -32,6 +32,7 @@ from ptmcad.errors import ConfigError, PtmcadError, expect
 from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.examples import FIRST, SECOND
+from ptmcad.text.numerals import equalities
 
 FRAMES, MAX_FRAMES = 90, 600
 MAX_FALLS = 20
@@ -160,7 +161,7 @@ def _start(result: RegionMap, at: Place, choice: Choice) -> Floats:
     poses = exact_at(result, *at)
     found = choice.numbers(poses)
     if len(found) < choice.rank:
-        where = ", ".join(f"{n} = {v}" for n, v in zip(result.slice.axis_names, at, strict=True))
+        where = equalities(dict(zip(result.slice.axis_names, at, strict=True)))
         raise ConfigError(f"there is no {choice} at the path's start, {where}: only {len(found)} of them", key="--pose")
     return unknowns_of(poses.equilibria[found[choice.rank - 1]])
 

@@ -22,6 +22,7 @@ from ptmcad.exact.models import ParametricSystem
 from ptmcad.exact.stages import SliceProblem, count_at, domain_limits
 from ptmcad.exact.surfaces import surfaces_of
 from ptmcad.exact.variety import discriminant_variety
+from ptmcad.text.numerals import equalities
 
 
 class Axes(NamedTuple):
@@ -84,7 +85,7 @@ def _space(
         point = [fmpq(0)] * len(axes.names)
         for number, coordinate in zip(axes.order, (value, *design), strict=False):
             point[number] = coordinate
-        where = ", ".join(f"{name} = {coordinate}" for name, coordinate in zip(axes.names, point, strict=True))
+        where = equalities(dict(zip(axes.names, point, strict=True)))
         try:
             return count_at(where, system, parameters, point).counts.working
         except DegenerateSliceError:

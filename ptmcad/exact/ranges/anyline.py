@@ -126,7 +126,7 @@ def _critical(equations: SliceSystem, algebra: QuotientAlgebra, axis: Axis) -> t
     factors = {tuple(map(int, factor.coeffs())): factor for p in found for factor, _ in p.factor()[1]}
     low, high = interval_of(axis)
     roots = [algebraic_number(root) for factor in factors.values() for root in isolate(factor, low, high)]
-    return in_order(roots, axis.low, axis.high, (axis.high - axis.low) * END_WIDTH)
+    return in_order(roots, axis.low, axis.high, axis.width * END_WIDTH)
 
 
 def _matrix(algebra: QuotientAlgebra, p: UnknownPolynomial) -> list[list[Ratio]]:

@@ -52,7 +52,7 @@ def landing(
             return enclosure_of(found)
 
     side = 1 if target.value > current.value else -1
-    distance = (family.line.along.high - family.line.along.low) * _NEAREST
+    distance = family.line.along.width * _NEAREST
     near, far = ends_from(number, side)
     before = nearer(family.branches, current, beside(near, -side, distance))
     after = nearer(family.branches, target, beside(far, side, distance))

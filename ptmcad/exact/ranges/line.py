@@ -36,7 +36,7 @@ from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_fraction
-from ptmcad.text.numerals import shortest_text
+from ptmcad.text.numerals import equalities, shortest_text
 
 END_WIDTH = Fraction(1, 2**100)
 """Width of the ends' isolating intervals, against the window's."""
@@ -102,7 +102,7 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Component], ...]
     system, parameters = system_on(line)
     low, high = line.along.low, line.along.high
     window = interval_of(line.along)
-    where = ", ".join(f"{name} = {shortest_text(value)}" for name, value in line.at.items())
+    where = equalities(line.at, shortest_text)
     try:
         # the second axis does not occur, so any range serves for it
         variety = discriminant_variety(

@@ -107,7 +107,7 @@ def _one_way(
     family: LineSystem, numbers: Sequence[AlgebraicNumber], origin: Reached, side: int
 ) -> tuple[list[Reached], PathEnd]:
     """Follow a branch in one direction through all critical values that do not concern it."""
-    window = family.line.along.high - family.line.along.low
+    window = family.line.along.width
     edge = family.line.along.high if side > 0 else family.line.along.low
     reached: list[Reached] = []
     current = origin

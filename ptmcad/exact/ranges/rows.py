@@ -36,7 +36,7 @@ def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWid
     found = strips(slice, along)
     table = []
     for k in range(1, rows + 1):
-        value = over.low + (over.high - over.low) * Fraction(k, rows + 1)
+        value = over.at(Fraction(k, rows + 1))
         table.append(_row(slice, along, {over.name: value}, found.working))
     maxima = widest(slice, along, found)
     return OperationWidths(

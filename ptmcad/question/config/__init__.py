@@ -30,7 +30,7 @@ from ptmcad.question.config.windows import check_axis_name
 from ptmcad.question.counts import Count
 from ptmcad.question.domain import MAX_DEGREE
 from ptmcad.question.examples import FIRST, SECOND
-from ptmcad.question.shipped import record_tree
+from ptmcad.question.shipped import RecordSource, record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar, Sequence, Written
 from ptmcad.text.node import Node
@@ -90,14 +90,14 @@ def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
     return checked_slice(tree_of(mapping))
 
 
-def slice_from(question: str | Path | Mapping[str, Any] | Slice) -> Slice:
+def slice_from(question: RecordSource | Slice) -> Slice:
     """The slice that is meant by a record's file, by a mapping like a record, or by itself."""
     if isinstance(question, Slice):
         return question
     return checked_slice(tree_of(question, "slice", f"{A_SLICE}, {A_RECORD}"))
 
 
-def family_from(question: str | Path | Mapping[str, Any] | Family) -> Family:
+def family_from(question: RecordSource | Family) -> Family:
     """The family that is meant by a record's file, by a mapping like a record, or by itself.
 
     >>> record = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": "F", "F4": "F"},

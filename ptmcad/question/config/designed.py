@@ -20,6 +20,7 @@ from ptmcad.question.config.windows import Window
 from ptmcad.question.design import Bounds, Inequality, named
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.entry import Scalar
+from ptmcad.text.numerals import Numbers
 
 
 class Aim(Enum):
@@ -77,6 +78,11 @@ class Design:
         return tuple(axis_of(name, self.record.axes[name], self.model) for name in names)
 
     @property
+    def middle(self) -> dict[str, Fraction]:
+        """The design in the middle of the bounds."""
+        return {axis.name: axis.middle() for axis in self.over}
+
+    @property
     def text(self) -> dict[str, str]:
         """The parameters that the record gives, as they are written, without those of the design."""
         return {name: scalar.text for name, scalar in _without(self.record, self.over).values.items()}
@@ -90,7 +96,7 @@ class Design:
             return family_of(_without(self.record, self.over)._replace(free=_free(self.over[0])))
         return None
 
-    def slice(self, values: Mapping[str, Fraction]) -> Slice:
+    def slice(self, values: Numbers) -> Slice:
         """The slice of a design: for a range that in which the line lies, over the first design parameter.
 
         Parameters
@@ -106,7 +112,7 @@ class Design:
         given = {n: v for n, v in values.items() if n not in record.axes}
         return slice_of(with_numbers(record, given, {})._replace(title="", reference={}))
 
-    def point(self, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    def point(self, values: Numbers) -> dict[str, Fraction]:
         """Every parameter of the model at a design that leaves no axis free.
 
         Raises
@@ -116,7 +122,7 @@ class Design:
         """
         return point_of(with_numbers(_without(self.record, self.over), values, {}))
 
-    def holds(self, values: Mapping[str, Fraction]) -> bool:
+    def holds(self, values: Numbers) -> bool:
         """Whether a design satisfies the conditions."""
         return self.may_hold({name: (value, value) for name, value in values.items()})
 

@@ -21,7 +21,7 @@ from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.config.windows import AXIS_NAME, Window, check_axis_name, window_of, with_ranges
 from ptmcad.question.design import Inequality, condition_of, named
 from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
-from ptmcad.question.shipped import record_tree
+from ptmcad.question.shipped import RecordSource, record_tree
 from ptmcad.question.slice import Axis
 from ptmcad.text.codec import Codec, part, reading, record
 from ptmcad.text.entry import Scalar, Tree, Written, from_python
@@ -103,7 +103,7 @@ DESIGN: Codec[dict[str, Any]] = record(
 )
 
 
-def design_from(question: str | Path | Mapping[str, Any] | Design, **changes: Any) -> Design:
+def design_from(question: RecordSource | Design, **changes: Any) -> Design:
     """The design that is meant by a record's file, by a mapping like a record, or by itself.
 
     Parameters
@@ -221,14 +221,13 @@ def _design(record: Record, asked: Node) -> Design:
     if faults.found:
         note_values(record, faults, _entries(asked.at("over").value))
     # read in the middle of the bounds, so that what no design can be asked is said at once
-    middle = {axis.name: (axis.low + axis.high) / 2 for axis in over}
-    _ = found.slice(middle) if found.aim in (Aim.RANGE, Aim.AREA) else found.point(middle)
+    _ = found.slice(found.middle) if found.aim in (Aim.RANGE, Aim.AREA) else found.point(found.middle)
     return found
 
 
 def _along(along: str, axes: tuple[str, ...], entry: Node) -> str:
     if along not in axes:
-        hint = did_you_mean(along, axes) or f": choose {' or '.join(axes)}"
+        hint = did_you_mean(along, axes, ": choose ", " or ")
         raise entry.fault(f"{along[:40]!r} is not an axis{hint}")
     return along
 

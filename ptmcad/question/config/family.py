@@ -19,9 +19,9 @@ from ptmcad.question.config.record import Record
 from ptmcad.question.config.resolution import axis_of, described_record, note_values, slice_of, written_in
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.config.windows import MAX_MEMBERS, Window, check_members
-from ptmcad.question.slice import Axis, Slice
+from ptmcad.question.slice import Axes, Axis, Slice
 from ptmcad.text.entry import Scalar, Sequence, Tree, Written
-from ptmcad.text.expressions import Expression, axis, constant
+from ptmcad.text.expressions import Expression, Expressions, axis, constant
 from ptmcad.text.node import Node
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import parse
@@ -46,7 +46,7 @@ class Family(NamedTuple):
     record: Record
     free: Axis
     values: tuple[Fraction, ...]
-    axes: tuple[Axis, Axis]
+    axes: Axes
     text: Mapping[str, str]
 
     @property
@@ -162,9 +162,7 @@ def member_like(slice: Slice, text: Mapping[str, str], free: str, value: Fractio
     return replace(slice, axes=axes, parameters=parameters, reference={}, text={})
 
 
-def _resolved(
-    name: str, text: Mapping[str, str], known: Mapping[str, Expression], chain: tuple[str, ...] = ()
-) -> Expression:
+def _resolved(name: str, text: Mapping[str, str], known: Expressions, chain: tuple[str, ...] = ()) -> Expression:
     """A parameter in the axes, from the texts of those that it depends on."""
     if name in known:
         return known[name]
@@ -229,4 +227,4 @@ def _values(free: Axis, members: Written | None, faults: Faults) -> tuple[Fracti
 
 
 def _spaced(free: Axis, number: int) -> tuple[Fraction, ...]:
-    return tuple(free.low + (free.high - free.low) * k / (number - 1) for k in range(number))
+    return tuple(free.at(Fraction(k, number - 1)) for k in range(number))

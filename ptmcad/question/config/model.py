@@ -116,7 +116,7 @@ def described_in(record: Tree, faults: Faults) -> Described:
     known = starter_mechanism(mechanism.text)
     if isinstance(known, Tree):
         return Described(_read(known, faults, used).model)
-    hint = did_you_mean(mechanism.text, mechanism_names()) or f"; built in are {', '.join(mechanism_names())}"
+    hint = did_you_mean(mechanism.text, mechanism_names(), "; built in are ")
     raise mechanism.place.error(
         f"unknown mechanism{hint}; a file that holds one ends in .yaml, and a mapping describes one"
     )

@@ -5,17 +5,15 @@ Guarantee: exact; what is wrong is a `ConfigError` with file, line and key, said
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from ptmcad.errors import Faults
 from ptmcad.question.config.record import Record
 from ptmcad.question.config.scalars import names_in_scalar, parsed
 from ptmcad.text.entry import Scalar
-from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.expressions import Expression, Expressions, constant
 from ptmcad.text.syntax import NOT_NUMBERS, did_you_mean
 
 
-def resolved(record: Record, free: Mapping[str, Expression], faults: Faults) -> tuple[dict[str, Expression], set[str]]:
+def resolved(record: Record, free: Expressions, faults: Faults) -> tuple[dict[str, Expression], set[str]]:
     """What the parameters stand for, depth first, and the names of those that are faulty or depend on such a one.
 
     Parameters
@@ -50,8 +48,8 @@ def resolved(record: Record, free: Mapping[str, Expression], faults: Faults) -> 
         misnamed = [other for other in names if other not in known and other.lower() not in NOT_NUMBERS]
         for other in misnamed[:1]:
             with faults:
-                those = f"; the names are {', '.join(known)}" if known else "; no name is known here"
-                raise scalar.place.error(f"unknown name '{other[:40]}'{did_you_mean(other, known) or those}")
+                hint = did_you_mean(other, known, "; the names are " if known else "; no name is known here")
+                raise scalar.place.error(f"unknown name '{other[:40]}'{hint}")
         values = {other: value(other, (*chain, name)) for other in names if other in known}
         if misnamed or values.keys() & faulty:
             faulty.add(name)

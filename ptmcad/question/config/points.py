@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Place
 from ptmcad.model import Model, ptm
@@ -15,9 +14,10 @@ from ptmcad.question.config.options import settings_of
 from ptmcad.question.config.record import Record, record_of, unknown_parameter
 from ptmcad.question.config.resolution import point_of, without_shorthands
 from ptmcad.question.config.scalars import number_of, number_text
-from ptmcad.question.shipped import record_tree
+from ptmcad.question.shipped import RecordSource, record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar, from_python
+from ptmcad.text.expressions import values_at
 
 _EXPECTED = f"{A_SLICE}, {A_RECORD}"
 
@@ -70,9 +70,7 @@ def point_from_options(
     return _at_point(record, given, sets)
 
 
-def point_from(
-    question: str | Path | Mapping[str, Any] | Slice, values: Mapping[str, object]
-) -> tuple[Model, dict[str, Fraction]]:
+def point_from(question: RecordSource | Slice, values: Mapping[str, object]) -> tuple[Model, dict[str, Fraction]]:
     """The model of a record or slice, and its parameters at a point.
 
     >>> record = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": -10}}
@@ -97,11 +95,10 @@ def point_from(
     if missing := [name for name in names if name not in given]:
         raise ConfigError("is an axis of the slice and has no value", key=missing[0])
     x, y = (number_of(given[name], "the value of this axis") for name in names)
-    values_there = {name: expression.evaluate(x, y) for name, expression in question.parameters.items()}
-    return question.model, without_shorthands(values_there, question.model)
+    return question.model, without_shorthands(values_at(question.parameters, x, y), question.model)
 
 
-def units_of(question: str | Path | Mapping[str, Any] | Slice) -> Mapping[str, str]:
+def units_of(question: RecordSource | Slice) -> Mapping[str, str]:
     """The units that a record or slice declares, of ``length`` and ``force``.
 
     Raises

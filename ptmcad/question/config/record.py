@@ -305,13 +305,13 @@ def unknown_parameter(name: str, model: Model) -> str:
     """The message for a name that is none of the model's parameters."""
     if not model.parameters:
         return f"unknown parameter '{name[:40]}': {model.name} has none"
-    hint = did_you_mean(name, model.parameters) or f"; the parameters are {', '.join(model.parameters)}"
+    hint = did_you_mean(name, model.parameters, "; the parameters are ")
     return f"unknown parameter '{name[:40]}'{hint}"
 
 
 def _quantity(entry: Node, name: str) -> str:
     if name not in QUANTITIES:
-        hint = did_you_mean(name, QUANTITIES) or f"; units are those of {' and '.join(QUANTITIES)}"
+        hint = did_you_mean(name, QUANTITIES, "; units are those of ", " and ")
         raise entry.fault(f"unknown quantity{hint}")
     return name
 

@@ -23,9 +23,9 @@ from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part
 from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK, window_of
 from ptmcad.question.signs import PROVED, Finding, Subject
-from ptmcad.question.slice import Axis, Slice, count_fault, have_free_lengths
+from ptmcad.question.slice import Axes, Axis, Slice, count_fault, have_free_lengths
 from ptmcad.text.entry import Scalar, Tree
-from ptmcad.text.expressions import Expression, axis, constant
+from ptmcad.text.expressions import Expression, Expressions, axis, constant
 from ptmcad.text.syntax import did_you_mean, names_in, parse
 from ptmcad.text.tree import names_of
 
@@ -146,7 +146,7 @@ def refuse_free(name: str, window: Window) -> None:
     )
 
 
-def _judged(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression], list[Finding]]:
+def _judged(record: Record, faults: Faults) -> tuple[Axes, dict[str, Expression], list[Finding]]:
     """The axes, every parameter as a function of them, and the signs of these and of what springs are given.
 
     Faults are noted, and none that follows from another.
@@ -207,9 +207,7 @@ def _inherited(name: str, record: Record) -> str:
     return "" if name in record.values else record.model.parameters[name].alias_of or ""
 
 
-def _slice(
-    record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expression], signs: Sequence[Finding]
-) -> Slice:
+def _slice(record: Record, axes: Axes, resolved: Expressions, signs: Sequence[Finding]) -> Slice:
     """The slice of a record whose entries are right one by one."""
     mechanism = record.model
     given = {*record.values, *record.axes}
@@ -243,7 +241,7 @@ def _slice(
     )
 
 
-def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
+def _check_count(record: Record, resolved: Expressions) -> None:
     """Refuse a count that makes no sense for the model."""
     count = record.counting
     if count is not None and (problem := count_fault(count, record.model, resolved)):
@@ -275,7 +273,7 @@ def without_shorthands(values: Mapping[str, Fraction], mechanism: Model) -> dict
     return {name: value for name, value in values.items() if name not in left_out}
 
 
-def _names_free_lengths(model: Model, values: Mapping[str, Expression]) -> bool:
+def _names_free_lengths(model: Model, values: Expressions) -> bool:
     """Whether parameters that are free lengths are told: where one is not zero, or a spring has another free length."""
     given = (values[name] for name in model.free_lengths if name in values)
     return any(value.numerator for value in given) or have_free_lengths(model, values)
@@ -345,9 +343,7 @@ def axis_of(name: str, window: Window, model: Model) -> Axis:
     return Axis(name, low, high)
 
 
-def _signs_of_value(
-    name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis] | None
-) -> tuple[Finding, ...]:
+def _signs_of_value(name: str, expression: Expression, record: Record, axes: Axes | None) -> tuple[Finding, ...]:
     """The sign of a parameter, where the window is known.
 
     What the geometry excludes is refused, and so is a denominator that vanishes in the window.

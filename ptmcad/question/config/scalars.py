@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
 from ptmcad.errors import Faults, Place
 from ptmcad.model.reading import text_in
 from ptmcad.text.entry import Scalar, Written
-from ptmcad.text.expressions import Expression
+from ptmcad.text.expressions import Expression, Expressions
 from ptmcad.text.node import Node
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import did_you_mean, names_in
@@ -46,7 +45,7 @@ def names_in_scalar(scalar: Scalar) -> tuple[str, ...]:
     return scalar.place.read(scalar.text, names_in)
 
 
-def parsed(scalar: Scalar, names: Mapping[str, Expression]) -> Expression:
+def parsed(scalar: Scalar, names: Expressions) -> Expression:
     """The function of the axes that a scalar is, where names are such functions."""
     return scalar.place.read(scalar.text, lambda text: parse(text, names))
 

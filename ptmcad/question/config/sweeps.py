@@ -21,7 +21,7 @@ from ptmcad.question.config.resolution import check_number, described_record, no
 from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.config.windows import AXIS_NAME, check_axis_name
 from ptmcad.question.examples import A_SWEEP, FIRST
-from ptmcad.question.shipped import record_tree
+from ptmcad.question.shipped import RecordSource, record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.question.sweep import Product, Spaced, Sweep, Values
 from ptmcad.text.codec import Codec, part, reading, record
@@ -76,7 +76,7 @@ def load_sweep(path: str | Path) -> Sweeping:
     return checked_sweep(record_tree(path))
 
 
-def sweep_from(question: str | Path | Mapping[str, Any] | Sweeping) -> Sweeping:
+def sweep_from(question: RecordSource | Sweeping) -> Sweeping:
     """The sweep that is meant by a record's file, by a mapping like a record, or by itself.
 
     Raises

@@ -13,7 +13,7 @@ from typing import Any
 from ptmcad.model import Model, built_in, described, described_system, known_of, recognised
 from ptmcad.model.closed import without_loops
 from ptmcad.question.counts import Count
-from ptmcad.question.slice import MAX_UNIT, Axis, Slice
+from ptmcad.question.slice import MAX_UNIT, Axes, Axis, Slice
 from ptmcad.text.codec import DATA, RATIONAL, TEXT, Codec, Key, choice, converted, line, listed, named, record
 from ptmcad.text.expressions import Expression
 from ptmcad.text.expressions import axis as axis_function
@@ -64,7 +64,7 @@ MODEL = Key(
 """A model under one of two keys."""
 
 
-def _axes(found: Mapping[str, tuple[Fraction, ...]]) -> tuple[Axis, Axis]:
+def _axes(found: Mapping[str, tuple[Fraction, ...]]) -> Axes:
     if len(found) != 2 or not all(map(NAME.fullmatch, found)):
         raise ValueError("it does not hold two named axes")
     first, second = (Axis(name, *ends) for name, ends in found.items())
@@ -74,7 +74,7 @@ def _axes(found: Mapping[str, tuple[Fraction, ...]]) -> tuple[Axis, Axis]:
     return first, second
 
 
-_AXES: Codec[tuple[Axis, Axis]] = converted(
+_AXES: Codec[Axes] = converted(
     named(listed(RATIONAL, 2)), lambda axes: {axis.name: (axis.low, axis.high) for axis in axes}, _axes
 ).narrowed(minProperties=2, maxProperties=2)
 

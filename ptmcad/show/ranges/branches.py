@@ -9,9 +9,10 @@ from ptmcad.answer.branches import Branch, Branches, BranchPoint
 from ptmcad.answer.words import noun
 from ptmcad.model import Model
 from ptmcad.show.columns import aligned
-from ptmcad.show.ranges.numbers import fixed, known
+from ptmcad.show.ranges.numbers import known
 from ptmcad.show.units import with_unit
 from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.numerals import equalities, shortest_text
 
 DIGITS = 6
 
@@ -30,7 +31,7 @@ def table(found: Branches) -> str:
         numbers = zip(first.numbers, last.numbers, strict=True)
         changes = [f"{_text(a)} to {_text(b)}" for a, b in numbers]
         rows.append([_short(first), _short(last), kind(branch, found.model), *changes])
-    where = f"{found.along.name} at {fixed(found.at)}"
+    where = f"{found.along.name} at {equalities(found.at, shortest_text)}"
     lines = [f"branches along {where}, without the last 1/100000 before critical values", ""]
     lines += aligned(rows)
     if found.undecided:

@@ -5,14 +5,13 @@ Guarantee: a text is the number rounded to nearest; it is refined as far as that
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 
 from ptmcad.algebra.numbers import refined
 from ptmcad.answer.intervals import End, Span
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import magnitude, shortest_text
+from ptmcad.text.numerals import Numbers, equalities, magnitude, shortest_text
 
 MAX_DIGITS = 1000
 """That may be asked for."""
@@ -20,14 +19,11 @@ NARROW = Fraction(1, 10**20)
 """A number that is so nearly known and does not settle a digit is taken for the short decimal that it cannot leave."""
 
 
-def line_head(along: Axis, at: Mapping[str, Fraction]) -> str:
+def line_head(along: Axis, at: Numbers) -> str:
     """The window along a line, and what is fixed on it."""
-    return f"{along.name} in ({shortest_text(along.low)}, {shortest_text(along.high)}) at {fixed(at)}"
-
-
-def fixed(at: Mapping[str, Fraction]) -> str:
-    """What is fixed on a line."""
-    return ", ".join(f"{name} = {shortest_text(value)}" for name, value in at.items())
+    return (
+        f"{along.name} in ({shortest_text(along.low)}, {shortest_text(along.high)}) at {equalities(at, shortest_text)}"
+    )
 
 
 def end_text(end: End | Enclosure, digits: int) -> str:

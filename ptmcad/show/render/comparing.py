@@ -33,7 +33,7 @@ from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, count_text
 from ptmcad.text.bounds import percent, share_text
-from ptmcad.text.numerals import shortest_text
+from ptmcad.text.numerals import Numbers, shortest_text
 
 SIDE = 2.7
 """Inches of a map in 9 points, in a picture that grows with what it shows."""
@@ -202,7 +202,7 @@ def own_words(first: RegionMap, second: RegionMap) -> tuple[str, str]:
     return names if names[0] != names[1] else ("", "")
 
 
-def _assignments(values: Mapping[str, Fraction], names: Sequence[str]) -> str:
+def _assignments(values: Numbers, names: Sequence[str]) -> str:
     """Such as ``F₃ = F₄ = −40, k = 100``."""
     equal: dict[Fraction, list[str]] = {}
     for name in names:

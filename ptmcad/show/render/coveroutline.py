@@ -80,8 +80,7 @@ class CoverOutline:
         steps = tree.steps
         places = []
         for axis, shown, n in zip(self.result.slice.axes, (self.view.x, self.view.y), (columns, rows), strict=True):
-            width = axis.high - axis.low
-            start, step = (shown[0] - axis.low) / width * steps, (shown[1] - shown[0]) / width * steps / n
+            start, step = axis.share(shown[0]) * steps, (shown[1] - shown[0]) / axis.width * steps / n
             places.append(np.array([int(start + (k + Fraction(1, 2)) * step) for k in range(n)], dtype=np.int64))
         x, y = np.clip(places[0], 0, steps - 1), np.clip(places[1], 0, steps - 1)
         leaf = tree.leaves_right_above(np.tile(x, rows), np.repeat(y, columns))
@@ -121,7 +120,7 @@ def _in_view(corners: NDArray[np.int64], seen: CoverOutline) -> Floats:
     columns = []
     for k, (axis, shown) in enumerate(zip(seen.result.slice.axes, (seen.view.x, seen.view.y), strict=True)):
         width = shown[1] - shown[0]
-        scale = float((axis.high - axis.low) / width / seen.complement.cover.steps)
+        scale = float(axis.width / width / seen.complement.cover.steps)
         columns.append(corners[:, k] * scale + float((axis.low - shown[0]) / width))
     return np.stack(columns, axis=1)
 
@@ -161,7 +160,7 @@ def _components_of(result: RegionMap, complement: Components) -> Mapping[int, in
     found: dict[int, int] = {}
     for number, cell in enumerate(result.cells):
         place = [
-            (value - axis.low) / (axis.high - axis.low) * complement.cover.steps
+            axis.share(value) * complement.cover.steps
             for axis, value in zip(result.slice.axes, cell.sample, strict=True)
         ]
         component = complement.locate(*place)

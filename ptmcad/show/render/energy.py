@@ -7,7 +7,7 @@ unknown u.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import radians
@@ -24,7 +24,7 @@ from ptmcad.model.evaluate import Assignment
 from ptmcad.model.work import moments_at
 from ptmcad.show.render.view import Floats
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.text.numerals import magnitude
+from ptmcad.text.numerals import Numbers, magnitude
 
 Terms = tuple[tuple[tuple[int, ...], float], ...]
 
@@ -74,7 +74,7 @@ class Energy:
         return self.scaled(pose.known_energy.center) + sum(slope * inputs[k] for k, slope in self.slopes)
 
 
-def energy_of(model: Model, parameters: Mapping[str, Fraction]) -> Energy:
+def energy_of(model: Model, parameters: Numbers) -> Energy:
     """The energy at these parameters, its constant part taken out and its size made about 1."""
     system = system_from(model)
     values = {name: from_fraction(parameters[name]) for name in system.ring.parameters}

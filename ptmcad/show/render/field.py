@@ -295,6 +295,6 @@ def _absent(field: Field) -> str:
 def _shares(result: RegionMap, points: Floats) -> Floats:
     """Points as fractions of the window's sides."""
     lows = np.array([float(a.low) for a in result.slice.axes])
-    widths = np.array([float(a.high - a.low) for a in result.slice.axes])
+    widths = np.array([float(a.width) for a in result.slice.axes])
     shares: Floats = (points - lows) / widths
     return shares

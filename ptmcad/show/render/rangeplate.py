@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -19,7 +19,7 @@ from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.style import Size
 from ptmcad.show.units import unit, with_unit
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import shortest_text
+from ptmcad.text.numerals import Numbers, shortest_text
 
 WIDE, LEFT, RIGHT, LINE, MARGIN = 6.2, 0.85, 0.3, 0.22, 0.15
 """In inches: the axes, the space at their sides, a line of the title, the rim."""
@@ -54,7 +54,7 @@ def figure_of(title: Sequence[str], size: Size, words: str) -> Figure:
     return figure
 
 
-def heading(slice: Slice, at: Mapping[str, Fraction]) -> str:
+def heading(slice: Slice, at: Numbers) -> str:
     """Of what is shown along a line of a slice."""
     return f"{heading_of(slice)}; {', '.join(f'{symbol(name)} = {short(value)}' for name, value in at.items())}"
 

@@ -228,7 +228,7 @@ def _where(found: OperationWidths | CertifiedWidths) -> str:
 
 def _place(end: End, along: Axis) -> float:
     """Where an end lies in the window, from 0 to 1."""
-    return float((middle_of(end) - along.low) / (along.high - along.low))
+    return float(along.share(middle_of(end)))
 
 
 def _words(found: CountIntervals) -> str:

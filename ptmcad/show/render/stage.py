@@ -40,6 +40,7 @@ from ptmcad.show.render.sketch import Sketch, arrows_of, components, own_labels,
 from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.render.view import Point, View
 from ptmcad.show.style import PictureStyle, Size
+from ptmcad.text.expressions import values_at
 
 SIZE = (9.0, 5.1)
 MIN_SIZE = (6.5, 3.4)
@@ -279,7 +280,7 @@ def _arrows(motion: Motion, mechanism: Mechanism) -> dict[Point, dict[str, float
     parameters = motion.result.slice.parameters
     forces = {}
     for at in {step.at for step in motion.steps}:
-        values = {name: expression.evaluate(*at) for name, expression in parameters.items()}
+        values = values_at(parameters, *at)
         forces[at] = components(loads_at(mechanism, values))
     largest = max((abs(force) for own in forces.values() for force in own.values()), default=Fraction(0))
     return {at: arrows_of(own, largest) for at, own in forces.items()}

@@ -28,6 +28,7 @@ from ptmcad.show.report.bounds import (
     square_root,
 )
 from ptmcad.show.report.potential import Potential, energy, potential_at
+from ptmcad.text.expressions import values_at
 from ptmcad.text.numerals import shortest_text, text_of
 
 MAX_DRAWN = 10**100
@@ -56,7 +57,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
         When a parameter has no value there, or the stored potential or a box is none.
     """
     try:
-        values = {n: e.evaluate(cell.sample[0], cell.sample[1]) for n, e in result.slice.parameters.items()}
+        values = values_at(result.slice.parameters, *cell.sample)
     except PoleError as error:
         raise ConfigError(f"a parameter has no value at a sample: {error}") from error
     model = result.slice.model

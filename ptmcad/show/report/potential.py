@@ -12,7 +12,7 @@ from fractions import Fraction
 from ptmcad.answer.regionmap import System
 from ptmcad.errors import ConfigError
 from ptmcad.show.report.bounds import Bounds, exactly
-from ptmcad.text.numerals import fraction_of
+from ptmcad.text.numerals import Numbers, fraction_of
 
 Potential = Mapping[tuple[int, ...], Fraction]
 """Exponents of the system's unknowns to coefficients."""
@@ -23,7 +23,7 @@ _MAX_CHARACTERS = 100_000
 _EXPONENT = re.compile(r"[1-9][0-9]?", re.ASCII)
 
 
-def potential_at(system: System, values: Mapping[str, Fraction]) -> Potential:
+def potential_at(system: System, values: Numbers) -> Potential:
     """The potential with numbers for the parameters.
 
     Raises

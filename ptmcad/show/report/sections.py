@@ -249,6 +249,6 @@ def again(result: RegionMap) -> Iterator[str]:
     yield "<p>For one point:</p>"
     sample = result.regions[0].sample if result.regions else None
     first, second = result.slice.axes
-    at = (sample[0], sample[1]) if sample else ((first.low + first.high) / 2, (second.low + second.high) / 2)
+    at = (sample[0], sample[1]) if sample else (first.middle(), second.middle())
     point = ",".join(f"{axis.name}={text_of(v)}" for axis, v in zip(result.slice.axes, at, strict=True))
     yield copied(f"ptmcad locate {name}.json --at {point}", "the question")

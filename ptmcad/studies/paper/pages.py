@@ -30,6 +30,7 @@ from ptmcad.studies.paper.claim import Claim, Verdict, judge, texts
 from ptmcad.studies.paper.equations import INTRODUCTION, Equation
 from ptmcad.studies.paper.maps import FIGURES, POINTS, region_map
 from ptmcad.studies.tables import page
+from ptmcad.text.numerals import equalities
 from ptmcad.version import __version__
 
 Progress = Callable[[str, int, int], None]
@@ -151,7 +152,7 @@ def figure_html(name: str, result: RegionMap, pictures: Mapping[str, bytes]) -> 
     return str(FORMS["figure"]).format(
         name=name,
         title=escape(result.slice.heading),
-        at=escape(", ".join(f"{axis} = {value}" for axis, value in point.items())),
+        at=escape(equalities(point)),
         source=escape(source),
         table=escape(result.table()),
         **{key: b64encode(data).decode("ascii") for key, data in shown.items()},

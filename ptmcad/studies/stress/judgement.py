@@ -23,10 +23,10 @@ from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.studies.byhand import scale
-from ptmcad.studies.stress.case import Case, Parameters, free_lengths
+from ptmcad.studies.stress.case import Case, free_lengths
 from ptmcad.studies.stress.methods import IndexedPose, apart, double_poses, proved_poses, sextic_poses
 from ptmcad.text.balls import ball_of, exact
-from ptmcad.text.expressions import Expression
+from ptmcad.text.expressions import Expression, values_at
 
 GRID = 16
 """Points along each axis of a map at which double precision is asked."""
@@ -205,18 +205,14 @@ def _confirmed(
     parameters: Expressions, at: Sequence[Fraction], stable: int | None, total: int | None = None
 ) -> tuple[bool, str]:
     """Whether the second method finds as many at a sample; a total is compared where it is given."""
-    known = sextic_poses(_values(parameters, at))
+    known = sextic_poses(values_at(parameters, *at))
     right = stable == _stable(known) and total in (None, len(known))
     return right, f"the second method finds {_shown(known)} at a sample"
 
 
 def _double(parameters: Expressions, at: Sequence[Fraction]) -> int:
     """The stable count of double precision at a place."""
-    return _stable(double_poses(_values(parameters, at)))
-
-
-def _values(parameters: Expressions, at: Sequence[Fraction]) -> Parameters:
-    return {name: e.evaluate(at[0], at[1]) for name, e in parameters.items()}
+    return _stable(double_poses(values_at(parameters, *at)))
 
 
 def _middles(low: Fraction, high: Fraction, number: int = GRID) -> list[Fraction]:
