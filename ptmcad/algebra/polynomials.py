@@ -30,6 +30,10 @@ RationalPolynomial = fmpq_poly
 """An element of Q[u]."""
 Ratio = tuple[fmpz_mpoly, fmpz_mpoly]
 """Numerator and nonzero denominator."""
+Ratios = Mapping[str, Ratio]
+"""Parameters by name, as functions of axes."""
+Values = Mapping[str, fmpq]
+"""Parameters by name, as numbers."""
 
 
 def ratio(numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> Ratio:
@@ -175,7 +179,7 @@ def evaluate(p: fmpz_mpoly, *at: fmpq) -> fmpq:
     return sum((math.prod(factors, start=c) for c, factors in terms), fmpq(0))
 
 
-def point_values(parameters: Mapping[str, Ratio], at: Sequence[fmpq]) -> dict[str, fmpq]:
+def point_values(parameters: Ratios, at: Sequence[fmpq]) -> dict[str, fmpq]:
     """Ratios at a rational point.
 
     Raises

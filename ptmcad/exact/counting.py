@@ -11,7 +11,7 @@ A condition that is zero at a solution is not positive there; it is found to be 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import combinations
 from typing import NamedTuple
 
@@ -21,6 +21,7 @@ from ptmcad.algebra.fibre import CoordinatesInBalls, UnivariateRepresentation, W
 from ptmcad.algebra.inertia import negative_eigenvalues
 from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.newton import Newton
+from ptmcad.algebra.polynomials import Values
 from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate
 from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
 from ptmcad.answer.counts import Counts, counts_of_signs, euler_sum
@@ -65,7 +66,7 @@ class Equilibria(NamedTuple):
     held: int = 0
 
 
-def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None) -> Counts:
+def count_by_isolation(system: ParametricSystem, values: Values, most: WorkLimit | None = None) -> Counts:
     """Counts at rational values of all parameters, by real-root isolation.
 
     Raises
@@ -78,7 +79,7 @@ def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq], mos
     return equilibria(system, values, most).counts
 
 
-def equilibria(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None) -> Equilibria:
+def equilibria(system: ParametricSystem, values: Values, most: WorkLimit | None = None) -> Equilibria:
     """All real solutions that count at rational values of all parameters, by real-root isolation.
 
     Raises

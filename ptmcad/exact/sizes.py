@@ -21,14 +21,13 @@ from flint import fmpq, nmod_mat
 from ptmcad.algebra.determinants import laplace
 from ptmcad.algebra.fibre import FibreAlgebra, WorkLimit
 from ptmcad.algebra.groebner import Monomial, powers_of
-from ptmcad.algebra.polynomials import point_values
 from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
 from ptmcad.algebra.residues import primes
 from ptmcad.errors import LimitReached
 from ptmcad.exact.decomposition import Sample
 from ptmcad.exact.models.system import RationalPolynomial
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
-from ptmcad.exact.stages import SliceProblem, domain_limits
+from ptmcad.exact.stages import SliceProblem
 
 MAX_POINTS = 256
 """On a line; they tell degrees of 60 and more, and tell of more that they are more."""
@@ -86,7 +85,7 @@ def sizes(problem: SliceProblem, solutions: int, seconds: float, most: WorkLimit
     most : work at a point.
     """
     end = process_time() + seconds
-    limits = domain_limits(problem.system, problem.parameters)
+    limits = problem.on.limits
     usual = _at(problem, _GENERIC, solutions, most)
     if usual is None:
         return None
@@ -119,7 +118,7 @@ def _place(s: int, line: tuple[int, int]) -> tuple[int, int]:
 def _at(problem: SliceProblem, at: Sample, solutions: int, most: WorkLimit | None) -> PointSystem | None:
     """The system at a point; None where solutions are lost."""
     try:
-        point = point_system(problem.system, point_values(problem.parameters, at), most=most)
+        point = point_system(problem.system, problem.on.values(at), most=most)
     except (ZeroDivisionError, DegeneratePoint, LimitReached):
         return None
     return point if point.algebra.dimension == solutions else None

@@ -24,7 +24,7 @@ from ptmcad.algebra.polynomials import common_factor, from_terms, irreducible_fa
 from ptmcad.answer.regionmap import Kind, RegionMap
 from ptmcad.exact.models.elimination import elimination_system
 from ptmcad.exact.slicevariety import slice_variety
-from ptmcad.exact.stages import domain_limits, problem_of
+from ptmcad.exact.stages import problem_of
 from ptmcad.question.slice import Slice
 from ptmcad.studies.bench.harness import Asked, Case, Job, Row
 from ptmcad.studies.bench.process import Usage
@@ -53,9 +53,7 @@ def elimination(slice: Slice, has_map: bool) -> tuple[list[str], list[str]]:
     if has_map:
         system = slice_variety(slice).system
     else:
-        problem = problem_of(slice)
-        limits = domain_limits(problem.system, problem.parameters)
-        system = elimination_system(problem.system, problem.parameters, slice.axis_names, limits, False)
+        system = elimination_system(problem_of(slice).on, slice.axis_names, False)
     names = [*(f"v{n}" for n in range(len(system.unknowns))), "u0", "u1"]
     return names, [text.replace(" ", "") for text in system.texts(tuple(names))]
 
