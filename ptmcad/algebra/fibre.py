@@ -25,8 +25,8 @@ from flint import (
     fmpz_poly,
 )
 
-from ptmcad.algebra.groebner import Monomial, grevlex_key, shifted
-from ptmcad.algebra.polynomials import integral
+from ptmcad.algebra.groebner import grevlex_key, shifted
+from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient import border_of, divided, standard_monomials
 from ptmcad.algebra.trigonometric import angle_sum
 from ptmcad.errors import LimitReached

@@ -16,9 +16,7 @@ from collections.abc import Callable, Sequence
 from operator import add
 from typing import Any, NamedTuple
 
-from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, common_factor
-
-Monomial = tuple[int, ...]
+from ptmcad.algebra.polynomials import Coefficient, Monomial, UnknownPolynomial, common_factor
 
 
 def grevlex_key(m: Monomial) -> tuple[int, ...]:

@@ -28,6 +28,10 @@ UnivariatePolynomial = fmpz_poly
 """An element of Z[u] or Z[v], the polynomials in one axis."""
 RationalPolynomial = fmpq_poly
 """An element of Q[u]."""
+Monomial = tuple[int, ...]
+"""Exponents of the unknowns."""
+UnknownPolynomial = dict[Monomial, fmpz_mpoly]
+"""A polynomial in the unknowns with coefficients in Z[x, y]: exponent vector -> nonzero coefficient."""
 Ratio = tuple[fmpz_mpoly, fmpz_mpoly]
 """Numerator and nonzero denominator."""
 Ratios = Mapping[str, Ratio]
@@ -188,7 +192,3 @@ def point_values(parameters: Ratios, at: Sequence[fmpq]) -> dict[str, fmpq]:
         Where a denominator vanishes there.
     """
     return {name: evaluate(above, *at) / evaluate(below, *at) for name, (above, below) in parameters.items()}
-
-
-UnknownPolynomial = dict[tuple[int, ...], fmpz_mpoly]
-"""A polynomial in the unknowns with coefficients in Z[x, y]: exponent vector -> nonzero coefficient."""

@@ -7,18 +7,19 @@ so none was lost.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import combinations
 from time import monotonic
 
 from flint import fmpq, fmpq_mat
 
 from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, bezout_bound, fibre_of_rules
-from ptmcad.algebra.groebner import Monomial, grevlex_key, powers_of
+from ptmcad.algebra.groebner import grevlex_key, powers_of
 from ptmcad.algebra.membership import Rules, lies_in_ideal
 from ptmcad.algebra.msolve import MsolveError, Terms, groebner_basis
-from ptmcad.algebra.polynomials import integral
+from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient import standard_monomials
+from ptmcad.algebra.resultants import Check
 from ptmcad.errors import LimitReached
 
 
@@ -61,7 +62,7 @@ def quotient_by_msolve(
     return algebra._replace(by_msolve=True)
 
 
-def _clock(seconds: float) -> Callable[[], None]:
+def _clock(seconds: float) -> Check:
     end = monotonic() + seconds
 
     def pause() -> None:
@@ -98,7 +99,7 @@ def _rules(elements: Sequence[Terms]) -> Rules:
     return rules
 
 
-def _check_quotient(equations: Sequence[RationalPolynomial], algebra: FibreAlgebra, pause: Callable[[], None]) -> None:
+def _check_quotient(equations: Sequence[RationalPolynomial], algebra: FibreAlgebra, pause: Check) -> None:
     """Refuse matrices that do not commute, or in which an equation is not zero.
 
     Raises

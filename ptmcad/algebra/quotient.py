@@ -15,9 +15,10 @@ from typing import NamedTuple
 
 from ptmcad.algebra.assignment import least_assignment
 from ptmcad.algebra.determinants import characteristic, determinant
-from ptmcad.algebra.groebner import GroebnerBasis, Monomial, shifted
+from ptmcad.algebra.groebner import GroebnerBasis, shifted
 from ptmcad.algebra.polynomials import (
     Coefficient,
+    Monomial,
     Ratio,
     UnknownPolynomial,
     add_ratios,

@@ -62,8 +62,7 @@ class Comparison:
     @property
     def share(self) -> Bounds:
         """Of the window's area."""
-        x, y = self.first.slice.axes
-        whole = (x.high - x.low) * (y.high - y.low)
+        whole = self.first.slice.area
         low, high = self.area
         return low / whole, min(high / whole, Fraction(1))
 

@@ -83,8 +83,7 @@ def cover_difference(first: ComparedMap, second: ComparedMap) -> Comparison:
         largest.setdefault(pair, number)  # components come by descending area
     possible = _possible(certain, (first.areas(steps), second.areas(steps)), steps**2)
     numbers = {pair: n for n, pair in enumerate(largest)}
-    x, y = first.result.slice.axes
-    square = (x.high - x.low) * (y.high - y.low) / steps**2
+    square = first.result.slice.area / steps**2
     bounds: dict[tuple[Key, Key], Bounds] = {p: (square * certain[p], square * possible(p)) for p in numbers}
     cells = [(n, numbers[first.key(a), second.key(b)]) for n, (a, b) in held.items()]
     decomposition = _as_map(first.result, complement, cells, list(bounds.values()))

@@ -40,7 +40,7 @@ def areas_of(problem: SliceProblem, known: Cells, tolerance: Fraction, without: 
             parts, used = _half(parts._replace(images=images), change, base), change
     bounds, bits = region_areas(parts, tolerance, check)
     if alone:
-        bounds = tuple(_sum_of([bounds[n] for n in cells], problem.area) for cells in members(region_of))
+        bounds = tuple(_sum_of([bounds[n] for n in cells], problem.slice.area) for cells in members(region_of))
     rounded = ((fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True))) for low, high in bounds)
     return Areas(tuple(rounded), bits, used)
 

@@ -166,7 +166,7 @@ def stacks_of_cells(stacks: Sequence[StackData]) -> tuple[Stack, ...]:
 def _regions(problem: SliceProblem, cells: Cells, samples: Sequence[Point], areas: Areas | None) -> tuple[Region, ...]:
     """The cells merged, in the order of the regions' numbers."""
     merged = members(cells.neighbours.region_of)
-    bounds = ((Fraction(0), problem.area),) * len(merged) if areas is None else areas.bounds
+    bounds = ((Fraction(0), problem.slice.area),) * len(merged) if areas is None else areas.bounds
     return tuple(
         replace(
             _region(numbers, [cells.counts.found[n].counts for n in numbers], samples, area),

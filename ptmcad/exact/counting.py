@@ -23,9 +23,10 @@ from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.newton import Newton
 from ptmcad.algebra.polynomials import Values
 from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate
+from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
 from ptmcad.answer.counts import Counts, counts_of_signs, euler_sum
-from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
+from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_point
 
 _FIRST_BITS = 128

@@ -22,9 +22,10 @@ from ptmcad.algebra.fibre import (
     univariate_representation,
 )
 from ptmcad.algebra.polynomials import Values
+from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.answer.words import with_article
 from ptmcad.errors import HypothesisError
-from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, at_point, polynomial_at
+from ptmcad.exact.models.system import ParametricSystem, at_point, polynomial_at
 from ptmcad.exact.models.turns import in_old_angles
 
 

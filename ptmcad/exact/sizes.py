@@ -11,7 +11,7 @@ multiplication tables with random weights, whose degrees are those of the tables
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from time import process_time
 from typing import NamedTuple
@@ -20,12 +20,13 @@ from flint import fmpq, nmod_mat
 
 from ptmcad.algebra.determinants import laplace
 from ptmcad.algebra.fibre import FibreAlgebra, WorkLimit
-from ptmcad.algebra.groebner import Monomial, powers_of
+from ptmcad.algebra.groebner import powers_of
+from ptmcad.algebra.polynomials import Monomial
 from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
 from ptmcad.algebra.residues import primes
+from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.errors import LimitReached
 from ptmcad.exact.decomposition import Sample
-from ptmcad.exact.models.system import RationalPolynomial
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.stages import SliceProblem
 
@@ -165,7 +166,7 @@ def _norm(unknowns: Sequence[nmod_mat], jacobian: Sequence[Sequence[RationalPoly
     one = nmod_mat(size, size, [int(i == j) for i in range(size) for j in range(size)], prime)
     power = powers_of(unknowns, one)
 
-    def matrix_of(p: Mapping[tuple[int, ...], fmpq]) -> nmod_mat:
+    def matrix_of(p: RationalPolynomial) -> nmod_mat:
         total = one * 0
         for m, c in p.items():
             total = total + power(m) * (int(c.p) * pow(int(c.q), -1, prime) % prime)

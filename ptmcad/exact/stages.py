@@ -58,12 +58,6 @@ class SliceProblem(NamedTuple):
         return self.on.system
 
     @property
-    def area(self) -> Fraction:
-        """Of the window."""
-        first, second = self.slice.axes
-        return (first.high - first.low) * (second.high - second.low)
-
-    @property
     def reflections(self) -> list[Involution]:
         """The involutions that map the window to itself and move some of its points."""
         slice = self.slice

@@ -74,6 +74,12 @@ class Slice:
         return (self.axes[0].name, self.axes[1].name)
 
     @property
+    def area(self) -> Fraction:
+        """Of the window."""
+        first, second = self.axes
+        return (first.high - first.low) * (second.high - second.low)
+
+    @property
     def mechanism(self) -> str:
         """The model's name, ``"ptm"`` for the paper's mechanism."""
         return self.model.name

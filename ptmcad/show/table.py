@@ -66,8 +66,7 @@ def area_by_count(result: RegionMap) -> dict[str, tuple[Fraction, Fraction]]:
 
     What is undetermined is a part of several bounds of a certified map, but in their sum once.
     """
-    first, second = result.slice.axes
-    undetermined = result.undetermined * (first.high - first.low) * (second.high - second.low)
+    undetermined = result.undetermined * result.slice.area
     areas: dict[str, list[tuple[Fraction, Fraction]]] = {}
     for region in result.regions:
         areas.setdefault(count_text(region, result.slice.count), []).append(region.area)

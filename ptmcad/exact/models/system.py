@@ -15,6 +15,7 @@ from ptmcad.algebra.determinants import laplace
 from ptmcad.algebra.polynomials import (
     PLANE,
     Coefficient,
+    Monomial,
     Ratio,
     Ratios,
     UnivariatePolynomial,
@@ -28,16 +29,13 @@ from ptmcad.algebra.polynomials import (
     point_values,
     ratio,
 )
-from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
+from ptmcad.algebra.trigonometric import RationalPolynomial, TrigonometricPolynomial, TrigonometricRing
 from ptmcad.model.criterion import Criterion
 from ptmcad.text.expressions import Expression
 
-RationalPolynomial = dict[tuple[int, ...], fmpq]
-"""A polynomial in the unknowns with rational coefficients: exponent vector -> coefficient."""
-
 Part = tuple[tuple[tuple[tuple[int, int], ...], fmpq], ...]
 """((parameter number, exponent) pairs, coefficient) for each term of a coefficient."""
-Terms = tuple[tuple[tuple[int, ...], Part], ...]
+Terms = tuple[tuple[Monomial, Part], ...]
 """(exponents of the unknowns, coefficient) for each monomial."""
 
 
@@ -281,7 +279,7 @@ def with_root(
     def moved(p: TrigonometricPolynomial, is_condition: bool = False) -> TrigonometricPolynomial:
         terms = _substitute(system, p, parameters)
         scale = lcm(d for _, d in terms.values())
-        found: dict[tuple[int, ...], fmpq] = {}
+        found: RationalPolynomial = {}
         for monomial, (numerator, denominator) in terms.items():
             # times the denominator's square where the sign matters
             cleared = numerator * (scale / denominator) * (scale if is_condition else one)
@@ -310,12 +308,10 @@ def element_on_slice(system: ParametricSystem, p: TrigonometricPolynomial, param
     return _without_denominators(_substitute(system, p, parameters))
 
 
-def _substitute(
-    system: ParametricSystem, p: TrigonometricPolynomial, parameters: Ratios
-) -> dict[tuple[int, ...], Ratio]:
+def _substitute(system: ParametricSystem, p: TrigonometricPolynomial, parameters: Ratios) -> dict[Monomial, Ratio]:
     one = _one(parameters)
     values = [parameters[name] for name in system.ring.parameters]
-    result: dict[tuple[int, ...], Ratio] = {}
+    result: dict[Monomial, Ratio] = {}
     for monomial, part in system.ring.split(p).items():
         total: Ratio = (0 * one, one)
         for exponents, coefficient in part.items():
@@ -329,7 +325,7 @@ def _substitute(
     return result
 
 
-def _without_denominators(p: dict[tuple[int, ...], Ratio]) -> UnknownPolynomial:
+def _without_denominators(p: dict[Monomial, Ratio]) -> UnknownPolynomial:
     scale = lcm(d for _, d in p.values())
     return {m: n * (scale / d) for m, (n, d) in p.items()}
 

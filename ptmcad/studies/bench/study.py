@@ -124,8 +124,7 @@ def _read_map(case: Case, job: Job) -> Row:
     else:
         errors = {count: cover_error(truth, result, count) for count, truth in case.known.items()}
         found = {count: error for count, error in errors.items() if error is not None}
-    first, second = result.slice.axes
-    window = (first.high - first.low) * (second.high - second.low)
+    window = result.slice.area
     widest = max((high - low for low, high in area_by_count(result).values()), default=window) / window
     return {"figures": found, "note": "; ".join(notes), "area_width": outward(0, widest)[1]}
 
