@@ -26,6 +26,7 @@ from flint import (
 )
 
 from ptmcad.algebra.groebner import grevlex_key, shifted
+from ptmcad.algebra.membership import Rules
 from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient import border_of, divided, standard_monomials
 from ptmcad.algebra.trigonometric import angle_sum
@@ -111,9 +112,7 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimi
     return fibre_of_rules(rules, basis, unknowns)
 
 
-def fibre_of_rules(
-    rules: Mapping[Monomial, Mapping[Monomial, fmpq]], basis: tuple[Monomial, ...], unknowns: int
-) -> FibreAlgebra:
+def fibre_of_rules(rules: Rules, basis: tuple[Monomial, ...], unknowns: int) -> FibreAlgebra:
     """The quotient by a reduced Groebner basis.
 
     Parameters
@@ -130,9 +129,7 @@ def fibre_of_rules(
     return FibreAlgebra(basis, tuple(matrices))
 
 
-def _normal_forms(
-    basis: Sequence[Monomial], rules: Mapping[Monomial, Mapping[Monomial, fmpq]]
-) -> dict[Monomial, list[fmpq]]:
+def _normal_forms(basis: Sequence[Monomial], rules: Rules) -> dict[Monomial, list[fmpq]]:
     """The coordinates of the basis monomials and of their multiples by one unknown.
 
     Parameters

@@ -14,7 +14,7 @@ from time import monotonic
 from flint import fmpq, fmpq_mat
 
 from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, bezout_bound, fibre_of_rules
-from ptmcad.algebra.groebner import grevlex_key, powers_of
+from ptmcad.algebra.groebner import divides, grevlex_key, powers_of
 from ptmcad.algebra.membership import Rules, lies_in_ideal
 from ptmcad.algebra.msolve import MsolveError, Terms, groebner_basis
 from ptmcad.algebra.polynomials import Monomial, integral
@@ -93,8 +93,8 @@ def _rules(elements: Sequence[Terms]) -> Rules:
             raise MsolveError("msolve's basis has the element 0")
         lead = max(p, key=grevlex_key)
         rules[lead] = {m: c / -p[lead] for m, c in p.items() if m != lead}
-    divides = any(a != b and all(i <= j for i, j in zip(a, b, strict=True)) for a in rules for b in rules)
-    if divides or len(rules) < len(elements):
+    reducible = any(a != b and divides(a, b) for a in rules for b in rules)
+    if reducible or len(rules) < len(elements):
         raise MsolveError("msolve's basis is not reduced")
     return rules
 

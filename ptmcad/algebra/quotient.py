@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from ptmcad.algebra.assignment import least_assignment
 from ptmcad.algebra.determinants import characteristic, determinant
-from ptmcad.algebra.groebner import GroebnerBasis, shifted
+from ptmcad.algebra.groebner import GroebnerBasis, divides, shifted
 from ptmcad.algebra.polynomials import (
     Coefficient,
     Monomial,
@@ -55,7 +55,7 @@ def standard_monomials(
     found: list[Monomial] = []
     layer = {(0,) * unknowns}
     while layer:
-        kept = sorted(m for m in layer if not any(all(i <= j for i, j in zip(n, m, strict=True)) for n in leading))
+        kept = sorted(m for m in layer if not any(divides(n, m) for n in leading))
         found += kept
         if most is not None and len(found) > most:
             raise LimitReached(f"more than {most} monomials are outside of the leading ideal")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import prod
+from operator import add
 from typing import NamedTuple
 
 from flint import fmpq
@@ -100,7 +101,7 @@ def _product(factors: Sequence[RationalPolynomial]) -> RationalPolynomial:
         total: RationalPolynomial = {}
         for m, a in first.items():
             for n, b in other.items():
-                key = tuple(i + j for i, j in zip(m, n, strict=True))
+                key = tuple(map(add, m, n))
                 total[key] = total.get(key, fmpq(0)) + a * b
         first = {m: c for m, c in total.items() if c}
     return first

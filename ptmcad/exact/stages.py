@@ -159,7 +159,7 @@ def _explained(
     from ptmcad.exact.witness import points, with_witness
 
     told = with_folds(error, problem.slice.model, problem.on, points(problem.window))
-    return with_witness(error, problem) if told is error else told
+    return with_witness(error, problem.on, problem.window, problem.place) if told is error else told
 
 
 def counts_of(problem: SliceProblem, cut: Decomposition, report: Report = unreported) -> SampleCounts:

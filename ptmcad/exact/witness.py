@@ -6,16 +6,15 @@ most solutions, and not proved.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import Values
 from ptmcad.errors import DegenerateSliceError, HypothesisError, InfiniteSolutionsError, NothingToCountError
-from ptmcad.exact.models.system import ParametricSystem
+from ptmcad.exact.models.system import ParametricSystem, SystemOnAxes
 from ptmcad.exact.point_system import solutions_at
-from ptmcad.exact.stages import SliceProblem
 from ptmcad.text.flint_numbers import from_fraction
 
 Point = tuple[fmpq, fmpq]
@@ -30,23 +29,30 @@ Solutions = tuple[int, int]
 
 def with_witness(
     error: DegenerateSliceError | InfiniteSolutionsError,
-    problem: SliceProblem,
+    on: SystemOnAxes,
+    window: Sequence[Point],
+    place: Callable[[Point], str],
 ) -> DegenerateSliceError | InfiniteSolutionsError:
-    """The error, with a point of the window that shows it added to its words; as it is where none was found."""
+    """The error, with a point of the window that shows it added to its words; as it is where none was found.
+
+    Parameters
+    ----------
+    place : a point in words.
+    """
     examples = []
-    for at in points(problem.window):
+    for at in points(window):
         try:
-            values = problem.on.values(at)
+            values = on.values(at)
         except ZeroDivisionError:
             continue
-        words, solutions = _example(error, problem.system, values)
+        words, solutions = _example(error, on.system, values)
         if words:
             examples.append((solutions, words, at))
     if not examples:
         return error
     # where the fewest solutions have left to infinity or coincide by chance, the first of such points
     _, words, at = max(examples, key=lambda example: example[0])
-    return type(error)(f"{error}; for example at {problem.place(at)}{words}", part=error.part)
+    return type(error)(f"{error}; for example at {place(at)}{words}", part=error.part)
 
 
 def _example(error: HypothesisError, system: ParametricSystem, values: Values) -> tuple[str, Solutions]:

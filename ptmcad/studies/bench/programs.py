@@ -14,9 +14,6 @@ import shutil
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from pathlib import Path
-
-import yaml
 
 from ptmcad.algebra import msolve
 from ptmcad.algebra.polynomials import common_factor, from_terms, irreducible_factors, to_plane
@@ -27,6 +24,7 @@ from ptmcad.exact.stages import problem_of
 from ptmcad.question.slice import Slice
 from ptmcad.studies.bench.harness import Asked, Case, Job, Row
 from ptmcad.studies.bench.process import Usage
+from ptmcad.studies.texts import texts_beside
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
 
@@ -34,7 +32,7 @@ Verdict = tuple[bool, str]
 """Whether an answer is the map's, and what it is in words."""
 END = "-- the script was read to its end --"
 QUIT = "Quitting the QEPCAD system"
-TEXTS: Row = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
+TEXTS = texts_beside(__file__, "programs.yaml")
 _ERROR = re.compile(r"^\s*\? .*$|^.*(?:\bError\b|Failure|Reason for|expected!).*$", re.MULTILINE)
 _CELL = re.compile(r"Information about the cell \(\d+,\d+\) -+$(.*?)^-{50,}$", re.MULTILINE | re.DOTALL)
 _TRUE = re.compile(r"^Truth value\s*: T", re.MULTILINE)
