@@ -61,16 +61,14 @@ def entry(path: Path, configs: Path, folder: Path) -> str:
     slice, text = ptmcad.load(path), path.read_text(encoding="utf-8")
     picture = f"{path.stem}.svg"
     record = f"configs/{path.relative_to(configs).as_posix()}"
+    at = (CERTIFIED if path.stem in CERTIFIED else POSES).get(path.stem, {})
+    place = ",".join(f"{name}={value}" for name, value in at.items())
     if path.stem in CERTIFIED:
-        at = CERTIFIED[path.stem]
-        place = ",".join(f"{name}={value}" for name, value in at.items())
         picture = f"../img/{path.stem}.png"
         commands = (f"ptmcad classify {record} --engine certified --tolerance 1/100 --format png",
                     f"ptmcad solve {record} --at {place}")  # fmt: skip
         table = ptmcad.solve(model=slice.model, **at).table()
     elif path.stem in POSES:
-        at = POSES[path.stem]
-        place = ",".join(f"{name}={value}" for name, value in at.items())
         found = ptmcad.solve(slice, **at)
         save(draw_poses(found), folder / picture)
         commands = (f"ptmcad check {record}", f"ptmcad solve {record} --at {place} --format table,svg")

@@ -144,22 +144,22 @@ def _items(schema: Schema) -> str:
     return f" of {_type(schema['items'])}" if isinstance(schema.get("items"), Mapping) else ""
 
 
+_LIMITS = {
+    "minimum": "from {}",
+    "exclusiveMinimum": "above {}",
+    "maximum": "to {}",
+    "maxLength": "up to {} characters",
+    "pattern": "of the form `{}`",
+}
+
+
 def _bounds(schema: Schema) -> str:
     low = schema.get("minItems", schema.get("minProperties"))
     high = schema.get("maxItems", schema.get("maxProperties"))
     notes = []
     if low is not None:
         notes.append(f"{low} entries" if low == high else f"at least {low}")
-    if "minimum" in schema:
-        notes.append(f"from {schema['minimum']}")
-    if "exclusiveMinimum" in schema:
-        notes.append(f"above {schema['exclusiveMinimum']}")
-    if "maximum" in schema:
-        notes.append(f"to {schema['maximum']}")
-    if "maxLength" in schema:
-        notes.append(f"up to {schema['maxLength']} characters")
-    if "pattern" in schema:
-        notes.append(f"of the form `{schema['pattern']}`")
+    notes += [words.format(schema[keyword]) for keyword, words in _LIMITS.items() if keyword in schema]
     return f" ({', '.join(notes)})" if notes else ""
 
 

@@ -93,7 +93,7 @@ class Integral(NamedTuple):
 def branch_integral(
     in_v: Sequence[fmpz_poly],
     at_middle: RealRoot,
-    panel: tuple[fmpq, fmpq],
+    panel: Interval,
     fibre: Interval,
     order: int,
     wanted: fmpq,

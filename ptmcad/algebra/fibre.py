@@ -25,9 +25,10 @@ from flint import (
     fmpz_poly,
 )
 
-from ptmcad.algebra.groebner import Monomial, grevlex_key, shifted
-from ptmcad.algebra.polynomials import integral
-from ptmcad.algebra.quotient import standard_monomials
+from ptmcad.algebra.groebner import grevlex_key, shifted
+from ptmcad.algebra.membership import Rules
+from ptmcad.algebra.polynomials import Monomial, integral
+from ptmcad.algebra.quotient import border_of, divided, standard_monomials
 from ptmcad.algebra.trigonometric import angle_sum
 from ptmcad.errors import LimitReached
 
@@ -111,9 +112,7 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimi
     return fibre_of_rules(rules, basis, unknowns)
 
 
-def fibre_of_rules(
-    rules: Mapping[Monomial, Mapping[Monomial, fmpq]], basis: tuple[Monomial, ...], unknowns: int
-) -> FibreAlgebra:
+def fibre_of_rules(rules: Rules, basis: tuple[Monomial, ...], unknowns: int) -> FibreAlgebra:
     """The quotient by a reduced Groebner basis.
 
     Parameters
@@ -121,7 +120,7 @@ def fibre_of_rules(
     rules : a leading monomial to what it is equal to.
     basis : the monomials that no leading monomial divides.
     """
-    normal_forms = _normal_forms(basis, rules, unknowns)
+    normal_forms = _normal_forms(basis, rules)
     size = len(basis)
     matrices = []
     for k in range(unknowns):
@@ -130,9 +129,7 @@ def fibre_of_rules(
     return FibreAlgebra(basis, tuple(matrices))
 
 
-def _normal_forms(
-    basis: Sequence[Monomial], rules: Mapping[Monomial, Mapping[Monomial, fmpq]], unknowns: int
-) -> dict[Monomial, list[fmpq]]:
+def _normal_forms(basis: Sequence[Monomial], rules: Rules) -> dict[Monomial, list[fmpq]]:
     """The coordinates of the basis monomials and of their multiples by one unknown.
 
     Parameters
@@ -142,18 +139,14 @@ def _normal_forms(
     position = {m: i for i, m in enumerate(basis)}
     size, zero, one = len(basis), fmpq(0), fmpq(1)
     table: dict[Monomial, list[fmpq]] = {m: [one if i == k else zero for i in range(size)] for m, k in position.items()}
-    border = {shifted(m, k) for m in basis for k in range(unknowns)} - position.keys()
+    border = border_of(basis)
     for m in sorted(border, key=grevlex_key):
         row = [zero] * size
         if m in rules:
             for n, c in rules[m].items():
                 row[position[n]] = c
         else:
-            k, below = next(
-                (k, below)
-                for k in range(unknowns)
-                if m[k] and (below := shifted(m, k, -1)) in table and below not in position
-            )
+            k, below = divided(m, border)
             for n, c in zip(basis, table[below], strict=True):
                 if c:
                     image = shifted(n, k)

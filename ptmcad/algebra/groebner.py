@@ -16,9 +16,7 @@ from collections.abc import Callable, Sequence
 from operator import add
 from typing import Any, NamedTuple
 
-from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, common_factor
-
-Monomial = tuple[int, ...]
+from ptmcad.algebra.polynomials import Coefficient, Monomial, UnknownPolynomial, common_factor, ratio
 
 
 def grevlex_key(m: Monomial) -> tuple[int, ...]:
@@ -80,7 +78,7 @@ def groebner_basis(generators: Sequence[UnknownPolynomial], order: MonomialOrder
             continue  # coprime leading monomials
         if any(
             k not in (i, j)
-            and _divides(basis[k][1], join)
+            and divides(basis[k][1], join)
             and (min(i, k), max(i, k)) not in pairs
             and (min(j, k), max(j, k)) not in pairs
             for k in range(len(basis))
@@ -119,7 +117,8 @@ def _join(a: Monomial, b: Monomial) -> Monomial:
     return tuple(map(max, a, b))
 
 
-def _divides(a: Monomial, b: Monomial) -> bool:
+def divides(a: Monomial, b: Monomial) -> bool:
+    """Whether b is a multiple of a."""
     return all(i <= j for i, j in zip(a, b, strict=True))
 
 
@@ -142,15 +141,10 @@ def _combination(
     return result
 
 
-def _cofactors(a: Coefficient, b: Coefficient) -> tuple[Coefficient, Coefficient]:
-    common = a.gcd(b)
-    return (a, b) if common.is_one() else (a / common, b / common)
-
-
 def _s_polynomial(
     p: UnknownPolynomial, lead_p: Monomial, q: UnknownPolynomial, lead_q: Monomial, join: Monomial
 ) -> UnknownPolynomial:
-    a, b = _cofactors(p[lead_p], q[lead_q])
+    a, b = ratio(p[lead_p], q[lead_q])
     return _combination(b, p, _quotient(join, lead_p), a, q, _quotient(join, lead_q))
 
 
@@ -176,12 +170,12 @@ def _reduce(
     rest, done = _primitive(p, {}, removed)
     while rest:
         top = order.leading(rest)
-        divisor = next(((q, m) for q, m in basis if _divides(m, top)), None)
+        divisor = next(((q, m) for q, m in basis if divides(m, top)), None)
         if divisor is None:
             done[top] = rest.pop(top)
             continue
         q, lead = divisor
-        a, b = _cofactors(q[lead], rest[top])
+        a, b = ratio(q[lead], rest[top])
         rest = _combination(a, rest, (0,) * len(top), b, q, _quotient(top, lead))
         if not a.is_one():
             done = {m: c * a for m, c in done.items()}
@@ -195,7 +189,7 @@ def _reduced(
     minimal = [
         (p, m)
         for index, (p, m) in enumerate(basis)
-        if not any(k != index and _divides(n, m) and (n != m or k < index) for k, (_, n) in enumerate(basis))
+        if not any(k != index and divides(n, m) and (n != m or k < index) for k, (_, n) in enumerate(basis))
     ]
     elements, leading = [], []
     for index, (p, m) in enumerate(minimal):

@@ -18,8 +18,10 @@ from typing import Any, NamedTuple
 
 from flint import fmpq, fmpq_mat, nmod, nmod_mat
 
-from ptmcad.algebra.groebner import Monomial, grevlex_key, shifted
+from ptmcad.algebra.groebner import grevlex_key, shifted
+from ptmcad.algebra.polynomials import Monomial
 from ptmcad.algebra.residues import primes
+from ptmcad.algebra.resultants import Check
 
 Rational = Mapping[Monomial, fmpq]
 Rules = Mapping[Monomial, Rational]
@@ -45,9 +47,7 @@ class _Level(NamedTuple):
     columns: tuple[Monomial, ...]
 
 
-def lies_in_ideal(
-    equations: Sequence[Rational], rules: Rules, basis: Sequence[Monomial], pause: Callable[[], None]
-) -> bool:
+def lies_in_ideal(equations: Sequence[Rational], rules: Rules, basis: Sequence[Monomial], pause: Check) -> bool:
     """Whether all elements of a basis are proved to be in the ideal that the equations generate.
 
     Parameters
@@ -99,7 +99,7 @@ def _level(width: int, degree: int, proved: Rules, staircase: frozenset[Monomial
 
 
 def _settled(
-    level: _Level, known: Sequence[Rational], basis: Sequence[Monomial], pause: Callable[[], None]
+    level: _Level, known: Sequence[Rational], basis: Sequence[Monomial], pause: Check
 ) -> tuple[int, list[Rational]]:
     """Up to which degree the basis is proved by multiples of known polynomials, and what falls below the level's.
 
@@ -135,7 +135,7 @@ def _settled(
     return settled, falls
 
 
-def _independent(level: _Level, polynomials: Sequence[Rational], pause: Callable[[], None]) -> list[_Source]:
+def _independent(level: _Level, polynomials: Sequence[Rational], pause: Check) -> list[_Source]:
     """Reduced multiples that are independent modulo a prime by their entries in the columns, as many as there are."""
     for prime in primes():
         try:
@@ -173,7 +173,7 @@ class _Reduction:
     number : a rational number in the field.
     """
 
-    def __init__(self, level: _Level, number: Callable[[fmpq], Any], pause: Callable[[], None]) -> None:
+    def __init__(self, level: _Level, number: Callable[[fmpq], Any], pause: Check) -> None:
         self._level, self._number, self._pause = level, number, pause
         self._zero = number(fmpq(0))
         self._table: dict[Monomial, _Sparse] = {}

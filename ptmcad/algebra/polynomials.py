@@ -28,8 +28,16 @@ UnivariatePolynomial = fmpz_poly
 """An element of Z[u] or Z[v], the polynomials in one axis."""
 RationalPolynomial = fmpq_poly
 """An element of Q[u]."""
+Monomial = tuple[int, ...]
+"""Exponents of the unknowns."""
+UnknownPolynomial = dict[Monomial, fmpz_mpoly]
+"""A polynomial in the unknowns with coefficients in Z[x, y]: exponent vector -> nonzero coefficient."""
 Ratio = tuple[fmpz_mpoly, fmpz_mpoly]
 """Numerator and nonzero denominator."""
+Ratios = Mapping[str, Ratio]
+"""Parameters by name, as functions of axes."""
+Values = Mapping[str, fmpq]
+"""Parameters by name, as numbers."""
 
 
 def ratio(numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> Ratio:
@@ -175,7 +183,7 @@ def evaluate(p: fmpz_mpoly, *at: fmpq) -> fmpq:
     return sum((math.prod(factors, start=c) for c, factors in terms), fmpq(0))
 
 
-def point_values(parameters: Mapping[str, Ratio], at: Sequence[fmpq]) -> dict[str, fmpq]:
+def point_values(parameters: Ratios, at: Sequence[fmpq]) -> dict[str, fmpq]:
     """Ratios at a rational point.
 
     Raises
@@ -184,7 +192,3 @@ def point_values(parameters: Mapping[str, Ratio], at: Sequence[fmpq]) -> dict[st
         Where a denominator vanishes there.
     """
     return {name: evaluate(above, *at) / evaluate(below, *at) for name, (above, below) in parameters.items()}
-
-
-UnknownPolynomial = dict[tuple[int, ...], fmpz_mpoly]
-"""A polynomial in the unknowns with coefficients in Z[x, y]: exponent vector -> nonzero coefficient."""

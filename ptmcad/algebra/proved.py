@@ -7,18 +7,19 @@ so none was lost.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import combinations
 from time import monotonic
 
 from flint import fmpq, fmpq_mat
 
 from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, bezout_bound, fibre_of_rules
-from ptmcad.algebra.groebner import Monomial, grevlex_key, powers_of
+from ptmcad.algebra.groebner import divides, grevlex_key, powers_of
 from ptmcad.algebra.membership import Rules, lies_in_ideal
 from ptmcad.algebra.msolve import MsolveError, Terms, groebner_basis
-from ptmcad.algebra.polynomials import integral
+from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient import standard_monomials
+from ptmcad.algebra.resultants import Check
 from ptmcad.errors import LimitReached
 
 
@@ -61,7 +62,7 @@ def quotient_by_msolve(
     return algebra._replace(by_msolve=True)
 
 
-def _clock(seconds: float) -> Callable[[], None]:
+def _clock(seconds: float) -> Check:
     end = monotonic() + seconds
 
     def pause() -> None:
@@ -92,13 +93,13 @@ def _rules(elements: Sequence[Terms]) -> Rules:
             raise MsolveError("msolve's basis has the element 0")
         lead = max(p, key=grevlex_key)
         rules[lead] = {m: c / -p[lead] for m, c in p.items() if m != lead}
-    divides = any(a != b and all(i <= j for i, j in zip(a, b, strict=True)) for a in rules for b in rules)
-    if divides or len(rules) < len(elements):
+    reducible = any(a != b and divides(a, b) for a in rules for b in rules)
+    if reducible or len(rules) < len(elements):
         raise MsolveError("msolve's basis is not reduced")
     return rules
 
 
-def _check_quotient(equations: Sequence[RationalPolynomial], algebra: FibreAlgebra, pause: Callable[[], None]) -> None:
+def _check_quotient(equations: Sequence[RationalPolynomial], algebra: FibreAlgebra, pause: Check) -> None:
     """Refuse matrices that do not commute, or in which an equation is not zero.
 
     Raises

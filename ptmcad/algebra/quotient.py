@@ -8,16 +8,17 @@ References: Lazard & Rouillier, J. Symb. Comp. 42 (2007); Le & Safey El Din, arX
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Container, Sequence
 from functools import lru_cache
 from operator import add
 from typing import NamedTuple
 
 from ptmcad.algebra.assignment import least_assignment
 from ptmcad.algebra.determinants import characteristic, determinant
-from ptmcad.algebra.groebner import GroebnerBasis, Monomial, shifted
+from ptmcad.algebra.groebner import GroebnerBasis, divides, shifted
 from ptmcad.algebra.polynomials import (
     Coefficient,
+    Monomial,
     Ratio,
     UnknownPolynomial,
     add_ratios,
@@ -54,12 +55,23 @@ def standard_monomials(
     found: list[Monomial] = []
     layer = {(0,) * unknowns}
     while layer:
-        kept = sorted(m for m in layer if not any(all(i <= j for i, j in zip(n, m, strict=True)) for n in leading))
+        kept = sorted(m for m in layer if not any(divides(n, m) for n in leading))
         found += kept
         if most is not None and len(found) > most:
             raise LimitReached(f"more than {most} monomials are outside of the leading ideal")
         layer = {shifted(m, k) for m in kept for k in range(unknowns)}
     return tuple(found)
+
+
+def border_of(basis: Collection[Monomial]) -> set[Monomial]:
+    """The multiples of a basis's monomials by one unknown that are not of it."""
+    return {shifted(m, k) for m in basis for k in range(len(m))}.difference(basis)
+
+
+def divided(monomial: Monomial, known: Container[Monomial]) -> tuple[int, Monomial]:
+    """The first unknown that a monomial is a multiple of by one that is known, and that one."""
+    divisors = ((k, shifted(monomial, k, -1)) for k, e in enumerate(monomial) if e)
+    return next((k, below) for k, below in divisors if below in known)
 
 
 class QuotientAlgebra(NamedTuple):
@@ -95,7 +107,7 @@ def quotient_algebra(groebner: GroebnerBasis) -> QuotientAlgebra | None:
     }
     rules = dict(zip(groebner.leading, groebner.elements, strict=True))
     algebra = QuotientAlgebra(basis, table, zero, one)
-    border = {shifted(m, k) for m in basis for k in range(unknowns)} - position.keys()
+    border = border_of(basis)
     for m in sorted(border, key=groebner.order.key):
         if m in rules:
             row = [zero] * len(basis)
@@ -105,11 +117,7 @@ def quotient_algebra(groebner: GroebnerBasis) -> QuotientAlgebra | None:
             table[m] = _normalised(row, rules[m][m])
         else:
             # m is a proper multiple of a leading monomial, hence of a smaller border monomial
-            k, below = next(
-                (k, below)
-                for k in range(unknowns)
-                if m[k] and (below := shifted(m, k, -1)) in table and below not in position
-            )
+            k, below = divided(m, border)
             table[m] = _times_unknown(algebra, k, table[below])
     return algebra
 
@@ -171,7 +179,7 @@ def multiples(algebra: QuotientAlgebra, p: UnknownPolynomial) -> tuple[Vector, .
     """p times each element of the basis: the rows of the matrix of multiplication by p."""
     images: dict[Monomial, Vector] = {algebra.basis[0]: element(algebra, p)}
     for m in algebra.basis[1:]:
-        k, below = next((k, below) for k in range(len(m)) if m[k] and (below := shifted(m, k, -1)) in images)
+        k, below = divided(m, images)
         images[m] = _times_unknown(algebra, k, images[below])
     return tuple(images[m] for m in algebra.basis)
 

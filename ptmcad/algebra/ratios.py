@@ -17,6 +17,8 @@ from ptmcad.algebra.polynomials import Coefficient
 
 LinePolynomial = nmod_poly
 """A polynomial in a line's parameter, modulo a prime."""
+Points = Sequence[tuple[int, int]]
+"""Values of the parameter, each with one of a fraction there."""
 _WEIGHT = 0x2545F4914F6CDD1D
 """Of a number that of the one before, times this."""
 _SPARE = 4
@@ -38,7 +40,7 @@ class Numerator(NamedTuple):
     step: int
 
 
-def numerator(points: Sequence[tuple[int, int]], prime: int, known: Sequence[LinePolynomial] = ()) -> Numerator | None:
+def numerator(points: Points, prime: int, known: Sequence[LinePolynomial] = ()) -> Numerator | None:
     """Of the fraction of least degree through points (x, y); None where nearly all of them are needed for it.
 
     Parameters
@@ -68,13 +70,13 @@ def weighted(numbers: Sequence[int], prime: int) -> int:
     return int(nmod_poly(numbers, prime)(_WEIGHT % prime))
 
 
-def degree(points: Sequence[tuple[int, int]], prime: int) -> int | None:
+def degree(points: Points, prime: int) -> int | None:
     """The larger one of the fraction's degrees, above and below; None as for `numerator`."""
     found = _fraction(points, prime)
     return None if found is None else max(int(part.degree()) for part in found)
 
 
-def _fraction(points: Sequence[tuple[int, int]], prime: int) -> tuple[nmod_poly, nmod_poly] | None:
+def _fraction(points: Points, prime: int) -> tuple[nmod_poly, nmod_poly] | None:
     product, through = nmod_poly([1], prime), nmod_poly([0], prime)
     for x, y in points:
         step = (y - int(through(x))) * pow(int(product(x)), -1, prime) % prime

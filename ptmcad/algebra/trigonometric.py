@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
+from ptmcad.algebra.polynomials import Monomial
+
 
 def angle_sum(turns: Sequence[tuple[Any, Any]], multiples: Sequence[int], one: Any) -> tuple[Any, Any]:
     """Cosine and sine of a sum of multiples of angles, from those of each, in any commutative ring."""
@@ -25,6 +27,8 @@ def angle_sum(turns: Sequence[tuple[Any, Any]], multiples: Sequence[int], one: A
 
 TrigonometricPolynomial = fmpq_mpoly
 """An element of a `TrigonometricRing`."""
+RationalPolynomial = dict[Monomial, fmpq]
+"""A polynomial with rational coefficients: exponent vector -> coefficient."""
 
 
 class TrigonometricRing(NamedTuple):
@@ -110,10 +114,10 @@ class TrigonometricRing(NamedTuple):
             p = total
         return p
 
-    def split(self, p: TrigonometricPolynomial) -> dict[tuple[int, ...], dict[tuple[int, ...], fmpq]]:
+    def split(self, p: TrigonometricPolynomial) -> dict[Monomial, RationalPolynomial]:
         """p as: exponents of the unknowns -> exponents of the parameters -> coefficient."""
         n = len(self.parameters)
-        parts: dict[tuple[int, ...], dict[tuple[int, ...], fmpq]] = {}
+        parts: dict[Monomial, RationalPolynomial] = {}
         for exponents, coefficient in p.terms():
             powers = tuple(int(e) for e in exponents)
             parts.setdefault(powers[n:], {})[powers[:n]] = coefficient

@@ -159,7 +159,7 @@ def _critical(members: Members) -> tuple[RealRoot, ...] | str:
         return "the equations are not eliminated over all members in common"
     members.report("critical values", 0, 1)
     box = list(map(interval_of, (*asked.axes, asked.free)))
-    return critical_values(surfaces_of(*in_space(asked), variety, box), box, members.check)
+    return critical_values(surfaces_of(in_space(asked), variety, box), box, members.check)
 
 
 def _same(a: Picture, b: Picture) -> bool:

@@ -16,7 +16,6 @@ from flint import fmpq
 
 from ptmcad.algebra.bases import plan_text
 from ptmcad.algebra.fibre import WorkLimit
-from ptmcad.algebra.polynomials import point_values
 from ptmcad.ask.classification import check_flat_loops, check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.forecast import QUICK, Forecast, curve_text, forecast, seconds_to_discriminant, way_text
@@ -173,11 +172,11 @@ def _check_bounded(slice: Slice) -> None:
 def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tuple[CheckedSlice, int]:
     """The check of a slice that the exact engine takes, and the bound for its solutions by Bezout's theorem."""
     problem = problem_of(slice)
-    values = point_values(problem.parameters, (from_fraction(sample[0]), from_fraction(sample[1])))
+    values = problem.on.values((from_fraction(sample[0]), from_fraction(sample[1])))
     degree, bound = degree_bound(problem.system, values)
     if degree > MAX_DEGREE or bound > MAX_BOUND:
         return CheckedSlice(slice, sample, None, "exact", _UNCOUNTED, bound), bound
-    others = (point_values(problem.parameters, at) for at in points(problem.window))
+    others = (problem.on.values(at) for at in points(problem.window))
     try:
         found, doubt = _solutions(problem.system, values)
         everywhere = bool(doubt) and all(_solutions(problem.system, other)[1] for other in others)

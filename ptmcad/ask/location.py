@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from flint import fmpq
 
 from ptmcad.algebra.numbers import root_of
-from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_expression, from_plane, univariate
+from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_plane, univariate
 from ptmcad.algebra.real_roots import has_root_between, isolate, order, sign_at, squarefree_part
 from ptmcad.answer.location import Location
 from ptmcad.answer.regionmap import Component, Kind, RegionMap, Status
@@ -24,6 +24,7 @@ from ptmcad.errors import ConfigError, DegenerateSliceError, expect
 from ptmcad.exact.cad.curves import FibredCurve, curves_of
 from ptmcad.exact.cad.stacks import level_at
 from ptmcad.exact.models import system_from
+from ptmcad.exact.models.system import on_axes
 from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import from_fraction, interval_of
@@ -96,10 +97,9 @@ def _on_curves(result: RegionMap, met: Sequence[Component], at: tuple[fmpq, fmpq
     if remark or is_predicate or any(c.separates or c.kind is Kind.BOUNDARY for c in met):
         return Location(Status.ON_VARIETY, remark=remark)
     slice = result.slice
-    system = system_from(slice.model)
-    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
+    on = on_axes(system_from(slice.model), slice.parameters)
     try:
-        counts = count_at("the point", system, parameters, at if result.base == 0 else at[::-1]).counts
+        counts = count_at("the point", on, at if result.base == 0 else at[::-1]).counts
     except DegenerateSliceError:
         return Location(Status.ON_VARIETY)
     cell = next((result.cells[number] for number in _cells_beside(result, at)), None)

@@ -24,9 +24,8 @@ from ptmcad.question.slice import Axes, Axis, Slice
 from ptmcad.text.numerals import text_of
 
 if TYPE_CHECKING:
-    from ptmcad.algebra.polynomials import Ratio
     from ptmcad.exact.family import FamilyVariety
-    from ptmcad.exact.models import ParametricSystem
+    from ptmcad.exact.models.system import SystemOnAxes
 
 
 class AskedFamily(Protocol):
@@ -140,13 +139,13 @@ def in_common(asked: AskedFamily, options: Options = DEFAULTS) -> Common:
     from ptmcad.exact.family import family_variety
 
     try:
-        return Common(asked, family_variety(*in_space(asked)))
+        return Common(asked, family_variety(in_space(asked)))
     except (ExpressionError, DegenerateSliceError, InfiniteSolutionsError):
         return Common(asked, None)
 
 
-def in_space(asked: AskedFamily) -> tuple[ParametricSystem, dict[str, Ratio]]:
-    """The system, and its parameters over Z[x, y, z].
+def in_space(asked: AskedFamily) -> SystemOnAxes:
+    """The system on the axes x, y and z.
 
     Raises
     ------
@@ -155,7 +154,8 @@ def in_space(asked: AskedFamily) -> tuple[ParametricSystem, dict[str, Ratio]]:
     """
     from ptmcad.exact.models import system_from
     from ptmcad.exact.models.space import space_parameters
+    from ptmcad.exact.models.system import SystemOnAxes
 
     system = system_from(asked.model)
     x, y = (a.name for a in asked.axes)
-    return system, space_parameters(system.ring.parameters, asked.text, (x, y, asked.free.name))
+    return SystemOnAxes(system, space_parameters(system.ring.parameters, asked.text, (x, y, asked.free.name)))

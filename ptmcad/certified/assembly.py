@@ -58,8 +58,7 @@ class Assembler:
         counted = self._counts(complement, pocket, late)
         kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)]
         known = frozenset(kept)
-        horizontal, vertical = self.slice.axes
-        square = (horizontal.high - horizontal.low) * (vertical.high - vertical.low) / cover.steps**2
+        square = self.slice.area / cover.steps**2
         cells, regions = [], []
         for region, n in enumerate(kept):
             sample, count = counted[n]

@@ -106,7 +106,7 @@ class _MapSearch:
         self.tolerance = options.tolerance or TOLERANCE
         self.jobs = options.jobs or os.cpu_count() or 1
         self.seconds = {"plan": 0.0, "curves": 0.0, "regions": 0.0}
-        self.area = float((slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low))
+        self.area = float(slice.area)
         steps = LATTICE_STEPS
         while steps * self.tolerance < 64 and steps < MAX_STEPS:
             steps *= 2

@@ -45,6 +45,16 @@ class Patch:
     along: int
     tubes: tuple[Tube, ...]
 
+    @property
+    def ends(self) -> tuple[int, int]:
+        """The frame's interval along its tubes."""
+        return self.frame[2 * self.along], self.frame[2 * self.along + 1]
+
+    @property
+    def heights(self) -> tuple[int, int]:
+        """The frame's interval across its tubes."""
+        return self.frame[2 - 2 * self.along], self.frame[3 - 2 * self.along]
+
 
 @dataclass(frozen=True, slots=True)
 class Cover:

@@ -94,9 +94,8 @@ def _frames_of(tree: Subdivision, frames: Integers, rectangles: Integers) -> Int
     ValueError
         When the interiors of a frame and of another rectangle meet.
     """
-    result = np.full(len(tree.state), -1, dtype=np.int64)
     box, leaf = tree.meeting(frames, closed=False)
-    result[leaf] = box
+    result = tree.labels(leaf, box)
     _, leaf_of_others = tree.meeting(rectangles[: len(rectangles) - len(frames)], closed=False)
     if len(np.unique(leaf)) < len(leaf) or (result[leaf_of_others] >= 0).any():
         raise ValueError("the frame of a slanted piece meets another one, or a rectangle")
@@ -235,10 +234,7 @@ def _assembled(
     for pair in np.unique((inner * len(roots) + outer)[inner >= 0]).tolist():
         n, cluster = divmod(pair, len(roots))
         at[n].append(cluster)
-    owner = np.full(len(tree.state), -1, dtype=np.int64)
-    owner[parts[outside]] = own[:count][outside]
-    frame_of = np.full(len(tree.state), -1, dtype=np.int64)
-    frame_of[parts] = nodes.frame_of
+    owner = tree.labels(parts[outside], own[:count][outside])
     array = rectangle_array(cover)
     cluster_of = owner[tree.leaves_right_above(array[:, 0], array[:, 2])] if len(array) else array[:, 0]
     owners = tuple(
@@ -253,7 +249,7 @@ def _assembled(
         tuple(map(tuple, at)),
         tree,
         owner,
-        Frames(frame_of, owners) if patches else None,
+        Frames(tree.labels(parts, nodes.frame_of), owners) if patches else None,
     )
 
 
@@ -296,11 +292,11 @@ def _size(rectangle: Rectangle) -> int:
 
 def _within(patch: Patch, number: int) -> Rectangle:
     """A rectangle inside of a part of a frame."""
-    low, high = tubes.ends(patch)
+    low, high = patch.ends
     best: Rectangle = (0, 0, 0, 0)
     for width in _WIDTHS:
         start, end = (1 - width) / 2, (1 + width) / 2
-        bottom, top = (Fraction(y) for y in tubes.heights(patch))
+        bottom, top = (Fraction(y) for y in patch.heights)
         if number > 0:
             tube = patch.tubes[number - 1]
             bottom = max(bottom, tubes.bounds_between(tube.controls, start, end)[1] + tube.half)
@@ -318,8 +314,8 @@ def _within(patch: Patch, number: int) -> Rectangle:
 
 def staircase(patch: Patch, halvings: int) -> Iterator[Rectangle]:
     """Rectangles that cover a frame's tubes: 2^halvings for each."""
-    low, high = tubes.ends(patch)
-    bottom, top = tubes.heights(patch)
+    low, high = patch.ends
+    bottom, top = patch.heights
     columns = 2**halvings
     for tube in patch.tubes:
         for k, (least, most) in enumerate(tubes.bounds_by_halving(tube.controls, halvings)):
@@ -330,19 +326,18 @@ def staircase(patch: Patch, halvings: int) -> Iterator[Rectangle]:
                 yield (start, end, first, last) if patch.along == 0 else (first, last, start, end)
 
 
-def stepped(cover: Cover, halvings: int = HALVINGS, narrower: int = 1) -> Cover:
+def stepped(cover: Cover, narrower: int = 1) -> Cover:
     """A cover of more, of rectangles alone: a staircase in place of each tube.
 
     Parameters
     ----------
-    halvings : of a tube's interval, at least.
     narrower : there are more until the steps are narrower than this part of the window, up to a limit.
     """
 
     def enough(patch: Patch) -> int:
-        low, high = tubes.ends(patch)
+        low, high = patch.ends
         wanted = -(-(high - low) * narrower // cover.steps)
-        return max(halvings, min(_MAX_HALVINGS, (wanted - 1).bit_length()))
+        return max(HALVINGS, min(_MAX_HALVINGS, (wanted - 1).bit_length()))
 
     steps = (piece for patch in cover.patches for piece in staircase(patch, enough(patch)))
     return Cover(cover.steps, tuple(sorted({*cover.rectangles, *steps})))
@@ -375,6 +370,4 @@ def shown(complement: Components, narrower: int = _DRAWN) -> Components:
         ]  # fmt: skip
         number = tubes.place(patch, inside[patch.along], inside[1 - patch.along])
         found[k] = -1 if number is None else complement.frames.owners[int(frame_of[k])][number]
-    owner = np.full(len(tree.state), -1, dtype=np.int64)
-    owner[free] = found
-    return replace(complement, subdivision=tree, owner=owner)
+    return replace(complement, subdivision=tree, owner=tree.labels(free, found))

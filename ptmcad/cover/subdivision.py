@@ -42,6 +42,12 @@ class Subdivision:
     cut: Integers
     child: Integers
 
+    def labels(self, parts: Integers, labels: Integers) -> Integers:
+        """For each part its label, or -1 where it has none."""
+        found = np.full(len(self.state), -1, dtype=np.int64)
+        found[parts] = labels
+        return found
+
     def leaves_at(self, u: Fraction, v: Fraction) -> list[int]:
         """All leaves whose closure holds a point of the window."""
         found, waiting = [], [0]

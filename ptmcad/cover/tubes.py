@@ -44,22 +44,12 @@ def scaled_value(controls: Controls, a: int, d: int) -> int:
 
 def side_of(patch: Patch, tube: Tube, u: Fraction, v: Fraction) -> int:
     """1 above the tube, -1 below it, 0 in it; u is within the frame."""
-    low, high = ends(patch)
+    low, high = patch.ends
     t = (u - low) / (high - low)
     d = t.denominator ** (len(tube.controls) - 1)
     away = v.numerator * d - v.denominator * scaled_value(tube.controls, t.numerator, t.denominator)
     reach = tube.half * v.denominator * d
     return 0 if -reach <= away <= reach else (1 if away > 0 else -1)
-
-
-def ends(patch: Patch) -> tuple[int, int]:
-    """The frame's interval along its tubes."""
-    return patch.frame[2 * patch.along], patch.frame[2 * patch.along + 1]
-
-
-def heights(patch: Patch) -> tuple[int, int]:
-    """The frame's interval across its tubes."""
-    return patch.frame[2 - 2 * patch.along], patch.frame[3 - 2 * patch.along]
 
 
 def place(patch: Patch, u: Fraction, v: Fraction) -> int | None:
@@ -83,7 +73,7 @@ def flaw(patch: Patch, steps: int) -> str:
         return "its frame is not a rectangle of the window"
     if patch.along not in (0, 1) or not patch.tubes:
         return "it has no tubes along an axis"
-    low, high = heights(patch)
+    low, high = patch.heights
     for tube in patch.tubes:
         c, h = tube.controls, tube.half
         if h <= 0 or len(c) < 2 or len(c) != len(patch.tubes[0].controls):
@@ -111,16 +101,17 @@ def side(patch: Patch, axis: int, end: int) -> list[Piece]:
     A tube's piece is rounded outward to the lattice, and so are parts in between inward.
     """
     if axis == patch.along:
-        low, high = heights(patch)
+        low, high = patch.heights
+        reaches = [(tube.controls[-end] - tube.half, tube.controls[-end] + tube.half) for tube in patch.tubes]
         blocks = [
-            (max(tube.controls[-end] - tube.half, low), min(tube.controls[-end] + tube.half, high), number)
-            for number, tube in enumerate(patch.tubes)
-            if tube.controls[-end] - tube.half <= high and tube.controls[-end] + tube.half >= low
+            (max(least, low), min(most, high), number)
+            for number, (least, most) in enumerate(reaches)
+            if least <= high and most >= low
         ]
-        below = sum(tube.controls[-end] + tube.half < low for tube in patch.tubes)
+        below = sum(most < low for _, most in reaches)
         return _between(low, high, blocks, [below + k for k in range(len(blocks) + 1)])
-    low, high = ends(patch)
-    height = heights(patch)[end]
+    low, high = patch.ends
+    height = patch.heights[end]
     blocks, above = [], []
     for number, tube in enumerate(patch.tubes):
         first, last = crossing(patch, tube, height)
@@ -155,7 +146,7 @@ def crossing(patch: Patch, tube: Tube, height: int) -> tuple[int, int]:
     """
     if min(tube.controls) - tube.half > height or max(tube.controls) + tube.half < height:
         return 1, 0
-    low, high = ends(patch)
+    low, high = patch.ends
     sign = slope(tube.controls)
     c = tube.controls if sign > 0 else tuple(-x for x in tube.controls)
     level = sign * height
@@ -208,8 +199,8 @@ def _guess(controls: Controls, level: int) -> float:
 
 def part_areas(patch: Patch) -> list[int]:
     """Areas of the frame's open parts from below, in squares of the lattice, each rounded down."""
-    low, high = heights(patch)
-    width = ends(patch)[1] - ends(patch)[0]
+    low, high = patch.heights
+    width = patch.ends[1] - patch.ends[0]
     floors = [Fraction(low * width)]
     roofs = []
     for tube in patch.tubes:
@@ -221,8 +212,8 @@ def part_areas(patch: Patch) -> list[int]:
 
 def _clamped(patch: Patch, controls: Controls) -> tuple[Fraction, Fraction]:
     """Bounds of the integral of a polynomial that is cut off at the frame's heights."""
-    low, high = heights(patch)
-    a, b = ends(patch)
+    low, high = patch.heights
+    a, b = patch.ends
     width = b - a
     if min(controls) >= low and max(controls) <= high:
         whole = Fraction(sum(controls) * width, len(controls))

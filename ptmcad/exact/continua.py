@@ -8,22 +8,21 @@ line with points at which complex solutions are infinitely many.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import Coefficient, Ratio, common_factor, evaluate, multiplicity, point_values
+from ptmcad.algebra.polynomials import Coefficient, Values, common_factor, evaluate, multiplicity
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.answer.regionmap import Continuum
-from ptmcad.exact.models.system import ParametricSystem, SliceSystem, element_on_slice, polynomial_at
+from ptmcad.exact.models.system import ParametricSystem, SliceSystem, SystemOnAxes, element_on_slice, polynomial_at
 from ptmcad.exact.point_system import DegeneratePoint, point_system
 
 
 def continuum(
     curve: Coefficient,
-    system: ParametricSystem,
-    parameters: Mapping[str, Ratio],
+    on: SystemOnAxes,
     equations: SliceSystem,
     jacobian_norm: Coefficient,
 ) -> Continuum | None:
@@ -31,21 +30,22 @@ def continuum(
 
     Parameters
     ----------
-    equations : the system's, on the slice.
+    on, equations : the system on the slice.
     jacobian_norm : of the Jacobian's determinant, over the solutions at a generic point.
     """
     if not any(divmod(common, curve)[1].is_zero() for common in equations.vanishing):
         # the limits of solutions in a continuum are singular, so that the norm vanishes more than once
         if curve.total_degree() > 1 or multiplicity(jacobian_norm, curve) < 2:
             return None
-        if not all(_is_infinite(system, parameters, at) for at in _points(curve)):
+        if not all(_is_infinite(on, at) for at in _points(curve)):
             return None
-    slopes = (common_factor(element_on_slice(system, p, parameters).values()) for p in _sums(system.equations))
+    system = on.system
+    slopes = (common_factor(element_on_slice(system, p, on.parameters).values()) for p in _sums(system.equations))
     is_free = has_minima(system) and any(divmod(slope, curve)[1].is_zero() for slope in slopes)
     return Continuum.PROVED if is_free else Continuum.POSSIBLE
 
 
-def is_free(system: ParametricSystem, values: Mapping[str, fmpq]) -> bool:
+def is_free(system: ParametricSystem, values: Values) -> bool:
     """Whether at a point the potential stays where some angles turn together: solutions are infinitely many."""
     return has_minima(system) and any(not polynomial_at(system, p, values) for p in _sums(system.equations))
 
@@ -57,14 +57,14 @@ def _sums(equations: Sequence[TrigonometricPolynomial]) -> Iterator[Trigonometri
             yield sum((w * e for w, e in zip(weights, equations, strict=True)), start=0 * equations[0])
 
 
-def _is_infinite(system: ParametricSystem, parameters: Mapping[str, Ratio], at: tuple[fmpq, fmpq]) -> bool:
+def _is_infinite(on: SystemOnAxes, at: tuple[fmpq, fmpq]) -> bool:
     """Whether there are infinitely many solutions at a point, complex ones included."""
     try:
-        values = point_values(parameters, at)
+        values = on.values(at)
     except ZeroDivisionError:  # a parameter has none there
         return False
     try:
-        point_system(system, values)
+        point_system(on.system, values)
     except DegeneratePoint:
         return True
     return False

@@ -11,7 +11,7 @@ A condition that is zero at a solution is not positive there; it is found to be 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import combinations
 from typing import NamedTuple
 
@@ -21,10 +21,12 @@ from ptmcad.algebra.fibre import CoordinatesInBalls, UnivariateRepresentation, W
 from ptmcad.algebra.inertia import negative_eigenvalues
 from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.newton import Newton
+from ptmcad.algebra.polynomials import Values
 from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate
+from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
 from ptmcad.answer.counts import Counts, counts_of_signs, euler_sum
-from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
+from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_point
 
 _FIRST_BITS = 128
@@ -65,7 +67,7 @@ class Equilibria(NamedTuple):
     held: int = 0
 
 
-def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None) -> Counts:
+def count_by_isolation(system: ParametricSystem, values: Values, most: WorkLimit | None = None) -> Counts:
     """Counts at rational values of all parameters, by real-root isolation.
 
     Raises
@@ -78,7 +80,7 @@ def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq], mos
     return equilibria(system, values, most).counts
 
 
-def equilibria(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None) -> Equilibria:
+def equilibria(system: ParametricSystem, values: Values, most: WorkLimit | None = None) -> Equilibria:
     """All real solutions that count at rational values of all parameters, by real-root isolation.
 
     Raises

@@ -19,7 +19,6 @@ Reference: Kalkbrener, J. Symb. Comp. 24 (1997), On the stability of Groebner ba
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 from flint import fmpq
@@ -27,7 +26,7 @@ from flint import fmpq
 from ptmcad.algebra.groebner import GroebnerBasis
 from ptmcad.algebra.polynomials import Coefficient, Ratio, UnknownPolynomial, at_third, irreducible_factors, ratio
 from ptmcad.algebra.quotient import multiples, norm, quotient_algebra
-from ptmcad.exact.models.system import ParametricSystem, SliceSystem, on_slice
+from ptmcad.exact.models.system import SliceSystem, SystemOnAxes
 from ptmcad.exact.variety import Nondegenerate, basis_of, nondegenerate
 
 
@@ -78,19 +77,19 @@ class FamilyVariety(NamedTuple):
         return Nondegenerate(equations, algebra, multiples(algebra, equations.jacobian), product)
 
 
-def family_variety(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> FamilyVariety | None:
+def family_variety(on: SystemOnAxes) -> FamilyVariety | None:
     """The variety over Q(x, y, z); None where solutions have to be left out that an inequality excludes everywhere.
 
     Parameters
     ----------
-    parameters : each parameter as a ratio of polynomials in Z[x, y, z].
+    on : the system on the axes x, y and z.
 
     Raises
     ------
     InfiniteSolutionsError, DegenerateSliceError, NothingToCountError
         When every point of a generic member is exceptional.
     """
-    given = on_slice(system.simplest, parameters)
+    given = on.equations
     found = nondegenerate(given)
     if found.equations.unknowns > given.unknowns:
         return None

@@ -5,8 +5,9 @@ Guarantee: exact.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from math import prod
+from operator import add
 from typing import NamedTuple
 
 from flint import fmpq
@@ -21,9 +22,11 @@ from ptmcad.algebra.fibre import (
     scalar_matrix,
     univariate_representation,
 )
+from ptmcad.algebra.polynomials import Values
+from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.answer.words import with_article
 from ptmcad.errors import HypothesisError
-from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, at_point, polynomial_at
+from ptmcad.exact.models.system import ParametricSystem, at_point, polynomial_at
 from ptmcad.exact.models.turns import in_old_angles
 
 
@@ -53,7 +56,7 @@ class PointSystem(NamedTuple):
 
 
 def point_system(
-    system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False, most: WorkLimit | None = None
+    system: ParametricSystem, values: Values, saturated: bool = False, most: WorkLimit | None = None
 ) -> PointSystem:
     """The system at rational values of all parameters.
 
@@ -98,20 +101,18 @@ def _product(factors: Sequence[RationalPolynomial]) -> RationalPolynomial:
         total: RationalPolynomial = {}
         for m, a in first.items():
             for n, b in other.items():
-                key = tuple(i + j for i, j in zip(m, n, strict=True))
+                key = tuple(map(add, m, n))
                 total[key] = total.get(key, fmpq(0)) + a * b
         first = {m: c for m, c in total.items() if c}
     return first
 
 
-def text_of_point(values: Mapping[str, fmpq]) -> str:
+def text_of_point(values: Values) -> str:
     """The point in words, for messages."""
     return ", ".join(f"{name}={value}" for name, value in values.items())
 
 
-def point_systems(
-    system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None
-) -> Iterator[PointSystem]:
+def point_systems(system: ParametricSystem, values: Values, most: WorkLimit | None = None) -> Iterator[PointSystem]:
     """The system of all solutions, and then of those at which no inequality's polynomial vanishes.
 
     One of infinitely many solutions is left out.
@@ -134,7 +135,7 @@ def point_systems(
 
 
 def simple_solutions(
-    system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None
+    system: ParametricSystem, values: Values, most: WorkLimit | None = None
 ) -> tuple[PointSystem, UnivariateRepresentation | None]:
     """The point's system when its solutions are simple, and their representation; None when there are none.
 
@@ -156,7 +157,7 @@ def simple_solutions(
     raise DegeneratePoint(f"{with_article(system.criterion.singular)} at {text_of_point(values)}")
 
 
-def degree_bound(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int, int]:
+def degree_bound(system: ParametricSystem, values: Values) -> tuple[int, int]:
     """The greatest degree of an equation, and Bezout's bound for the number of complex solutions, were it finite."""
     equations, _ = at_point(system.simplest, values)
     degrees = [max(map(sum, e), default=0) for e in equations]
@@ -164,7 +165,7 @@ def degree_bound(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[
 
 
 def solutions_at(
-    system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False, most: WorkLimit | None = None
+    system: ParametricSystem, values: Values, saturated: bool = False, most: WorkLimit | None = None
 ) -> tuple[int | None, int]:
     """Number of different complex solutions, and their number with multiplicity; (None, 0) for infinitely many.
 
@@ -185,7 +186,7 @@ def solutions_at(
     return _off(point, point.inequalities if saturated and not point.is_saturated else ())
 
 
-def none_is_stable(system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None = None) -> bool:
+def none_is_stable(system: ParametricSystem, values: Values, most: WorkLimit | None = None) -> bool:
     """Whether at a point some condition for stability is zero at each of finitely many solutions, of which there are.
 
     Raises

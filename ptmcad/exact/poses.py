@@ -16,6 +16,7 @@ from flint import ctx, fmpq
 
 from ptmcad.algebra.fibre import WorkLimit
 from ptmcad.algebra.points import FibrePoints, RealPoint, points, real_values
+from ptmcad.algebra.polynomials import Values
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
@@ -104,9 +105,7 @@ def _remark(found: FibrePoints) -> str:
     return "two solutions that an inequality excludes coincide"
 
 
-def _solutions(
-    system: ParametricSystem, values: Mapping[str, fmpq], most: WorkLimit | None
-) -> tuple[PointSystem, FibrePoints]:
+def _solutions(system: ParametricSystem, values: Values, most: WorkLimit | None) -> tuple[PointSystem, FibrePoints]:
     """All solutions, or those at which no inequality's polynomial is zero, where others are in the way.
 
     Raises
@@ -126,7 +125,7 @@ def _solutions(
 
 
 def _exact_solutions(
-    known: CompiledSystem, system: PointSystem, parameters: Mapping[str, fmpq], real: Sequence[RealPoint]
+    known: CompiledSystem, system: PointSystem, parameters: Values, real: Sequence[RealPoint]
 ) -> Iterator[ExactSolution]:
     """The solutions at real points; those at roots of one polynomial share the work."""
     first: dict[int, ExactSolution] = {}
@@ -159,7 +158,7 @@ def _energy_ranks(given: Model, poses: Sequence[Pose]) -> list[int] | None:
 
 
 def _exact_energy_ranks(
-    given: Model, values: Mapping[str, fmpq], point: PointSystem, solutions: Sequence[ExactSolution]
+    given: Model, values: Values, point: PointSystem, solutions: Sequence[ExactSolution]
 ) -> list[int]:
     """The same, by the values that the energy takes at all solutions."""
     (smooth,) = filter(None, [compiled(given).smooth])

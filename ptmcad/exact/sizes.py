@@ -11,7 +11,7 @@ multiplication tables with random weights, whose degrees are those of the tables
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from time import process_time
 from typing import NamedTuple
@@ -20,15 +20,15 @@ from flint import fmpq, nmod_mat
 
 from ptmcad.algebra.determinants import laplace
 from ptmcad.algebra.fibre import FibreAlgebra, WorkLimit
-from ptmcad.algebra.groebner import Monomial, powers_of
-from ptmcad.algebra.polynomials import point_values
+from ptmcad.algebra.groebner import powers_of
+from ptmcad.algebra.polynomials import Monomial
 from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
 from ptmcad.algebra.residues import primes
+from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.errors import LimitReached
 from ptmcad.exact.decomposition import Sample
-from ptmcad.exact.models.system import RationalPolynomial
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
-from ptmcad.exact.stages import SliceProblem, domain_limits
+from ptmcad.exact.stages import SliceProblem
 
 MAX_POINTS = 256
 """On a line; they tell degrees of 60 and more, and tell of more that they are more."""
@@ -86,7 +86,7 @@ def sizes(problem: SliceProblem, solutions: int, seconds: float, most: WorkLimit
     most : work at a point.
     """
     end = process_time() + seconds
-    limits = domain_limits(problem.system, problem.parameters)
+    limits = problem.on.limits
     usual = _at(problem, _GENERIC, solutions, most)
     if usual is None:
         return None
@@ -119,7 +119,7 @@ def _place(s: int, line: tuple[int, int]) -> tuple[int, int]:
 def _at(problem: SliceProblem, at: Sample, solutions: int, most: WorkLimit | None) -> PointSystem | None:
     """The system at a point; None where solutions are lost."""
     try:
-        point = point_system(problem.system, point_values(problem.parameters, at), most=most)
+        point = point_system(problem.system, problem.on.values(at), most=most)
     except (ZeroDivisionError, DegeneratePoint, LimitReached):
         return None
     return point if point.algebra.dimension == solutions else None
@@ -166,7 +166,7 @@ def _norm(unknowns: Sequence[nmod_mat], jacobian: Sequence[Sequence[RationalPoly
     one = nmod_mat(size, size, [int(i == j) for i in range(size) for j in range(size)], prime)
     power = powers_of(unknowns, one)
 
-    def matrix_of(p: Mapping[tuple[int, ...], fmpq]) -> nmod_mat:
+    def matrix_of(p: RationalPolynomial) -> nmod_mat:
         total = one * 0
         for m, c in p.items():
             total = total + power(m) * (int(c.p) * pow(int(c.q), -1, prime) % prime)

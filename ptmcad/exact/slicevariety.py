@@ -6,7 +6,7 @@ from ptmcad.answer.slicevariety import SliceVariety
 from ptmcad.errors import A_SLICE, expect
 from ptmcad.exact.assembly import versions
 from ptmcad.exact.models.elimination import elimination_system
-from ptmcad.exact.stages import domain_limits, problem_of, variety_of
+from ptmcad.exact.stages import problem_of, variety_of
 from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice, without_free_lengths
 
@@ -33,12 +33,6 @@ def slice_variety(slice: Slice, without: frozenset[str] = frozenset()) -> SliceV
         slice,
         variety.components,
         variety.complex_solutions,
-        elimination_system(
-            problem.system,
-            problem.parameters,
-            slice.axis_names,
-            domain_limits(problem.system, problem.parameters),
-            variety.excludes,
-        ),
+        elimination_system(problem.on, slice.axis_names, variety.excludes),
         versions(),
     )

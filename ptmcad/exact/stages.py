@@ -5,13 +5,12 @@ Guarantee: no stage decides anything by rounding without an error bound, and non
     SliceProblem -> Variety -> Projection -> Stacks -> SampleCounts -> Neighbours -> Areas
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import Coefficient, Ratio, from_expression, point_values
 from ptmcad.algebra.real_roots import Interval
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.counts import Counts
@@ -28,6 +27,7 @@ from ptmcad.exact.decomposition import (
     unreported,
 )
 from ptmcad.exact.models import ParametricSystem, system_counted
+from ptmcad.exact.models.system import SystemOnAxes, on_axes
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
 from ptmcad.model.involutions import Involution, involutions
@@ -42,16 +42,20 @@ class SliceProblem(NamedTuple):
 
     Attributes
     ----------
-    parameters : each parameter as a ratio of polynomials in Z[x, y].
+    on : its system, on the axes x and y.
     window : the ranges of x and y.
     known : what is known of the equations from a family that the slice is of.
     """
 
     slice: Slice
-    system: ParametricSystem
-    parameters: dict[str, Ratio]
+    on: SystemOnAxes
     window: tuple[Interval, Interval]
     known: Known | None = None
+
+    @property
+    def system(self) -> ParametricSystem:
+        """Of the model, with all parameters symbolic."""
+        return self.on.system
 
     @property
     def reflections(self) -> list[Involution]:
@@ -68,7 +72,7 @@ class SliceProblem(NamedTuple):
 
     def solved_at(self, at: Sample) -> Equilibria:
         """The equilibria at a point off the variety; raises what `count_at` does."""
-        return count_at(self.place(at), self.system, self.parameters, at)
+        return count_at(self.place(at), self.on, at)
 
 
 class SampleCounts(NamedTuple):
@@ -101,10 +105,8 @@ class Cells(NamedTuple):
 
 def problem_of(slice: Slice) -> SliceProblem:
     """The slice in the ring of the engine."""
-    system = system_counted(slice.model, slice.count)
-    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     first, second = map(interval_of, slice.axes)
-    return SliceProblem(slice, system, parameters, (first, second))
+    return SliceProblem(slice, on_axes(system_counted(slice.model, slice.count), slice.parameters), (first, second))
 
 
 def variety_of(problem: SliceProblem, without: frozenset[str] = frozenset(), base: int | None = None) -> Variety:
@@ -120,11 +122,8 @@ def variety_of(problem: SliceProblem, without: frozenset[str] = frozenset(), bas
     DegenerateSliceError, InfiniteSolutionsError
         When every point of the slice is exceptional, with one of them as a witness.
     """
-    system, parameters, window = problem.system, problem.parameters, problem.window
     try:
-        found = discriminant_variety(
-            system, parameters, window, domain_limits(system, parameters), without, problem.known
-        )
+        found = discriminant_variety(problem.on, problem.window, without, problem.known)
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
         raise _explained(problem, error) from error
     if base is None and "axis-order" in without:
@@ -145,9 +144,8 @@ def prove_regular(problem: SliceProblem) -> None:
     DegenerateSliceError, InfiniteSolutionsError
         As `variety_of`.
     """
-    system, parameters = problem.system, problem.parameters
     try:
-        check_hypotheses(system, parameters)
+        check_hypotheses(problem.on)
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
         raise _explained(problem, error) from error
 
@@ -156,20 +154,12 @@ def _explained(
     problem: SliceProblem, error: DegenerateSliceError | InfiniteSolutionsError
 ) -> DegenerateSliceError | InfiniteSolutionsError:
     """The error with its cause, where it is a loop that folds flat, and a point that shows it."""
-    system, parameters, window = problem.system, problem.parameters, problem.window
     # what tells faults apart is loaded only where there is one
     from ptmcad.exact.folds import with_folds
     from ptmcad.exact.witness import points, with_witness
 
-    told = with_folds(error, problem.slice.model, system, parameters, points(window))
-    return with_witness(error, system, parameters, window, problem.place) if told is error else told
-
-
-def domain_limits(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> list[Coefficient]:
-    """What bounds the slice's domain: lengths and stiffnesses that vary, and the parameters' denominators."""
-    names = (*system.positive, *system.nonnegative)
-    limits = [*(parameters[name][0] for name in names), *(below for _, below in parameters.values())]
-    return [limit for limit in limits if not limit.is_constant()]
+    told = with_folds(error, problem.slice.model, problem.on, points(problem.window))
+    return with_witness(error, problem.on, problem.window, problem.place) if told is error else told
 
 
 def counts_of(problem: SliceProblem, cut: Decomposition, report: Report = unreported) -> SampleCounts:
@@ -195,7 +185,7 @@ def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
     return (counts.total,) if known is None else known if isinstance(known, tuple) else (known,)
 
 
-def count_at(where: str, system: ParametricSystem, parameters: Mapping[str, Ratio], at: Sequence[fmpq]) -> Equilibria:
+def count_at(where: str, on: SystemOnAxes, at: Sequence[fmpq]) -> Equilibria:
     """The equilibria at a sample point, after a check that the geometry exists there.
 
     Parameters
@@ -209,7 +199,7 @@ def count_at(where: str, system: ParametricSystem, parameters: Mapping[str, Rati
     DegenerateSliceError
         When some equilibrium is singular there.
     """
-    values = point_values(parameters, at)
+    system, values = on.system, on.values(at)
     for name in (*system.positive, *system.nonnegative):
         if values[name] < 0 or (values[name] == 0 and name in system.positive):
             raise GeometryError(

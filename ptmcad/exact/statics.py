@@ -19,6 +19,7 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.number_field import FieldElement
 from ptmcad.algebra.points import RealPoint, value_at
+from ptmcad.algebra.polynomials import Values
 from ptmcad.answer.poses import Pose, springs_of
 from ptmcad.exact.point_system import PointSystem
 from ptmcad.exact.stiffness import RealNumber, Stiffness, eigenvalues, square_root, stiffness_of
@@ -63,7 +64,7 @@ class Quantities(NamedTuple):
 class _AtSolution:
     """Elements of a solution's field, as an arithmetic for formulas; parameters have values."""
 
-    def __init__(self, known: CompiledSystem, parameters: Mapping[str, fmpq], point: RealPoint) -> None:
+    def __init__(self, known: CompiledSystem, parameters: Values, point: RealPoint) -> None:
         self._names, self._parameters, self._field = known.names, parameters, point.field
         unknowns = iter(point.unknowns)
         self._turned = {number: (next(unknowns), next(unknowns)) for number in known.angles}
@@ -109,9 +110,7 @@ class ExactSolution:
         return all(is_positive(condition.conjugate(self.point.field)) for condition in conditions)
 
 
-def solution_at(
-    known: CompiledSystem, system: PointSystem, parameters: Mapping[str, fmpq], point: RealPoint
-) -> ExactSolution:
+def solution_at(known: CompiledSystem, system: PointSystem, parameters: Values, point: RealPoint) -> ExactSolution:
     """The solution at a real point of the fibre.
 
     Parameters

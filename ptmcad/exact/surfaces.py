@@ -10,34 +10,30 @@ near almost all of their points: the exceptional points form curves, which do no
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from ptmcad.algebra.polynomials import Coefficient, Ratio, irreducible_factors
+from ptmcad.algebra.polynomials import Coefficient, irreducible_factors
 from ptmcad.algebra.quotient import multiples, multiplication_denominator, quotient_algebra
 from ptmcad.algebra.real_roots import Interval
 from ptmcad.algebra.space import nowhere_zero
 from ptmcad.exact.family import FamilyVariety
-from ptmcad.exact.models.system import ParametricSystem, on_slice
-from ptmcad.exact.stages import domain_limits
+from ptmcad.exact.models.system import SystemOnAxes
 from ptmcad.exact.variety import harmless, settles, sign_changes
 
 
-def surfaces_of(
-    system: ParametricSystem, parameters: Mapping[str, Ratio], known: FamilyVariety, box: Sequence[Interval]
-) -> tuple[Coefficient, ...]:
+def surfaces_of(on: SystemOnAxes, known: FamilyVariety, box: Sequence[Interval]) -> tuple[Coefficient, ...]:
     """The irreducible surfaces that may have a point in an open box.
 
     Parameters
     ----------
-    parameters : each parameter as a ratio of polynomials in Z[x, y, z].
+    on : the system on the axes x, y and z.
     known : the variety over Q(x, y, z).
     box : the ranges of x, y and z.
     """
-    limits = domain_limits(system, parameters)
-    equations = on_slice(system.simplest, parameters)
+    equations = on.equations
     algebra = quotient_algebra(known.basis)
     assert algebra is not None  # it was, when the variety was computed
-    given = [known.jacobian_norm[0], *equations.boundary, *limits, *sign_changes(equations, algebra)]
+    given = [known.jacobian_norm[0], *equations.boundary, *on.limits, *sign_changes(equations, algebra)]
     found = irreducible_factors(*given)
     everywhere = irreducible_factors(multiplication_denominator(algebra))
     suspects = [f for f in everywhere if f not in found and not nowhere_zero(f, box)]

@@ -15,12 +15,12 @@ Solutions at which an inequality's polynomial vanishes all over the slice never 
 unknown, that polynomial's inverse; where the inverse has a pole the norm vanishes.
 
 Reference: Lazard & Rouillier, J. Symb. Comp. 42 (2007). N is used in place of the Hermite matrix's determinant because
-the latter also vanishes where the monomial basis degenerates; `hermite_determinant` computes it for comparison.
+the latter also vanishes where the monomial basis degenerates.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -51,12 +51,11 @@ from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError, NothingToCountError
 from ptmcad.exact.continua import continuum
 from ptmcad.exact.models.system import (
-    ParametricSystem,
     SliceSystem,
+    SystemOnAxes,
     element_on_slice,
     leading_minor,
     lifted,
-    on_slice,
     saturated,
 )
 from ptmcad.text.plane import PlanePolynomial
@@ -76,10 +75,8 @@ class DiscriminantVariety(NamedTuple):
 
 
 def discriminant_variety(
-    system: ParametricSystem,
-    parameters: Mapping[str, Ratio],
+    on: SystemOnAxes,
     window: tuple[Interval, Interval],
-    limits: Sequence[Coefficient] = (),
     without: frozenset[str] = frozenset(),
     known: Known | None = None,
 ) -> DiscriminantVariety:
@@ -87,9 +84,8 @@ def discriminant_variety(
 
     Parameters
     ----------
-    parameters : each parameter as a ratio of polynomials in Z[x, y].
-    window : the ranges of x and y.
-    limits : further polynomials whose zeros bound the slice's domain (lengths and stiffnesses that vanish).
+    on : the system on the axes x and y.
+    window : their ranges.
     without : names of savings to switch off, of `ptmcad.question.savings`.
     known : gives for the equations what is known of them from a family that the slice is of, or None.
 
@@ -98,12 +94,11 @@ def discriminant_variety(
     InfiniteSolutionsError, DegenerateSliceError
         When every point of the slice is exceptional.
     """
-    simplest = system.simplest
-    given = on_slice(simplest, parameters)
+    given = on.equations
     found = None if known is None else known(given)
     equations, algebra, rows, jacobian_norm = nondegenerate(given) if found is None else found
     seen = _Components(window, without)
-    for polynomial in (*equations.boundary, *limits):
+    for polynomial in (*equations.boundary, *on.limits):
         seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
     singular = irreducible_factors(jacobian_norm[0])
     escaping = [] if equations.is_compact else poles(algebra, singular, equations.unbounded)
@@ -121,24 +116,23 @@ def discriminant_variety(
     for factors, why in ((hidden, NO_POINT), (proved, HARMLESS), (doubtful, "")):
         seen.adopt([f for f in factors if f in unbounded], Kind.INFINITY, why)
     if "sign-curve" in without:
-        for order in range(1, system.criterion.order):
-            minor = element_on_slice(simplest, leading_minor(simplest, order), parameters)
+        simplest = on.system.simplest
+        for order in range(1, on.system.criterion.order):
+            minor = element_on_slice(simplest, leading_minor(simplest, order), on.parameters)
             seen.adopt(irreducible_factors(norm(algebra, lifted(minor, equations.unknowns))[0]), Kind.AUXILIARY)
     if "hermite-matrix" in without:
         for part in determinant(trace_form(algebra)):
             seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
     components = tuple(
-        replace(c, continuum=continuum(from_plane(c.polynomial), system, parameters, given, jacobian_norm[0]))
-        if not c.left_out
-        else c
+        replace(c, continuum=continuum(from_plane(c.polynomial), on, given, jacobian_norm[0])) if not c.left_out else c
         for c in seen.in_order()
     )
     return DiscriminantVariety(components, algebra.dimension, equations.unknowns > given.unknowns)
 
 
-def check_hypotheses(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> None:
+def check_hypotheses(on: SystemOnAxes) -> None:
     """Refuse what `discriminant_variety` would refuse, without the curves."""
-    equations, algebra, *_ = nondegenerate(on_slice(system.simplest, parameters))
+    equations, algebra, *_ = nondegenerate(on.equations)
     for _ in sign_changes(equations._replace(inequalities=()), algebra):
         pass  # which refuses conditions
 
@@ -314,12 +308,3 @@ def algebra_of(equations: SliceSystem) -> QuotientAlgebra:
 def basis_of(equations: SliceSystem) -> GroebnerBasis:
     """The reduced basis, in grevlex order of the coordinates as they come."""
     return groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns))))
-
-
-def hermite_determinant(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Ratio:
-    """The determinant of the Hermite (trace-form) matrix on the grevlex monomial basis.
-
-    Its numerator has every CRITICAL component as a factor; further factors are places where the monomial basis, not
-    the set of solutions, degenerates.
-    """
-    return determinant(trace_form(algebra_of(on_slice(system, parameters))))

@@ -6,19 +6,18 @@ most solutions, and not proved.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import Ratio, point_values
+from ptmcad.algebra.polynomials import Values
 from ptmcad.errors import DegenerateSliceError, HypothesisError, InfiniteSolutionsError, NothingToCountError
-from ptmcad.exact.models.system import ParametricSystem
+from ptmcad.exact.models.system import ParametricSystem, SystemOnAxes
 from ptmcad.exact.point_system import solutions_at
 from ptmcad.text.flint_numbers import from_fraction
 
 Point = tuple[fmpq, fmpq]
-Window = tuple[tuple[fmpq, fmpq], tuple[fmpq, fmpq]]
 SHARES = tuple(
     (Fraction(a, b), Fraction(c, d))
     for a, b, c, d in ((10, 21, 19, 35), (5, 11, 4, 13), (7, 17, 12, 19), (9, 23, 13, 29), (14, 31, 15, 37))
@@ -30,9 +29,8 @@ Solutions = tuple[int, int]
 
 def with_witness(
     error: DegenerateSliceError | InfiniteSolutionsError,
-    system: ParametricSystem,
-    parameters: Mapping[str, Ratio],
-    window: Window,
+    on: SystemOnAxes,
+    window: Sequence[Point],
     place: Callable[[Point], str],
 ) -> DegenerateSliceError | InfiniteSolutionsError:
     """The error, with a point of the window that shows it added to its words; as it is where none was found.
@@ -44,10 +42,10 @@ def with_witness(
     examples = []
     for at in points(window):
         try:
-            values = point_values(parameters, at)
+            values = on.values(at)
         except ZeroDivisionError:
             continue
-        words, solutions = _example(error, system, values)
+        words, solutions = _example(error, on.system, values)
         if words:
             examples.append((solutions, words, at))
     if not examples:
@@ -57,7 +55,7 @@ def with_witness(
     return type(error)(f"{error}; for example at {place(at)}{words}", part=error.part)
 
 
-def _example(error: HypothesisError, system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[str, Solutions]:
+def _example(error: HypothesisError, system: ParametricSystem, values: Values) -> tuple[str, Solutions]:
     """What shows a point's fault in words, none where it does not show, and the numbers of solutions there."""
     if isinstance(error, NothingToCountError):
         return _nothing(system, values), (0, 0)
@@ -69,7 +67,7 @@ def _example(error: HypothesisError, system: ParametricSystem, values: Mapping[s
     return f" only {different} of {multiplicity} solutions are different", (multiplicity, different)
 
 
-def _nothing(system: ParametricSystem, values: Mapping[str, fmpq]) -> str:
+def _nothing(system: ParametricSystem, values: Values) -> str:
     """How it shows at a point that there is nothing to count, in words."""
     counted = solutions_at(system, values, saturated=True)[0]
     if counted is None or counted > 0:
@@ -82,7 +80,7 @@ def _nothing(system: ParametricSystem, values: Mapping[str, fmpq]) -> str:
     return f" the equations have {different} different solution{'s' * (different > 1)}, all excluded"
 
 
-def points(window: Window) -> Iterator[Point]:
+def points(window: Sequence[Point]) -> Iterator[Point]:
     """Some points of a window."""
     for shares in SHARES:
         x, y = (

@@ -44,6 +44,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Values = Mapping[str, Floats]
 """Of the parameters by name, each of shape (points,); one that is missing is zero."""
+Elements = Mapping[str, Any]
+"""The same of elements of any one ring."""
 REAL_TOLERANCE = 1e-8
 """A root is taken for real when its imaginary part is at most this much of 1 + its modulus."""
 ZERO_TOLERANCE = 1e-12
@@ -63,7 +65,7 @@ GRID_STARTS = 5
 
 
 def derivatives(
-    parameters: Mapping[str, Any], circles: Sequence[tuple[Any, Any]], root: Callable[[Any], Any]
+    parameters: Elements, circles: Sequence[tuple[Any, Any]], root: Callable[[Any], Any]
 ) -> tuple[tuple[Any, Any], tuple[Any, Any, Any]]:
     """The potential's derivatives at a pose: dU/dth1 and dU/dth2; U11, U12 and U22.
 
@@ -105,7 +107,7 @@ def derivatives(
     )
 
 
-def sextic(p: Mapping[str, Any]) -> tuple[tuple[Any, ...], ...]:
+def sextic(p: Elements) -> tuple[tuple[Any, ...], ...]:
     """The sextic N, and beside it V, W and X^2 + Y^2, each times 1 + t^2: coefficients of 1, t, t^2, ...
 
     Parameters
@@ -121,12 +123,12 @@ def sextic(p: Mapping[str, Any]) -> tuple[tuple[Any, ...], ...]:
     return tuple(a - b for a, b in zip(left, right, strict=True)), v, w, square
 
 
-def along_base(p: Mapping[str, Any]) -> tuple[Any, Any]:
+def along_base(p: Elements) -> tuple[Any, Any]:
     """b1 and b2."""
     return (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
 
 
-def parts(p: Mapping[str, Any], c2: Any, s2: Any) -> tuple[Any, Any, Any, Any]:
+def parts(p: Elements, c2: Any, s2: Any) -> tuple[Any, Any, Any, Any]:
     """V, W, X and Y at cosine and sine of th2."""
     b1, b2 = along_base(p)
     v, w = p["F3"] * c2 + b1 * s2, b2 * s2 - p["F4"] * c2
@@ -200,7 +202,7 @@ def at(p: Values, th1: Floats, th2: Floats) -> tuple[Any, Any]:
     return derivatives(p, [(np.cos(a), np.sin(a)) for a in (th1, th2)], np.sqrt)
 
 
-def scale(p: Mapping[str, Any]) -> Any:
+def scale(p: Elements) -> Any:
     """The largest summand of the gradient: of a spring's or a load's moment about a joint."""
     longest = np.maximum(p["L1"], p["L2"])
     span = np.maximum.reduce([p["rho"], longest, *(value for name, value in p.items() if name.startswith("l0"))])

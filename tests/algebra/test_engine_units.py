@@ -21,7 +21,7 @@ from ptmcad.algebra.fibre import evaluate as multiplication
 from ptmcad.algebra.fibre import fibre
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import PLANE, coefficients_in, evaluate, from_expression, irreducible_factors, to_plane
-from ptmcad.algebra.quotient import LINE, multiplication_denominator, norm, poles, quotient_algebra
+from ptmcad.algebra.quotient import LINE, multiplication_denominator, norm, poles, quotient_algebra, trace_form
 from ptmcad.algebra.real_roots import (
     RealRoot,
     disjoint,
@@ -40,7 +40,7 @@ from ptmcad.exact.cad.points import _discriminant
 from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
 from ptmcad.exact.stages import problem_of
-from ptmcad.exact.variety import hermite_determinant
+from ptmcad.exact.variety import algebra_of
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 X, Y = PLANE.gens()
@@ -329,7 +329,7 @@ def test_determinants_of_many_rows_in_one_axis(axis: fmpz_mpoly, rank: int) -> N
 @pytest.mark.fast_cases("systems/orthogonal-3r")
 def test_poles_by_characteristic_polynomials_are_those_by_power_traces(name: str) -> None:
     problem = problem_of(load(CONFIGS / f"{name}.yaml"))
-    equations = on_slice(problem.system, problem.parameters)
+    equations = on_slice(problem.system, problem.on.parameters)
     algebra = quotient_algebra(groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns)))))
     assert algebra is not None
     suspects = irreducible_factors(multiplication_denominator(algebra))
@@ -354,7 +354,7 @@ def test_a_pole_that_the_line_does_not_show_is_found_in_the_plane() -> None:
 def test_hermite_determinant_has_every_critical_component(name: str) -> None:
     """REFERENCE: the numerator of the Hermite determinant has the curves as factors, with these multiplicities."""
     parameters, _ = slice_system(name)
-    numerator, _ = hermite_determinant(SYSTEM, parameters)
+    numerator, _ = determinant(trace_form(algebra_of(on_slice(SYSTEM, parameters))))
     factors = {to_plane(f): e for f, e in numerator.factor()[1]}
     critical = [c.polynomial for c in shipped(name).components if c.kind is Kind.CRITICAL and not c.left_out]
     assert critical

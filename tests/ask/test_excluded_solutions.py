@@ -12,7 +12,6 @@ from support.signatures import signature
 
 import ptmcad
 from ptmcad.algebra.fibre import evaluate, hermite_matrix
-from ptmcad.algebra.polynomials import point_values
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.checking import check
 from ptmcad.errors import ConfigError, NothingToCountError
@@ -146,7 +145,7 @@ def test_check_answers_at_once_whatever_the_inequalities(system: dict[str, Any],
 @pytest.mark.parametrize("record", [CONTINUUM, DOUBLE], ids=["a continuum", "a double root"])
 def test_solutions_off_a_condition_are_as_many_as_the_saturated_ideal_has(record: dict[str, Any]) -> None:
     problem = problem_of(slice_from(record))
-    values = point_values(problem.parameters, (fmpq(1, 3), fmpq(2, 5)))
+    values = problem.on.values((fmpq(1, 3), fmpq(2, 5)))
     algebra = point_system(problem.system, values, saturated=True).algebra
     one = evaluate(algebra, {(0,) * len(algebra.multiplication): fmpq(1)})
     expected = sum(signature(hermite_matrix(algebra, one))), algebra.dimension
@@ -156,7 +155,7 @@ def test_solutions_off_a_condition_are_as_many_as_the_saturated_ideal_has(record
 def test_what_counts_is_taken_with_its_multiplicity() -> None:
     system = {"unknowns": {"x": "real"}, "equations": ["x^3*(x - 1)^2*(x - a)*(x - b)"], "positive": ["x^2"]}
     problem = problem_of(slice_from({"system": system, "axes": {"a": [2, 3], "b": [4, 5]}}))
-    values = point_values(problem.parameters, (fmpq(5, 2), fmpq(9, 2)))
+    values = problem.on.values((fmpq(5, 2), fmpq(9, 2)))
     assert solutions_at(problem.system, values) == (4, 7)
     assert solutions_at(problem.system, values, saturated=True) == (3, 4)
 

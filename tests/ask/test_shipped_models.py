@@ -22,7 +22,6 @@ from support.shipped_records import LINES_ONLY, OTHER
 from support.signatures import count_by_signature
 
 from ptmcad import RegionMap, Slice, classify, load
-from ptmcad.algebra.polynomials import point_values
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Merge
 from ptmcad.exact.counting import count_by_isolation
@@ -80,7 +79,7 @@ def mapped(path: Path) -> RegionMap:
 def counts_at(slice: Slice, at: dict[str, Any], signature: bool) -> Counts:
     problem = problem_of(slice)
     x, y = (Fraction(at[name]) for name in slice.axis_names)
-    values = point_values(problem.parameters, (from_fraction(x), from_fraction(y)))
+    values = problem.on.values((from_fraction(x), from_fraction(y)))
     return (count_by_signature if signature else count_by_isolation)(problem.system, values)
 
 
@@ -115,7 +114,7 @@ def test_numbers_of_solutions(path: Path) -> None:
     if "complex_solutions" in known:
         problem = problem_of(slice)
         at = tuple(fmpq(29, 100) * (b - a) + a for a, b in problem.window)
-        values = point_values(problem.parameters, (at[0], at[1]))
+        values = problem.on.values((at[0], at[1]))
         assert solutions_at(problem.system, values, path.stem in SPURIOUS) == (known["complex_solutions"],) * 2
 
 

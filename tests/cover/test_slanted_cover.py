@@ -88,7 +88,7 @@ def test_engine_and_checker_see_the_same_components(cover: Cover, seed: int) -> 
 def test_places_and_sides_agree_with_de_casteljau(patch: Patch, seed: int) -> None:
     assert not tubes.flaw(patch, STEPS)
     rng = random.Random(seed)
-    (low, high), (bottom, top) = tubes.ends(patch), tubes.heights(patch)
+    (low, high), (bottom, top) = patch.ends, patch.heights
     for _ in range(20):
         u, v = (a + (b - a) * Fraction(rng.randrange(1, 1000), 1000) for a, b in ((low, high), (bottom, top)))
         t = (u - low) / (high - low)
@@ -110,7 +110,7 @@ def test_places_and_sides_agree_with_de_casteljau(patch: Patch, seed: int) -> No
 @settings(deadline=None, max_examples=examples(60))
 @given(patches((0, 3 * 2**10, 2**10, 2**12)))
 def test_areas_of_parts_are_lower_bounds_and_near(patch: Patch) -> None:
-    (low, high), (bottom, top) = tubes.ends(patch), tubes.heights(patch)
+    (low, high), (bottom, top) = patch.ends, patch.heights
     columns = 400
     for number, area in enumerate(tubes.part_areas(patch)):
         total = Fraction(0)

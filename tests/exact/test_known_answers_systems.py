@@ -15,7 +15,6 @@ import pytest
 from flint import fmpq
 
 import ptmcad
-from ptmcad.algebra.polynomials import point_values
 from ptmcad.answer.regionmap import Kind
 from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.stages import problem_of, variety_of
@@ -339,7 +338,7 @@ def test_numbers_of_complex_solutions(record: dict[str, Any], number: int) -> No
     problem = problem_of(ptmcad.slice_from_mapping(record))
     for share in (fmpq(29, 100), fmpq(37, 71), fmpq(13, 17)):
         x, y = (share * (high - low) + low for low, high in problem.window)
-        assert solutions_at(problem.system, point_values(problem.parameters, (x, y))) == (number, number)
+        assert solutions_at(problem.system, problem.on.values((x, y))) == (number, number)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,6 @@ from flint import fmpq
 from support.programs import needs_msolve, real_solutions
 
 import ptmcad
-from ptmcad.algebra.polynomials import point_values
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models.potential import system_from
 from ptmcad.exact.models.system import at_point, polynomial_at
@@ -138,7 +137,7 @@ def test_one_joint_has_the_minima_along_its_angle() -> None:
 @pytest.mark.slow
 def test_two_joints_have_44_complex_solutions() -> None:
     problem = problem_of(ptmcad.load(CONFIGS / "two-x-joints.yaml"))
-    values = point_values(problem.parameters, (fmpq(29, 97), fmpq(-31, 89)))
+    values = problem.on.values((fmpq(29, 97), fmpq(-31, 89)))
     assert solutions_at(problem.system, values, saturated=True) == (44, 44)
 
 

@@ -14,8 +14,9 @@ from flint import fmpq, fmpq_mat
 
 from ptmcad.algebra.fibre import FibreAlgebra, evaluate
 from ptmcad.algebra.real_roots import sign
+from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.answer.counts import Counts, counts_of_signs
-from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
+from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.exact.point_system import DegeneratePoint, simple_solutions, text_of_point
 
 

@@ -118,7 +118,7 @@ def _bounder(design: Design, tolerance: fmpq) -> Bounder | None:
     axes = (*family.axes, family.free)
     ranges = tuple(interval_of(axis) for axis in axes)
     along = 1 if design.aim is Aim.AREA else 0
-    found = space_of_family(*in_space(family), Axes(tuple(a.name for a in axes), ranges, along), design.working)
+    found = space_of_family(in_space(family), Axes(tuple(a.name for a in axes), ranges, along), design.working)
     if found is None:
         return None
     return AreaBounder(found, ranges[0]) if design.aim is Aim.AREA else Lengths(found, tolerance)

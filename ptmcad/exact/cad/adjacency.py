@@ -103,7 +103,7 @@ def cross(
             extra = tuple(sorted({*extra, *separating}))
 
 
-def _bracket(end: BaseEnd, width: fmpq, low: fmpq, high: fmpq) -> tuple[fmpq, fmpq]:
+def _bracket(end: BaseEnd, width: fmpq, low: fmpq, high: fmpq) -> Interval:
     """Rational points on both sides of the critical abscissa, inside the neighbouring stacks."""
     assert end.root is not None
     root = refine(end.root, width)

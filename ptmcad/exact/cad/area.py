@@ -8,7 +8,7 @@ the curve does not meet.
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from itertools import chain, pairwise
@@ -19,6 +19,7 @@ from flint import arb, ctx, fmpq
 from ptmcad.algebra.branches import TooFewBits
 from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, refine
+from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.exact.cad.curves import FibredCurve, by_component, max_height_bits
 from ptmcad.exact.cad.panels import Border, PanelEffort, WallPanel, halves, panels
 from ptmcad.exact.cad.stacks import StackData
@@ -136,9 +137,7 @@ class _Unreachable(ArithmeticError):
         self.strips = strips
 
 
-def region_areas(
-    parts: RegionStacks, tolerance: Fraction, check: Callable[[], None] = lambda: None
-) -> tuple[Bounds, int]:
+def region_areas(parts: RegionStacks, tolerance: Fraction, check: Check = nothing) -> tuple[Bounds, int]:
     """Bounds for the area of each region, and the bits of precision they needed.
 
     Parameters
@@ -199,7 +198,7 @@ def _with_room(bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fr
 
 
 def _areas(
-    parts: RegionStacks, spans: Sequence[Interval], tolerance: Fraction, effort: PanelEffort, check: Callable[[], None]
+    parts: RegionStacks, spans: Sequence[Interval], tolerance: Fraction, effort: PanelEffort, check: Check
 ) -> Bounds:
     """One attempt, at the context's precision."""
     lost = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0)) * parts.height * (2 if parts.images else 1)
@@ -296,9 +295,7 @@ def _edges(spans: Sequence[Interval], parts: RegionStacks) -> list[fmpq]:
     return total
 
 
-def _refine(
-    panels: list[WallPanel], frame: _Frame, tolerance: Fraction, effort: PanelEffort, check: Callable[[], None]
-) -> Bounds:
+def _refine(panels: list[WallPanel], frame: _Frame, tolerance: Fraction, effort: PanelEffort, check: Check) -> Bounds:
     """Halve panels until every region is known well enough."""
     while True:
         bounds = frame.bounds(panels)

@@ -12,7 +12,6 @@ as many as over the stack, none of them a corner: then each wall runs on to its 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -20,6 +19,7 @@ from flint import fmpq
 
 from ptmcad.algebra.numbers import root_of
 from ptmcad.algebra.real_roots import RealRoot, halve, isolate, order, refine, sign_at
+from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.exact.cad.curves import by_component, curves_of
 from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Span, WallBranch, chords, shut_in, to_share
@@ -46,9 +46,7 @@ class WallPolyline:
     distance: Fraction
 
 
-def chains(
-    result: RegionMap, tolerance: Fraction, check: Callable[[], None] = lambda: None
-) -> tuple[tuple[WallPolyline, ...], ...]:
+def chains(result: RegionMap, tolerance: Fraction, check: Check = nothing) -> tuple[tuple[WallPolyline, ...], ...]:
     """The walls of every stack, from below.
 
     Parameters
@@ -112,7 +110,7 @@ def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:
     return refine(root, min(root.low - before, after - root.high) * _END)
 
 
-def _chain(wall: WallBranch, left: _End, right: _End, tolerance: Fraction, check: Callable[[], None]) -> WallPolyline:
+def _chain(wall: WallBranch, left: _End, right: _End, tolerance: Fraction, check: Check) -> WallPolyline:
     width = right[0] - left[1]
     start, first = _level(wall, left, width, tolerance)
     end, last = _level(wall, right, -width, tolerance)

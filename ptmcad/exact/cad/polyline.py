@@ -12,7 +12,6 @@ is not proved, or too large, are halved.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -21,6 +20,7 @@ from flint import arb, ctx, fmpq
 from ptmcad.algebra.branches import local_coefficients
 from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.real_roots import Interval, RealRoot, refine
+from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.text.balls import exact
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -83,7 +83,7 @@ def chords(
     span: Span,
     max_distance: Fraction,
     narrowest: Fraction,
-    check: Callable[[], None] = lambda: None,
+    check: Check = nothing,
     flat: tuple[Fraction, Fraction] = (FLAT, LITTLE),
 ) -> tuple[Chord, ...]:
     """A wall from left to right without gaps.
@@ -158,7 +158,7 @@ def shut_in(wall: WallBranch, panel: Span, ends: Span, most: Fraction = FLAT) ->
     return found[1] - found[0]
 
 
-def _absent(curve: FibredCurve, across: tuple[fmpq, fmpq], height: fmpq) -> bool:
+def _absent(curve: FibredCurve, across: Interval, height: fmpq) -> bool:
     """Whether the curve is proved to miss a closed level segment: p in the middle outweighs the rest of its Taylor sum.
 
     Parameters
@@ -181,7 +181,7 @@ def from_share(share: Fraction, interval: Interval) -> fmpq:
     return interval[0] + (interval[1] - interval[0]) * from_fraction(share)
 
 
-def _part(span: Span, interval: Interval) -> tuple[fmpq, fmpq]:
+def _part(span: Span, interval: Interval) -> Interval:
     """Middle and half the length of a part of an interval that is given in shares."""
     low, high = (from_share(share, interval) for share in span)
     return (low + high) / 2, (high - low) / 2

@@ -18,7 +18,14 @@ from typing import NamedTuple
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, disjoint, inside, isolate, refine
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.exact.cad.curves import FibredCurve, base_deflation, deflation, short_discriminant, short_resultant
+from ptmcad.exact.cad.curves import (
+    FibredCurve,
+    base_deflation,
+    deflation,
+    short_discriminant,
+    short_resultant,
+    stretched,
+)
 
 
 class Projection(NamedTuple):
@@ -91,8 +98,8 @@ def _factors(p: UnivariatePolynomial, unit: int = 1, inflation: int = 1) -> list
         return [factor for factor, _ in p.inflate(inflation).factor()[1]]
     result = []
     for factor, _ in p.factor()[1]:
-        stretched = UnivariatePolynomial([c * unit**j for j, c in enumerate(factor.coeffs())])
-        result += _factors(stretched // stretched.content(), 1, inflation)
+        longer = stretched(factor, unit, 1)
+        result += _factors(longer // longer.content(), 1, inflation)
     return result
 
 

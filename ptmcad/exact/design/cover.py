@@ -101,7 +101,7 @@ class Run(NamedTuple):
     right: Signs | None
 
     @property
-    def ends(self) -> tuple[fmpq, fmpq]:
+    def ends(self) -> Interval:
         """The powers of its ends."""
         return self.parts[0].low, self.parts[-1].high
 

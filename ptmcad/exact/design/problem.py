@@ -6,20 +6,20 @@ not cut the space.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from math import gcd
 from typing import NamedTuple
 
 from flint import fmpq
 
 from ptmcad.algebra.bernstein import Table, table_of
-from ptmcad.algebra.polynomials import Coefficient, Ratio, from_plane
+from ptmcad.algebra.polynomials import Coefficient, from_plane
 from ptmcad.algebra.real_roots import Interval
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.exact.design.cover import Space
 from ptmcad.exact.family import family_variety
-from ptmcad.exact.models import ParametricSystem
-from ptmcad.exact.stages import SliceProblem, count_at, domain_limits
+from ptmcad.exact.models.system import SystemOnAxes
+from ptmcad.exact.stages import SliceProblem, count_at
 from ptmcad.exact.surfaces import surfaces_of
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.text.numerals import equalities
@@ -38,25 +38,22 @@ class Axes(NamedTuple):
         return (self.along, *(k for k in range(len(self.names)) if k != self.along))
 
 
-def space_of_family(
-    system: ParametricSystem, parameters: Mapping[str, Ratio], axes: Axes, working: int
-) -> Space | None:
+def space_of_family(on: SystemOnAxes, axes: Axes, working: int) -> Space | None:
     """The space of three coordinates; None where there is no variety that holds for all designs.
 
     Parameters
     ----------
-    parameters : each parameter as a ratio of polynomials in Z[x, y, z].
+    on : the system on the axes x, y and z.
 
     Raises
     ------
     InfiniteSolutionsError, DegenerateSliceError, NothingToCountError
         When every point is exceptional.
     """
-    known = family_variety(system, parameters)
+    known = family_variety(on)
     if known is None:
         return None
-    found = surfaces_of(system, parameters, known, axes.ranges)
-    return _space(system, parameters, found, axes, working)
+    return _space(on, surfaces_of(on, known, axes.ranges), axes, working)
 
 
 def space_of_slice(problem: SliceProblem, along: int, working: int) -> Space:
@@ -67,16 +64,12 @@ def space_of_slice(problem: SliceProblem, along: int, working: int) -> Space:
     InfiniteSolutionsError, DegenerateSliceError, NothingToCountError
         When every point is exceptional.
     """
-    system, parameters = problem.system, problem.parameters
-    limits = domain_limits(system, parameters)
-    variety = discriminant_variety(system, parameters, problem.window, limits)
+    variety = discriminant_variety(problem.on, problem.window)
     found = [from_plane(c.polynomial) for c in variety.components if not c.left_out]
-    return _space(system, parameters, found, Axes(problem.slice.axis_names, problem.window, along), working)
+    return _space(problem.on, found, Axes(problem.slice.axis_names, problem.window, along), working)
 
 
-def _space(
-    system: ParametricSystem, parameters: Mapping[str, Ratio], found: Sequence[Coefficient], axes: Axes, working: int
-) -> Space:
+def _space(on: SystemOnAxes, found: Sequence[Coefficient], axes: Axes, working: int) -> Space:
     window = axes.ranges[axes.along]
     ordered = [[(_padded([int(powers[k]) for k in axes.order]), int(c)) for powers, c in p.terms()] for p in found]
     power = max(1, gcd(*(powers[0] for terms in ordered for powers, _ in terms))) if window[0] >= 0 else 1
@@ -87,7 +80,7 @@ def _space(
             point[number] = coordinate
         where = equalities(dict(zip(axes.names, point, strict=True)))
         try:
-            return count_at(where, system, parameters, point).counts.working
+            return count_at(where, on, point).counts.working
         except DegenerateSliceError:
             return None
 

@@ -7,42 +7,34 @@ variety leaves these out: one more unknown is the inverse of what is not zero.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from itertools import count
 from math import prod
 
-from ptmcad.algebra.polynomials import ONE, Coefficient, Ratio, UnknownPolynomial, irreducible_factors
+from ptmcad.algebra.polynomials import ONE, UnknownPolynomial, irreducible_factors
 from ptmcad.answer.slicevariety import EliminationSystem, Term
-from ptmcad.exact.models.system import ParametricSystem, on_slice, saturated
+from ptmcad.exact.models.system import SystemOnAxes, on_slice, saturated
 from ptmcad.exact.models.text import system_text
 
 INVERSE = "inverse"
 """The name of the unknown that is one, with a number where the name is taken."""
 
 
-def elimination_system(
-    system: ParametricSystem,
-    parameters: Mapping[str, Ratio],
-    axes: tuple[str, str],
-    limits: Sequence[Coefficient],
-    excludes: bool,
-) -> EliminationSystem:
+def elimination_system(given: SystemOnAxes, axes: tuple[str, str], excludes: bool) -> EliminationSystem:
     """The equations of a slice, the circles, what is not zero times its inverse less 1, and the Hessian's determinant.
 
     Parameters
     ----------
-    parameters : every parameter of the system's ring as numerator and denominator in Z[x, y].
-    axes : the names of x and y.
-    limits : further polynomials whose zeros bound the slice's domain (lengths and stiffnesses that vanish).
+    given : the system on the axes x and y.
+    axes : their names.
     excludes : whether solutions at which an inequality's polynomial is zero are left out.
     """
-    on = on_slice(system, parameters)
+    on = on_slice(*given)
     conditions = list(on.inequalities) if excludes else []
-    if (nowhere := prod(irreducible_factors(*on.boundary, *limits), start=ONE)) != ONE:
+    if (nowhere := prod(irreducible_factors(*on.boundary, *given.limits), start=ONE)) != ONE:
         conditions.append({(0,) * on.unknowns: nowhere})
     for condition in conditions:
         on = saturated(on, condition)
-    unknowns = system_text(system).unknowns
+    unknowns = system_text(given.system).unknowns
     for _ in conditions:
         names = (f"{INVERSE}{n or ''}" for n in count())
         unknowns += (next(name for name in names if name not in (*unknowns, *axes)),)

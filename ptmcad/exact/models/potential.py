@@ -7,9 +7,7 @@ of free length zero: their energy is a polynomial.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 from functools import lru_cache, partial
-from typing import NamedTuple
 
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
 from ptmcad.errors import ConfigError
@@ -19,27 +17,8 @@ from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.values import values
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
-from ptmcad.model.evaluate import evaluate
+from ptmcad.model.evaluate import ByNames, evaluate
 from ptmcad.question.counts import Count
-
-
-class Expansion(NamedTuple):
-    """A trigonometric ring as an arithmetic for formulas, whose variables have these names."""
-
-    ring: TrigonometricRing
-    names: tuple[str, ...]
-
-    def constant(self, value: Fraction) -> TrigonometricPolynomial:
-        return self.ring.constant(value)
-
-    def variable(self, number: int) -> TrigonometricPolynomial:
-        return self.ring.parameter(self.names[number])
-
-    def cos(self, number: int) -> TrigonometricPolynomial:
-        return self.ring.cos(self.names[number])
-
-    def sin(self, number: int) -> TrigonometricPolynomial:
-        return self.ring.sin(self.names[number])
 
 
 def ring_of(model: Model) -> TrigonometricRing:
@@ -50,7 +29,7 @@ def ring_of(model: Model) -> TrigonometricRing:
 def elements_of(model: Model, formulas: Sequence[Formula]) -> tuple[TrigonometricPolynomial, ...]:
     """A compiled model's formulas in parameters and unknowns as elements of its ring, reduced."""
     ring = ring_of(model)
-    return tuple(map(ring.reduce, values(formulas, Expansion(ring, compiled(model).names))))
+    return tuple(map(ring.reduce, values(formulas, ByNames(compiled(model).names, ring))))
 
 
 @lru_cache(maxsize=8)

@@ -15,24 +15,27 @@ from ptmcad.algebra.determinants import laplace
 from ptmcad.algebra.polynomials import (
     PLANE,
     Coefficient,
+    Monomial,
     Ratio,
+    Ratios,
     UnivariatePolynomial,
     UnknownPolynomial,
+    Values,
     add_ratios,
     common_factor,
     constant_like,
+    from_expression,
     lcm,
+    point_values,
     ratio,
 )
-from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
+from ptmcad.algebra.trigonometric import RationalPolynomial, TrigonometricPolynomial, TrigonometricRing
 from ptmcad.model.criterion import Criterion
-
-RationalPolynomial = dict[tuple[int, ...], fmpq]
-"""A polynomial in the unknowns with rational coefficients: exponent vector -> coefficient."""
+from ptmcad.text.expressions import Expression
 
 Part = tuple[tuple[tuple[tuple[int, int], ...], fmpq], ...]
 """((parameter number, exponent) pairs, coefficient) for each term of a coefficient."""
-Terms = tuple[tuple[tuple[int, ...], Part], ...]
+Terms = tuple[tuple[Monomial, Part], ...]
 """(exponents of the unknowns, coefficient) for each monomial."""
 
 
@@ -115,6 +118,39 @@ def terms_of(ring: TrigonometricRing, p: TrigonometricPolynomial) -> Terms:
     )
 
 
+class SystemOnAxes(NamedTuple):
+    """A system whose parameters are functions of the axes of a slice, a line or a family.
+
+    Attributes
+    ----------
+    parameters : each as a ratio of polynomials, all in Z[x, y] or all in Z[x, y, z].
+    """
+
+    system: ParametricSystem
+    parameters: Ratios
+
+    @property
+    def equations(self) -> SliceSystem:
+        """In the angles in which they are simplest."""
+        return on_slice(self.system.simplest, self.parameters)
+
+    @property
+    def limits(self) -> list[Coefficient]:
+        """What bounds the domain: lengths and stiffnesses that vary, and the parameters' denominators."""
+        names = (*self.system.positive, *self.system.nonnegative)
+        limits = [*(self.parameters[name][0] for name in names), *(below for _, below in self.parameters.values())]
+        return [limit for limit in limits if not limit.is_constant()]
+
+    def values(self, at: Sequence[fmpq]) -> dict[str, fmpq]:
+        """The parameters at a rational point; `ZeroDivisionError` where a denominator vanishes there."""
+        return point_values(self.parameters, at)
+
+
+def on_axes(system: ParametricSystem, expressions: Mapping[str, Expression]) -> SystemOnAxes:
+    """The system where its parameters are expressions in two axes."""
+    return SystemOnAxes(system, {name: from_expression(expressions[name]) for name in system.ring.parameters})
+
+
 class SliceSystem(NamedTuple):
     """The equations of a slice with polynomial coefficients: what elimination works on.
 
@@ -145,7 +181,7 @@ class SliceSystem(NamedTuple):
     criterion: Criterion
 
 
-def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> SliceSystem:
+def on_slice(system: ParametricSystem, parameters: Ratios) -> SliceSystem:
     """Substitute rational functions of the axes for the parameters.
 
     Parameters
@@ -225,7 +261,7 @@ ALONG, OVER = "<along>", "<over>"
 
 
 def with_root(
-    system: ParametricSystem, parameters: Mapping[str, Ratio], along: int, minimal: UnivariatePolynomial
+    system: ParametricSystem, parameters: Ratios, along: int, minimal: UnivariatePolynomial
 ) -> ParametricSystem:
     """The system on the lines of a slice at the roots of a polynomial, which are one more unknown, the last one.
 
@@ -243,7 +279,7 @@ def with_root(
     def moved(p: TrigonometricPolynomial, is_condition: bool = False) -> TrigonometricPolynomial:
         terms = _substitute(system, p, parameters)
         scale = lcm(d for _, d in terms.values())
-        found: dict[tuple[int, ...], fmpq] = {}
+        found: RationalPolynomial = {}
         for monomial, (numerator, denominator) in terms.items():
             # times the denominator's square where the sign matters
             cleared = numerator * (scale / denominator) * (scale if is_condition else one)
@@ -262,24 +298,20 @@ def with_root(
     )
 
 
-def _one(parameters: Mapping[str, Ratio]) -> Coefficient:
+def _one(parameters: Ratios) -> Coefficient:
     """Of the parameters' ring."""
     return next((constant_like(numerator, 1) for numerator, _ in parameters.values()), PLANE.constant(1))
 
 
-def element_on_slice(
-    system: ParametricSystem, p: TrigonometricPolynomial, parameters: Mapping[str, Ratio]
-) -> UnknownPolynomial:
+def element_on_slice(system: ParametricSystem, p: TrigonometricPolynomial, parameters: Ratios) -> UnknownPolynomial:
     """An element of the system's ring on a slice, up to a factor that vanishes only on its ``boundary``."""
     return _without_denominators(_substitute(system, p, parameters))
 
 
-def _substitute(
-    system: ParametricSystem, p: TrigonometricPolynomial, parameters: Mapping[str, Ratio]
-) -> dict[tuple[int, ...], Ratio]:
+def _substitute(system: ParametricSystem, p: TrigonometricPolynomial, parameters: Ratios) -> dict[Monomial, Ratio]:
     one = _one(parameters)
     values = [parameters[name] for name in system.ring.parameters]
-    result: dict[tuple[int, ...], Ratio] = {}
+    result: dict[Monomial, Ratio] = {}
     for monomial, part in system.ring.split(p).items():
         total: Ratio = (0 * one, one)
         for exponents, coefficient in part.items():
@@ -293,13 +325,13 @@ def _substitute(
     return result
 
 
-def _without_denominators(p: dict[tuple[int, ...], Ratio]) -> UnknownPolynomial:
+def _without_denominators(p: dict[Monomial, Ratio]) -> UnknownPolynomial:
     scale = lcm(d for _, d in p.values())
     return {m: n * (scale / d) for m, (n, d) in p.items()}
 
 
 def at_point(
-    system: ParametricSystem, values: Mapping[str, fmpq]
+    system: ParametricSystem, values: Values
 ) -> tuple[tuple[RationalPolynomial, ...], tuple[tuple[RationalPolynomial, ...], ...]]:
     """Equations and Jacobian with rational numbers for the parameters, exactly and with their true signs."""
     return (
@@ -308,14 +340,12 @@ def at_point(
     )
 
 
-def polynomial_at(
-    system: ParametricSystem, p: TrigonometricPolynomial, values: Mapping[str, fmpq]
-) -> RationalPolynomial:
+def polynomial_at(system: ParametricSystem, p: TrigonometricPolynomial, values: Values) -> RationalPolynomial:
     """Any element of the system's ring with rational numbers for the parameters, exactly."""
     return _specialised(system, terms_of(system.ring, p), values)
 
 
-def _specialised(system: ParametricSystem, terms: Terms, values: Mapping[str, fmpq]) -> RationalPolynomial:
+def _specialised(system: ParametricSystem, terms: Terms, values: Values) -> RationalPolynomial:
     numbers = [values[name] for name in system.ring.parameters]
     result: RationalPolynomial = {}
     for monomial, part in terms:

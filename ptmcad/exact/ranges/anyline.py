@@ -34,10 +34,11 @@ from ptmcad.algebra.polynomials import (
 )
 from ptmcad.algebra.quotient import QuotientAlgebra, matrix_of, multiples, multiplication_denominator, trace_form
 from ptmcad.algebra.real_roots import gaps, isolate
+from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError
 from ptmcad.exact.models import ParametricSystem, system_from
-from ptmcad.exact.models.system import ALONG, RationalPolynomial, SliceSystem, lifted, on_slice, saturated, with_root
+from ptmcad.exact.models.system import ALONG, SliceSystem, lifted, on_slice, saturated, with_root
 from ptmcad.exact.point_system import DegeneratePoint, point_system
 from ptmcad.exact.ranges.line import END_WIDTH, intervals, runs
 from ptmcad.exact.statics import is_positive

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from flint import arb, ctx
 
+from ptmcad.algebra.polynomials import Monomial
 from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import ParametricSystem, Part, Terms
 from ptmcad.formulas.axisfunctions import expression_formula
@@ -94,7 +95,7 @@ class _Elements(NamedTuple):
         return [*turns, *by[turned:]]
 
 
-def _lowered(terms: Terms, k: int) -> Iterator[tuple[tuple[int, ...], Part]]:
+def _lowered(terms: Terms, k: int) -> Iterator[tuple[Monomial, Part]]:
     """The derivative by a coordinate."""
     for monomial, part in terms:
         if monomial[k]:

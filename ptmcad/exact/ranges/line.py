@@ -20,7 +20,6 @@ from typing import Any
 from flint import fmpq
 
 from ptmcad.algebra.numbers import in_order, roots_in
-from ptmcad.algebra.polynomials import Ratio, from_expression
 from ptmcad.algebra.real_roots import gaps
 from ptmcad.answer.counts import Counts, operation_number
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
@@ -28,8 +27,9 @@ from ptmcad.answer.regionmap import Component
 from ptmcad.answer.words import noun
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
 from ptmcad.exact.folds import with_folds
-from ptmcad.exact.models import ParametricSystem, system_from
-from ptmcad.exact.stages import count_at, domain_limits
+from ptmcad.exact.models import system_from
+from ptmcad.exact.models.system import SystemOnAxes, on_axes
+from ptmcad.exact.stages import count_at
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.exact.witness import points
 from ptmcad.question.line import Line, line_of
@@ -83,10 +83,9 @@ def intervals(slice: Slice, along: str, at: Mapping[str, Any], working: int | No
     )
 
 
-def system_on(line: Line) -> tuple[ParametricSystem, dict[str, Ratio]]:
-    """The model's system and its parameters on the line, for the engine."""
-    system = system_from(line.model)
-    return system, {name: from_expression(line.parameters[name]) for name in system.ring.parameters}
+def system_on(line: Line) -> SystemOnAxes:
+    """The model's system on the line, for the engine."""
+    return on_axes(system_from(line.model), line.parameters)
 
 
 def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Component], ...]:
@@ -99,22 +98,20 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Component], ...]
     DegenerateSliceError, InfiniteSolutionsError
         See `intervals`.
     """
-    system, parameters = system_on(line)
+    on = system_on(line)
     low, high = line.along.low, line.along.high
-    window = interval_of(line.along)
+    # the second axis does not occur, so any range serves for it
+    window = (interval_of(line.along), (fmpq(0), fmpq(1)))
     where = equalities(line.at, shortest_text)
     try:
-        # the second axis does not occur, so any range serves for it
-        variety = discriminant_variety(
-            system, parameters, (window, (fmpq(0), fmpq(1))), domain_limits(system, parameters), frozenset({"infinity"})
-        )
+        variety = discriminant_variety(on, window, frozenset({"infinity"}))
     except DegenerateSliceError as error:
-        told = with_folds(error, line.model, system, parameters, points((window, (fmpq(0), fmpq(1)))))
+        told = with_folds(error, line.model, on, points(window))
         if told is not error:
             raise told from error
         raise DegenerateSliceError(
             f"the line {where} lies inside the discriminant variety: at every {line.along.name} some "
-            f"{noun(line.model, 1)} has a singular {system.criterion.matrix}; fix another value"
+            f"{noun(line.model, 1)} has a singular {on.system.criterion.matrix}; fix another value"
         ) from error
     except InfiniteSolutionsError as error:
         raise InfiniteSolutionsError(
@@ -138,8 +135,7 @@ def samples_between(along: Axis, numbers: tuple[AlgebraicNumber, ...]) -> tuple[
 
 def counts_at(line: Line, value: Fraction) -> Counts:
     """Numbers of solutions at a rational value that is not critical."""
-    system, parameters = system_on(line)
-    return count_at(line.place(value), system, parameters, (from_fraction(value), fmpq(0))).counts
+    return count_at(line.place(value), system_on(line), (from_fraction(value), fmpq(0))).counts
 
 
 def is_regular(line: Line, value: Fraction) -> bool:

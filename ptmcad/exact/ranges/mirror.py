@@ -19,11 +19,13 @@ from typing import NamedTuple
 
 from flint import arb
 
-from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, constant_like
+from ptmcad.algebra.polynomials import Coefficient, Monomial, UnknownPolynomial, constant_like
 from ptmcad.text.balls import ball_over
 
 Gaussian = tuple[Coefficient, Coefficient]
 """Real and imaginary part, polynomials in the axes."""
+Waves = dict[Monomial, Gaussian]
+"""A sum of e_m z^m: m -> e_m."""
 
 
 class Mirror(NamedTuple):
@@ -64,10 +66,10 @@ def mirror_of(equations: Sequence[UnknownPolynomial], angles: int) -> Mirror | N
     return None
 
 
-def _fourier(p: UnknownPolynomial, angles: int) -> dict[tuple[int, ...], Gaussian]:
+def _fourier(p: UnknownPolynomial, angles: int) -> Waves:
     """The coefficients e_m of a polynomial in cosines and sines, all times a power of two."""
     degree = max(map(sum, p))
-    total: dict[tuple[int, ...], Gaussian] = {}
+    total: Waves = {}
     for powers, coefficient in p.items():
         zero = constant_like(coefficient, 0)
         part = {(0,) * angles: (coefficient * 2 ** (degree - sum(powers)), zero)}
@@ -80,9 +82,9 @@ def _fourier(p: UnknownPolynomial, angles: int) -> dict[tuple[int, ...], Gaussia
     return {m: (a, b) for m, (a, b) in total.items() if not (a.is_zero() and b.is_zero())}
 
 
-def _times_wave(p: dict[tuple[int, ...], Gaussian], angle: int, sine: bool) -> dict[tuple[int, ...], Gaussian]:
+def _times_wave(p: Waves, angle: int, sine: bool) -> Waves:
     """A sum times 2 cos or 2 sin of an angle: z + 1/z, or -i z + i / z."""
-    result: dict[tuple[int, ...], Gaussian] = {}
+    result: Waves = {}
     for m, (a, b) in p.items():
         for step in (1, -1):
             to = (*m[:angle], m[angle] + step, *m[angle + 1 :])
@@ -93,7 +95,7 @@ def _times_wave(p: dict[tuple[int, ...], Gaussian], angle: int, sine: bool) -> d
     return result
 
 
-def _is_kept(waves: dict[tuple[int, ...], Gaussian], w: Gaussian) -> bool:
+def _is_kept(waves: Waves, w: Gaussian) -> bool:
     """Whether a reflection takes a sum to itself or to its negative."""
     turned = []
     for m, e in waves.items():

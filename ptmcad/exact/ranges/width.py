@@ -56,6 +56,8 @@ _END_WIDTH = fmpq(1, 2**120)
 _MIN_PIECE = fmpq(1, 2**50)
 """Length of a piece, against the strip's, that is not cut any more."""
 _MAX_PIECES = 20_000
+Ends = tuple[End, End]
+"""Of an interval of the parameter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +68,7 @@ class _Candidate:
     at: Interval
     width: Interval
     critical: AlgebraicNumber | None = None
-    ends: tuple[End, End] | None = None
+    ends: Ends | None = None
     attained: bool | None = True
     sides: dict[End, bool | None] = field(default_factory=dict)
 
@@ -146,14 +148,14 @@ class _WidthSearch:
         if possible is not None and possible != certain:
             self.add_at(line.end, (fmpq(0), _width(possible)[1]), None, None)
 
-    def add_at(self, end: BaseEnd, width: Interval, ends: tuple[End, End] | None, attained: bool | None) -> None:
+    def add_at(self, end: BaseEnd, width: Interval, ends: Ends | None, attained: bool | None) -> None:
         """A candidate at an end of a strip."""
         place = Place.EDGE if end.root is None else Place.CRITICAL
         critical = None if end.root is None else algebraic_number(end.root)
         at = end_interval(end, _END_WIDTH)
         self.candidates.append(_Candidate(place, at, width, critical, ends, attained))
 
-    def attains(self, end: BaseEnd, width: Interval, ends: tuple[End, End] | None) -> bool | None:
+    def attains(self, end: BaseEnd, width: Interval, ends: Ends | None) -> bool | None:
         """Whether on the line at an end of a strip there is a range of a width that is its limit there."""
         ranges = self.lines.get(_value(end))
         if ranges is None:
@@ -330,7 +332,7 @@ def _value(end: BaseEnd) -> End:
     return number if number.exact is None else number.exact
 
 
-def _limits(strip: RangeStrip, end: BaseEnd) -> tuple[End, End] | None:
+def _limits(strip: RangeStrip, end: BaseEnd) -> Ends | None:
     low, high = (limit(branch, strip, end, _END_WIDTH) for branch in strip.branches)
     return None if low is None or high is None else (low, high)
 
@@ -340,7 +342,7 @@ def _width(span: Span) -> Interval:
     return interval_of(known)
 
 
-def _within(ends: tuple[End, End], span: Span) -> bool:
+def _within(ends: Ends, span: Span) -> bool:
     """Whether limits are within a range, ends included."""
     low, high, first, last = map(AlgebraicNumber.of, (*ends, span.low, span.high))
     return compare(first, low) <= 0 <= compare(last, high)

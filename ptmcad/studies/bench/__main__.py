@@ -9,7 +9,6 @@ are medians of the ratios within a round, of processor time.
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
@@ -26,6 +25,7 @@ from ptmcad.question.savings import ALL, SAVINGS, Engine
 from ptmcad.question.slice import Slice
 from ptmcad.studies.bench import scaling
 from ptmcad.studies.bench.harness import Job, classification, made_with, summary, table, turns
+from ptmcad.studies.bench.stored import write_study
 from ptmcad.studies.bench.study import difference
 
 FLOOR = (sys.executable, "-c", "import flint, numpy, click, yaml")
@@ -135,8 +135,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         rows = measure(options)
         if options.out is not None:
             found["rows"] = [row.dropna().to_dict() for _, row in rows.iterrows()]
-            text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
-            write_files(options.out, {f"{name}.json": text_writer(text)})
+            write_files(options.out, {f"{name}.json": text_writer(write_study(found))})
             if options.study == "scaling":
                 scaling.save_picture(rows, options.out)
     except (PtmcadError, OSError) as error:

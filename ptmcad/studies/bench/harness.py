@@ -81,6 +81,11 @@ class Job:
             self.usages.append(usage)
         return usage
 
+    @property
+    def times(self) -> Row:
+        """Of its runs."""
+        return times([usage.seconds for usage in self.usages])
+
     def said(self) -> str:
         """The text of the last answer."""
         return self.usages[-1].output
@@ -153,7 +158,7 @@ def summary(jobs: Sequence[Job], over: str = "", figure: str = "processor_second
     for job in jobs:
         row: Row = {"subject": job.subject, "what": job.what, "setting": job.setting}
         if job.usages and not job.reason:
-            row |= times([usage.seconds for usage in job.usages])
+            row |= job.times
             row["processor"] = round(statistics.median(usage.processor_seconds for usage in job.usages), 4)
             row["peak"] = round(max(usage.peak_mebibytes for usage in job.usages), 4)
             pairs = zip(job.usages, () if jobs[0].reason else jobs[0].usages, strict=False)

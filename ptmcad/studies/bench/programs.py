@@ -14,26 +14,25 @@ import shutil
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from pathlib import Path
-from typing import Any
-
-import yaml
 
 from ptmcad.algebra import msolve
 from ptmcad.algebra.polynomials import common_factor, from_terms, irreducible_factors, to_plane
 from ptmcad.answer.regionmap import Kind, RegionMap
 from ptmcad.exact.models.elimination import elimination_system
 from ptmcad.exact.slicevariety import slice_variety
-from ptmcad.exact.stages import domain_limits, problem_of
+from ptmcad.exact.stages import problem_of
 from ptmcad.question.slice import Slice
 from ptmcad.studies.bench.harness import Asked, Case, Job, Row
 from ptmcad.studies.bench.process import Usage
+from ptmcad.studies.texts import texts_beside
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
 
+Verdict = tuple[bool, str]
+"""Whether an answer is the map's, and what it is in words."""
 END = "-- the script was read to its end --"
 QUIT = "Quitting the QEPCAD system"
-TEXTS: Mapping[str, Any] = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
+TEXTS = texts_beside(__file__, "programs.yaml")
 _ERROR = re.compile(r"^\s*\? .*$|^.*(?:\bError\b|Failure|Reason for|expected!).*$", re.MULTILINE)
 _CELL = re.compile(r"Information about the cell \(\d+,\d+\) -+$(.*?)^-{50,}$", re.MULTILINE | re.DOTALL)
 _TRUE = re.compile(r"^Truth value\s*: T", re.MULTILINE)
@@ -53,20 +52,18 @@ def elimination(slice: Slice, has_map: bool) -> tuple[list[str], list[str]]:
     if has_map:
         system = slice_variety(slice).system
     else:
-        problem = problem_of(slice)
-        limits = domain_limits(problem.system, problem.parameters)
-        system = elimination_system(problem.system, problem.parameters, slice.axis_names, limits, False)
+        system = elimination_system(problem_of(slice).on, slice.axis_names, False)
     names = [*(f"v{n}" for n in range(len(system.unknowns))), "u0", "u1"]
     return names, [text.replace(" ", "") for text in system.texts(tuple(names))]
 
 
-def for_singular(case: Case) -> Mapping[str, Any]:
+def for_singular(case: Case) -> Row:
     """Names and polynomials of the system, and what is eliminated."""
     names, polynomials = elimination(case.slice, case.exact is not None)
     return {"names": ",".join(names), "ideal": ",".join(polynomials), "unknowns": "*".join(names[:-2])}
 
 
-def by_singular(result: RegionMap, said: str) -> tuple[bool, str]:
+def by_singular(result: RegionMap, said: str) -> Verdict:
     """Whether the curves are the map's."""
     return same_curves(result, curves(said.partition(END)[0].split(), factors=True))
 
@@ -83,7 +80,7 @@ def start_msolve(case: Case) -> Asked:
     return {"command": command, "answer": target}
 
 
-def by_msolve(result: RegionMap, said: str) -> tuple[bool, str]:
+def by_msolve(result: RegionMap, said: str) -> Verdict:
     """Whether the curves are the map's."""
     lines = "".join(line for line in said.splitlines() if not line.startswith("#"))
     return same_curves(result, curves(lines.strip("[]: \n").split(",")))
@@ -106,7 +103,7 @@ def curves(polynomials: Sequence[str], *, factors: bool = False) -> set[PlanePol
     return {to_plane(factor) for p in groups for factor in irreducible_factors(p)}
 
 
-def same_curves(result: RegionMap, found: set[PlanePolynomial]) -> tuple[bool, str]:
+def same_curves(result: RegionMap, found: set[PlanePolynomial]) -> Verdict:
     """Whether the critical curves are there, and besides them only curves that the map has, too."""
     critical = {c.polynomial for c in result.components if c.kind is Kind.CRITICAL}
     missing, foreign = critical - found, found - {c.polynomial for c in result.components}
@@ -117,7 +114,7 @@ def same_curves(result: RegionMap, found: set[PlanePolynomial]) -> tuple[bool, s
 # ------------------------------------------------------------------------------------------------- cells of the curves
 
 
-def for_gcad(case: Case) -> Mapping[str, Any]:
+def for_gcad(case: Case) -> Row:
     """The product of the map's curves, the window, and the step that puts the map's base axis first."""
     assert case.exact is not None
     curves = [c.polynomial.text(("x", "y")) for c in case.exact.components if not c.left_out]
@@ -126,12 +123,12 @@ def for_gcad(case: Case) -> Mapping[str, Any]:
     return {"product": product, "window": window, "step": 1 - 2 * case.exact.base}
 
 
-def by_gcad(result: RegionMap, said: str) -> tuple[bool, str]:
+def by_gcad(result: RegionMap, said: str) -> Verdict:
     """The number of cells, which may be another."""
     return True, f"{json.loads(said)['cells']} cells, the map has {len(result.cells)}"
 
 
-def for_qepcad(case: Case) -> Mapping[str, Any]:
+def for_qepcad(case: Case) -> Row:
     """The problem that ``ptmcad variety --format qepcad`` writes, with the map's base axis first."""
     assert case.exact is not None
     problem = slice_variety(case.slice).text("qepcad").rstrip()
@@ -141,7 +138,7 @@ def for_qepcad(case: Case) -> Mapping[str, Any]:
     return {"problems": problem}
 
 
-def by_qepcad(result: RegionMap, said: str) -> tuple[bool, str]:
+def by_qepcad(result: RegionMap, said: str) -> Verdict:
     """Whether each of the map's cells has the sample of an open cell at least, and each sample lies in a cell.
 
     Raises
@@ -162,7 +159,7 @@ def by_qepcad(result: RegionMap, said: str) -> tuple[bool, str]:
 # --------------------------------------------------------------------------------------------------------- all of them
 
 
-SESSIONS: Mapping[str, tuple[Sequence[str], str, Callable[[Case], Mapping[str, Any]]]] = {
+SESSIONS: Mapping[str, tuple[Sequence[str], str, Callable[[Case], Row]]] = {
     "singular": (("Singular", "--quiet", "--no-rc"), END, for_singular),
     "qepcad": (("qepcad", "-noecho", "+N20000000"), QUIT, for_qepcad),  # so many garbage collected cells
     "gcad": ((sys.executable, "-"), "}", for_gcad),

@@ -233,7 +233,7 @@ def measure(
         "time_limit": time_limit,
         "quick": quick,
         "verified": sound,
-        "floor": times([usage.seconds for usage in floor.usages]),
+        "floor": floor.times,
         "measurements": (
             *measured,
             *(measurement(method, "", reason=why) for method, why in found.items() if isinstance(why, str)),
@@ -275,7 +275,7 @@ def _measured(case: Case, job: Job) -> Row:
     return measurement(
         job.what,
         job.setting,
-        seconds=times([usage.seconds for usage in job.usages]),
+        seconds=job.times,
         computing=times([json.loads(job.said())["timings"]["total"]]) if job.said().startswith("{") else None,
         peak=round(max(usage.peak_mebibytes for usage in job.usages), 1),
         **read(case, job),

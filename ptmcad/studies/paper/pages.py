@@ -20,20 +20,18 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-import yaml
-
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.solving import solve
+from ptmcad.options import Progress
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.studies.paper import equations
 from ptmcad.studies.paper.claim import Claim, Verdict, judge, texts
 from ptmcad.studies.paper.equations import INTRODUCTION, Equation
 from ptmcad.studies.paper.maps import FIGURES, POINTS, region_map
 from ptmcad.studies.tables import page
+from ptmcad.studies.texts import texts_beside
 from ptmcad.text.numerals import equalities
 from ptmcad.version import __version__
-
-Progress = Callable[[str, int, int], None]
 
 PICTURES = ("png", "svg")
 FILES = (
@@ -43,7 +41,7 @@ FILES = (
 )  # fmt: skip
 """What a reproduction writes; the last one vouches for the others."""
 PAPER = "P. Wenger and D. Chablat, Kinetostatic Analysis and Solution Classification of a Planar Tensegrity Mechanism"
-FORMS: Mapping[str, Any] = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
+FORMS = texts_beside(__file__, "pages.yaml")
 _SIGNS = dict(zip(Verdict, "✓≠✗–?", strict=True))
 NOT_AS_PRINTED = (Verdict.REFUTED, Verdict.CORRECTED, Verdict.UNDECIDED)
 

@@ -20,17 +20,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cache, partial
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import sympy as sp
-import yaml
 
 from ptmcad.answer.poses import Poses
 from ptmcad.ask.solving import solve
 from ptmcad.model import ptm
 from ptmcad.model.evaluate import evaluate
+from ptmcad.studies.texts import texts_beside
 
 Expr = Any
 """A SymPy expression; SymPy has no types of its own for a type checker."""
@@ -58,7 +57,7 @@ T, e1, e2, height, scale = sp.symbols("T e1 e2 height scale")
 ANGLES = (*CIRCLES[0], *CIRCLES[1])
 _ALL = (*PARAMETERS, *LENGTHS, *ANGLES, t1, t2, T, e1, e2, height, scale)
 SYMBOLS = {str(symbol): symbol for symbol in _ALL}
-TEXTS: Mapping[str, Any] = yaml.safe_load(Path(__file__).with_name("expressions.yaml").read_text(encoding="utf-8"))
+TEXTS = texts_beside(__file__, "expressions.yaml")
 """What further names stand for, in the language of statements; and the paper's equations."""
 
 

@@ -16,7 +16,7 @@ import io
 import json
 import platform
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from math import inf
 from statistics import median
@@ -27,6 +27,7 @@ from ptmcad.answer.poses import DIGITS
 from ptmcad.extras import Extra, require
 from ptmcad.model import ptm
 from ptmcad.model.evaluate import value_at
+from ptmcad.options import Progress
 from ptmcad.show.columns import aligned
 from ptmcad.studies.stress.case import FEW, Case, Degenerate, Question, degenerate, free_lengths
 from ptmcad.studies.stress.judgement import Row, judge
@@ -49,8 +50,6 @@ _MECHANISM = ptm()
 Values = dict[str, Fraction]
 
 HEADINGS = ("case", "known", "ptmcad", "double", "double's error", "condition", "bits")
-
-Progress = Callable[[str, int, int], None]
 
 
 def campaign(

@@ -34,20 +34,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache
-from pathlib import Path
 from typing import Any
-
-import yaml
 
 from ptmcad.errors import ConfigError, shown
 from ptmcad.model import ptm
+from ptmcad.studies.texts import texts_beside
 from ptmcad.text.expressions import constant
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import did_you_mean
 
 ALL = "all"
 """The name that stands for every named case."""
-TEXTS: Mapping[str, Any] = yaml.safe_load(Path(__file__).with_name("cases.yaml").read_text(encoding="utf-8"))
+TEXTS = texts_beside(__file__, "cases.yaml")
 
 Span = tuple[Fraction, Fraction]
 Parameters = Mapping[str, Fraction]

@@ -16,10 +16,10 @@ from forger.consistency import (
     window_area,
     with_plan,
 )
-from ptmcad.algebra.polynomials import from_expression
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.exact.assembly import _solutions
 from ptmcad.exact.models import system_of
+from ptmcad.exact.models.system import on_axes
 from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -70,8 +70,7 @@ def other_samples(r: RegionMap) -> Iterator[Alteration]:
 
 
 def _sampled(r: RegionMap, s: int) -> RegionMap:
-    system = system_of(r.slice.mechanism)
-    parameters = {name: from_expression(r.slice.parameters[name]) for name in system.ring.parameters}
+    on = on_axes(system_of(r.slice.mechanism), r.slice.parameters)
     cells = list(r.cells)
     claims = Claims(r)
     other = r.slice.axes[1 - r.base]
@@ -84,7 +83,7 @@ def _sampled(r: RegionMap, s: int) -> RegionMap:
         ):
             by /= 2
         at = (u, v + by) if r.base == 0 else (v + by, u)
-        found = count_at("a sample", system, parameters, (from_fraction(at[0]), from_fraction(at[1])))
+        found = count_at("a sample", on, (from_fraction(at[0]), from_fraction(at[1])))
         cells[n] = replace(cell, sample=Point(r.slice.axis_names, *at), solutions=_solutions(found))
     return _sampled_regions(replace(r, cells=tuple(cells)))
 
