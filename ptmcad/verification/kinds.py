@@ -58,11 +58,17 @@ class CheckedKind(NamedTuple):
         return bool(self.boundary)
 
     def with_margins(self, point: Derivation) -> Derivation:
-        """With the margins as conditions for stability, of a model without free lengths."""
-        if not self.has_exact_maps:
-            return point
-        margins = tuple(margin.value for margin in self.margins(point))
-        return replace(point, stability=(*point.stability, *margins)) if margins else point
+        """With the margins as conditions for stability, of a model without free lengths.
+
+        Raises
+        ------
+        Violation
+            When there are such conditions already: with these the last alone would be decisive.
+        """
+        margins = tuple(margin.value for margin in self.margins(point)) if self.has_exact_maps else ()
+        if margins and point.stability:
+            raise Violation("where conditions say what is stable there are no exact maps by a predicate")
+        return replace(point, stability=margins) if margins else point
 
 
 def _is_told(count: Count) -> Callable[[Model], bool]:
