@@ -64,7 +64,7 @@ def test_maps_by_a_predicate(true: RegionMap) -> None:
 
 def test_no_exact_map_by_a_predicate_where_conditions_say_what_is_stable() -> None:
     """The exact engine makes none; a forged one would be checked by the last of all conditions alone."""
-    row = CheckedKind(kind_of(Count.STABLE).is_of, lambda point: iter([CheckedMargin(point.equations[0])]))
+    row = CheckedKind(kind_of(Count.ADMISSIBLE).is_of, upwards, boundary="level")
     loop = derivation_of(load("four-bar").model)
     assert loop.stability
     with pytest.raises(Violation, match="no exact maps by a predicate"):
