@@ -279,7 +279,7 @@ class System(Model):
 
     @property
     def conditions(self) -> Mapping[str, Tree]:
-        return _numbered("positive", self.inequalities)
+        return {**super().conditions, **_numbered("positive", self.inequalities)}
 
     @cached_property
     def polynomials(self) -> Mapping[str, tuple[Tree, ...]]:

@@ -190,6 +190,8 @@ def count_fault(count: Count, model: Model, parameters: Expressions) -> str:
         return predicate.of_systems
     if predicate is not None and predicate.needs_free_lengths and not have_free_lengths(model, parameters):
         return predicate.without_free_lengths
+    if predicate is not None and mechanism is not None and mechanism.followers:  # margins are in the unknowns alone
+        return f"with x-joints {count.value} is not counted yet: count stable or total"
     if kind.needs in model.criterion.counts:
         return ""
     if not kind.is_of_stable:

@@ -58,11 +58,18 @@ class CheckedKind(NamedTuple):
         return bool(self.boundary)
 
     def with_margins(self, point: Derivation) -> Derivation:
-        """With the margins as conditions for stability, of a model without free lengths."""
-        if not self.has_exact_maps:
+        """With the margins as conditions for stability, of a model without free lengths.
+
+        Raises
+        ------
+        Violation
+            When there are such conditions already: with these the last alone would be decisive.
+        """
+        if not (self.is_predicate and self.has_exact_maps):
             return point
-        margins = tuple(margin.value for margin in self.margins(point))
-        return replace(point, stability=(*point.stability, *margins)) if margins else point
+        if point.stability:
+            raise Violation("where conditions say what is stable there are no exact maps by a predicate")
+        return replace(point, stability=tuple(margin.value for margin in self.margins(point)))
 
 
 def _is_told(count: Count) -> Callable[[Model], bool]:
@@ -70,7 +77,9 @@ def _is_told(count: Count) -> Callable[[Model], bool]:
 
 
 def _is_of_springs(model: Model) -> bool:
-    return model.whole is not None and Count.STABLE in meaning_of(model).kinds
+    """Whether margins may be asked of its points: those of X-joints are not in its unknowns alone."""
+    mechanism = model.whole
+    return mechanism is not None and not mechanism.xjoints and Count.STABLE in meaning_of(model).kinds
 
 
 def _longer_than_free(point: Derivation) -> Iterator[CheckedMargin]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from math import hypot
 
@@ -14,6 +15,8 @@ from ptmcad.model import Mechanism
 from ptmcad.model.evaluate import value_at
 from ptmcad.question.config import load, slice_from_mapping
 from ptmcad.question.counts import KINDS, Count
+from ptmcad.question.slice import count_fault
+from ptmcad.verification.kinds import kind_of
 
 
 @pytest.mark.parametrize("count", list(Count))
@@ -54,3 +57,16 @@ def test_a_count_that_makes_no_sense_is_refused_whoever_asks() -> None:
             slice_from_mapping({**equations, "count": count})
         with pytest.raises(ConfigError, match=why):
             ptmcad.classify(slice, count=count)
+
+
+def test_margins_are_in_the_unknowns_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With X-joints points depend on angles that follow others: no margin is made of these, whichever count asks."""
+    kind = KINDS[Count.ADMISSIBLE]
+    assert kind.predicate is not None
+    asks = replace(kind, predicate=replace(kind.predicate, needs_free_lengths=False))
+    monkeypatch.setitem(KINDS, Count.ADMISSIBLE, asks)
+    for name, found in (("x-joint", "with x-joints admissible is not counted yet"), ("four-bar", "")):
+        slice = load(name)
+        fault = count_fault(Count.ADMISSIBLE, slice.model, slice.parameters)
+        assert fault.split(":")[0] == found
+        assert kind_of(Count.ADMISSIBLE).is_of(slice.model) is (not found)

@@ -17,8 +17,9 @@ from ptmcad.question.config import load
 from ptmcad.question.counts import KINDS, Count, Margin
 from ptmcad.text.tree import Call, Name
 from ptmcad.verification import kinds
-from ptmcad.verification.derivation import Derivation
+from ptmcad.verification.derivation import Derivation, derivation_of
 from ptmcad.verification.kinds import CheckedKind, CheckedMargin, kind_of
+from ptmcad.verification.report import Violation
 
 pytest.importorskip("numba")
 UPWARDS = Call("sin", Name("th1"))
@@ -59,3 +60,13 @@ def test_maps_by_a_predicate(true: RegionMap) -> None:
         false = ptmcad.verify(recounted(true, by), boxes=0)
         assert false.violation is not None
         assert false.violation.startswith("counts" if by > 0 or true.regions[-1].further["admissible"] else "form")
+
+
+def test_no_exact_map_by_a_predicate_where_conditions_say_what_is_stable() -> None:
+    """The exact engine makes none; a forged one would be checked by the last of all conditions alone."""
+    row = CheckedKind(kind_of(Count.ADMISSIBLE).is_of, upwards, boundary="level")
+    loop = derivation_of(load("four-bar").model)
+    assert loop.stability
+    with pytest.raises(Violation, match="no exact maps by a predicate"):
+        row.with_margins(loop)
+    assert kind_of(Count.STABLE).with_margins(loop) is loop
