@@ -18,6 +18,8 @@ _LONG_BITS = 1000
 
 
 Interval = tuple[fmpq, fmpq]
+Window = tuple[Interval, Interval]
+"""The ranges of two axes."""
 
 
 class RealRoot(NamedTuple):
@@ -26,6 +28,11 @@ class RealRoot(NamedTuple):
     polynomial: fmpz_poly
     low: fmpq
     high: fmpq
+
+    @classmethod
+    def of(cls, value: fmpq) -> RealRoot:
+        """A rational number."""
+        return cls(fmpz_poly([-int(value.p), int(value.q)]), value, value)
 
     @property
     def is_rational(self) -> bool:

@@ -20,6 +20,8 @@ from ptmcad.algebra.resultants import Check, interpolate_rows, nothing
 
 Rows = Sequence[Coefficient]
 """A polynomial in v over Z[u, w]: its coefficients, constant first, the last one not zero."""
+_Univariate = Sequence[Sequence[fmpz_poly]]
+"""One or two of them, their coefficients in one variable."""
 
 
 def rows_in(p: Coefficient, axis: int) -> tuple[Coefficient, ...]:
@@ -38,16 +40,12 @@ def at_value(rows: Rows, v: fmpq) -> Coefficient:
 
 def discriminant(rows: Rows, check: Check = nothing) -> Coefficient:
     """The discriminant with respect to v, for degree at least 1, up to a nonzero constant."""
-    (shorter,), powers = _deflated([rows])
-    return _inflated(_interpolated([shorter], lambda ps: resultants.discriminant(ps[0], check), _of_one, check), powers)
+    return _interpolated([rows], lambda ps: resultants.discriminant(ps[0], check), _of_one, check)
 
 
 def resultant(p: Rows, q: Rows, check: Check = nothing) -> Coefficient:
     """The resultant with respect to v, up to a nonzero constant."""
-    shorter, powers = _deflated([p, q])
-    return _inflated(
-        _interpolated(shorter, lambda ps: resultants.resultant(ps[0], ps[1], check), _of_two, check), powers
-    )
+    return _interpolated([p, q], lambda ps: resultants.resultant(ps[0], ps[1], check), _of_two, check)
 
 
 def predicted_work(polynomials: Sequence[Rows]) -> int:
@@ -105,29 +103,30 @@ def _degrees(rows: Rows, variable: int) -> tuple[UnivariatePolynomial, ...]:
     )
 
 
-def _of_one(ps: Sequence[Sequence[fmpz_poly]]) -> int:
+def _of_one(ps: _Univariate) -> int:
     return orders.discriminant_degree(ps[0])
 
 
-def _of_two(ps: Sequence[Sequence[fmpz_poly]]) -> int:
+def _of_two(ps: _Univariate) -> int:
     return orders.resultant_degree(ps[0], ps[1])
 
 
 def _interpolated(
     polynomials: Sequence[Rows],
-    compute: Callable[[Sequence[Sequence[fmpz_poly]]], fmpz_poly],
-    bound: Callable[[Sequence[Sequence[fmpz_poly]]], int],
+    compute: Callable[[_Univariate], fmpz_poly],
+    bound: Callable[[_Univariate], int],
     check: Check,
 ) -> Coefficient:
     """What is computed over Z[w] at integers u, as an element of Z[u, w]."""
-    degree = bound([_degrees(rows, 0) for rows in polynomials])
-    in_w = [[coefficients_in(row, 1) for row in rows] for rows in polynomials]  # of powers of w, in Z[u]
+    shorter, (k, m) = _deflated(polynomials)
+    degree = bound([_degrees(rows, 0) for rows in shorter])
+    in_w = [[coefficients_in(row, 1) for row in rows] for rows in shorter]  # of powers of w, in Z[u]
 
-    def at(k: int) -> fmpz_poly:
-        values = [[fmpz_poly([c(k) for c in row]) for row in rows] for rows in in_w]
+    def at(u: int) -> fmpz_poly:
+        values = [[fmpz_poly([c(u) for c in row]) for row in rows] for rows in in_w]
         return compute(values) if all(any(rows) for rows in values) else fmpz_poly([])
 
-    return PLANE.from_dict(interpolate_rows(at, degree, check))
+    return PLANE.from_dict({(i * k, j * m): c for (i, j), c in interpolate_rows(at, degree, check).items()})
 
 
 def _deflated(polynomials: Sequence[Rows]) -> tuple[list[Rows], tuple[int, int]]:
@@ -138,7 +137,3 @@ def _deflated(polynomials: Sequence[Rows]) -> tuple[list[Rows], tuple[int, int]]
         tuple(PLANE.from_dict({(int(i) // k, int(j) // m): c for (i, j), c in row.terms()}) for row in rows)
         for rows in polynomials
     ], (k, m)
-
-
-def _inflated(p: Coefficient, powers: tuple[int, int]) -> Coefficient:
-    return PLANE.from_dict({(int(i) * powers[0], int(j) * powers[1]): c for (i, j), c in p.terms()})

@@ -14,7 +14,7 @@ from ptmcad.answer.counts import Counts
 from ptmcad.answer.slicevariety import SliceVariety
 from ptmcad.ask.manyangles import counts_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
-from ptmcad.exact.counting import count_by_isolation
+from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models import system_from
 from ptmcad.exact.slicevariety import slice_variety
 from ptmcad.exact.stages import decomposition_of, problem_of
@@ -113,7 +113,7 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
     system = system_from(model)
     exact = {name: from_fraction(point[name]) for name in system.ring.parameters}
     try:
-        return count_by_isolation(system, exact, work_for(model))
+        return equilibria(system, exact, work_for(model)).counts
     except LimitReached:
         begun = monotonic()
     try:
@@ -124,4 +124,4 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
         more = work_by_msolve()
         if more is None:
             raise LimitReached(f"{error}; {MISSING}") from error
-        return count_by_isolation(system, exact, more)
+        return equilibria(system, exact, more).counts

@@ -61,10 +61,15 @@ def _across(across: Integers, up: Integers, *, corners: bool) -> tuple[Integers,
     begin = np.searchsorted(tops, line + low, side="left" if corners else "right")
     end = np.searchsorted(bottoms, line + high, side="right" if corners else "left")
     number = np.maximum(end - begin, 0)
-    first = np.repeat(np.arange(len(left)), number)
-    within = np.arange(len(first)) - np.repeat(np.cumsum(number) - number, number)
+    first, within = repeated(number)
     second = order[np.repeat(begin, number) + within]
     return first, second, np.minimum(high[first], high[second]) > np.maximum(low[first], low[second])
+
+
+def repeated(number: Integers) -> tuple[Integers, Integers]:
+    """For items that are repeated so many times: each repetition's item, and its number within it."""
+    item = np.repeat(np.arange(len(number)), number)
+    return item, np.arange(len(item)) - np.repeat(np.cumsum(number) - number, number)
 
 
 def connected(number: int, first: Integers, second: Integers) -> Integers:

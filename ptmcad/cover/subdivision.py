@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.cover.graph import repeated
 from ptmcad.cover.rectangles import MAX_STEPS, Cover
 
 Integers = NDArray[np.int64]
@@ -166,8 +167,8 @@ def subdivide(rectangles: Integers, steps: int) -> Subdivision:
         starts = np.cumsum(counts) - counts
         following = np.empty(int(counts.sum()), dtype=np.int64)
         for side, half in enumerate(halves):
-            rank = np.arange(int(half.sum())) - np.repeat(np.cumsum(numbers[side]) - numbers[side], numbers[side])
-            following[starts[2 * owner[half] + side] + rank] = members[half]
+            of, rank = repeated(numbers[side])
+            following[starts[2 * of + side] + rank] = members[half]
         members = following
         parts = np.stack([child, child + 1], axis=1).ravel()[counts > 0]
         counts = counts[counts > 0]

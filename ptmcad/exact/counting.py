@@ -67,19 +67,6 @@ class Equilibria(NamedTuple):
     held: int = 0
 
 
-def count_by_isolation(system: ParametricSystem, values: Values, most: WorkLimit | None = None) -> Counts:
-    """Counts at rational values of all parameters, by real-root isolation.
-
-    Raises
-    ------
-    DegeneratePoint
-        When some solution, real or not, is singular, or there are infinitely many.
-    LimitReached
-        When the quotient algebra is more work than `most`.
-    """
-    return equilibria(system, values, most).counts
-
-
 def equilibria(system: ParametricSystem, values: Values, most: WorkLimit | None = None) -> Equilibria:
     """All real solutions that count at rational values of all parameters, by real-root isolation.
 

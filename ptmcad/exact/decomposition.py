@@ -10,7 +10,7 @@ from typing import NamedTuple, TypeVar
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import Interval, order, sign_at
+from ptmcad.algebra.real_roots import Interval, Window, order, sign_at
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
 from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
@@ -23,7 +23,6 @@ from ptmcad.text.flint_numbers import to_fraction
 
 _T = TypeVar("_T")
 Sample = tuple[fmpq, fmpq]
-Window = tuple[Interval, Interval]
 Report = Callable[[int, int], None]
 """Called as report(done, total); may raise to stop."""
 

@@ -150,11 +150,9 @@ def _energy_ranks(given: Model, poses: Sequence[Pose]) -> list[int] | None:
     energies = [pose.energy for pose in poses if pose.energy is not None]
     if len(energies) < len(poses):
         return [0] * len(poses)
-    by_energy = sorted(range(len(poses)), key=lambda k: energies[k].center)
-    if all(energies[a].high < energies[b].low for a, b in pairwise(by_energy)):
-        return [by_energy.index(k) for k in range(len(poses))]
+    ranks = _ranks_by_enclosures(energies)
     # with X-joints the energy is no polynomial in the algebra's coordinates
-    return _ranks_by_enclosures(energies) if compiled(given).followers else None
+    return ranks if len({*ranks}) == len(poses) or compiled(given).followers else None
 
 
 def _exact_energy_ranks(

@@ -27,6 +27,7 @@ from ptmcad.algebra.residues import primes
 from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.errors import LimitReached
 from ptmcad.exact.decomposition import Sample
+from ptmcad.exact.models.system import SystemOnAxes
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.stages import SliceProblem
 
@@ -87,13 +88,14 @@ def sizes(problem: SliceProblem, solutions: int, seconds: float, most: WorkLimit
     """
     end = process_time() + seconds
     limits = problem.on.limits
-    usual = _at(problem, _GENERIC, solutions, most)
+    probe = _Probe(problem.on, solutions, most)
+    usual = probe.at(_GENERIC)
     if usual is None:
         return None
     found, tables = [], []
     for line in _LINES:
         known = [restricted(p, (_place(0, line), _place(1, line)), next(primes())) for p in limits]
-        values = _values(problem, solutions, line, (usual.algebra.basis, most))
+        values = probe.values(line, usual.algebra.basis)
         seen = _sizes_on(values, [g for g in known if g.degree() > 0], end)
         if seen is None:
             return None
@@ -104,8 +106,7 @@ def sizes(problem: SliceProblem, solutions: int, seconds: float, most: WorkLimit
     degrees = x.degree, y.degree
     # where solutions are lost on such a line they go to infinity there: no critical component
     lines = [
-        n.has_zero and _at(problem, at, solutions, most) is not None
-        for n, at in ((x, (fmpq(0), _GENERIC[1])), (y, (_GENERIC[0], fmpq(0))))
+        n.has_zero and probe.at(at) is not None for n, at in ((x, (fmpq(0), _GENERIC[1])), (y, (_GENERIC[0], fmpq(0))))
     ]
     of_tables = tables[1], tables[2], max(tables)
     return CurveSizes(degrees, max(total, *degrees), (x.step, y.step), of_tables, (lines[0], lines[1]))
@@ -116,37 +117,38 @@ def _place(s: int, line: tuple[int, int]) -> tuple[int, int]:
     return s if line[0] else _ACROSS, (_SLOPE * s + _APART if line[0] else s) if line[1] else _UP
 
 
-def _at(problem: SliceProblem, at: Sample, solutions: int, most: WorkLimit | None) -> PointSystem | None:
-    """The system at a point; None where solutions are lost."""
-    try:
-        point = point_system(problem.system, problem.on.values(at), most=most)
-    except (ZeroDivisionError, DegeneratePoint, LimitReached):
-        return None
-    return point if point.algebra.dimension == solutions else None
-
-
 _Value = tuple[int, int, int | None]
 """At a point of a line: the parameter, its norm, and the sum of the tables' entries where the basis is the usual."""
 
 
-def _values(
-    problem: SliceProblem,
-    solutions: int,
-    line: tuple[int, int],
-    usual: tuple[tuple[Monomial, ...], WorkLimit | None],
-) -> Iterator[_Value]:
-    """Values modulo a prime; points over which solutions are lost are left out."""
-    prime, (basis, most) = next(primes()), usual
-    for t in range(MAX_POINTS):
-        s = (t + 1) // 2 * (-1) ** t
-        x, y = _place(s, line)
-        point = _at(problem, (fmpq(x), fmpq(y)), solutions, most)
-        tables = None if point is None else _residues(point.algebra, prime)
-        if point is None or tables is None:
-            continue
-        entries = [int(c) for table in tables for c in table.entries()]
-        usual_here = point.algebra.basis == basis
-        yield s, _norm(tables, point.jacobian, prime), weighted(entries, prime) if usual_here else None
+class _Probe(NamedTuple):
+    """What is asked at points: the system, where it has as many solutions as at a generic one."""
+
+    on: SystemOnAxes
+    solutions: int
+    most: WorkLimit | None
+
+    def at(self, at: Sample) -> PointSystem | None:
+        """The system at a point; None where solutions are lost."""
+        try:
+            point = point_system(self.on.system, self.on.values(at), most=self.most)
+        except (ZeroDivisionError, DegeneratePoint, LimitReached):
+            return None
+        return point if point.algebra.dimension == self.solutions else None
+
+    def values(self, line: tuple[int, int], basis: Sequence[Monomial]) -> Iterator[_Value]:
+        """Values modulo a prime; points over which solutions are lost are left out."""
+        prime = next(primes())
+        for t in range(MAX_POINTS):
+            s = (t + 1) // 2 * (-1) ** t
+            x, y = _place(s, line)
+            point = self.at((fmpq(x), fmpq(y)))
+            tables = None if point is None else _residues(point.algebra, prime)
+            if point is None or tables is None:
+                continue
+            entries = [int(c) for table in tables for c in table.entries()]
+            usual_here = point.algebra.basis == basis
+            yield s, _norm(tables, point.jacobian, prime), weighted(entries, prime) if usual_here else None
 
 
 def _residues(algebra: FibreAlgebra, prime: int) -> list[nmod_mat] | None:

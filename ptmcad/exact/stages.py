@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.real_roots import Interval
+from ptmcad.algebra.real_roots import Window
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.counts import Counts
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
@@ -49,7 +49,7 @@ class SliceProblem(NamedTuple):
 
     slice: Slice
     on: SystemOnAxes
-    window: tuple[Interval, Interval]
+    window: Window
     known: Known | None = None
 
     @property

@@ -45,7 +45,7 @@ from ptmcad.algebra.quotient import (
     quotient_algebra,
     trace_form,
 )
-from ptmcad.algebra.real_roots import Interval
+from ptmcad.algebra.real_roots import Window
 from ptmcad.algebra.window import nowhere_zero
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError, NothingToCountError
@@ -76,7 +76,7 @@ class DiscriminantVariety(NamedTuple):
 
 def discriminant_variety(
     on: SystemOnAxes,
-    window: tuple[Interval, Interval],
+    window: Window,
     without: frozenset[str] = frozenset(),
     known: Known | None = None,
 ) -> DiscriminantVariety:
@@ -140,7 +140,7 @@ def check_hypotheses(on: SystemOnAxes) -> None:
 class _Components:
     """The components found so far, each with the first kind that was found for it."""
 
-    def __init__(self, window: tuple[Interval, Interval], without: frozenset[str]) -> None:
+    def __init__(self, window: Window, without: frozenset[str]) -> None:
         self.window = window
         self.without = without
         self.found: dict[PlanePolynomial, Component] = {}

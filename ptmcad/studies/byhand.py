@@ -135,6 +135,11 @@ def parts(p: Elements, c2: Any, s2: Any) -> tuple[Any, Any, Any, Any]:
     return v, w, b1 - p["k3"] * p["L2"] * c2, p["F3"] + p["k3"] * p["L2"] * s2
 
 
+def on_circle(t: Any) -> tuple[Any, Any]:
+    """Cosine and sine of an angle from the tangent of its half."""
+    return (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
+
+
 def product(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, ...]:
     """The product of two polynomials in t."""
     total: list[Any] = [0] * (len(left) + len(right) - 1)

@@ -19,12 +19,11 @@ import yaml
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 from support.few import few
 from support.shipped_records import LINES_ONLY, OTHER
-from support.signatures import count_by_signature
+from support.signatures import count_by_isolation, count_by_signature
 
 from ptmcad import RegionMap, Slice, classify, load
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Merge
-from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.stages import problem_of, variety_of
 from ptmcad.question.slice import Count

@@ -13,10 +13,9 @@ from support.examples import examples
 from support.few import few
 from support.maps import CONFIGS, shipped
 from support.shipped_records import EXACT
-from support.signatures import count_by_signature
+from support.signatures import count_by_isolation, count_by_signature
 
 from ptmcad import load
-from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.text.flint_numbers import from_fraction

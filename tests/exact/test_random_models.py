@@ -12,12 +12,11 @@ from typing import Any
 import pytest
 from support.multistart import Found, model_of, solutions
 from support.random_models import random_mechanism, random_system
-from support.signatures import count_by_signature
+from support.signatures import count_by_isolation, count_by_signature
 
 import ptmcad
 from ptmcad.answer.counts import Counts
 from ptmcad.errors import HypothesisError
-from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_from
 from ptmcad.text.flint_numbers import from_fraction
 

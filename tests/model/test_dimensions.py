@@ -10,13 +10,12 @@ from typing import Any
 
 import pytest
 from flint import fmpq
-from support.signatures import count_by_signature
+from support.signatures import count_by_isolation, count_by_signature
 
 from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
 from ptmcad.algebra.trigonometric import TrigonometricRing
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Kind
-from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import ParametricSystem, system_from, system_of
 from ptmcad.exact.models.system import SystemOnAxes, from_equations
 from ptmcad.exact.point_system import solutions_at

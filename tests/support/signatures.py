@@ -16,8 +16,14 @@ from ptmcad.algebra.fibre import FibreAlgebra, evaluate
 from ptmcad.algebra.real_roots import sign
 from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.answer.counts import Counts, counts_of_signs
+from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.exact.point_system import DegeneratePoint, simple_solutions, text_of_point
+
+
+def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq]) -> Counts:
+    """Counts at rational values of all parameters, by real-root isolation."""
+    return equilibria(system, values).counts
 
 
 def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> Counts:

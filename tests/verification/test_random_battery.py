@@ -16,12 +16,11 @@ import pytest
 from flint import fmpq
 from forger.judge import judged
 from support.random_models import random_mechanism, random_system
-from support.signatures import count_by_signature
+from support.signatures import count_by_isolation, count_by_signature
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import DegenerateSliceError, HypothesisError
-from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_from
 from ptmcad.text.flint_numbers import from_fraction
 

@@ -106,11 +106,8 @@ class PointsOver:
     @cached_property
     def _polynomial(self) -> UnivariatePolynomial:
         """A squarefree polynomial in v among whose roots are all points."""
-        q = self.root.polynomial
-        if self.root.is_rational:
-            value = self.root.low
-            q = UnivariatePolynomial([-int(value.p), int(value.q)])
-        constant = [UnivariatePolynomial([c]) for c in q.coeffs()]
+        root = RealRoot.of(self.root.low) if self.root.is_rational else self.root
+        constant = [UnivariatePolynomial([c]) for c in root.polynomial.coeffs()]
         product = UnivariatePolynomial([1])
         for c in self.curves:
             points = squarefree_part(resultant(c.in_u, constant, self.check))

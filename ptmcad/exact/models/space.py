@@ -70,11 +70,11 @@ class _Space(NamedTuple):
                 return add_ratios(left, right)
             case "-":
                 return add_ratios(left, (-right[0], right[1]))
-            case "*":
-                return ratio(left[0] * right[0], left[1] * right[1])
-        if right[0].is_zero():
-            raise ExpressionError("division by zero", step.position)
-        return ratio(left[0] * right[1], left[1] * right[0])
+            case "/":
+                if right[0].is_zero():
+                    raise ExpressionError("division by zero", step.position)
+                right = right[::-1]
+        return ratio(left[0] * right[0], left[1] * right[1])
 
     def power(self, base: Ratio, power: Power, exponent: Ratio) -> Ratio:
         quotient = ratio(*exponent)

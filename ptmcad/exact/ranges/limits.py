@@ -14,7 +14,7 @@ from flint import fmpq
 from ptmcad.algebra.chords import side_of_chord
 from ptmcad.algebra.numbers import fibre_roots, refined, root_of
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
-from ptmcad.algebra.real_roots import Interval, isolate, refine, sign
+from ptmcad.algebra.real_roots import Interval, RealRoot, isolate, refine, sign
 from ptmcad.algebra.resultants import resultant
 from ptmcad.algebra.slopes import tangent_resultant
 from ptmcad.answer.intervals import End
@@ -91,7 +91,7 @@ def _course(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, slope: fmpq) -> t
             turns = tangent_resultant(p, (int(slope.p), int(slope.q)))
         except ArithmeticError:  # the curve is a line of this slope
             return abs(run), 0
-        own = UnivariatePolynomial([-int(end.value.p), int(end.value.q)]) if end.root is None else end.root.polynomial
+        own = (end.root or RealRoot.of(end.value)).polynomial
         if not divmod(turns, own)[1]:
             turns = turns // own
         around = (at[0], strip.sample) if run > 0 else (strip.sample, at[1])

@@ -28,6 +28,8 @@ from ptmcad.model.involutions import involutions
 from ptmcad.text.balls import ball_of, ball_over
 from ptmcad.text.flint_numbers import from_fraction
 
+Range = tuple[arb, arb]
+"""The ends of what an unknown may be."""
 _MAX_GROUP = 8
 """Solutions of which all groupings are looked through: of eight there are 4140."""
 _QUARTERS = Mirror(PLANE.constant(1), PLANE.constant(0)), Mirror(PLANE.constant(0), PLANE.constant(1))
@@ -215,7 +217,7 @@ def _region(
     return None
 
 
-def _hull(balls: Sequence[arb], margin: float) -> tuple[arb, arb]:
+def _hull(balls: Sequence[arb], margin: float) -> Range:
     """The ends, exact numbers, of a span around balls."""
     low = min(b.lower() for b in balls) - margin
     high = max(b.upper() for b in balls) + margin
@@ -224,7 +226,7 @@ def _hull(balls: Sequence[arb], margin: float) -> tuple[arb, arb]:
 
 def _isolates(
     family: LineSystem,
-    box: Sequence[tuple[arb, arb]],
+    box: Sequence[Range],
     start: Fraction,
     end: Fraction,
     group: Sequence[_Member],
@@ -259,7 +261,7 @@ def _isolates(
     return True
 
 
-def _outside(family: LineSystem, point: Vector, box: Sequence[tuple[arb, arb]]) -> bool:
+def _outside(family: LineSystem, point: Vector, box: Sequence[Range]) -> bool:
     """Whether a point is certainly outside a box, by any number of whole turns."""
     for k, (x, (low, high)) in enumerate(zip(point, box, strict=True)):
         if k >= family.angles:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
+from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, isolate, refine
 from ptmcad.answer.counts import operation_number
 from ptmcad.exact.cad.adjacency import Crossing, cross
@@ -151,13 +151,9 @@ def _over(
 def at_abscissa(branch: RangeEnd, u: fmpq, fibre: Interval, width: fmpq) -> RealRoot:
     """The branch's value at a rational abscissa of the strip, isolated within ``width``."""
     if branch.curve is None:
-        return _edge(branch.edge)
+        return RealRoot.of(branch.edge)
     p = branch.curve.fibre(u)
     return refine(isolate(p, *fibre)[branch.root], width)
-
-
-def _edge(value: fmpq) -> RealRoot:
-    return RealRoot(UnivariatePolynomial([-int(value.p), int(value.q)]), value, value)
 
 
 def bound_over(branch: RangeEnd, start: fmpq, side: int, over: Interval, fibre: Interval) -> fmpq | None:

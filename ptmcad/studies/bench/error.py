@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.location import component_cells
 from ptmcad.cover import slanted
+from ptmcad.cover.graph import repeated
 from ptmcad.cover.subdivision import COVERED, FREE
 from ptmcad.errors import LimitReached
 from ptmcad.exact.cad.chains import WallPolyline, chains, critical_shares
@@ -269,7 +270,7 @@ def _below(points: Floats, pieces: Floats) -> float:
     u, v = points.T
     first = np.searchsorted(u[1:], pieces[:, 0], "right")
     number = (np.searchsorted(u[:-1], pieces[:, 1], "left") - first).clip(0)
-    of, chord = _numbered(number)
+    of, chord = repeated(number)
     chord += first[of]
     left, right = np.maximum(pieces[of, 0], u[chord]), np.minimum(pieces[of, 1], u[chord + 1])
     slope = (v[chord + 1] - v[chord]) / (u[chord + 1] - u[chord])
@@ -282,12 +283,6 @@ def _below(points: Floats, pieces: Floats) -> float:
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = np.where(high > low, (risen + whole) / (high - low), inside[0])
     return float(((right - left).clip(0) * mean).sum())
-
-
-def _numbered(number: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For items that are repeated so many times: each repetition's item, and its number within it."""
-    of = np.repeat(np.arange(len(number)), number)
-    return of, np.arange(len(of)) - np.repeat(np.cumsum(number) - number, number)
 
 
 def distance(truth: Truth, drawn: Floats, spacing: float) -> Bounds | None:
@@ -328,7 +323,7 @@ def _points(segments: Floats, spacing: float, thick: Floats) -> tuple[Floats, Fl
     start, way = segments[:, :2], segments[:, 2:] - segments[:, :2]
     length = np.hypot(way[:, 0], way[:, 1])
     pieces = np.maximum(1, np.ceil(length / spacing)).astype(np.int64)
-    of, within = _numbered(pieces)
+    of, within = repeated(pieces)
     share = (within + 0.5) / pieces[of]
     return start[of] + share[:, None] * way[of], np.hypot(length / pieces / 2, thick)[of]
 

@@ -26,6 +26,8 @@ TEXTS = Path(__file__).with_name("claims.yaml")
 
 Text = Mapping[str, Any]
 """A claim as it is written."""
+Facts = Mapping[str, Any]
+"""What a check computed, by name."""
 
 
 class Verdict(Enum):
@@ -64,7 +66,7 @@ class Claim:
     witness: str = ""
     reason: str = ""
     evidence: tuple[str, ...] = ()
-    facts: Mapping[str, Any] | None = None
+    facts: Facts | None = None
 
 
 @cache
@@ -108,14 +110,12 @@ def judge(name: str, text: Text) -> Claim:
     )
 
 
-def _facts(text: Text) -> Mapping[str, Any]:
+def _facts(text: Text) -> Facts:
     """What the claim's check computes."""
     if "check" not in text:
         return {}
     module, function = text["check"].split(".")
-    found: Mapping[str, Any] = getattr(import_module(f"ptmcad.studies.paper.{module}"), function)(
-        **text.get("with", {})
-    )
+    found: Facts = getattr(import_module(f"ptmcad.studies.paper.{module}"), function)(**text.get("with", {}))
     return found
 
 
@@ -134,7 +134,7 @@ def _plain(value: Any) -> Any:
     return json.loads(json.dumps(value, default=str))
 
 
-def _sentences(text: Text, key: str, facts: Mapping[str, Any]) -> tuple[str, ...]:
+def _sentences(text: Text, key: str, facts: Facts) -> tuple[str, ...]:
     """The sentences under a key; one that is nothing but the name of several sentences is these."""
     said = text.get(key, ())
     found: list[str] = []

@@ -16,8 +16,8 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import classify
 from ptmcad.ask.location import locate
 from ptmcad.studies.paper import statements
+from ptmcad.studies.paper.claim import Facts
 from ptmcad.studies.paper.critical import critical_free_lengths
-from ptmcad.studies.paper.maps import Facts
 from ptmcad.studies.paper.squaring import Design, signed_solutions, squared
 from ptmcad.text.parsing import rational
 

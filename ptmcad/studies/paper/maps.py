@@ -28,6 +28,7 @@ from ptmcad.question.config import load
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.studies.paper import statements
+from ptmcad.studies.paper.claim import Facts
 from ptmcad.text.enclosure import Enclosure
 
 POINTS: Mapping[str, tuple[str, Mapping[str, str]]] = statements.TEXTS["figures"]
@@ -35,9 +36,6 @@ POINTS: Mapping[str, tuple[str, Mapping[str, str]]] = statements.TEXTS["figures"
 FIGURES = tuple(POINTS)
 SEED, RANDOM_POINTS = 2018, 40
 FINE = Fraction(1, 10**9)
-
-Facts = Mapping[str, Any]
-"""What a check computed, by name."""
 
 
 @cache

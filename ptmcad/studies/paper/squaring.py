@@ -24,7 +24,7 @@ from flint import acb, acb_poly, arb, ctx, fmpz_poly
 
 from ptmcad.algebra.polynomials import PLANE, Coefficient, coefficients_in
 from ptmcad.algebra.resultants import resultant
-from ptmcad.studies.byhand import derivatives
+from ptmcad.studies.byhand import derivatives, on_circle
 from ptmcad.studies.paper import statements
 from ptmcad.studies.paper.statements import CLEAR, HORIZONTAL, LENGTHS, k, l0, t1, t2
 from ptmcad.text.balls import ball_of
@@ -170,7 +170,7 @@ def _common_root(first: Sequence[acb], second: Sequence[acb]) -> acb | None:
 
 def _vanishing(values: Mapping[str, Any], tangents: Sequence[acb]) -> list[set[Signs]]:
     """For each equation the signs of l1, l2 and l3 at which it may hold."""
-    circles = [((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)) for t in tangents]
+    circles = list(map(on_circle, tangents))
     zeros: list[set[Signs]] = [set(), set()]
     for signs in product((1, -1), repeat=3):
         # any continuous choice of the roots serves: both signs are tried

@@ -29,6 +29,7 @@ from ptmcad.answer.poses import Poses
 from ptmcad.ask.solving import solve
 from ptmcad.model import ptm
 from ptmcad.model.evaluate import evaluate
+from ptmcad.studies.byhand import on_circle
 from ptmcad.studies.texts import texts_beside
 
 Expr = Any
@@ -40,8 +41,7 @@ c1, s1, c2, s2, t1, t2 = sp.symbols("c1 s1 c2 s2 t1 t2", real=True)
 LENGTHS = sp.symbols("l1 l2 l3", positive=True)
 CIRCLES = ((c1, s1), (c2, s2))
 HORIZONTAL = (F3x, F4x)
-HALF = {c1: (1 - t1**2) / (1 + t1**2), s1: 2 * t1 / (1 + t1**2)}
-HALF |= {c2: (1 - t2**2) / (1 + t2**2), s2: 2 * t2 / (1 + t2**2)}
+HALF = dict(zip((c1, s1, c2, s2), (*on_circle(t1), *on_circle(t2)), strict=True))
 CLEAR = (1 + t1**2) * (1 + t2**2)
 
 _MECHANISM = ptm()

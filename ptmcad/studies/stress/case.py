@@ -38,6 +38,7 @@ from typing import Any
 
 from ptmcad.errors import ConfigError, shown
 from ptmcad.model import ptm
+from ptmcad.studies.byhand import on_circle
 from ptmcad.studies.texts import texts_beside
 from ptmcad.text.expressions import constant
 from ptmcad.text.parsing import parse
@@ -170,7 +171,7 @@ def degenerate(
         When there are none: a cosine, h11, h12 or the derivative that tells the sides is zero.
     """
     (first, second), (k1, k2, k3) = lengths, springs
-    (c1, s1), (c2, s2) = (((1 - t**2) / (1 + t**2), 2 * t / (1 + t**2)) for t in tangents)
+    (c1, s1), (c2, s2) = map(on_circle, tangents)
     c12, s12 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2
     if c1 == 0 or c2 == 0:
         raise ValueError("no vertical load balances a vertical bar")
