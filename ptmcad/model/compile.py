@@ -19,7 +19,8 @@ from typing import TypeVar
 
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula, Graph
-from ptmcad.formulas.values import values
+from ptmcad.formulas.values import Substitution, values
+from ptmcad.formulas.values import evaluated as with_values
 from ptmcad.model import crossed, loops
 from ptmcad.model.criterion import Criterion
 from ptmcad.model.crossed import Follower
@@ -220,10 +221,20 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
         return _of_slopes(known)
     if not mechanism.xjoints:
         return _with_loops(known, mechanism, ring)
-    assert known.smooth is not None
-    moments = dict(zip(mechanism.sorted_unknowns, known.moments, strict=True))
-    found = crossed.conditions(known.smooth, known.followers, moments, variables)
+    found = _with_followers(known, model, variables)
     return replace(known, **found._replace(inequalities=known.inequalities + found.inequalities)._asdict())
+
+
+def _with_followers(known: CompiledSystem, model: Model, variables: Mapping[str, Formula]) -> crossed.AngleConditions:
+    """What holds in the unknowns alone. It is multiplied out in names, which variables have in their own places."""
+    if any(formula is not known.graph.variable(k) for k, formula in enumerate(variables.values())):
+        own = compiled(model)
+        places = {k: variables[name] for k, name in enumerate(own.names)}
+        found = crossed.AngleConditions(own.equations, own.inequalities[len(known.inequalities) :], own.stability)
+        return crossed.AngleConditions(*with_values(found, Substitution(known.graph, places)))
+    assert known.smooth is not None
+    moments = dict(zip(model.sorted_unknowns, known.moments, strict=True))
+    return crossed.conditions(known.smooth, known.followers, moments, variables)
 
 
 @dataclass(frozen=True, slots=True)
