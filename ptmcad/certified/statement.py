@@ -30,12 +30,12 @@ def system_text(model: Model, has_free_lengths: bool = False) -> System:
     equations. What is positive at solutions is there as the record says it.
     """
     unknowns, own, mechanism = tuple(model.unknowns), equations_in(model), model.whole
-    equations, positive, stable = conditions_of(model)
-    relations, conditions, stability = (tuple(map(to_text, some)) for some in (equations, positive.values(), stable))
-    if mechanism is None or (relations and not has_free_lengths):
+    written, positive, stable = conditions_of(model)
+    equations, conditions, stability = (tuple(map(to_text, some)) for some in (written, positive.values(), stable))
+    if mechanism is None or (equations and not has_free_lengths):
         potential = "" if own is None or own.potential is None else to_text(own.potential)
-        return System(unknowns, (), potential, relations, (), conditions, stability)
-    relations = relations[:-1]
+        return System(unknowns, (), potential, equations, (), conditions, stability)
+    relations = tuple(bar.text(mechanism.points) for bar in mechanism.closing)
     moments = split_moments(mechanism)
     beside = {moment.unknown: to_text(moment.value) for moment in moments.coupled}
     stated = tuple(beside.get(unknown, "0") for unknown in unknowns if beside)

@@ -323,6 +323,10 @@ class Closing(NamedTuple):
         """For traversals, given the points' coordinates."""
         return Element((Part("length", Kind.LENGTH, self.length),))
 
+    def text(self, points: Mapping[str, Place]) -> str:
+        """What is zero where it has its length, given the points' coordinates."""
+        return text_of(total(squared_distance(points, self.start, self.end), negative(squared(self.length))))
+
 
 class TorsionSpring(NamedTuple):
     """A spring between directions: its energy is stiffness * (1 - cos(angle - rest)).

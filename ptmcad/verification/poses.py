@@ -47,7 +47,9 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
             if found.status is Status.UNDECIDED:
                 number = check_listed(claims, counting_of(claims), cell)
                 return Unchecked(f"whether there are more than the {number} listed, which hold")
-            return f"{check_cell(claims, counting_of(claims), cell)} poses"
+            number = check_cell(claims, counting_of(claims), cell)
+            untold = "" if cell.stable == found.stable else ", of whose stability nothing is checked here"
+            return f"{number} poses{untold}"
         except Unproved as reason:
             return Unchecked(str(reason))
     try:
@@ -98,7 +100,8 @@ def _map_of(found: Poses) -> RegionMap:
     boxes = tuple(_box(pose, slice.has_free_lengths) for pose in found.equilibria)
     meaning = meaning_of(found.model)
     index = meaning.indices([pose.index for pose in found.equilibria])
-    stable = meaning.about_stability(found.stable)
+    # a map of all counts with a cover has no stable ones where conditions say which are; each pose is asked below
+    stable = meaning.about_stability(found.stable) if meaning.order or not slice.has_free_lengths else None
     sample = Point(slice.axis_names, Fraction(1, 2), Fraction(1, 2))
     return map_of(slice, (Cell(None, 0, sample, 0, len(boxes), stable, index, boxes),), found.status)
 

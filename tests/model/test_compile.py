@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+import random
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
+import pytest
+from support.shipped_records import CONFIGS
+
 from ptmcad.exact.models.potential import system_from
+from ptmcad.formulas.graph import Graph
+from ptmcad.formulas.values import values
 from ptmcad.model import Model, described
 from ptmcad.model.closed import without_loops
-from ptmcad.model.compile import compiled
+from ptmcad.model.compile import compiled, compiled_with
+from ptmcad.question.config import load
 
 LOOP: dict[str, Any] = {
     "name": "loop",
@@ -39,3 +49,41 @@ def test_heights_are_those_of_points_that_no_loop_holds() -> None:
     open_chain = {key: value for key, value in LOOP.items() if key != "closing"}
     assert len(compiled(closed(open_chain)).heights) == 2
     assert compiled(closed(LOOP)).heights == ()
+
+
+@pytest.mark.parametrize("name", ["x-joint", "two-x-joints", "four-bar", "platform-loop", "slider-crank"])
+def test_formulas_do_not_depend_on_what_variables_are_called(name: str) -> None:
+    """Parameters as numbers and unknowns with other numbers: a path of an X-joint took parameters for unknowns."""
+    model = load(CONFIGS / "mechanisms" / f"{name}.yaml").model
+    own = compiled(model)
+    choose = random.Random(len(name))
+    numbers = {k: Fraction(choose.randint(1, 9), 7) for k in range(len(own.names))}
+    graph = Graph()
+    given = {
+        each: graph.constant(numbers[k]) if each in model.variables else graph.variable(90 - k)
+        for k, each in enumerate(own.names)
+    }
+    other = compiled_with(model, given)
+    formulas = [(*known.equations, *known.inequalities, *known.stability) for known in (own, other)]
+    places = (numbers, {90 - k: value for k, value in numbers.items()})
+    first, second = (values(some, _Place(at)) for some, at in zip(formulas, places, strict=True))
+    assert first == second
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Numbers in the place of variables; of an angle the tangent of its half."""
+
+    at: Mapping[int, Fraction]
+
+    def constant(self, value: Fraction) -> Fraction:
+        return value
+
+    def variable(self, number: int) -> Fraction:
+        return self.at[number]
+
+    def cos(self, number: int) -> Fraction:
+        return (1 - self.at[number] ** 2) / (1 + self.at[number] ** 2)
+
+    def sin(self, number: int) -> Fraction:
+        return 2 * self.at[number] / (1 + self.at[number] ** 2)

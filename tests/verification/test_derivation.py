@@ -89,3 +89,10 @@ def test_loops_that_differ_in_a_free_length_only_are_told_apart() -> None:
     assert one == other
     first, second = (form_of(slice).cones[0] for slice in slices)
     assert str(first.pull) != str(second.pull)
+
+
+def test_poses_of_loops_with_free_lengths_are_accepted() -> None:
+    """They were held against what a map of all counts stores, which has no stable ones."""
+    poses = ptmcad.solve(ptmcad.load(CONFIGS / "mechanisms" / "four-bar-free.yaml"), F=0, G=0)
+    assert len(poses.equilibria) == 4 and poses.stable == 2
+    assert ptmcad.verify(poses).ok
