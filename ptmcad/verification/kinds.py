@@ -40,6 +40,7 @@ class CheckedKind(NamedTuple):
     Attributes
     ----------
     is_of : whether a model has solutions that may be counted so.
+    is_of_stable : whether stable solutions alone matter.
     margins : of a model with or without numbers in the place of parameters; no free length is negative.
     boundary : the name of the curves on which they vanish.
     undecided : said where one of them may be zero.
@@ -47,6 +48,7 @@ class CheckedKind(NamedTuple):
     """
 
     is_of: Callable[[Model], bool]
+    is_of_stable: bool = False
     margins: Callable[[Derivation], Iterator[CheckedMargin]] = _without_margins
     boundary: str = ""
     undecided: str = ""
@@ -88,12 +90,13 @@ def _longer_than_free(point: Derivation) -> Iterator[CheckedMargin]:
 
 
 _KINDS = {
-    Count.STABLE: CheckedKind(_is_told(Count.STABLE)),
+    Count.STABLE: CheckedKind(_is_told(Count.STABLE), is_of_stable=True),
     Count.TOTAL: CheckedKind(_is_told(Count.TOTAL)),
     Count.INDEX: CheckedKind(_is_told(Count.INDEX)),
     Count.ADMISSIBLE: CheckedKind(
         _is_of_springs,
-        _longer_than_free,
+        is_of_stable=True,
+        margins=_longer_than_free,
         boundary="free length",
         undecided="a spring may be as long as its free length",
         has_exact_maps=False,
@@ -117,4 +120,4 @@ def kind_of(count: Count) -> CheckedKind:
 
 def numbers_for(count: Count, meaning: SignMeaning) -> Set[str]:
     """The names of the counts that a certified map has; without an index all solutions, or stable ones alone."""
-    return {"stable", count.value} if count.is_of_stable else meaning.with_all
+    return {"stable", count.value} if kind_of(count).is_of_stable else meaning.with_all

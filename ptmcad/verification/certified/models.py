@@ -173,7 +173,7 @@ class ModelCounting:
 
 
 def _only_minima(form: Form, count: Count) -> bool:
-    return form.is_gradient and count.is_of_stable
+    return form.is_gradient and kind_of(count).is_of_stable
 
 
 def _may_be_on_side(field: BallEquations, zero: Zero) -> bool:
@@ -190,7 +190,7 @@ def _field(form: Form, values: Mapping[str, arb], count: Count | None, side: Sid
     """The equations with what is positive at the solutions that are counted, and at no others, if a count is given."""
     if count is None:
         return BallEquations(form, values, sides=side)
-    stable = count.is_of_stable
+    stable = kind_of(count).is_of_stable
     asked = ("inequalities", "stability") if stable else ("inequalities",)
     return BallEquations(form, values, asked, stable and bool(form.closing), side)
 
@@ -211,7 +211,7 @@ def _counted(field: BallEquations, found: Sequence[Zero], count: Count) -> list[
         if not all(c > 0 for c in conditions):
             where = ", ".join(f"{x:.6g}" for x in zero.center)
             raise Unproved(f"a condition may be zero at the solution near ({where})")
-        of_equations = not field.form.is_gradient and count.is_of_stable
+        of_equations = not field.form.is_gradient and kind_of(count).is_of_stable
         signs = "+" * field.form.conditions_for_stability if of_equations else zero.signs
         kept.append(_apart(field, replace(zero, signs=signs)))
     return kept
@@ -292,10 +292,10 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> CellCounts:
     """
     if not form.is_gradient:
         number = len(found)
-        return CellCounts(stable=number) if count.is_of_stable else CellCounts(total=number)
+        return CellCounts(stable=number) if kind_of(count).is_of_stable else CellCounts(total=number)
     negative = Counter(zero.signs.count("-") for zero in found)
     index = tuple(negative[k] for k in range(form.size + 1))
-    if count.is_of_stable:
+    if kind_of(count).is_of_stable:
         return CellCounts(stable=index[0])
     if form.is_smooth_on_a_torus and euler_sum(index):
         raise Violation(f"critical points of a function on the torus by index {index} contradict Euler's sum")

@@ -18,7 +18,7 @@ from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.kinds import numbers_for
+from ptmcad.verification.kinds import kind_of, numbers_for
 from ptmcad.verification.report import Unchecked, Violation
 
 HOPELESS = 16
@@ -93,7 +93,7 @@ def check_cell(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, pla
         return _check_beside(claims, counting, cell, reason, places)
     if differs(cell, there.counts):
         raise Violation(f"said to have {stored(cell)}; there are {there.counts}")
-    kept = [e for e in there.found if not claims.result.slice.count.is_of_stable or "-" not in e.signs]
+    kept = [e for e in there.found if not kind_of(claims.result.slice.count).is_of_stable or "-" not in e.signs]
     if len(cell.solutions) != len(kept):
         raise Violation(f"{len(cell.solutions)} boxes of solutions for {len(kept)} equilibria")
     try:

@@ -198,8 +198,8 @@ class _Systems:
     def __init__(self, claims: CertifiedClaims, halves: Floats):
         self.claims, self.model, self._halves = claims, window_equations(claims), halves
         self.count, self.form = claims.result.slice.count, self.model.form
-        self.minima = self.form.is_gradient and self.count.is_of_stable
-        stable = self.form.stability if self.count.is_of_stable else ()
+        self.minima = self.form.is_gradient and kind_of(self.count).is_of_stable
+        stable = self.form.stability if kind_of(self.count).is_of_stable else ()
         self.conditions: list[Waves] = [*self.form.inequalities, *stable]
         self.asked = [self.model.waves(c) for c in self.conditions]
         self.positive, self.turning, self.where = self.asked, list[int](), ""
