@@ -40,19 +40,19 @@ class CheckedKind(NamedTuple):
     Attributes
     ----------
     is_of : whether a model has solutions that may be counted so.
-    is_of_stable : whether stable solutions alone matter.
     margins : of a model with or without numbers in the place of parameters; no free length is negative.
     boundary : the name of the curves on which they vanish.
     undecided : said where one of them may be zero.
     has_exact_maps : whether margins say something where no spring has a free length.
+    is_of_stable : whether stable solutions alone matter.
     """
 
     is_of: Callable[[Model], bool]
-    is_of_stable: bool = False
     margins: Callable[[Derivation], Iterator[CheckedMargin]] = _without_margins
     boundary: str = ""
     undecided: str = ""
     has_exact_maps: bool = True
+    is_of_stable: bool = True
 
     @property
     def is_predicate(self) -> bool:
@@ -90,13 +90,12 @@ def _longer_than_free(point: Derivation) -> Iterator[CheckedMargin]:
 
 
 _KINDS = {
-    Count.STABLE: CheckedKind(_is_told(Count.STABLE), is_of_stable=True),
-    Count.TOTAL: CheckedKind(_is_told(Count.TOTAL)),
-    Count.INDEX: CheckedKind(_is_told(Count.INDEX)),
+    Count.STABLE: CheckedKind(_is_told(Count.STABLE)),
+    Count.TOTAL: CheckedKind(_is_told(Count.TOTAL), is_of_stable=False),
+    Count.INDEX: CheckedKind(_is_told(Count.INDEX), is_of_stable=False),
     Count.ADMISSIBLE: CheckedKind(
         _is_of_springs,
-        is_of_stable=True,
-        margins=_longer_than_free,
+        _longer_than_free,
         boundary="free length",
         undecided="a spring may be as long as its free length",
         has_exact_maps=False,
