@@ -38,10 +38,6 @@ LONG = 100_000
 """Points times the product of the degrees in v; less takes milliseconds."""
 CALL = 150
 """What one value modulo a prime costs besides Euclid's algorithm, in its steps (products of residues)."""
-Value = Any
-"""At a point: an `fmpz_poly` or, modulo a prime, an `nmod_poly`."""
-Number = Any
-"""An integer or, modulo a prime, a residue."""
 
 
 def nothing() -> None:
@@ -73,12 +69,11 @@ def _long_discriminant(p: tuple[tuple[int, ...], ...], bound: int, check: Check)
 def _discriminant(p: Coefficients, bound: int, check: Check) -> fmpz_poly:
     n = len(p) - 1
 
-    def bits() -> int:
+    def bits() -> int:  # of n^(n-2) times the discriminant
         norms = _norms(p)
-        found = _bits([(n - i) * c for i, c in enumerate(norms[:-1])], [i * c for i, c in enumerate(norms)][1:])
-        return found - int(n ** (n - 2)).bit_length() + 1
+        return _bits([(n - i) * c for i, c in enumerate(norms[:-1])], [i * c for i, c in enumerate(norms)][1:])
 
-    def formal(value: Value) -> Number:
+    def formal(value: Any) -> Any:
         if value.degree() == n:
             return value.discriminant()
         if value.degree() < n - 1:
@@ -107,7 +102,7 @@ def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_
     if n == 0 or m == 0:
         return (p[0] ** m) if n == 0 else (q[0] ** n)
 
-    def formal(left: Value, right: Value) -> Number:
+    def formal(left: Any, right: Any) -> Any:
         if left.degree() < n and right.degree() < m:
             return 0
         value = left.resultant(right)
@@ -150,7 +145,7 @@ def _least_bits(p: Sequence[int], q: Sequence[int]) -> int:
 
 def _interpolated(
     polynomials: Sequence[Coefficients],
-    formal: Callable[..., Number],
+    formal: Callable[..., Any],
     effort: tuple[int, int],
     bits: Callable[[], int],
     check: Check,
@@ -159,6 +154,7 @@ def _interpolated(
 
     Parameters
     ----------
+    formal : of values that are `fmpz_poly` or, modulo a prime, `nmod_poly`: an integer or a residue.
     effort : a bound for its degree, and the steps that a value takes modulo a prime.
     bits : gives a number b with 2^b larger than its coefficients.
     """
@@ -171,7 +167,7 @@ def _interpolated(
         return fmpz_poly([])
     needed = _primes_needed(degree, steps, bits()) if (degree + 1) * steps >= LONG else 0
     if not needed:
-        return interpolate(lambda u: fmpz(formal(*images(u))), degree, check)
+        return interpolate(lambda u: formal(*images(u)), degree, check)
     used = list(islice(primes(), needed))
     modulus = math.prod(map(fmpz, used), start=fmpz(1))
     weights = [modulus // prime * pow(int(modulus // prime % prime), -1, prime) for prime in used]

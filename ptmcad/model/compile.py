@@ -230,7 +230,7 @@ def _with_followers(known: CompiledSystem, model: Model, variables: Mapping[str,
     if any(formula is not known.graph.variable(k) for k, formula in enumerate(variables.values())):
         own = compiled(model)
         places = {k: variables[name] for k, name in enumerate(own.names)}
-        found = crossed.AngleConditions(own.equations, own.inequalities[len(known.inequalities) :], own.stability)
+        found = own.equations, own.inequalities[len(known.inequalities) :], own.stability
         return crossed.AngleConditions(*with_values(found, Substitution(known.graph, places)))
     assert known.smooth is not None
     moments = dict(zip(model.sorted_unknowns, known.moments, strict=True))

@@ -60,8 +60,11 @@ def _units(poses: Poses) -> list[str]:
         for what, name in zip(("length", "force"), mechanism.units, strict=True)
     )
     pose, product = poses.equilibria[0], declared_units(mechanism, units).get("energy", "their product")
-    turning = mechanism.energy_unit in {spring.unit for spring in mechanism.elastic}
-    parts = {"energies": pose.energy, "moments": turning, "the Hessian's eigenvalues": pose.eigenvalues}
+    parts = {
+        "energies": pose.energy,
+        "moments": mechanism.energy_unit in {spring.unit for spring in mechanism.elastic},
+        "the Hessian's eigenvalues": pose.eigenvalues,
+    }
     measured = {
         "lengths and coordinates": length,
         "forces": force,

@@ -60,9 +60,8 @@ def _modulo(prime: int, p: fmpz_poly, q: fmpz_poly, n: int, m: int) -> nmod:
     short_left, short_right = n - left.degree(), m - right.degree()
     if short_left and short_right:
         return nmod(0, prime)
-    found = left.resultant(right)
-    if short_left or short_right:  # a determinant with leading zeros in one polynomial
-        found *= right[m] ** short_left * left[n] ** short_right * (-1) ** (m * short_left)
+    # a determinant perhaps with leading zeros in one polynomial
+    found: nmod = left.resultant(right) * right[m] ** short_left * left[n] ** short_right * (-1) ** (m * short_left)
     return found
 
 

@@ -30,10 +30,6 @@ class CheckedMargin(NamedTuple):
     spring: SpringVector | None = None
 
 
-def _without_margins(_point: Derivation) -> Iterator[CheckedMargin]:
-    yield from ()
-
-
 class CheckedKind(NamedTuple):
     """A row of the table.
 
@@ -48,7 +44,7 @@ class CheckedKind(NamedTuple):
     """
 
     is_of: Callable[[Model], bool]
-    margins: Callable[[Derivation], Iterator[CheckedMargin]] = _without_margins
+    margins: Callable[[Derivation], Iterator[CheckedMargin]] = lambda _point: iter(())
     boundary: str = ""
     undecided: str = ""
     has_exact_maps: bool = True
