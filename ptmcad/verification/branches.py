@@ -91,13 +91,14 @@ def integrals_over(branch: WallBranch, left: fmpq, right: fmpq, effort: PanelEff
 
     Parameters
     ----------
-    run : as `Part` has it. Where a branch was not proved twice at the same end it is likely to meet another one there.
+    run : as `PanelPart` has it. Where a branch was not proved at an end it is likely to meet another one there, so this
+        is tried twice.
 
     Raises
     ------
     PrecisionTooLow
     """
-    if abs(run) == 2:
+    if run and abs(run) <= 2:
         meeting = _beside(branch, effort.points[run > 0], (left, right) if run < 0 else (right, left), effort)
         if meeting is not None:
             return meeting

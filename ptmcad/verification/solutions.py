@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import combinations
 
-from flint import arb, ctx, fmpq_mpoly
+from flint import arb, ctx
 
 from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.model import Model
@@ -28,7 +28,7 @@ from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Derivation
 from ptmcad.verification.inertia import inertia
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.terms import ball
+from ptmcad.verification.terms import ball_at
 
 _NARROWINGS = 4
 """Images of a box that a solution is proved to be in, until signs on it are certain."""
@@ -131,11 +131,6 @@ def check_disjoint(n: int, cell: Cell, model: Model) -> None:
             raise Violation(f"cell {n}: the boxes {j} and {k} of its solutions meet")
 
 
-def _values(polynomials: Sequence[fmpq_mpoly], x: Sequence[arb]) -> list[arb]:
-    """Values in balls at coordinates."""
-    return [ball(p, dict(zip(p.context().names(), x, strict=True))) for p in polynomials]
-
-
 def _tested(point: Derivation, solution: Solution) -> str | None:
     """The signs at the only solution in a box, which counts; None where that is not proved at this precision.
 
@@ -146,15 +141,17 @@ def _tested(point: Derivation, solution: Solution) -> str | None:
     slopes = [[p.derivative(k) for k in range(point.coordinates)] for p in system]
 
     def function(x: Sequence[arb]) -> tuple[list[arb], Matrix]:
-        return _values(system, x), [_values(row, x) for row in slopes]
+        value = ball_at(x)
+        return list(map(value, system)), [list(map(value, row)) for row in slopes]
 
     found = tested(function, solution)
     for _ in range(_NARROWINGS):
         if found is None or not found.holds:
             return None
-        if all(p > 0 for p in _values(point.inequalities, found.within)):
-            hessian = [_values(row, found.within) for row in point.hessian]
-            conditions = _values(point.stability, found.within)
+        value = ball_at(found.within)
+        if all(value(p) > 0 for p in point.inequalities):
+            hessian = [list(map(value, row)) for row in point.hessian]
+            conditions = list(map(value, point.stability))
             signs = inertia(hessian) if hessian else _of_conditions(conditions, solution.signs)
             if signs is not None:
                 return signs

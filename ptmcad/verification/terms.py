@@ -6,7 +6,7 @@ A power is no product of balls that have nothing to do with one another, which w
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from math import prod
 from typing import Any
@@ -57,6 +57,21 @@ def ball(p: fmpq_mpoly, values: Mapping[str, Any]) -> arb:
     """The value of a polynomial for balls, also of one without names."""
     found = evaluated(p, values)
     return found if isinstance(found, arb) else ball_of(Fraction(found))
+
+
+def ball_at(x: Sequence[arb]) -> Callable[[fmpq_mpoly], arb]:
+    """The values of polynomials in so many variables, which have their monomials in common."""
+    known: dict[tuple[int, ...], arb] = {}
+
+    def value(p: fmpq_mpoly) -> arb:
+        total = _ZERO
+        for powers, c in p.terms():
+            if powers not in known:
+                known[powers] = prod((power(b, int(k)) for b, k in zip(x, powers, strict=True) if k), start=_ONE)
+            total += known[powers] * c
+        return total
+
+    return value
 
 
 def square(x: arb) -> arb:
