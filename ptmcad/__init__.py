@@ -121,7 +121,9 @@ def __dir__() -> list[str]:
 
 
 def __getattr__(name: str) -> Any:
-    """Import public names when they are first used: a command that only reads a record loads no algebra."""
+    """Import public names when they are first used: a command that only reads a record loads no
+    algebra.
+    """
     if name in _HOMES:
         from importlib import import_module
 

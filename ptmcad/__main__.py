@@ -18,23 +18,30 @@ _ROOM = [bytearray(96 << 10)]
 """Given back where there is none left, for the few lines that say so."""
 
 _YOUNG_OBJECTS = 100_000
-"""More than a short run makes: the collector looks at those made since its last look when they are so many."""
+"""More than a short run makes: the collector looks at those made since its last look when they are
+so many.
+"""
 
 STOPPING = (
     signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2, signal.SIGALRM,
 )  # fmt: skip
-"""The signals that people and batch systems send to end a program, and whose default is to do so."""
+"""The signals that people and batch systems send to end a program, and whose default is to do so.
+"""
 
 
 def main() -> "NoReturn":
     """Run the command line in a process of its own, watched by this one, and exit with its status."""
     heeded = tuple(number for number in STOPPING if signal.getsignal(number) is not signal.SIG_IGN)
     for number in heeded:
-        signal.signal(number, lambda caught, _frame: os._exit(128 + caught))  # there is nothing to tidy up yet
+        signal.signal(
+            number, lambda caught, _frame: os._exit(128 + caught)
+        )  # there is nothing to tidy up yet
     try:
         from ptmcad.process.supervisor import supervise
     except (MemoryError, OSError, ImportError, SystemError, SyntaxError) as error:
-        _refuse(error)  # the caller's limits, which Python's parser may take for a mistake, or a broken installation
+        _refuse(
+            error
+        )  # the caller's limits, which Python's parser may take for a mistake, or a broken installation
     supervise(_command_line, heeded)
 
 
@@ -44,13 +51,16 @@ def _refuse(error: Exception) -> "NoReturn":
         _ROOM.clear()
         error.__traceback__ = None  # it holds what the import had made so far
         why = f"{type(error).__name__} {error}".strip()
-        os.write(2, f"error: ptmcad cannot start: {why}{_low_memory_limits()}\n".encode(errors="replace"))
+        os.write(
+            2, f"error: ptmcad cannot start: {why}{_low_memory_limits()}\n".encode(errors="replace")
+        )
     finally:
         os._exit(2)
 
 
 def _low_memory_limits() -> str:
-    """Name the caller's low limits on memory: what Python raises under them need not be a MemoryError.
+    """Name the caller's low limits on memory: what Python raises under them need not be a
+    MemoryError.
 
     They are read from a file, because there may be no room to import a module.
     """
@@ -69,10 +79,11 @@ def _low_memory_limits() -> str:
 
 
 def _command_line() -> int:
-    # pictures go to files, by the program's own settings: the caller's backend or settings may not work here
+    # pictures go to files, by the program's own settings: the caller's backend or settings may not
+    # work here
     os.environ["MPLBACKEND"], os.environ["MATPLOTLIBRC"] = "agg", os.devnull
-    # The collector would visit what is imported, which lives to the end, again and again: a tenth of a short run.
-    # Only garbage in cycles waits for it, of which there is little.
+    # The collector would visit what is imported, which lives to the end, again and again: a tenth
+    # of a short run. Only garbage in cycles waits for it, of which there is little.
     gc.set_threshold(_YOUNG_OBJECTS)
     from ptmcad.cli import run
 

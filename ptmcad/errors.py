@@ -1,23 +1,31 @@
 """The exceptions of ptmcad, as one tree.
 
 * PtmcadError
-  * ConfigError            -- the input is wrong: exit status 2, one message with file, line, key and remedy
-  * ExpressionError        -- a text is not arithmetic, or too large to be meant; `config` reports it as a ConfigError
+  * ConfigError            -- the input is wrong: exit status 2, one message with file, line, key
+    and remedy
+  * ExpressionError        -- a text is not arithmetic, or too large to be meant; `config` reports
+    it as a ConfigError
     * PoleError            -- a denominator vanishes at the point where a value was asked for
   * HypothesisError        -- the input is well formed but a hypothesis of the method fails
     * DegenerateSliceError -- the whole slice lies inside the discriminant variety: exit status 2
-      * NothingToCountError -- off some curves there is no solution, or none that counts: exit status 2
-    * InfiniteSolutionsError -- infinitely many equilibria at every point of the slice: exit status 2
-    * GeometryError        -- a length or a stiffness is not positive somewhere in the window: exit status 2
+      * NothingToCountError -- off some curves there is no solution, or none that counts: exit
+        status 2
+    * InfiniteSolutionsError -- infinitely many equilibria at every point of the slice: exit status
+      2
+    * GeometryError        -- a length or a stiffness is not positive somewhere in the window: exit
+      status 2
   * OutputError            -- a result could not be written: exit status 2
-    * PictureError         -- a picture could not be drawn; the result itself is saved: exit status 2
-  * LimitReached           -- a time limit stopped the computation: exit status 3 (so does the memory limit, which the
-                              operating system enforces: a MemoryError, or an abort that `supervisor` sees)
+    * PictureError         -- a picture could not be drawn; the result itself is saved: exit status
+      2
+  * LimitReached           -- a time limit stopped the computation: exit status 3 (so does the
+                              memory limit, which the operating system enforces: a MemoryError, or
+                              an abort that `supervisor` sees)
 
-"Undecided" is not in this tree: it is a value (`ptmcad.answer.regionmap.Status.UNDECIDED`), never an exception.
+"Undecided" is not in this tree: it is a value (`ptmcad.answer.regionmap.Status.UNDECIDED`), never
+an exception.
 
-Guarantee: the text of every exception of the tree is one line of at most `MAX_MESSAGE` characters that a terminal shows
-as they are, whatever the input that it quotes.
+Guarantee: the text of every exception of the tree is one line of at most `MAX_MESSAGE` characters
+that a terminal shows as they are, whatever the input that it quotes.
 """
 
 from __future__ import annotations
@@ -55,7 +63,8 @@ def shown(text: str, most: int = MAX_MESSAGE) -> str:
 
 
 def quoted(text: object, most: int = 60) -> str:
-    """A text of someone else's in quotation marks; the middle of a long one is left out, as by `shown`.
+    """A text of someone else's in quotation marks; the middle of a long one is left out, as by
+    `shown`.
 
     >>> print(quoted("L*sin(th)"), quoted("a" * 100, most=20))
     'L*sin(th)' 'aaaaaaa ... aaaaaaa'
@@ -64,7 +73,8 @@ def quoted(text: object, most: int = 60) -> str:
 
 
 def excerpt(text: str, position: int, most: int = 60) -> str:
-    """The part of a text around a position in quotation marks, with dots where something is left out.
+    """The part of a text around a position in quotation marks, with dots where something is left
+    out.
 
     >>> print(excerpt("a + b + c + d + e", 8, most=9))
     '...b + c + d...'
@@ -87,13 +97,17 @@ class PtmcadError(Exception):
 
 
 class PtmcadWarning(UserWarning):
-    """Something went wrong that the answer does not suffer from; the command line prints it as a line."""
+    """Something went wrong that the answer does not suffer from; the command line prints it as a
+    line.
+    """
 
 
 class Place(NamedTuple):
-    """Where something stands: file, line (from 1) and dotted key path, or an option; each may be unknown.
+    """Where something stands: file, line (from 1) and dotted key path, or an option; each may be
+    unknown.
 
-    Guarantee: every message about a record, an option or an argument names its place by this class alone.
+    Guarantee: every message about a record, an option or an argument names its place by this class
+    alone.
 
     >>> print(Place("axes", "a.yaml").below("rho", 3))
     a.yaml:3: axes.rho
@@ -120,12 +134,18 @@ class Place(NamedTuple):
         return ConfigError(message, **self._asdict())
 
     def read(self, text: str, read: Callable[[str], T]) -> T:
-        """What is read of a text that stands here; of what is wrong with it the part that is meant is shown."""
+        """What is read of a text that stands here; of what is wrong with it the part that is meant
+        is shown.
+        """
         try:
             return read(text)
         except ExpressionError as error:
             at = error.position
-            where = "" if at is None or len(text) < 2 else f" (character {at + 1} of {excerpt(text, at)})"
+            where = (
+                ""
+                if at is None or len(text) < 2
+                else f" (character {at + 1} of {excerpt(text, at)})"
+            )
             raise self.error(f"{error.message}{where}") from error
 
 
@@ -144,7 +164,14 @@ class ConfigError(PtmcadError):
     faults : this one, and the others that were found with it.
     """
 
-    def __init__(self, message: str, *, key: str | None = None, file: str | None = None, line: int | None = None):
+    def __init__(
+        self,
+        message: str,
+        *,
+        key: str | None = None,
+        file: str | None = None,
+        line: int | None = None,
+    ):
         self.message = message
         self.key, self.file, self.line = self.place = Place(key, file, line)
         self._others: tuple[ConfigError, ...] = ()
@@ -172,7 +199,9 @@ def blamed(key: str | None = None, file: object = None, line: int | None = None)
     try:
         yield
     except ConfigError as error:
-        raise ConfigError(error.message, key=key, file=None if file is None else str(file), line=line) from error
+        raise ConfigError(
+            error.message, key=key, file=None if file is None else str(file), line=line
+        ) from error
 
 
 def expect(value: object, kinds: type | tuple[type, ...], key: str, expected: str) -> None:
@@ -197,13 +226,17 @@ def expect(value: object, kinds: type | tuple[type, ...], key: str, expected: st
 A_SLICE = "a slice, as ptmcad.load(FILE) or ptmcad.slice_from_mapping({...}) returns"
 A_RECORD = "the file of a record, or a mapping like a record"
 A_MAP = "a map, as ptmcad.classify(...) returns"
-A_MODEL = "a mechanism or a system, as ptmcad.Mechanism(...), ptmcad.System(...) or the model of a slice"
+A_MODEL = (
+    "a mechanism or a system, as ptmcad.Mechanism(...), ptmcad.System(...) or the model of a slice"
+)
 
 
 class Faults:
-    """Everything that is wrong with a record: a `ConfigError` in a ``with`` block is noted, and work goes on behind it.
+    """Everything that is wrong with a record: a `ConfigError` in a ``with`` block is noted, and
+    work goes on behind it.
 
-    Guarantee: no fault is there twice. After `MAX_FAULTS` nothing more is looked for, and those are raised.
+    Guarantee: no fault is there twice. After `MAX_FAULTS` nothing more is looked for, and those are
+    raised.
 
     >>> faults = Faults()
     >>> for key in ("a", "b"):
@@ -219,7 +252,10 @@ class Faults:
     def __enter__(self) -> None: ...
 
     def __exit__(
-        self, _kind: type[BaseException] | None, error: BaseException | None, _trace: TracebackType | None
+        self,
+        _kind: type[BaseException] | None,
+        error: BaseException | None,
+        _trace: TracebackType | None,
     ) -> bool:
         if not isinstance(error, ConfigError) or len(self.found) >= MAX_FAULTS:
             return False
@@ -236,7 +272,9 @@ class Faults:
 
     @property
     def parts(self) -> frozenset[str]:
-        """The first steps of these: the parts of a record, or of a description, in which something is wrong."""
+        """The first steps of these: the parts of a record, or of a description, in which something
+        is wrong.
+        """
         return frozenset(step for step, *_ in self.steps)
 
     def concern(self, key: str) -> bool:
@@ -273,7 +311,11 @@ class ExpressionError(PtmcadError):
         super().__init__(message)
 
     def __str__(self) -> str:
-        return shown(self.message if self.position is None else f"{self.message} (at column {self.position + 1})")
+        return shown(
+            self.message
+            if self.position is None
+            else f"{self.message} (at column {self.position + 1})"
+        )
 
 
 class PoleError(ExpressionError):
@@ -286,7 +328,8 @@ class HypothesisError(PtmcadError):
     Attributes
     ----------
     parameter : which one it is; empty where it is none.
-    part : the key of what it is else in the model's description, such as ``springs.2``; empty where it is nothing.
+    part : the key of what it is else in the model's description, such as ``springs.2``; empty where
+        it is nothing.
     """
 
     def __init__(self, message: str, parameter: str = "", part: str = ""):
@@ -300,7 +343,9 @@ class DegenerateSliceError(HypothesisError):
 
 
 class NothingToCountError(DegenerateSliceError):
-    """Off some curves of the slice there is no solution, real or complex, or inequalities exclude all."""
+    """Off some curves of the slice there is no solution, real or complex, or inequalities exclude
+    all.
+    """
 
 
 class InfiniteSolutionsError(HypothesisError):
@@ -308,7 +353,9 @@ class InfiniteSolutionsError(HypothesisError):
 
 
 class GeometryError(HypothesisError):
-    """A length or stiffness is not positive at some point of the window, or it could not be proved to be."""
+    """A length or stiffness is not positive at some point of the window, or it could not be proved
+    to be.
+    """
 
 
 class OutputError(PtmcadError):
@@ -325,7 +372,8 @@ class LimitReached(PtmcadError):
     Parameters
     ----------
     message : which limit, and how far the computation got.
-    partial : the result so far, marked as partial (a `RegionMap`), or None when there is nothing to save.
+    partial : the result so far, marked as partial (a `RegionMap`), or None when there is nothing to
+        save.
     """
 
     def __init__(self, message: str, partial: object | None = None):

@@ -1,7 +1,8 @@
-"""Packages and programs that only some questions need: asked for before anything is computed, so that no work is lost.
+"""Packages and programs that only some questions need: asked for before anything is computed, so
+that no work is lost.
 
-Guarantee: nothing is imported to find out; a package counts as there when Python would find it. Every message names the
-extra of ptmcad that installs what is missing.
+Guarantee: nothing is imported to find out; a package counts as there when Python would find it.
+Every message names the extra of ptmcad that installs what is missing.
 """
 
 from __future__ import annotations
@@ -14,12 +15,18 @@ from ptmcad.errors import ConfigError
 
 
 class Extra(Enum):
-    """Optional groups of packages, by their names in pyproject.toml: the package that is asked for, and what needs
-    it."""
+    """Optional groups of packages, by their names in pyproject.toml: the package that is asked for,
+    and what needs it."""
 
-    certified = "numba", "the certified engine, which springs with a free length need, runs on the package {}"
+    certified = (
+        "numba",
+        "the certified engine, which springs with a free length need, runs on the package {}",
+    )
     design = "scipy", "the best design is searched by the package {}"
-    bench = "scipy", "distances are measured with the package {}"  # numba, too, is asked for by what needs it
+    bench = (
+        "scipy",
+        "distances are measured with the package {}",
+    )  # numba, too, is asked for by what needs it
     data = "pandas", "a data frame needs the package {}"
     notebook = "anywidget", "a living map in a notebook needs the package {}"
     explore = "aiohttp", "the explorer's page is served by the package {}"
@@ -64,6 +71,7 @@ def require_ffmpeg() -> str:
     found = shutil.which("ffmpeg")
     if found is None:
         raise ConfigError(
-            "mp4 is made by the program ffmpeg, which is not on the PATH: install it, or ask for gif", key="--format"
+            "mp4 is made by the program ffmpeg, which is not on the PATH: install it, or ask for gif",
+            key="--format",
         )
     return found

@@ -1,4 +1,6 @@
-"""The manual: its commands run, its tables name every key, its links lead somewhere, and it is built quietly."""
+"""The manual: its commands run, its tables name every key, its links lead somewhere, and it is
+built quietly.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,13 @@ PAGES = sorted(path for path in DOCS.rglob("*.md") if "generated" not in path.pa
 TUTORIAL = (DOCS / "tutorial.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", TUTORIAL, re.DOTALL | re.MULTILINE)
 RESULT = re.compile(r"^(?P<expression>[^#\n]+?)\s*#\s*(?P<value>\S.*)$")
-SAYS = {"classify": "computed: ", "verify": "ok ", "locate": "total   4\n", "variety": "written ", "plot": "mine.pdf"}
+SAYS = {
+    "classify": "computed: ",
+    "verify": "ok ",
+    "locate": "total   4\n",
+    "variety": "written ",
+    "plot": "mine.pdf",
+}
 needs_sphinx = pytest.mark.skipif(
     not all(map(find_spec, ("sphinx", "myst_parser", "furo", "sphinx_click"))),
     reason="Sphinx and its extensions are not installed (pip install '.[docs]')",
@@ -36,8 +44,12 @@ def blocks(language: str) -> list[str]:
     return [text for found, text in BLOCKS if found == language]
 
 
-def test_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
-    """Its record, every command in its order, the files it names, and its Python with the values it shows."""
+def test_tutorial(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Its record, every command in its order, the files it names, and its Python with the values it
+    shows.
+    """
     monkeypatch.chdir(tmp_path)
     (record,) = blocks("yaml")
     Path("mine.yaml").write_text(record, encoding="utf-8")
@@ -49,7 +61,9 @@ def test_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest
         assert program == ".venv/bin/ptmcad"
         status = run([command, *arguments])
         out, err = capfd.readouterr()
-        assert status == 0 and all(said.startswith("note: mine.pdf has no room") for said in err.splitlines()), line
+        assert status == 0 and all(
+            said.startswith("note: mine.pdf has no room") for said in err.splitlines()
+        ), line
         assert bool(err) == ("ieee" in line), line
         assert SAYS[command] in out, line
     assert {path.name for path in Path("mine").iterdir()} == {
@@ -71,8 +85,12 @@ def test_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: str(path.relative_to(DOCS)))
 def test_links_lead_somewhere(page: Path) -> None:
-    """As files, so that they work where the pages are read as they are; generated pages are there after a build."""
-    text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    """As files, so that they work where the pages are read as they are; generated pages are there
+    after a build.
+    """
+    text = re.sub(
+        r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE
+    )
     for target in re.findall(r"\]\(([^)\s]+)\)", text):
         file, _, anchor = target.partition("#")
         found = page if not file else page.parent / file
@@ -81,7 +99,9 @@ def test_links_lead_somewhere(page: Path) -> None:
         assert found.exists(), target
         if anchor:
             headings = re.findall(r"^#+ (.*)$", found.read_text(encoding="utf-8"), re.MULTILINE)
-            assert anchor in {re.sub(r"[^\w -]", "", h).lower().replace(" ", "-") for h in headings}, target
+            assert anchor in {
+                re.sub(r"[^\w -]", "", h).lower().replace(" ", "-") for h in headings
+            }, target
 
 
 def test_every_page_has_its_place() -> None:
@@ -89,7 +109,12 @@ def test_every_page_has_its_place() -> None:
     index = (DOCS / "index.md").read_text(encoding="utf-8")
     for page in PAGES:
         name = page.relative_to(DOCS).with_suffix("").as_posix()
-        assert name == "index" or f"{name}\n" in index or f"<{name}>" in index or page.parent.name == "use", name
+        assert (
+            name == "index"
+            or f"{name}\n" in index
+            or f"<{name}>" in index
+            or page.parent.name == "use"
+        ), name
 
 
 def test_the_citation_is_of_this_version() -> None:
@@ -100,7 +125,10 @@ def test_the_citation_is_of_this_version() -> None:
     assert {"cff-version", "message", "title", "authors"} <= citation.keys()
     assert citation["version"] == ptmcad.__version__
     for entry in (citation, *citation["references"]):
-        assert all(set(author) in ({"name"}, {"family-names", "given-names"}) for author in entry["authors"])
+        assert all(
+            set(author) in ({"name"}, {"family-names", "given-names"})
+            for author in entry["authors"]
+        )
     assert all({"type", "title"} <= entry.keys() for entry in citation["references"])
 
 
@@ -136,7 +164,9 @@ def schema_tables(monkeypatch: pytest.MonkeyPatch) -> object:
 
 
 @pytest.mark.parametrize(
-    "path", [ROOT / "ptmcad" / "record.schema.json", *sorted(DOCS.glob("*.schema.json"))], ids=lambda path: path.name
+    "path",
+    [ROOT / "ptmcad" / "record.schema.json", *sorted(DOCS.glob("*.schema.json"))],
+    ids=lambda path: path.name,
 )
 def test_every_key_is_in_a_table(path: Path, schema_tables: object) -> None:
     schema = json.loads(path.read_text(encoding="utf-8"))
@@ -163,7 +193,9 @@ def test_a_keyword_that_no_table_shows_is_an_error(schema_tables: object) -> Non
 def test_the_manual_is_built_without_a_warning(tmp_path: Path) -> None:
     """And it works without a network: no picture, script or style comes from elsewhere."""
     for name in ("docs", "configs", "ptmcad"):
-        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__", "generated"))
+        shutil.copytree(
+            ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__", "generated")
+        )
     shutil.copy(ROOT / "CHANGELOG.md", tmp_path)
     command = [
         sys.executable,
@@ -180,13 +212,26 @@ def test_the_manual_is_built_without_a_warning(tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     html = tmp_path / "html"
-    pages = {path.relative_to(html).as_posix(): path.read_text(encoding="utf-8") for path in html.rglob("*.html")}
-    assert {"index.html", "tutorial.html", "generated/gallery.html", "command-line.html", "api.html"} <= pages.keys()
+    pages = {
+        path.relative_to(html).as_posix(): path.read_text(encoding="utf-8")
+        for path in html.rglob("*.html")
+    }
+    assert {
+        "index.html",
+        "tutorial.html",
+        "generated/gallery.html",
+        "command-line.html",
+        "api.html",
+    } <= pages.keys()
     for name, text in pages.items():
-        assert not re.findall(r"<(?:script|img|iframe|source)[^>]*(?:src|srcset)=\"(?:https?:)?//", text), name
+        assert not re.findall(
+            r"<(?:script|img|iframe|source)[^>]*(?:src|srcset)=\"(?:https?:)?//", text
+        ), name
         assert not re.findall(r"<link[^>]*href=\"(?:https?:)?//", text), name
     for style in html.rglob("*.css"):
-        assert not re.findall(r"url\([\"']?(?:https?:)?//|@import", style.read_text(encoding="utf-8")), style
+        assert not re.findall(
+            r"url\([\"']?(?:https?:)?//|@import", style.read_text(encoding="utf-8")
+        ), style
     for record in EXACT:
         assert f"{record.stem}.svg" in pages["generated/gallery.html"]
     for folder in ("mechanisms", "systems"):

@@ -35,7 +35,10 @@ def refuse(*_: object, **__: object) -> None:
 
 @pytest.mark.parametrize("names", [("all",), ("free length",), ("units", "free-length-1e-3")])
 def test_stress_refuses_before_the_first_case(
-    names: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    names: tuple[str, ...],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setattr(campaign, "run", refuse)
     assert run(["stress", *names, "--out", str(tmp_path)]) == 2
@@ -48,7 +51,9 @@ def test_stress_needs_numba_for_free_lengths_only() -> None:
     free = {case.name for case in chosen(()) if free_lengths(case.question.parameters)}
     assert {name for name in free if "free" in name}
     for case in chosen(()):
-        assert (case.name in free) == any(k.startswith("l0") for k in case.question.parameters), case.name
+        assert (case.name in free) == any(k.startswith("l0") for k in case.question.parameters), (
+            case.name
+        )
     plain = Case("plain", "units", Fraction(1), point(), "none")
     assert not free_lengths(plain.question.parameters)
     done = campaign.campaign((plain,), seed=1, repeats=1)
@@ -64,7 +69,10 @@ def test_stress_needs_numba_for_free_lengths_only() -> None:
     ],
 )
 def test_commands_on_free_lengths_refuse(
-    arguments: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    arguments: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     (tmp_path / "configs").symlink_to(ROOT / "configs")
     (tmp_path / "out").mkdir()
@@ -93,7 +101,9 @@ def test_a_variable_that_numba_refuses() -> None:
 
 def test_messages_name_an_extra_that_has_the_package() -> None:
     """As pyproject.toml has them; each package's own name is that under which it is imported."""
-    groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"][
+        "optional-dependencies"
+    ]
     for extra in Extra:
         assert any(need.startswith(f"{extra.package}>=") for need in groups[extra.name])
         assert f"the package {extra.package}" in extra.message

@@ -1,4 +1,6 @@
-"""The pages of questions and of numbers: commands and Python say what the pages show; figures are drawn again."""
+"""The pages of questions and of numbers: commands and Python say what the pages show; figures are
+drawn again.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ from ptmcad.cli import run
 DOCS = Path(__file__).parent.parent / "docs"
 HOW_TO, DATA = ((DOCS / f"{name}.md").read_text(encoding="utf-8") for name in ("how-to", "data"))
 CHANGING = re.compile(
-    r"^time .*|^searched .*|\d+ random pixels agree .*|\d+ points of \d+ bits, seed\s+\w+", re.MULTILINE
+    r"^time .*|^searched .*|\d+ random pixels agree .*|\d+ points of \d+ bits, seed\s+\w+",
+    re.MULTILINE,
 )
 """What is another time in each run, or rounding of another machine."""
 
@@ -37,11 +40,14 @@ HEAVY = (
     "… compare several loads?",
     "… map the same slice for many loads and designs?",
 )
-"""Questions of many pixels, pictures and maps; the README's test asks the first two, of the same map."""
+"""Questions of many pixels, pictures and maps; the README's test asks the first two, of the same
+map.
+"""
 
 
 @pytest.mark.parametrize(
-    ("left_out", "least"), [pytest.param((), (9, 7), marks=pytest.mark.slow, id="all"), (HEAVY, (6, 3))]
+    ("left_out", "least"),
+    [pytest.param((), (9, 7), marks=pytest.mark.slow, id="all"), (HEAVY, (6, 3))],
 )
 @pytest.mark.usefixtures("coarse")
 def test_commands_and_python_say_what_the_page_shows(
@@ -62,9 +68,13 @@ def test_commands_and_python_say_what_the_page_shows(
             Path(block.splitlines()[0].removeprefix("# ")).write_text(block, encoding="utf-8")
             continue
         if language == "console":
-            for command, shown in re.findall(r"^\$ ptmcad (.*)\n((?:(?!\$ ).*\n)*)", block, re.MULTILINE):
+            for command, shown in re.findall(
+                r"^\$ ptmcad (.*)\n((?:(?!\$ ).*\n)*)", block, re.MULTILINE
+            ):
                 assert run(shlex.split(command)) == 0, command
-                assert without_what_changes(capsys.readouterr().out) == without_what_changes(shown), command
+                assert without_what_changes(capsys.readouterr().out) == without_what_changes(
+                    shown
+                ), command
                 commands += 1
             continue
         for example in doctest.DocTestParser().get_examples(block):
@@ -91,12 +101,19 @@ def test_numbers_are_drawn_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         if isinstance(value, NpzFile):
             value.close()
     assert Path("again.png").read_bytes().startswith(b"\x89PNG")
-    with Path("fig4-boundaries.csv").open() as boundaries, Path("fig4-regions.csv").open() as regions:
+    with (
+        Path("fig4-boundaries.csv").open() as boundaries,
+        Path("fig4-regions.csv").open() as regions,
+    ):
         columns = set(next(csv.reader(boundaries))), set(next(csv.reader(regions)))
     (latex,), (matlab,) = (
-        re.findall(rf"^```{name}\n(.*?)^```$", DATA, re.DOTALL | re.MULTILINE) for name in ("latex", "matlab")
+        re.findall(rf"^```{name}\n(.*?)^```$", DATA, re.DOTALL | re.MULTILINE)
+        for name in ("latex", "matlab")
     )
-    assert {*re.findall(r"\b[xy]=([A-Za-z]\w*)[,\]]", latex), *re.findall(r"thisrow\{(\w+)\}", latex)} <= columns[0]
+    assert {
+        *re.findall(r"\b[xy]=([A-Za-z]\w*)[,\]]", latex),
+        *re.findall(r"thisrow\{(\w+)\}", latex),
+    } <= columns[0]
     assert set(re.findall(r"\bt\.(\w+)", matlab)) <= columns[0]
     assert set(re.findall(r"\br\.(\w+)", matlab)) <= columns[1]
     for table, shown in re.findall(r"^\| `NAME-(\w+)\.csv` \|[^|]*\| (.*) \|$", DATA, re.MULTILINE):

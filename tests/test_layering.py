@@ -1,4 +1,6 @@
-"""The layering that docs/architecture.md describes: the contracts of pyproject.toml, and what they cannot express."""
+"""The layering that docs/architecture.md describes: the contracts of pyproject.toml, and what they
+cannot express.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ PACKAGE = ROOT / "ptmcad"
 FLINT_POLYNOMIALS = ("poly", "mpoly", "mpoly_ctx", "mpoly_vec", "series")
 
 
-def test_the_contracts_hold(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_contracts_hold(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     from importlinter.cli import lint_imports
 
     monkeypatch.setattr(sys, "path", sys.path.copy())  # which it changes
@@ -32,35 +36,56 @@ def test_the_contracts_hold(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capt
 
 
 def test_no_circle_among_modules() -> None:
-    """Not even one that an import inside of a function hides; a package's own `__init__` is a module like others."""
+    """Not even one that an import inside of a function hides; a package's own `__init__` is a
+    module like others.
+    """
     import grimp
 
     graph = grimp.build_graph("ptmcad", cache_dir=None, exclude_type_checking_imports=True)
-    TopologicalSorter({m: graph.find_modules_directly_imported_by(m) for m in graph.modules}).prepare()
+    TopologicalSorter(
+        {m: graph.find_modules_directly_imported_by(m) for m in graph.modules}
+    ).prepare()
 
 
 def test_flints_polynomials_stay_in_algebra() -> None:
-    """In the checks, which must not use it, in eliminations by hand, in one module for common divisors, and in one that
-    writes derivatives out: all else speaks of curves, cells and counts."""
+    """In the checks, which must not use it, in eliminations by hand, in one module for common
+    divisors, and in one that writes derivatives out: all else speaks of curves, cells and counts.
+    """
     studies = PACKAGE / "studies"
-    rooms = [PACKAGE / "algebra", PACKAGE / "verification", studies / "stress", studies / "paper" / "squaring.py"]
+    rooms = [
+        PACKAGE / "algebra",
+        PACKAGE / "verification",
+        studies / "stress",
+        studies / "paper" / "squaring.py",
+    ]
     rooms += [PACKAGE / "certified" / "plain" / "divisors.py", studies / "moments.py"]
     for path in PACKAGE.rglob("*.py"):
         text, used = path.read_text(encoding="utf-8"), set[str]()
         for node in ast.walk(ast.parse(text if "flint" in text else "")):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] == "flint":
+            if (
+                isinstance(node, ast.ImportFrom)
+                and (node.module or "").partition(".")[0] == "flint"
+            ):
                 used |= {alias.name for alias in node.names}
-            elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "flint":
+            elif (
+                isinstance(node, ast.Attribute)
+                and isinstance(node.value, ast.Name)
+                and node.value.id == "flint"
+            ):
                 used.add(node.attr)
         if not any(path.is_relative_to(room) for room in rooms):
             assert not [name for name in used if name.endswith(FLINT_POLYNOMIALS)], path
 
 
 def test_answers_have_the_methods_that_they_declare() -> None:
-    """`ptmcad.methods` binds what type checkers read in the classes: the same names with the same signatures."""
+    """`ptmcad.methods` binds what type checkers read in the classes: the same names with the same
+    signatures.
+    """
     for answer in (ptmcad.RegionMap, ptmcad.SliceVariety, ptmcad.Poses):
         tree = ast.parse(Path(inspect.getfile(answer)).read_text(encoding="utf-8"))
-        (body,) = (n.body for n in tree.body if isinstance(n, ast.ClassDef) and n.name == answer.__name__)
+        (body,) = (
+            n.body for n in tree.body if isinstance(n, ast.ClassDef) and n.name == answer.__name__
+        )
         (block,) = (n for n in body if isinstance(n, ast.If))
         declared = {n.name: n.args for n in block.body if isinstance(n, ast.FunctionDef)}
         assert declared.keys() == ptmcad.methods.METHODS[answer.__name__].keys()
@@ -76,15 +101,26 @@ def test_answers_have_the_methods_that_they_declare() -> None:
 
 def test_an_unpickled_answer_has_its_methods(tmp_path: Path) -> None:
     """Also in a process that has imported nothing of ptmcad before."""
-    (tmp_path / "map").write_bytes(pickle.dumps(ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))))
-    loaded_after("import pickle; print(pickle.load(open('map', 'rb')).locate(L2='3/2', rho=1).stable)", tmp_path)
+    (tmp_path / "map").write_bytes(
+        pickle.dumps(ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho")))
+    )
+    loaded_after(
+        "import pickle; print(pickle.load(open('map', 'rb')).locate(L2='3/2', rho=1).stable)",
+        tmp_path,
+    )
 
 
 def loaded_after(code: str, tmp_path: Path) -> set[str]:
-    """Every module loaded by a fresh interpreter that has run the code, and the packages that hold it."""
+    """Every module loaded by a fresh interpreter that has run the code, and the packages that hold
+    it.
+    """
     report = "import json, sys; print('\\n' + json.dumps(sorted(sys.modules)))"
     done = subprocess.run(
-        [sys.executable, "-c", f"{code}\n{report}"], cwd=tmp_path, capture_output=True, text=True, check=False
+        [sys.executable, "-c", f"{code}\n{report}"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     return set(json.loads(done.stdout.splitlines()[-1]))
@@ -93,11 +129,15 @@ def loaded_after(code: str, tmp_path: Path) -> set[str]:
 def test_verification_loads_nothing_of_the_engine(tmp_path: Path) -> None:
     """Not even through another module."""
     loaded = loaded_after("import ptmcad; ptmcad.verify", tmp_path)
-    assert not loaded & {f"ptmcad.{room}" for room in ("algebra", "exact", "certified", "ask", "show")}
+    assert not loaded & {
+        f"ptmcad.{room}" for room in ("algebra", "exact", "certified", "ask", "show")
+    }
 
 
 def test_the_fork_comes_before_everything_large(tmp_path: Path) -> None:
-    """Handlers are set and the process is forked while little is loaded: a copy of little costs little."""
+    """Handlers are set and the process is forked while little is loaded: a copy of little costs
+    little.
+    """
     loaded = loaded_after("import ptmcad.__main__, ptmcad.process.supervisor", tmp_path)
     assert not loaded & {"click", "yaml", "flint", "numpy", "dataclasses", "pathlib", "subprocess"}
 
@@ -122,7 +162,12 @@ def test_solving_needs_no_picture_or_symbolic_library(tmp_path: Path) -> None:
 
 def test_the_command_line_starts_lean(tmp_path: Path) -> None:
     """``ptmcad --help`` must not wait for a computing or drawing library."""
-    assert not loaded_after("import ptmcad.cli", tmp_path) & {"matplotlib", "sympy", "numpy", "flint"}
+    assert not loaded_after("import ptmcad.cli", tmp_path) & {
+        "matplotlib",
+        "sympy",
+        "numpy",
+        "flint",
+    }
 
 
 def test_json_needs_no_picture_or_symbolic_library(tmp_path: Path) -> None:

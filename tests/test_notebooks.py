@@ -1,4 +1,6 @@
-"""The manual's notebooks: every cell runs, in its order, and says what is stored; pictures are pictures."""
+"""The manual's notebooks: every cell runs, in its order, and says what is stored; pictures are
+pictures.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,11 @@ HEAVY = ("replotting", "design-study")
 
 
 @pytest.mark.parametrize(
-    "path", [pytest.param(p, marks=pytest.mark.slow if p.stem in HEAVY else (), id=p.stem) for p in NOTEBOOKS]
+    "path",
+    [
+        pytest.param(p, marks=pytest.mark.slow if p.stem in HEAVY else (), id=p.stem)
+        for p in NOTEBOOKS
+    ],
 )
 def test_cells_say_what_is_stored(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)

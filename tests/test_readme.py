@@ -29,7 +29,12 @@ def blocks(language: str) -> list[str]:
 
 
 def shell_lines() -> list[str]:
-    return [line.partition("#")[0].strip() for block in blocks("sh") for line in block.splitlines() if line.strip()]
+    return [
+        line.partition("#")[0].strip()
+        for block in blocks("sh")
+        for line in block.splitlines()
+        if line.strip()
+    ]
 
 
 MAKE_LINES = [line for line in shell_lines() if line.startswith("make ")]
@@ -40,7 +45,8 @@ def test_the_parts_are_there() -> None:
     assert MAKE_LINES == ["make demo", "make test"]
     commands = " ".join(shlex.split(line)[1] for line in PROGRAM_LINES)
     assert (
-        commands == "classify classify verify locate report range map animate solve solve variety classify verify solve"
+        commands
+        == "classify classify verify locate report range map animate solve solve variety classify verify solve"
     )
     assert len(blocks("yaml")) == 2
     assert len(blocks("python")) == 1
@@ -48,13 +54,23 @@ def test_the_parts_are_there() -> None:
 
 @pytest.mark.parametrize("line", MAKE_LINES)
 def test_make_command(line: str) -> None:
-    """The targets exist and run what the README says; they are not run here, or the tests would run themselves."""
+    """The targets exist and run what the README says; they are not run here, or the tests would run
+    themselves.
+    """
     environment = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
     dry = subprocess.run(
-        [*shlex.split(line), "--dry-run"], cwd=ROOT, env=environment, capture_output=True, text=True, check=False
+        [*shlex.split(line), "--dry-run"],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert dry.returncode == 0, dry.stderr
-    expected = {"make demo": "ptmcad classify fig4 --format json,png,svg --out out", "make test": "pytest"}
+    expected = {
+        "make demo": "ptmcad classify fig4 --format json,png,svg --out out",
+        "make test": "pytest",
+    }
     assert expected[line] in dry.stdout
     assert "warm-up" not in dry.stdout  # nothing is compiled that the target does not use
 
@@ -82,15 +98,17 @@ SAYS_FREE = {
 
 
 @pytest.mark.usefixtures("coarse")
-@pytest.mark.parametrize("part", [True, pytest.param(False, marks=pytest.mark.slow)], ids=["part of free02", "free02"])
+@pytest.mark.parametrize(
+    "part", [True, pytest.param(False, marks=pytest.mark.slow)], ids=["part of free02", "free02"]
+)
 def test_program_commands_in_their_order(
     part: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """Each command ends well and says what it should, in a folder that is empty at first.
 
-    The first one is the installed program; to start it for the others too would show no more. The map of free02 takes
-    most of the time, even that of a part of its window; it is one that other tests read too, and here counts that it is
-    asked for.
+    The first one is the installed program; to start it for the others too would show no more. The
+    map of free02 takes most of the time, even that of a part of its window; it is one that other
+    tests read too, and here counts that it is asked for.
     """
 
     free02, asked = part_of_free02() if part else shipped_certified("free02", "1/50"), []
@@ -101,17 +119,25 @@ def test_program_commands_in_their_order(
         return free02
 
     monkeypatch.setattr("ptmcad.certified.engine.certified_map", certified_map)
-    monkeypatch.setattr("ptmcad.verification.certified.checks.BOXES", 4)  # of 40: enough to see that some are tried
+    monkeypatch.setattr(
+        "ptmcad.verification.certified.checks.BOXES", 4
+    )  # of 40: enough to see that some are tried
     if part:  # a file wins over the shipped record of its name
         (tmp_path / "free02").write_text(record_of_part_of_free02(), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     installed = Path(sys.executable).with_name("ptmcad")
     for n, shown in enumerate(PROGRAM_LINES):
-        line = re.sub(r"(?<=--)(frames|pixels|boxes) \d+", lambda m: f"{m[1]} {FEWER[m[1]]}", shown) if part else shown
+        line = (
+            re.sub(r"(?<=--)(frames|pixels|boxes) \d+", lambda m: f"{m[1]} {FEWER[m[1]]}", shown)
+            if part
+            else shown
+        )
         program, command, *arguments = shlex.split(line)
         assert program == ".venv/bin/ptmcad"
         if n == 0:
-            done = subprocess.run([str(installed), command, *arguments], capture_output=True, text=True, check=False)
+            done = subprocess.run(
+                [str(installed), command, *arguments], capture_output=True, text=True, check=False
+            )
             status, out, err = done.returncode, done.stdout, done.stderr
         else:
             status = run([command, *arguments])
@@ -121,7 +147,14 @@ def test_program_commands_in_their_order(
         assert says.replace("{}", "2" if part else "4") in out, line
     assert asked == ["free02"]
     written = {path.name for path in (tmp_path / "out").iterdir()}
-    maps = {"fig4.html", "fig4.json", "fig4.svg", "slice-L2-rho.json", "slice-L2-rho.png", "slice-L2-rho.svg"}
+    maps = {
+        "fig4.html",
+        "fig4.json",
+        "fig4.svg",
+        "slice-L2-rho.json",
+        "slice-L2-rho.png",
+        "slice-L2-rho.svg",
+    }
     maps |= {"free02.json", "free02.png", "fig4-stiffness-stable-1.png", "fig4-motion.gif"}
     assert written == maps | {"poses.json", "poses.svg", "poses-landscape.svg"}
 

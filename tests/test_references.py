@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-ROOMS = "|".join(sorted(p.name for p in (ROOT / "ptmcad").iterdir() if p.is_dir() and p.name != "__pycache__"))
+ROOMS = "|".join(
+    sorted(p.name for p in (ROOT / "ptmcad").iterdir() if p.is_dir() and p.name != "__pycache__")
+)
 FILE = re.compile(rf"`((?:ptmcad|tests|docs|configs|scripts|{ROOMS})/[\w./-]+)`")
 NAME = re.compile(r"`(ptmcad(?:\.[a-z_]\w*)+)")
 PROSE = [
@@ -20,7 +22,9 @@ PROSE = [
 
 
 def is_file(named: str) -> bool:
-    """From the project's root, or from a folder that prose counts from; modules also without their ending."""
+    """From the project's root, or from a folder that prose counts from; modules also without their
+    ending.
+    """
     starts = (ROOT / folder / named for folder in (".", "ptmcad", "tests"))
     return any(start.exists() or start.with_suffix(".py").exists() for start in starts)
 
@@ -55,5 +59,9 @@ def test_what_is_lost_is_seen(text: str, there: bool) -> None:
 
 def test_prose_speaks_of_what_is_there() -> None:
     own = Path(__file__)
-    found = {str(p.relative_to(ROOT)): names for p in PROSE if p != own and (names := lost(p.read_text("utf-8")))}
+    found = {
+        str(p.relative_to(ROOT)): names
+        for p in PROSE
+        if p != own and (names := lost(p.read_text("utf-8")))
+    }
     assert not found

@@ -1,4 +1,6 @@
-"""The source distribution has all that its tests read, and a wheel what it needs where there is no source."""
+"""The source distribution has all that its tests read, and a wheel what it needs where there is no
+source.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,15 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("configs", "docs", "ptmcad", "scripts", "tests")
 FILES = (".gitignore", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "MANIFEST.in", "Makefile",
          "README.md", "pyproject.toml", "setup.py")  # fmt: skip
-MADE = {"__pycache__", "generated", "findings", ".hypothesis", ".mypy_cache", ".ruff_cache", ".pytest_cache"}
+MADE = {
+    "__pycache__",
+    "generated",
+    "findings",
+    ".hypothesis",
+    ".mypy_cache",
+    ".ruff_cache",
+    ".pytest_cache",
+}
 """Folders that running the program, its tests or its manual's build makes."""
 
 
@@ -39,7 +49,9 @@ def test_the_source_distribution_has_every_file(tmp_path: Path) -> None:
     (listing,) = tmp_path.glob("*.egg-info/SOURCES.txt")
     listed = {name.removeprefix("./") for name in listing.read_text(encoding="utf-8").splitlines()}
     assert set(wanted()) - listed == set()
-    foreign = {name for name in listed - set(wanted()) if ".egg-info/" not in name and name != "setup.cfg"}
+    foreign = {
+        name for name in listed - set(wanted()) if ".egg-info/" not in name and name != "setup.cfg"
+    }
     assert foreign == set()
 
 
@@ -54,7 +66,9 @@ build_meta.build_wheel({str(folder)!r}, settings)
 """
     copy = folder / "source"
     shutil.copytree(
-        ROOT, copy, ignore=shutil.ignore_patterns(*MADE, ".*", "build", "out", "dist", "*.egg-info", "tests")
+        ROOT,
+        copy,
+        ignore=shutil.ignore_patterns(*MADE, ".*", "build", "out", "dist", "*.egg-info", "tests"),
     )
     subprocess.run([sys.executable, "-c", script], cwd=copy, check=True, capture_output=True)
     (made,) = folder.glob("*.whl")
@@ -66,7 +80,10 @@ build_meta.build_wheel({str(folder)!r}, settings)
 @pytest.mark.slow
 def test_a_wheel_has_the_records(wheel: Path) -> None:
     shipped = {path.relative_to(ROOT).as_posix() for path in (ROOT / "configs").rglob("*.yaml")}
-    packed = {path.relative_to(wheel / "ptmcad").as_posix() for path in (wheel / "ptmcad" / "configs").rglob("*.yaml")}
+    packed = {
+        path.relative_to(wheel / "ptmcad").as_posix()
+        for path in (wheel / "ptmcad" / "configs").rglob("*.yaml")
+    }
     assert packed == shipped
     (record,) = wheel.glob("*.dist-info/RECORD")
     assert "ptmcad/configs/fig4.yaml," in record.read_text(encoding="utf-8")
@@ -77,18 +94,29 @@ def test_bench_needs_no_record_where_a_wheel_is_installed(wheel: Path, tmp_path:
     code = "from ptmcad.question.shipped import record_file; print(record_file('fig4'))"
     environment = os.environ | {"PYTHONPATH": str(wheel)}
     done = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, env=environment, check=True, capture_output=True, text=True
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        env=environment,
+        check=True,
+        capture_output=True,
+        text=True,
     )
     assert done.stdout == f"{wheel / 'ptmcad' / 'configs' / 'fig4.yaml'}\n"
 
 
 @pytest.mark.slow
 def test_a_new_user_finds_the_records_in_a_wheel(wheel: Path, tmp_path: Path) -> None:
-    """In an empty folder: the commands of the README and of the page of questions that ask a shipped record."""
+    """In an empty folder: the commands of the README and of the page of questions that ask a
+    shipped record.
+    """
     pages = (ROOT / "README.md", ROOT / "docs" / "how-to.md")
     shown = "\n".join(page.read_text(encoding="utf-8") for page in pages)
     lines = re.findall(r"^(?:\$ |\.venv/bin/)ptmcad ((?:\w+) fig\d .*)$", shown, re.MULTILINE)
-    quick = [shlex.split(line) for line in lines if line.split()[0] in ("classify", "range", "solve", "variety")]
+    quick = [
+        shlex.split(line)
+        for line in lines
+        if line.split()[0] in ("classify", "range", "solve", "variety")
+    ]
     assert len(quick) > 6
     environment = os.environ | {"PYTHONPATH": str(wheel)}
     for words in quick:

@@ -1,4 +1,6 @@
-"""docs/tutorial-mechanism.md, followed literally: its record, each command in order, its messages and its Python."""
+"""docs/tutorial-mechanism.md, followed literally: its record, each command in order, its messages
+and its Python.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ def blocks(language: str) -> list[str]:
     return [text for found, text in BLOCKS if found == language]
 
 
-def test_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+def test_the_page(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
     (record,) = blocks("yaml")
     assert len(record.splitlines()) == 10
@@ -39,7 +43,9 @@ def test_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest
     said = "".join(answers.values())
     for shown in ("index   2-3-1", "1.012636436", "2 stable"):
         assert shown in said
-    assert {"first.svg", "first.json", "seat.svg", "seat.json", "seat.html"} <= {p.name for p in Path("out").iterdir()}
+    assert {"first.svg", "first.json", "seat.svg", "seat.json", "seat.html"} <= {
+        p.name for p in Path("out").iterdir()
+    }
     wrong = record.replace("L*sin(th)", "L*sin(t)").replace("[A, Q]", "[A, Z]")
     Path("seat.yaml").write_text(wrong, encoding="utf-8")
     assert run(["check", "seat.yaml"]) == 2
@@ -53,7 +59,9 @@ def test_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest
         if shown_value is None:
             exec(line, names)
         else:
-            assert eval(shown_value["expression"], names) == ast.literal_eval(shown_value["value"]), line
+            assert eval(shown_value["expression"], names) == ast.literal_eval(
+                shown_value["value"]
+            ), line
             values += 1
     assert values == 3
 

@@ -1,4 +1,6 @@
-"""CONTRIBUTING's rule on names, where a machine can look: one word for each thing, through the whole package."""
+"""CONTRIBUTING's rule on names, where a machine can look: one word for each thing, through the
+whole package.
+"""
 
 from __future__ import annotations
 
@@ -46,15 +48,25 @@ def test_old_words_are_known(code: str, old: bool) -> None:
 
 def test_names_are_the_houses() -> None:
     """Of modules, classes, functions, constants and variables."""
-    found = [f"{path.relative_to(ROOT)}: {n}" for path in CODE for n in old_names(ast.parse(path.read_text("utf-8")))]
+    found = [
+        f"{path.relative_to(ROOT)}: {n}"
+        for path in CODE
+        for n in old_names(ast.parse(path.read_text("utf-8")))
+    ]
     assert not found + [str(path) for path in CODE if VAGUE.fullmatch(path.stem)]
 
 
 def test_prose_and_messages_use_no_renamed_word() -> None:
-    """The old option is a hidden alias, where its own name has to stand; pages made from history keep its words."""
+    """The old option is a hidden alias, where its own name has to stand; pages made from history
+    keep its words.
+    """
     docs = ROOT / "docs"
     prose = [*CODE, ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(docs.rglob("*.md"))]
-    own = {PACKAGE / "cli" / "classify.py", PACKAGE / "cli" / "engineoptions.py", docs / "history.md"}
+    own = {
+        PACKAGE / "cli" / "classify.py",
+        PACKAGE / "cli" / "engineoptions.py",
+        docs / "history.md",
+    }
     read = [p for p in prose if p not in own and docs / "generated" not in p.parents]
     found = [f"{p}: {m[0]}" for p in read for m in RENAMED.finditer(p.read_text("utf-8"))]
     assert not found

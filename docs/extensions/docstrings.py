@@ -1,7 +1,7 @@
 """The house style of docstrings, made into what the napoleon extension reads.
 
-In the code a parameter's line is ``name : what it means``, because its type stands in the signature. Napoleon takes
-what follows the colon for the type, so here it goes to a line of its own.
+In the code a parameter's line is ``name : what it means``, because its type stands in the
+signature. Napoleon takes what follows the colon for the type, so here it goes to a line of its own.
 """
 
 from __future__ import annotations
@@ -16,12 +16,18 @@ _ENTRY = re.compile(r"(\w+(?:, \w+)*) : (.*)")
 BEFORE_NAPOLEON = 400
 
 
-def rewrite(_app: Sphinx, _what: str, _name: str, _object: object, _options: object, lines: list[str]) -> None:
+def rewrite(
+    _app: Sphinx, _what: str, _name: str, _object: object, _options: object, lines: list[str]
+) -> None:
     """Rewrite the lines in place."""
     result: list[str] = []
     section = ""
     for number, line in enumerate(lines):
-        if number + 1 < len(lines) and line.strip() and re.fullmatch(r"-{3,}", lines[number + 1].strip()):
+        if (
+            number + 1 < len(lines)
+            and line.strip()
+            and re.fullmatch(r"-{3,}", lines[number + 1].strip())
+        ):
             section = line.strip()
         entry = _ENTRY.fullmatch(line) if section in _SECTIONS else None
         result += [entry.group(1), f"    {entry.group(2)}"] if entry else [line]
@@ -29,7 +35,9 @@ def rewrite(_app: Sphinx, _what: str, _name: str, _object: object, _options: obj
 
 
 def use_dashes(_app: Sphinx, doctree: nodes.document) -> None:
-    """Between a name and its meaning Sphinx puts two hyphens and trusts the typographer, who would spoil options."""
+    """Between a name and its meaning Sphinx puts two hyphens and trusts the typographer, who would
+    spoil options.
+    """
     for text in list(doctree.findall(nodes.Text)):
         if str(text) == " -- ":
             text.parent.replace(text, nodes.Text(" \u2013 "))

@@ -1,4 +1,5 @@
-"""The galleries: every shipped record without free lengths, with its picture, its table and the command for them.
+"""The galleries: every shipped record without free lengths, with its picture, its table and the
+command for them.
 
 Guarantee: pictures and tables are computed from the record when the manual is built.
 """
@@ -27,8 +28,8 @@ records when this manual is built.
 
 """
 CERTIFIED = {"three-bar-chain": {"a": "1", "F": "1/2"}}
-"""Records whose map takes the certified engine minutes, each with a point of which the table is; `scripts/free-maps`
-draws their maps."""
+"""Records whose map takes the certified engine minutes, each with a point of which the table is;
+`scripts/free-maps` draws their maps."""
 
 POSES = {
     "five-bar": {"F": "2", "G": "2"},
@@ -46,13 +47,18 @@ def page(configs: Path, folder: Path) -> str:
     configs : the folder of problem records.
     folder : where the page will be.
     """
-    exact = (path for path in sorted(configs.glob("*.yaml")) if not ptmcad.load(path).has_free_lengths)
+    exact = (
+        path for path in sorted(configs.glob("*.yaml")) if not ptmcad.load(path).has_free_lengths
+    )
     return _START + "\n".join(entry(path, configs, folder) for path in exact)
 
 
 def models_page(configs: Path, folder: Path) -> str:
     """The page of the other mechanisms and systems, in the same way."""
-    records = [*sorted((configs / "mechanisms").glob("*.yaml")), *sorted((configs / "systems").glob("*.yaml"))]
+    records = [
+        *sorted((configs / "mechanisms").glob("*.yaml")),
+        *sorted((configs / "systems").glob("*.yaml")),
+    ]
     return _MODELS + "\n".join(entry(path, configs, folder) for path in records)
 
 
@@ -71,13 +77,18 @@ def entry(path: Path, configs: Path, folder: Path) -> str:
     elif path.stem in POSES:
         found = ptmcad.solve(slice, **at)
         save(draw_poses(found), folder / picture)
-        commands = (f"ptmcad check {record}", f"ptmcad solve {record} --at {place} --format table,svg")
+        commands = (
+            f"ptmcad check {record}",
+            f"ptmcad solve {record} --at {place} --format table,svg",
+        )
         table = found.table()
     else:
         result = ptmcad.classify(slice)
         draw(result, folder / picture)
         commands = (f"ptmcad classify {record} --format svg",)
-        table = replace(result, timings={}).table().replace("time      not recorded; ", "          ")
+        table = (
+            replace(result, timings={}).table().replace("time      not recorded; ", "          ")
+        )
     source = " ".join(str(slice.reference.get("source", "")).split())
     notes = " ".join(yaml.safe_load(text).get("notes", "").split())
     return "\n".join(

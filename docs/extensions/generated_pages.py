@@ -1,6 +1,8 @@
-"""Pages that are made when the manual is built: the galleries, the schemas' tables and the changelog.
+"""Pages that are made when the manual is built: the galleries, the schemas' tables and the
+changelog.
 
-Guarantee: what they show is what the sources say at that moment; a page is written only when its text has changed.
+Guarantee: what they show is what the sources say at that moment; a page is written only when its
+text has changed.
 """
 
 from __future__ import annotations

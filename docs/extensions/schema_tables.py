@@ -1,7 +1,7 @@
 """A JSON Schema as a page of tables: one table for each object, with keys, types and descriptions.
 
-Guarantee: every key that the schema names is in a table; a keyword that this module does not know is an error, so that
-nothing is left out silently.
+Guarantee: every key that the schema names is in a table; a keyword that this module does not know
+is an error, so that nothing is left out silently.
 """
 
 from __future__ import annotations
@@ -57,7 +57,14 @@ def page(title: str, file: str, schema: Schema) -> str:
     ValueError
         For a keyword that the tables could not show.
     """
-    lines = [f"# {title}", "", str(schema.get("description", "")), "", f"The schema itself: [{file}]({file}).", ""]
+    lines = [
+        f"# {title}",
+        "",
+        str(schema.get("description", "")),
+        "",
+        f"The schema itself: [{file}]({file}).",
+        "",
+    ]
     lines += _object("", "The whole", schema)
     for name, definition in schema.get("$defs", {}).items():
         lines += [f"## {name}", "", *_definition(definition)]
@@ -87,7 +94,9 @@ def _inner(schema: Schema, path: str) -> Iterator[str]:
 
 
 def _below(place: str, schema: Schema) -> Iterator[str]:
-    """The objects in a value: in the entries of a list or mapping, or in one of several shapes that it may have."""
+    """The objects in a value: in the entries of a list or mapping, or in one of several shapes that
+    it may have.
+    """
     if "properties" in schema:
         yield from _object(place, f"`{place}`", schema)
         return
@@ -133,7 +142,11 @@ def _type(schema: Schema) -> str:
     text = (" or ".join(kinds) if isinstance(kinds, list) else str(kinds)) + _bounds(schema)
     if "array" in kinds:
         text += _items(schema)
-    if "object" in kinds and isinstance(schema.get("additionalProperties"), Mapping) and "properties" not in schema:
+    if (
+        "object" in kinds
+        and isinstance(schema.get("additionalProperties"), Mapping)
+        and "properties" not in schema
+    ):
         text += f", each value {_type(schema['additionalProperties'])}"
     return text
 
@@ -159,7 +172,9 @@ def _bounds(schema: Schema) -> str:
     notes = []
     if low is not None:
         notes.append(f"{low} entries" if low == high else f"at least {low}")
-    notes += [words.format(schema[keyword]) for keyword, words in _LIMITS.items() if keyword in schema]
+    notes += [
+        words.format(schema[keyword]) for keyword, words in _LIMITS.items() if keyword in schema
+    ]
     return f" ({', '.join(notes)})" if notes else ""
 
 

@@ -1,11 +1,14 @@
-"""Branches of a plane curve between parabolic arcs: proved enclosures of their integrals where branches nearly meet.
+"""Branches of a plane curve between parabolic arcs: proved enclosures of their integrals where
+branches nearly meet.
 
-Guarantee: an enclosure that is returned contains the integral of the branch that was asked for; None means not proved.
+Guarantee: an enclosure that is returned contains the integral of the branch that was asked for;
+None means not proved.
 
-Over a panel without turning points a branch is a continuous graph. If it runs between z - d and z + d at one place of
-the panel, and the curve meets neither of these two arcs over the panel, then it runs between them everywhere. Nothing
-is asked of the other branches: many may lie in the same tube, at any distance from each other, where a Taylor series
-of one of them would need hundreds of bits to distinguish them.
+Over a panel without turning points a branch is a continuous graph. If it runs between z - d and
+z + d at one place of the panel, and the curve meets neither of these two arcs over the panel, then
+it runs between them everywhere. Nothing is asked of the other branches: many may lie in the same
+tube, at any distance from each other, where a Taylor series of one of them would need hundreds of
+bits to distinguish them.
 """
 
 from __future__ import annotations
@@ -48,7 +51,9 @@ def arc_integral(
     -------
     The enclosure, or None when no tube of those tried was proved.
     """
-    unit = fmpq(2) ** (int(wanted.p).bit_length() - int(wanted.q).bit_length() - BITS)  # short, as all starts from it
+    unit = fmpq(2) ** (
+        int(wanted.p).bit_length() - int(wanted.q).bit_length() - BITS
+    )  # short, as all starts from it
     left, here, right = (_rounded(branch(middle + radius * x), unit) for x in NODES)
     slope = (right - left) / (NODES[2] - NODES[0])
     bend = (left + right - 2 * here) / (2 * NODES[2] ** 2)
@@ -60,7 +65,10 @@ def arc_integral(
         distance = tube * miss
         if distance * 16 > fibre[1] - fibre[0]:
             return None
-        if not any(has_root_between(on_graph(rows, arc + end), fmpq(-1), fmpq(1)) for end in (-distance, distance)):
+        if not any(
+            has_root_between(on_graph(rows, arc + end), fmpq(-1), fmpq(1))
+            for end in (-distance, distance)
+        ):
             mean = here + bend / 3
             return (arb(mean) + arb(distance) * arb(0, 1)) * arb(2 * radius)
     return None

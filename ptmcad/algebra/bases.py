@@ -1,8 +1,9 @@
-"""The quotient at a rational point, its basis computed by the means that is predicted to end: ours, or msolve.
+"""The quotient at a rational point, its basis computed by the means that is predicted to end: ours,
+or msolve.
 
-Guarantee: exact, whatever msolve answers. Its basis is used after a proof that it is one of the ideal of the equations
-(`ptmcad.algebra.proved`); else a `PtmcadWarning` says what was wrong, and the basis is computed as if msolve were not
-there. What asks msolve is loaded when it is asked.
+Guarantee: exact, whatever msolve answers. Its basis is used after a proof that it is one of the
+ideal of the equations (`ptmcad.algebra.proved`); else a `PtmcadWarning` says what was wrong, and
+the basis is computed as if msolve were not there. What asks msolve is loaded when it is asked.
 """
 
 from __future__ import annotations
@@ -23,17 +24,23 @@ MISSING = "msolve may compute it: pip install 'ptmcad[large]'"
 
 
 def is_large(equations: Sequence[RationalPolynomial]) -> bool:
-    """Whether the bound for the number of solutions says that the basis may be out of our own algorithm's reach."""
+    """Whether the bound for the number of solutions says that the basis may be out of our own
+    algorithm's reach.
+    """
     return bezout_bound(equations) >= MANY
 
 
 def plan_text(bound: int) -> str:
-    """Whose bases are used at points, by the bound for the number of solutions; nothing where they are small."""
+    """Whose bases are used at points, by the bound for the number of solutions; nothing where they
+    are small.
+    """
     if bound < MANY:
         return ""
     from ptmcad.algebra import msolve
 
-    then = "then by msolve, each proved" if msolve.program() else f"then as far as it goes: {MISSING}"
+    then = (
+        "then by msolve, each proved" if msolve.program() else f"then as far as it goes: {MISSING}"
+    )
     return f"up to {bound} solutions: by ptmcad while small, {then}"
 
 
@@ -44,12 +51,13 @@ def quotient(
 
     Parameters
     ----------
-    most : how much work our own basis may be; msolve is asked beyond where ``most.by_msolve`` solutions are allowed.
+    most : how much work our own basis may be; msolve is asked beyond where ``most.by_msolve``
+        solutions are allowed.
 
     Raises
     ------
-    LimitReached
-        When it is more work than `most`, and msolve is missing, its basis is not proved, or is too large.
+    LimitReached When it is more work than `most`, and msolve is missing, its basis is not proved,
+        or is too large.
     """
     if not is_large(equations) or (most is not None and not most.by_msolve):
         return fibre(equations, unknowns, most)

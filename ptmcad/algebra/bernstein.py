@@ -1,8 +1,10 @@
-"""Polynomials in up to three variables over boxes: exact coefficients whose signs prove that there is no zero inside.
+"""Polynomials in up to three variables over boxes: exact coefficients whose signs prove that there
+is no zero inside.
 
-Guarantee: exact. With x = (low + high s) / (1 + s) for a variable between low and high, a polynomial times a positive
-function is one in the s of its variables, its coefficients being those of Bernstein up to binomials. If none is
-negative and one is positive, it is positive in the interior of the box.
+Guarantee: exact. With x = (low + high s) / (1 + s) for a variable between low and high, a
+polynomial times a positive function is one in the s of its variables, its coefficients being those
+of Bernstein up to binomials. If none is negative and one is positive, it is positive in the
+interior of the box.
 
 Reference: Farouki, Comput. Aided Geom. Design 29 (2012).
 """
@@ -24,12 +26,14 @@ Terms = Iterable[tuple[tuple[Any, ...], Any]]
 
 
 class Table(NamedTuple):
-    """A polynomial, not zero, in powers of its variables: for each power of the third a matrix of the other two's.
+    """A polynomial, not zero, in powers of its variables: for each power of the third a matrix of
+    the other two's.
 
     Attributes
     ----------
     degrees : in the three variables.
-    layers : the matrix of number k has the first variable's powers as its rows, the second one's as its columns.
+    layers : the matrix of number k has the first variable's powers as its rows, the second one's as
+        its columns.
     """
 
     degrees: tuple[int, int, int]
@@ -53,14 +57,18 @@ def over(table: Table, box: Sequence[Interval]) -> Table:
     ----------
     box : the ranges of the three variables; of one that does not occur any will do.
     """
-    matrices = [_substitution(degree, interval) for degree, interval in zip(table.degrees, box, strict=True)]
+    matrices = [
+        _substitution(degree, interval) for degree, interval in zip(table.degrees, box, strict=True)
+    ]
     right = matrices[1].transpose()
     sides = [matrices[0] * layer * right for layer in table.layers]
     return Table(table.degrees, tuple(_combined(matrices[2], sides)))
 
 
 def halves(table: Table) -> tuple[Table, Table]:
-    """The coefficients over the lower and the upper half of the first variable's range, up to positive factors."""
+    """The coefficients over the lower and the upper half of the first variable's range, up to
+    positive factors.
+    """
     lower, upper = _halving(table.degrees[0])
     return (
         table._replace(layers=tuple(lower * layer for layer in table.layers)),
@@ -69,14 +77,17 @@ def halves(table: Table) -> tuple[Table, Table]:
 
 
 def quarters(table: Table) -> Iterator[Table]:
-    """The coefficients over the quarters of the first two variables' ranges, up to positive factors."""
+    """The coefficients over the quarters of the first two variables' ranges, up to positive
+    factors.
+    """
     for across, up in product(_halving(table.degrees[0]), _halving(table.degrees[1])):
         transposed = up.transpose()
         yield table._replace(layers=tuple(across * layer * transposed for layer in table.layers))
 
 
 def sign(table: Table) -> int:
-    """1 or -1 when the polynomial is proved to have this sign in the interior of the box; 0 when that is not decided.
+    """1 or -1 when the polynomial is proved to have this sign in the interior of the box; 0 when
+    that is not decided.
 
     Parameters
     ----------
@@ -84,7 +95,10 @@ def sign(table: Table) -> int:
     """
     n, m, _ = table.degrees
     found = 0
-    for layer in (table.layers[0], table.layers[-1]):  # values at the corners, most often of different signs
+    for layer in (
+        table.layers[0],
+        table.layers[-1],
+    ):  # values at the corners, most often of different signs
         for i in (0, n):
             for j in (0, m):
                 value = layer[i, j]
@@ -102,7 +116,8 @@ def sign(table: Table) -> int:
 
 
 def on_lines(tables: Iterable[Table], at: tuple[fmpq, fmpq]) -> UnivariatePolynomial:
-    """The product of polynomials at values of the second and third variable, up to a positive factor.
+    """The product of polynomials at values of the second and third variable, up to a positive
+    factor.
 
     Parameters
     ----------
@@ -115,7 +130,10 @@ def on_lines(tables: Iterable[Table], at: tuple[fmpq, fmpq]) -> UnivariatePolyno
         for k, layer in enumerate(table.layers):
             height = at[1] ** k
             for i in range(len(rows)):
-                rows[i] += sum((layer[i, j] * c * height for j, c in enumerate(columns) if layer[i, j]), fmpq(0))
+                rows[i] += sum(
+                    (layer[i, j] * c * height for j, c in enumerate(columns) if layer[i, j]),
+                    fmpq(0),
+                )
         total *= fmpz_poly(integral(rows)[0])
     return total
 
@@ -129,7 +147,9 @@ def _combined(matrix: fmpz_mat, layers: Sequence[fmpz_mat]) -> Iterable[fmpz_mat
 
 
 def _substitution(degree: int, interval: Interval) -> fmpz_mat:
-    """From coefficients of powers to those over an interval: column i has (low + high s)^i (1 + s)^(degree - i)."""
+    """From coefficients of powers to those over an interval: column i has (low + high s)^i
+    (1 + s)^(degree - i).
+    """
     ends, scale = integral(interval)
     line, unit = fmpz_poly(ends), fmpz_poly([scale, scale])
     return _columns([line**i * unit ** (degree - i) for i in range(degree + 1)])

@@ -1,12 +1,14 @@
-"""Branches of a plane curve near a point and over a short interval: on which side of a line, and how steep.
+"""Branches of a plane curve near a point and over a short interval: on which side of a line, and
+how steep.
 
-Guarantee: answers of `side_of_chord` are proved; enclosures of slopes contain them for every abscissa of the panel;
-None means not proved.
+Guarantee: answers of `side_of_chord` are proved; enclosures of slopes contain them for every
+abscissa of the panel; None means not proved.
 
-A chord starts at a point (u0, v0) of the curve p = 0, u0 rational, v0 algebraic: v = v0 + s (u - u0). The coefficients
-of p(u0 + t, v0 + s t) by powers of t are polynomials in v0; which of them vanish is decided by its minimal polynomial.
-Divided by the power of t that is common to them, the polynomial has a proved sign on [0, d] when a ball evaluation
-excludes zero on each piece of it. So the branch does not meet the chord there, even if the start is a singular point.
+A chord starts at a point (u0, v0) of the curve p = 0, u0 rational, v0 algebraic: v = v0 + s
+(u - u0). The coefficients of p(u0 + t, v0 + s t) by powers of t are polynomials in v0; which of
+them vanish is decided by its minimal polynomial. Divided by the power of t that is common to them,
+the polynomial has a proved sign on [0, d] when a ball evaluation excludes zero on each piece of it.
+So the branch does not meet the chord there, even if the start is a singular point.
 """
 
 from __future__ import annotations
@@ -24,7 +26,9 @@ _DEPTH = 12
 _BITS = 256
 
 
-def side_of_chord(in_v: Sequence[fmpz_poly], start: fmpq, origin: RealRoot, slope: fmpq, length: fmpq) -> bool:
+def side_of_chord(
+    in_v: Sequence[fmpz_poly], start: fmpq, origin: RealRoot, slope: fmpq, length: fmpq
+) -> bool:
     """Whether p is proved to have no zero on the chord, but for its start.
 
     Parameters
@@ -52,7 +56,9 @@ def side_of_chord(in_v: Sequence[fmpz_poly], start: fmpq, origin: RealRoot, slop
         ball = refine(origin, fmpq(1, 2**_BITS)).ball
         for k in range(max(rows, default=-1) + 1):
             row = rows.get(k, {})
-            rest = fmpq_poly([row.get(i, fmpq(0)) for i in range(max(row, default=-1) + 1)]) % minimal
+            rest = (
+                fmpq_poly([row.get(i, fmpq(0)) for i in range(max(row, default=-1) + 1)]) % minimal
+            )
             if coefficients or rest:  # what vanishes at first vanishes exactly
                 coefficients.append(arb_poly(rest)(ball))
         return bool(coefficients) and _no_zero(arb_poly(coefficients), fmpq(0), length, _DEPTH)
@@ -67,8 +73,11 @@ def _no_zero(p: arb_poly, low: fmpq, high: fmpq, depth: int) -> bool:
     return _no_zero(p, low, middle, depth - 1) and _no_zero(p, middle, high, depth - 1)
 
 
-def slope_over(in_v: Sequence[fmpz_poly], at_middle: RealRoot, middle: fmpq, radius: fmpq) -> tuple[arb, arb] | None:
-    """Enclosures of a branch's first and second derivative for every u in [middle - radius, middle + radius].
+def slope_over(
+    in_v: Sequence[fmpz_poly], at_middle: RealRoot, middle: fmpq, radius: fmpq
+) -> tuple[arb, arb] | None:
+    """Enclosures of a branch's first and second derivative for every u in [middle - radius,
+    middle + radius].
 
     Parameters
     ----------
@@ -76,8 +85,9 @@ def slope_over(in_v: Sequence[fmpz_poly], at_middle: RealRoot, middle: fmpq, rad
 
     Notes
     -----
-    With p(m + r h, v0 + w) = sum b_i(h) w^i let |p_v| >= D > 0 and |p(., v0)| <= e where |h| <= 1, |w| <= R, with
-    e <= D R. Then for each h there is exactly one root |w| <= R, it lies within e/D, and at h = 0 it is the branch.
+    With p(m + r h, v0 + w) = sum b_i(h) w^i let |p_v| >= D > 0 and |p(., v0)| <= e where |h| <= 1,
+    |w| <= R, with e <= D R. Then for each h there is exactly one root |w| <= R, it lies within e/D,
+    and at h = 0 it is the branch.
     """
     with ctx.workprec(_BITS):
         root = refine(at_middle, radius / 2**40)
@@ -115,6 +125,10 @@ def slope_over(in_v: Sequence[fmpz_poly], at_middle: RealRoot, middle: fmpq, rad
 
         p_v, p_u = value(by_w(local)), value(by_h) * scale
         first = -p_u / p_v
-        p_vv, p_uv, p_uu = value(by_w(by_w(local))), value(by_w(by_h)) * scale, value(by_hh) * scale * scale
+        p_vv, p_uv, p_uu = (
+            value(by_w(by_w(local))),
+            value(by_w(by_h)) * scale,
+            value(by_hh) * scale * scale,
+        )
         second = -(p_vv * first * first + 2 * p_uv * first + p_uu) / p_v
         return (first, second) if first.is_finite() and second.is_finite() else None

@@ -1,8 +1,10 @@
-"""Complex roots of polynomials whose coefficients are known as balls, in disjoint discs with their numbers.
+"""Complex roots of polynomials whose coefficients are known as balls, in disjoint discs with their
+numbers.
 
-Guarantee: every polynomial with coefficients in the balls has, counted with multiplicity, exactly the stated number of
-roots in each disc, and no others. Pellet's test proves it: where |c_k| r^k is more than the sum of all other |c_j| r^j,
-the polynomial of coefficients c has k roots of modulus less than r (Pellet 1881, by Rouche's theorem).
+Guarantee: every polynomial with coefficients in the balls has, counted with multiplicity, exactly
+the stated number of roots in each disc, and no others. Pellet's test proves it: where |c_k| r^k is
+more than the sum of all other |c_j| r^j, the polynomial of coefficients c has k roots of modulus
+less than r (Pellet 1881, by Rouche's theorem).
 """
 
 from __future__ import annotations
@@ -54,27 +56,34 @@ def clusters_over(rows: Sequence[UnivariatePolynomial], abscissa: arb) -> list[R
     coefficients, axis = [arb_poly(row)(abscissa) for row in rows], axis_of(rows)
     if axis is None:
         return clusters(coefficients)
-    # p is q((d (v - m))^2), of half the degree; the roots are starts only, so m may be that of the ball's middle
+    # p is q((d (v - m))^2), of half the degree; the roots are starts only, so m may be that of the
+    # ball's middle
     middle, d = abscissa.mid().fmpq(), axis.denom()
     squares = _approximate([arb_poly(row)(abscissa) for row in squared(rows, axis)])
     steps = [((square.sqrt() / d).mid(), m) for square, m in squares]
-    return clusters(coefficients, [((acb(axis(middle)) + w).mid(), m) for s, m in steps for w in (s, -s)])
+    return clusters(
+        coefficients, [((acb(axis(middle)) + w).mid(), m) for s, m in steps for w in (s, -s)]
+    )
 
 
-def clusters(coefficients: Sequence[arb], starts: Sequence[tuple[acb, int]] | None = None) -> list[RootDisc] | None:
+def clusters(
+    coefficients: Sequence[arb], starts: Sequence[tuple[acb, int]] | None = None
+) -> list[RootDisc] | None:
     """Disjoint discs that hold all roots; None where the balls are too large to tell.
 
     Roots so near to each other that the balls do not part them are in one disc.
 
     Parameters
     ----------
-    starts : all roots about where they are, with multiplicities; they are computed where they are not given. Nothing
-        that is proved depends on them.
+    starts : all roots about where they are, with multiplicities; they are computed where they are
+        not given. Nothing that is proved depends on them.
     """
     if len(coefficients) < 2 or coefficients[-1].contains(0):
         return None
     polynomial = acb_poly(list(coefficients))
-    waiting: list[_Group] = [(root,) * m for root, m in (_approximate(coefficients) if starts is None else starts)]
+    waiting: list[_Group] = [
+        (root,) * m for root, m in (_approximate(coefficients) if starts is None else starts)
+    ]
     found: list[tuple[_Group, RootDisc]] = []
     while waiting:
         group = waiting.pop()

@@ -1,19 +1,23 @@
 """Whether a polynomial is negative, or zero, somewhere in an open rectangle: decided, not sampled.
 
-Guarantee: `PROVED` and a `SignPoint` point are theorems. `OPEN` is returned only where the work would be more than was
-allowed, `Near` only where a polynomial that changes sign nowhere may touch zero over an irrational abscissa.
+Guarantee: `PROVED` and a `SignPoint` point are theorems. `OPEN` is returned only where the work
+would be more than was allowed, `Near` only where a polynomial that changes sign nowhere may touch
+zero over an irrational abscissa.
 
-Why this decides. Write p as a constant times powers of different irreducible factors over Q. An irreducible f that
-changes sign does so across a curve; two factors meet in finitely many points; so p changes sign in the rectangle if and
-only if a factor of odd multiplicity does, and p has one sign everywhere else, that of one sample. An irreducible f in
-both variables has simple roots over every abscissa that is not a root of its discriminant, and their number in the
-fibre is constant between abscissae that are roots of it or of f on the two long edges. So f changes sign in the open
-rectangle if and only if it has a root over the sample of one of these intervals. When it has none, its only zeros are
-isolated ones, where its gradient vanishes; over these the discriminant has a multiple root, because its derivative by
-the coefficients of f is there a multiple of (1, v, v^2, ...), v being the double root.
+Why this decides. Write p as a constant times powers of different irreducible factors over Q. An
+irreducible f that changes sign does so across a curve; two factors meet in finitely many points; so
+p changes sign in the rectangle if and only if a factor of odd multiplicity does, and p has one sign
+everywhere else, that of one sample. An irreducible f in both variables has simple roots over every
+abscissa that is not a root of its discriminant, and their number in the fibre is constant between
+abscissae that are roots of it or of f on the two long edges. So f changes sign in the open
+rectangle if and only if it has a root over the sample of one of these intervals. When it has none,
+its only zeros are isolated ones, where its gradient vanishes; over these the discriminant has a
+multiple root, because its derivative by the coefficients of f is there a multiple of (1, v, v^2,
+...), v being the double root.
 
-References: McCallum, J. Symb. Comp. 5 (1988), on projections; Gelfand, Kapranov and Zelevinsky, Discriminants,
-Resultants and Multidimensional Determinants, chapter 1, on the derivative of the discriminant.
+References: McCallum, J. Symb. Comp. 5 (1988), on projections; Gelfand, Kapranov and Zelevinsky,
+Discriminants, Resultants and Multidimensional Determinants, chapter 1, on the derivative of the
+discriminant.
 """
 
 from __future__ import annotations
@@ -48,7 +52,9 @@ from ptmcad.algebra.resultants import discriminant
 from ptmcad.text.flint_numbers import simplest_between
 
 MAX_WORK = 2 * 10**10
-"""Of a discriminant: values, times the cube of the degree, times the bits of a coefficient; some twenty seconds."""
+"""Of a discriminant: values, times the cube of the degree, times the bits of a coefficient; some
+twenty seconds.
+"""
 BITS = 400
 """Of the balls in which a polynomial is looked at over a singular abscissa."""
 _HALVINGS = 60
@@ -70,8 +76,8 @@ class SignPoint:
 
     Attributes
     ----------
-    exact : whether the polynomial has the sign at the point itself; else it is zero somewhere within ``distance`` of it
-        in each coordinate.
+    exact : whether the polynomial has the sign at the point itself; else it is zero somewhere
+        within ``distance`` of it in each coordinate.
     """
 
     point: Point
@@ -89,7 +95,8 @@ class Near:
 def negative_or_zero(
     p: Coefficient, x: Interval, y: Interval, zero: bool, max_work: int = MAX_WORK
 ) -> SignPoint | Near | SignAnswer:
-    """A point of the open rectangle where p is negative or, if asked for, zero; or that there is none.
+    """A point of the open rectangle where p is negative or, if asked for, zero; or that there is
+    none.
 
     Parameters
     ----------
@@ -125,8 +132,8 @@ def negative_or_zero(
 
 @dataclass(frozen=True, slots=True)
 class _Crossing:
-    """A place where a factor has a simple zero: on the line on which axis ``across`` varies and the other one is in an
-    open interval over whose values the line meets the same zeros."""
+    """A place where a factor has a simple zero: on the line on which axis ``across`` varies and the
+    other one is in an open interval over whose values the line meets the same zeros."""
 
     across: int
     held: Interval
@@ -141,12 +148,16 @@ class _Crossing:
 
 
 def _simple(interval: Interval) -> fmpq:
-    """A number in an open interval; or the only one in a closed one, on a line across which nothing varies."""
+    """A number in an open interval; or the only one in a closed one, on a line across which nothing
+    varies.
+    """
     return interval[0] if interval[0] == interval[1] else simplest_between(*interval)
 
 
 def _narrow(root: RealRoot, window: Interval) -> RealRoot:
-    """The root inside of the window, enclosed to 2^-40 of it; exactly where it is a rational number of few digits."""
+    """The root inside of the window, enclosed to 2^-40 of it; exactly where it is a rational number
+    of few digits.
+    """
     (near,) = inside([refine(root, (window[1] - window[0]) / 2**40)], window)
     if not near.is_rational:
         simple = simplest_between(near.low, near.high)
@@ -186,9 +197,14 @@ def _work(f: Coefficient, base: int) -> int:
 
 
 def _open_intervals(f: Coefficient, base: int, window: Interval, fibre: Interval) -> list[Interval]:
-    """Open intervals of the base between all places at which the number of roots of f in the fibre can change."""
+    """Open intervals of the base between all places at which the number of roots of f in the fibre
+    can change.
+    """
     along = coefficients_in(f, base)
-    critical = [discriminant(coefficients_in(f, 1 - base)), *(univariate(along, edge) for edge in fibre)]
+    critical = [
+        discriminant(coefficients_in(f, 1 - base)),
+        *(univariate(along, edge) for edge in fibre),
+    ]
     roots: list[RealRoot] = []
     known = fmpz_poly([1])
     for q in map(squarefree_part, critical):
@@ -234,10 +250,12 @@ def _nonzero_point(p: Coefficient, x: Interval, y: Interval) -> Point:
 
 
 def _isolated_zero(f: Coefficient, x: Interval, y: Interval) -> SignPoint | Near | None:
-    """A zero of an irreducible polynomial that changes sign nowhere in the open rectangle, if there is one.
+    """A zero of an irreducible polynomial that changes sign nowhere in the open rectangle, if there
+    is one.
 
-    Over a rational value of one of the axes it is found. Over another one, where coefficients are not rational, nothing
-    is said but that there may be one, unless it is excluded in balls, or over the other axis.
+    Over a rational value of one of the axes it is found. Over another one, where coefficients are
+    not rational, nothing is said but that there may be one, unless it is excluded in balls, or over
+    the other axis.
     """
     if min(int(d) for d in f.degrees()) == 0:
         return None  # its roots are simple
@@ -261,7 +279,9 @@ def _touching(f: Coefficient, base: int, x: Interval, y: Interval) -> SignPoint 
             else:
                 height = _undecided(rows, refine(root, fmpq(1, 2**BITS)), fibre)
             if height is not None:
-                point = (there.middle, height.middle) if base == 0 else (height.middle, there.middle)
+                point = (
+                    (there.middle, height.middle) if base == 0 else (height.middle, there.middle)
+                )
                 if m.degree() > 1:
                     return Near(point)
                 return SignPoint(point, height.is_rational, height.high - height.low)
@@ -272,9 +292,11 @@ def _only_root(m: UnivariatePolynomial) -> fmpq:
     return fmpq(-m[0], m[1])
 
 
-def _undecided(rows: Sequence[UnivariatePolynomial], there: RealRoot, fibre: Interval) -> RealRoot | None:
-    """A part of the fibre where a polynomial may be zero over an abscissa that is known in a short interval, as if it
-    were a root; None when it is proved to be zero nowhere."""
+def _undecided(
+    rows: Sequence[UnivariatePolynomial], there: RealRoot, fibre: Interval
+) -> RealRoot | None:
+    """A part of the fibre where a polynomial may be zero over an abscissa that is known in a short
+    interval, as if it were a root; None when it is proved to be zero nowhere."""
     with ctx.workprec(BITS):
         p = arb_poly([arb_poly(row)(there.ball) for row in rows])
         parts = [fibre]

@@ -1,9 +1,10 @@
-"""Determinants of matrices over Q(x, y), by fraction-free elimination or by values at integers modulo primes.
+"""Determinants of matrices over Q(x, y), by fraction-free elimination or by values at integers
+modulo primes.
 
 Guarantee: exact.
 
-References: Bareiss, Math. Comp. 22 (1968); von zur Gathen & Gerhard, Modern Computer Algebra, section 5.5 (determinants
-by evaluation and interpolation).
+References: Bareiss, Math. Comp. 22 (1968); von zur Gathen & Gerhard, Modern Computer Algebra,
+section 5.5 (determinants by evaluation and interpolation).
 """
 
 from __future__ import annotations
@@ -30,7 +31,9 @@ from ptmcad.algebra.residues import PRIME_BITS, primes
 OVERHEAD = 5000
 """Of a value, in steps of an elimination in numbers."""
 SHARE = 0.045
-"""Products of terms in the elimination that is tried first, for each step in the values: at most about their time."""
+"""Products of terms in the elimination that is tried first, for each step in the values: at most
+about their time.
+"""
 
 
 def laplace(rows: Sequence[Sequence[Any]]) -> Any:
@@ -47,7 +50,8 @@ def laplace(rows: Sequence[Sequence[Any]]) -> Any:
 def determinant(rows: list[list[Ratio]]) -> Ratio:
     """The determinant of a square matrix over Q(x, y): rows and columns made primitive first.
 
-    By Bareiss's elimination, or for many rows by interpolation, which has no long quotients on the way.
+    By Bareiss's elimination, or for many rows by interpolation, which has no long quotients on the
+    way.
     """
     zero, one = (constant_like(rows[0][0][0], value) for value in (0, 1))
     denominator = numerator = one
@@ -75,7 +79,9 @@ def determinant(rows: list[list[Ratio]]) -> Ratio:
 
 
 def _primitive_determinant(matrix: list[list[Coefficient]]) -> Coefficient:
-    """The determinant, by values where an elimination turns out to be long, which the entries do not say beforehand."""
+    """The determinant, by values where an elimination turns out to be long, which the entries do
+    not say beforehand.
+    """
     rows = len(matrix)
     most = math.inf
     if matrix[0][0].context().nvars() == 2:
@@ -86,27 +92,38 @@ def _primitive_determinant(matrix: list[list[Coefficient]]) -> Coefficient:
     return characteristic(matrix)[0] if found is None else found
 
 
-def _bounds(matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coefficient] = ()) -> tuple[int, int, int, int]:
-    """What the exponents of x, of y, and their sum are below, and twice the coefficients' moduli; zeros for det A = 0.
+def _bounds(
+    matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coefficient] = ()
+) -> tuple[int, int, int, int]:
+    """What the exponents of x, of y, and their sum are below, and twice the coefficients' moduli;
+    zeros for det A = 0.
 
-    These degrees are at most those of a product of entries, one of each row and column; the sum of the coefficients'
-    moduli is at most the product over the rows of these sums.
+    These degrees are at most those of a product of entries, one of each row and column; the sum of
+    the coefficients' moduli is at most the product over the rows of these sums.
     """
     sizes = [[_moduli(entry) for entry in row] for row in matrix]
     for k, scale in enumerate(scales):
         sizes[k][k] = sizes[k][k] + _moduli(scale)
-    degrees = [[None if p.is_zero() else (*p.degrees(), p.total_degree()) for p in row] for row in sizes]
-    least = [least_assignment([[None if d is None else -int(d[k]) for d in row] for row in degrees]) for k in range(3)]
+    degrees = [
+        [None if p.is_zero() else (*p.degrees(), p.total_degree()) for p in row] for row in sizes
+    ]
+    least = [
+        least_assignment([[None if d is None else -int(d[k]) for d in row] for row in degrees])
+        for k in range(3)
+    ]
     if None in least:
         return 0, 0, 0, 0
     across, up, both = (1 - (bound or 0) for bound in least)
     return across, up, both, 2 * math.prod(int(sum(p(1, 1) for p in row)) for row in sizes)
 
 
-def characteristic(matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coefficient] = ()) -> list[Coefficient]:
+def characteristic(
+    matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coefficient] = ()
+) -> list[Coefficient]:
     """The coefficients of T^0, ..., T^(n-1) in det (T S - A) over Z[x, y]; without S det A alone.
 
-    They come from values at integer points modulo primes of one word, as many as proved bounds ask for.
+    They come from values at integer points modulo primes of one word, as many as proved bounds ask
+    for.
 
     Parameters
     ----------
@@ -124,7 +141,9 @@ def characteristic(matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coe
     diagonal = [coefficients_in(p, 1) for p in scales]
     values = {}
     for i, x in enumerate(xs):
-        on_line, scales_on_line = ([fmpz_poly([c(x) for c in p]) for p in ps] for ps in (entries, diagonal))
+        on_line, scales_on_line = (
+            [fmpz_poly([c(x) for c in p]) for p in ps] for ps in (entries, diagonal)
+        )
         for j, y in enumerate(ys[: triangle - i]):
             values[i, j] = _whole([p(y) for p in on_line], [int(p(y)) for p in scales_on_line])
     newton = [_newton(points) for points in (xs, ys)]
@@ -140,10 +159,14 @@ def characteristic(matrix: Sequence[Sequence[Coefficient]], scales: Sequence[Coe
         for coefficient, image in zip(found, zip(*images, strict=True), strict=True):
             residues = _expanded(dict(zip(values, image, strict=True)), *bases)
             for place, known in coefficient.items():
-                coefficient[place] = known + modulus * ((int(residues[place]) - known) * inverse % prime)
+                coefficient[place] = known + modulus * (
+                    (int(residues[place]) - known) * inverse % prime
+                )
         modulus *= prime
     return [
-        ring.from_dict({place: c - modulus if 2 * c > modulus else c for place, c in coefficient.items() if c})
+        ring.from_dict(
+            {place: c - modulus if 2 * c > modulus else c for place, c in coefficient.items() if c}
+        )
         for coefficient in found
     ]
 
@@ -181,20 +204,27 @@ def _modulo(prime: int, matrix: fmpz_mat, common: int, scale: int) -> list[int]:
 
 
 def _newton(points: Sequence[int]) -> tuple[fmpz_mat, fmpz_mat]:
-    """Newton's polynomials for these points, one in each column: their values at the points, and their coefficients."""
-    polynomials = list(accumulate(points[:-1], lambda p, x: p * fmpz_poly([-x, 1]), initial=fmpz_poly([1])))
+    """Newton's polynomials for these points, one in each column: their values at the points, and
+    their coefficients.
+    """
+    polynomials = list(
+        accumulate(points[:-1], lambda p, x: p * fmpz_poly([-x, 1]), initial=fmpz_poly([1]))
+    )
     values = [[p(x) for p in polynomials] for x in points]
     return fmpz_mat(values), fmpz_mat([[p[k] for p in polynomials] for k in range(len(points))])
 
 
 _Basis = tuple[nmod_mat, nmod_mat]
-"""From values to coefficients in Newton's form, and from these to those of powers, modulo a prime."""
+"""From values to coefficients in Newton's form, and from these to those of powers, modulo a prime.
+"""
 
 
 def _expanded(values: Mapping[tuple[int, int], int], across: _Basis, up: _Basis) -> nmod_mat:
-    """The coefficients of the polynomial with exponents among the places of the values, which are a lower set.
+    """The coefficients of the polynomial with exponents among the places of the values, which are a
+    lower set.
 
-    In Newton's form a coefficient depends on values at smaller places only, so that those at others may be anything.
+    In Newton's form a coefficient depends on values at smaller places only, so that those at others
+    may be anything.
     """
     rows, columns = across[0].nrows(), up[0].nrows()
     found = nmod_mat(rows, columns, across[0].modulus())
@@ -208,7 +238,9 @@ def _expanded(values: Mapping[tuple[int, int], int], across: _Basis, up: _Basis)
 
 
 def _bareiss(matrix: list[list[Coefficient]], most: float) -> Coefficient | None:
-    """The determinant by fraction-free elimination in place; None where that takes more products of terms."""
+    """The determinant by fraction-free elimination in place; None where that takes more products of
+    terms.
+    """
     size, previous, sign, products = len(matrix), constant_like(matrix[0][0], 1), 1, 0
     for k in range(size - 1):
         candidates = [i for i in range(k, size) if not matrix[i][k].is_zero()]
@@ -220,9 +252,13 @@ def _bareiss(matrix: list[list[Coefficient]], most: float) -> Coefficient | None
             sign = -sign
         for i in range(k + 1, size):
             for j in range(k + 1, size):
-                products += len(matrix[k][k]) * len(matrix[i][j]) + len(matrix[i][k]) * len(matrix[k][j])
+                products += len(matrix[k][k]) * len(matrix[i][j]) + len(matrix[i][k]) * len(
+                    matrix[k][j]
+                )
                 if products > most:
                     return None
-                matrix[i][j] = (matrix[k][k] * matrix[i][j] - matrix[i][k] * matrix[k][j]) / previous
+                matrix[i][j] = (
+                    matrix[k][k] * matrix[i][j] - matrix[i][k] * matrix[k][j]
+                ) / previous
         previous = matrix[k][k]
     return matrix[-1][-1] * sign

@@ -1,8 +1,10 @@
-"""The solutions over one rational point: the quotient algebra over Q, and a univariate representation of its points.
+"""The solutions over one rational point: the quotient algebra over Q, and a univariate
+representation of its points.
 
 Guarantee: exact over Q; nothing here is rounded.
 
-Reference: Rouillier, Solving zero-dimensional systems through the rational univariate representation, AAECC 9 (1999).
+Reference: Rouillier, Solving zero-dimensional systems through the rational univariate
+representation, AAECC 9 (1999).
 """
 
 from __future__ import annotations
@@ -41,7 +43,8 @@ class FibreAlgebra(NamedTuple):
     Attributes
     ----------
     basis : the monomial basis, 1 first.
-    multiplication : one matrix for each unknown; column j holds the normal form of unknown times basis[j].
+    multiplication : one matrix for each unknown; column j holds the normal form of unknown times
+        basis[j].
     by_msolve : whether msolve has found it; that it is right is proved then.
     """
 
@@ -56,13 +59,15 @@ class FibreAlgebra(NamedTuple):
 
 
 class WorkLimit(NamedTuple):
-    """How much work a quotient may be, whatever the machine: about a second where each is as large as it may be.
+    """How much work a quotient may be, whatever the machine: about a second where each is as large
+    as it may be.
 
     Attributes
     ----------
     dimension : of the quotient.
     polynomials, terms, bits : of the basis before it is reduced: how many, and what each may have.
-    by_msolve : dimension of a quotient that msolve is asked for where the basis is larger; 0 for none.
+    by_msolve : dimension of a quotient that msolve is asked for where the basis is larger; 0 for
+        none.
     """
 
     dimension: int
@@ -73,11 +78,15 @@ class WorkLimit(NamedTuple):
 
 
 def bezout_bound(equations: Sequence[RationalPolynomial]) -> int:
-    """The product of the degrees, which bounds the number of complex solutions where they are finitely many."""
+    """The product of the degrees, which bounds the number of complex solutions where they are
+    finitely many.
+    """
     return math.prod(max(map(sum, e), default=0) or 1 for e in equations)
 
 
-def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimit | None = None) -> FibreAlgebra | None:
+def fibre(
+    equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimit | None = None
+) -> FibreAlgebra | None:
     """The quotient by the given equations; None when there are infinitely many complex solutions.
 
     Raises
@@ -93,7 +102,9 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimi
     if most is None:
         found = fmpz_mpoly_vec(polynomials, context).buchberger_naive()
     else:
-        limited: Any = fmpz_mpoly_vec(polynomials, context).buchberger_naive(limits=most[1:4])  # a pair
+        limited: Any = fmpz_mpoly_vec(polynomials, context).buchberger_naive(
+            limits=most[1:4]
+        )  # a pair
         found, done = limited
         if not done:
             raise LimitReached("the basis of the equations grows beyond what is counted at once")
@@ -108,7 +119,9 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimi
     if basis is None:
         return None
     if most is not None and len(basis) > most.dimension:
-        raise LimitReached(f"there are {len(basis)} solutions with multiplicity, more than are counted at once")
+        raise LimitReached(
+            f"there are {len(basis)} solutions with multiplicity, more than are counted at once"
+        )
     return fibre_of_rules(rules, basis, unknowns)
 
 
@@ -138,7 +151,9 @@ def _normal_forms(basis: Sequence[Monomial], rules: Rules) -> dict[Monomial, lis
     """
     position = {m: i for i, m in enumerate(basis)}
     size, zero, one = len(basis), fmpq(0), fmpq(1)
-    table: dict[Monomial, list[fmpq]] = {m: [one if i == k else zero for i in range(size)] for m, k in position.items()}
+    table: dict[Monomial, list[fmpq]] = {
+        m: [one if i == k else zero for i in range(size)] for m, k in position.items()
+    }
     border = border_of(basis)
     for m in sorted(border, key=grevlex_key):
         row = [zero] * size
@@ -153,13 +168,18 @@ def _normal_forms(basis: Sequence[Monomial], rules: Rules) -> dict[Monomial, lis
                     if image in position:
                         row[position[image]] += c
                     else:
-                        row = [a + c * b if b else a for a, b in zip(row, table[image], strict=True)]
+                        row = [
+                            a + c * b if b else a for a, b in zip(row, table[image], strict=True)
+                        ]
         table[m] = row
     return table
 
 
-def combined_angles(algebra: FibreAlgebra, matrix: Sequence[Sequence[int]], reals: int) -> FibreAlgebra:
-    """The fibre with the cosines and sines of sums of its angles as further coordinates, before the others.
+def combined_angles(
+    algebra: FibreAlgebra, matrix: Sequence[Sequence[int]], reals: int
+) -> FibreAlgebra:
+    """The fibre with the cosines and sines of sums of its angles as further coordinates, before the
+    others.
 
     Parameters
     ----------
@@ -194,7 +214,9 @@ def evaluate(algebra: FibreAlgebra, p: RationalPolynomial) -> fmpq_mat:
 
 def scalar_matrix(size: int, value: fmpq) -> fmpq_mat:
     """A multiple of the identity."""
-    return fmpq_mat(size, size, [value if i == j else fmpq(0) for i in range(size) for j in range(size)])
+    return fmpq_mat(
+        size, size, [value if i == j else fmpq(0) for i in range(size) for j in range(size)]
+    )
 
 
 class UnivariateRepresentation(NamedTuple):
@@ -202,11 +224,14 @@ class UnivariateRepresentation(NamedTuple):
 
     Attributes
     ----------
-    minimal : squarefree, in Z[T]; its roots are the values of a linear form that separates the solutions.
-    coordinates : one polynomial in Q[T] for each unknown: its value at a root, over that of ``slope``, is the unknown.
+    minimal : squarefree, in Z[T]; its roots are the values of a linear form that separates the
+        solutions.
+    coordinates : one polynomial in Q[T] for each unknown: its value at a root, over that of
+        ``slope``, is the unknown.
     slope : in Q[T]; not zero at the roots.
     form : the coefficients of the linear form, one for each unknown.
-    characteristic : the form's characteristic polynomial, of which the roots are as multiple as the points.
+    characteristic : the form's characteristic polynomial, of which the roots are as multiple as the
+        points.
     """
 
     minimal: fmpz_poly
@@ -216,19 +241,24 @@ class UnivariateRepresentation(NamedTuple):
     characteristic: fmpz_poly
 
 
-def univariate_representation(algebra: FibreAlgebra, multiple: bool = False) -> UnivariateRepresentation | None:
+def univariate_representation(
+    algebra: FibreAlgebra, multiple: bool = False
+) -> UnivariateRepresentation | None:
     """The representation by the first separating form of a fixed list.
 
-    A form separates the solutions exactly when its characteristic polynomial has as many different roots as there are
-    points; one of more than d^2/2 forms of this list does (Rouillier 1999, lemma 2.1).
+    A form separates the solutions exactly when its characteristic polynomial has as many different
+    roots as there are points; one of more than d^2/2 forms of this list does (Rouillier 1999, lemma
+    2.1).
 
-    The coordinates are quotients (theorem 3.1 there): for an unknown v, the sum over the points of multiplicity times v
-    times the product of (T - value of the form) over the other points has the coefficients trace(v form^j), as it has
-    for v = 1. Polynomials without a denominator would be several times as long.
+    The coordinates are quotients (theorem 3.1 there): for an unknown v, the sum over the points of
+    multiplicity times v times the product of (T - value of the form) over the other points has the
+    coefficients trace(v form^j), as it has for v = 1. Polynomials without a denominator would be
+    several times as long.
 
     Parameters
     ----------
-    multiple : whether solutions may be multiple; else None is returned where they are not all simple.
+    multiple : whether solutions may be multiple; else None is returned where they are not all
+        simple.
     """
     size, count = algebra.dimension, len(algebra.multiplication)
     different = size if not multiple else None
@@ -237,7 +267,8 @@ def univariate_representation(algebra: FibreAlgebra, multiple: bool = False) -> 
         form = fmpq_mat(size, size)
         for matrix, weight in zip(algebra.multiplication, weights, strict=True):
             form = form + (matrix if weight == 1 else matrix * fmpq(weight))
-        # in integers over common denominators: reducing every fraction on the way would take most of the time
+        # in integers over common denominators: reducing every fraction on the way would take most
+        # of the time
         step, denominator = form.numer_denom()
         characteristic = step.charpoly()
         radical = characteristic // characteristic.gcd(characteristic.derivative())
@@ -255,18 +286,30 @@ def univariate_representation(algebra: FibreAlgebra, multiple: bool = False) -> 
         columns, column_denominator = fmpq_mat(
             size,
             count + 1,
-            [c for i in range(size) for c in (fmpq(int(i == 0)), *(m[i, 0] for m in algebra.multiplication))],
+            [
+                c
+                for i in range(size)
+                for c in (fmpq(int(i == 0)), *(m[i, 0] for m in algebra.multiplication))
+            ],
         ).numer_denom()
         traces = fmpz_mat(degree, size, traces_of_powers) * columns
         # rows of coefficients: the quotients of the radical by T, T^2, and so on
         padded = [*radical.coeffs(), *[fmpz(0)] * degree]
-        hankel = fmpz_mat(degree, degree, [c for i in range(1, degree + 1) for c in padded[i : i + degree]])
+        hankel = fmpz_mat(
+            degree, degree, [c for i in range(1, degree + 1) for c in padded[i : i + degree]]
+        )
         totals = (hankel * traces).entries()
         scale = fmpq(1, row_denominator * column_denominator)
-        slope, *coordinates = (fmpq_poly(_stretched(totals[k :: count + 1], powers)) * scale for k in range(count + 1))
+        slope, *coordinates = (
+            fmpq_poly(_stretched(totals[k :: count + 1], powers)) * scale for k in range(count + 1)
+        )
         minimal, whole = (_stretched(p.coeffs(), powers) for p in (radical, characteristic))
         return UnivariateRepresentation(
-            minimal // minimal.content(), tuple(coordinates), slope, weights, whole // whole.content()
+            minimal // minimal.content(),
+            tuple(coordinates),
+            slope,
+            weights,
+            whole // whole.content(),
         )
     return None
 
@@ -276,11 +319,15 @@ def _stretched(coefficients: Sequence[fmpz], powers: Sequence[fmpz]) -> fmpz_pol
 
 
 def _basis_traces(algebra: FibreAlgebra) -> tuple[fmpz_mat, fmpz]:
-    """The traces of the multiplications by the basis monomials: a row of integers, and their common denominator."""
+    """The traces of the multiplications by the basis monomials: a row of integers, and their common
+    denominator.
+    """
     size = algebra.dimension
     products: dict[Monomial, fmpq_mat] = {}
     traces = [fmpq(size)][:size]  # of no solution there is none
-    for monomial in algebra.basis[1:]:  # a divisor of a basis monomial is one too, and comes before it
+    for monomial in algebra.basis[
+        1:
+    ]:  # a divisor of a basis monomial is one too, and comes before it
         k = next(k for k, e in enumerate(monomial) if e)
         rest = shifted(monomial, k, -1)
         step = algebra.multiplication[k]
@@ -291,7 +338,9 @@ def _basis_traces(algebra: FibreAlgebra) -> tuple[fmpz_mat, fmpz]:
 
 
 class CoordinatesInBalls(NamedTuple):
-    """The coordinates' numerators and their denominator in balls of the precision at which this was made."""
+    """The coordinates' numerators and their denominator in balls of the precision at which this was
+    made.
+    """
 
     numerators: tuple[arb_poly, ...]
     slope: arb_poly
@@ -302,7 +351,9 @@ class CoordinatesInBalls(NamedTuple):
         return cls(tuple(map(arb_poly, representation.coordinates)), arb_poly(representation.slope))
 
     def at(self, value: arb) -> list[arb] | None:
-        """The unknowns at the roots of ``minimal`` that a ball contains; None when the ball is too wide."""
+        """The unknowns at the roots of ``minimal`` that a ball contains; None when the ball is too
+        wide.
+        """
         slope = self.slope(value)
         return None if slope.contains(0) else [p(value) / slope for p in self.numerators]
 
@@ -310,8 +361,9 @@ class CoordinatesInBalls(NamedTuple):
 def hermite_matrix(algebra: FibreAlgebra, weight: fmpq_mat) -> fmpq_mat:
     """The matrix trace(weight b_i b_j), weight being a multiplication matrix.
 
-    Its rank is the number of different solutions where the weight is not zero, its signature the number of real
-    solutions with positive weight minus those with negative weight (Hermite; Basu, Pollack, Roy, theorem 4.101).
+    Its rank is the number of different solutions where the weight is not zero, its signature the
+    number of real solutions with positive weight minus those with negative weight (Hermite; Basu,
+    Pollack, Roy, theorem 4.101).
     """
     size = algebra.dimension
     row, denominator = _basis_traces(algebra)

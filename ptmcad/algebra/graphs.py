@@ -1,4 +1,6 @@
-"""Curves that are graphs of polynomials, whose integrals are rational; and any curve over such a graph."""
+"""Curves that are graphs of polynomials, whose integrals are rational; and any curve over such a
+graph.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,8 @@ def on_graph(rows: Sequence[fmpz_poly | fmpq_poly], graph: fmpq_poly) -> fmpz_po
 
 
 def graph_integral(in_v: Sequence[fmpz_poly], low: fmpq, high: fmpq) -> fmpq | None:
-    """The integral of v over [low, high] on the curve p(u, v) = 0; None where it is not the graph of a polynomial in u.
+    """The integral of v over [low, high] on the curve p(u, v) = 0; None where it is not the graph
+    of a polynomial in u.
 
     Parameters
     ----------

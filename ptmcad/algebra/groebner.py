@@ -1,13 +1,16 @@
 """Groebner bases over Q(x, y), computed with fraction-free arithmetic in Z[x, y].
 
-Guarantee: the result is the reduced Groebner basis (up to scaling each element) of the ideal over the field Q(x, y):
-every S-polynomial was reduced to zero or dropped by one of Buchberger's two criteria.
+Guarantee: the result is the reduced Groebner basis (up to scaling each element) of the ideal over
+the field Q(x, y): every S-polynomial was reduced to zero or dropped by one of Buchberger's two
+criteria.
 
-Not guaranteed: that it specialises to a Groebner basis at a given point; `variety` does not need that. Where the
-coefficients are in Z[x, y, z] it does so at any z for which `specialised` finds a basis.
+Not guaranteed: that it specialises to a Groebner basis at a given point; `variety` does not need
+that. Where the coefficients are in Z[x, y, z] it does so at any z for which `specialised` finds a
+basis.
 
-Source: Buchberger's algorithm with his criteria (Cox, Little, O'Shea, Ideals, Varieties, and Algorithms, 2.9-2.10).
-The bases of this package have about seven elements; the whole computation takes some ten milliseconds.
+Source: Buchberger's algorithm with his criteria (Cox, Little, O'Shea, Ideals, Varieties, and
+Algorithms, 2.9-2.10). The bases of this package have about seven elements; the whole computation
+takes some ten milliseconds.
 """
 
 from __future__ import annotations
@@ -16,7 +19,13 @@ from collections.abc import Callable, Sequence
 from operator import add
 from typing import Any, NamedTuple
 
-from ptmcad.algebra.polynomials import Coefficient, Monomial, UnknownPolynomial, common_factor, ratio
+from ptmcad.algebra.polynomials import (
+    Coefficient,
+    Monomial,
+    UnknownPolynomial,
+    common_factor,
+    ratio,
+)
 
 
 def grevlex_key(m: Monomial) -> tuple[int, ...]:
@@ -42,7 +51,8 @@ class GroebnerBasis(NamedTuple):
     Attributes
     ----------
     leading : each element's leading monomial.
-    removed : the factors that are not constant by which polynomials were divided on the way, each once.
+    removed : the factors that are not constant by which polynomials were divided on the way, each
+        once.
     """
 
     order: MonomialOrder
@@ -56,7 +66,8 @@ def groebner_basis(generators: Sequence[UnknownPolynomial], order: MonomialOrder
 
     Parameters
     ----------
-    generators : polynomials in the unknowns with coefficients in Z[x, y]; empty ones are zero and ignored.
+    generators : polynomials in the unknowns with coefficients in Z[x, y]; empty ones are zero and
+        ignored.
     """
     basis: list[tuple[UnknownPolynomial, Monomial]] = []
     pairs: set[tuple[int, int]] = set()
@@ -70,7 +81,9 @@ def groebner_basis(generators: Sequence[UnknownPolynomial], order: MonomialOrder
         if generator:
             adjoin(generator)
     while pairs:
-        i, j = min(pairs, key=lambda pair: (order.key(_join(basis[pair[0]][1], basis[pair[1]][1])), pair))
+        i, j = min(
+            pairs, key=lambda pair: (order.key(_join(basis[pair[0]][1], basis[pair[1]][1])), pair)
+        )
         pairs.discard((i, j))
         (p, lead_p), (q, lead_q) = basis[i], basis[j]
         join = _join(lead_p, lead_q)
@@ -96,7 +109,8 @@ def shifted(monomial: Monomial, k: int, by: int = 1) -> Monomial:
 
 
 def powers_of(factors: Sequence[Any], one: Any) -> Callable[[Monomial], Any]:
-    """The products of powers of factors that commute, by their exponents; each is computed once, from a divisor.
+    """The products of powers of factors that commute, by their exponents; each is computed once,
+    from a divisor.
 
     Parameters
     ----------
@@ -127,7 +141,12 @@ def _quotient(a: Monomial, b: Monomial) -> Monomial:
 
 
 def _combination(
-    a: Coefficient, p: UnknownPolynomial, shift_p: Monomial, b: Coefficient, q: UnknownPolynomial, shift_q: Monomial
+    a: Coefficient,
+    p: UnknownPolynomial,
+    shift_p: Monomial,
+    b: Coefficient,
+    q: UnknownPolynomial,
+    shift_q: Monomial,
 ) -> UnknownPolynomial:
     """a x^shift_p p - b x^shift_q q."""
     result = {tuple(map(add, m, shift_p)): a * c for m, c in p.items()}
@@ -151,7 +170,9 @@ def _s_polynomial(
 def _primitive(
     rest: UnknownPolynomial, done: UnknownPolynomial, removed: list[Coefficient]
 ) -> tuple[UnknownPolynomial, UnknownPolynomial]:
-    """Both parts of one polynomial, divided by the factor common to all its coefficients, which is noted."""
+    """Both parts of one polynomial, divided by the factor common to all its coefficients, which is
+    noted.
+    """
     common = common_factor([*done.values(), *rest.values()])
     if common.is_one() or common.is_zero():
         return dict(rest), done
@@ -184,12 +205,16 @@ def _reduce(
 
 
 def _reduced(
-    basis: Sequence[tuple[UnknownPolynomial, Monomial]], order: MonomialOrder, removed: list[Coefficient]
+    basis: Sequence[tuple[UnknownPolynomial, Monomial]],
+    order: MonomialOrder,
+    removed: list[Coefficient],
 ) -> GroebnerBasis:
     minimal = [
         (p, m)
         for index, (p, m) in enumerate(basis)
-        if not any(k != index and divides(n, m) and (n != m or k < index) for k, (_, n) in enumerate(basis))
+        if not any(
+            k != index and divides(n, m) and (n != m or k < index) for k, (_, n) in enumerate(basis)
+        )
     ]
     elements, leading = [], []
     for index, (p, m) in enumerate(minimal):

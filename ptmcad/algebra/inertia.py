@@ -1,7 +1,8 @@
 """The inertia of a symmetric matrix of balls.
 
-Guarantee: the answer holds for every regular symmetric matrix in the balls. For a regular matrix and balls narrow
-enough there is an answer: of the diagonal entries and the differences' determinants some is certainly not zero.
+Guarantee: the answer holds for every regular symmetric matrix in the balls. For a regular matrix
+and balls narrow enough there is an answer: of the diagonal entries and the differences'
+determinants some is certainly not zero.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ from flint import arb, ctx
 def negative_eigenvalues(matrix: Sequence[Sequence[arb]]) -> int | None:
     """The number of negative eigenvalues; None when the balls are too wide to tell.
 
-    By block elimination with pivots of one row or two, each of a certain sign (Sylvester's law of inertia; Bunch &
-    Kaufman, Math. Comp. 31 (1977)).
+    By block elimination with pivots of one row or two, each of a certain sign (Sylvester's law of
+    inertia; Bunch & Kaufman, Math. Comp. 31 (1977)).
 
     Raises
     ------
@@ -57,7 +58,10 @@ def negative_eigenvalues(matrix: Sequence[Sequence[arb]]) -> int | None:
         rows = [
             [
                 rows[m][n]
-                - (rows[m][i] * (c * rows[i][n] - b * rows[j][n]) + rows[m][j] * (a * rows[j][n] - b * rows[i][n]))
+                - (
+                    rows[m][i] * (c * rows[i][n] - b * rows[j][n])
+                    + rows[m][j] * (a * rows[j][n] - b * rows[i][n])
+                )
                 / determinant
                 for n in rest
             ]

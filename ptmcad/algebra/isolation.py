@@ -1,14 +1,16 @@
 """Isolation of the real roots of an integer polynomial by Descartes' rule.
 
-Guarantee: exact. Every root in the open interval is in one of the intervals that are found, which are disjoint.
+Guarantee: exact. Every root in the open interval is in one of the intervals that are found, which
+are disjoint.
 
-Intervals are bisected; where several bisections in a row have not parted some roots, Newton's method is run on to where
-their cluster may be, Taylor coefficients show how long it may be, and Descartes' rule whether it is. Where the roots
-keep to one end of the interval, but too near to others for that, steps towards the end get longer while they are right.
-So the steps that a cluster takes grow with the logarithm of its number of leading digits, not with that number.
+Intervals are bisected; where several bisections in a row have not parted some roots, Newton's
+method is run on to where their cluster may be, Taylor coefficients show how long it may be, and
+Descartes' rule whether it is. Where the roots keep to one end of the interval, but too near to
+others for that, steps towards the end get longer while they are right. So the steps that a cluster
+takes grow with the logarithm of its number of leading digits, not with that number.
 
-References: Collins & Akritas, SYMSAC 1976; Rouillier & Zimmermann, J. Comput. Appl. Math. 162 (2004); Sagraloff &
-Mehlhorn, Computing real roots of real polynomials, J. Symb. Comp. 73 (2016).
+References: Collins & Akritas, SYMSAC 1976; Rouillier & Zimmermann, J. Comput. Appl. Math. 162
+(2004); Sagraloff & Mehlhorn, Computing real roots of real polynomials, J. Symb. Comp. 73 (2016).
 """
 
 from __future__ import annotations
@@ -27,13 +29,19 @@ _CLUSTER_CUTS = 3
 _CLUSTER_BITS = 8
 """Bits with which a cluster is looked for at first."""
 _CLUSTER_MARGIN = 4
-"""How much longer than the estimate an interval around a cluster is: Descartes' rule sees complex roots in a lens."""
+"""How much longer than the estimate an interval around a cluster is: Descartes' rule sees complex
+roots in a lens.
+"""
 _MAX_CLUSTER_RADIUS = fmpq(1, 16)
 """Half the length up to which such an interval is better than bisection."""
 _MAX_SHORT_DEGREE = 24
-"""Up to this degree halves are computed in Python's integers, which costs less than a call for each polynomial."""
+"""Up to this degree halves are computed in Python's integers, which costs less than a call for each
+polynomial.
+"""
 _MIN_SPEED = 2
-"""The first step towards an end is to the part 2^-4 of the interval; each further one is twice as many bits long."""
+"""The first step towards an end is to the part 2^-4 of the interval; each further one is twice as
+many bits long.
+"""
 
 
 def on_unit_interval(p: fmpz_poly, low: fmpq, high: fmpq) -> fmpz_poly:
@@ -50,14 +58,17 @@ def on_unit_interval(p: fmpz_poly, low: fmpq, high: fmpq) -> fmpz_poly:
 
 
 def descartes_bound(q: fmpz_poly, degree: int) -> int:
-    """Sign changes of (1 + t)^n q(1/(1 + t)): a bound for the number of roots of q in (0, 1), exact when 0 or 1."""
+    """Sign changes of (1 + t)^n q(1/(1 + t)): a bound for the number of roots of q in (0, 1), exact
+    when 0 or 1.
+    """
     coefficients = q.coeffs()
     coefficients += [fmpz(0)] * (degree + 1 - len(coefficients))
     return _sign_changes(fmpz_poly(coefficients[::-1])(_SHIFT).coeffs())
 
 
 def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq, fmpq]]:
-    """Intervals with one root each of a squarefree polynomial in the open interval (low, high), in increasing order.
+    """Intervals with one root each of a squarefree polynomial in the open interval (low, high), in
+    increasing order.
 
     An end of one may be a root that lies outside of it. An interval of length zero is the root.
 
@@ -77,7 +88,9 @@ def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq,
     width = high - low
     whole = on_unit_interval(p, low, high)
     found, stack = (
-        _by_halving(whole) if p.degree() <= _MAX_SHORT_DEGREE else ([], [_RootInterval(whole, fmpq(0), fmpq(1))])
+        _by_halving(whole)
+        if p.degree() <= _MAX_SHORT_DEGREE
+        else ([], [_RootInterval(whole, fmpq(0), fmpq(1))])
     )
     found = [(low + width * left, low + width * right) for left, right in found]
     squarefree = False
@@ -112,9 +125,9 @@ def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq,
 def _by_halving(whole: fmpz_poly) -> tuple[list[tuple[fmpq, fmpq]], list[_RootInterval]]:
     """The roots in (0, 1) that halving parts, and the parts that hold what may be a cluster.
 
-    Descartes' bound is the number of sign changes of the Bernstein coefficients, and those of the halves come by de
-    Casteljau's additions: where there are few coefficients that is much less work than a shift of each half. The halves
-    and the bounds are those of the general way.
+    Descartes' bound is the number of sign changes of the Bernstein coefficients, and those of the
+    halves come by de Casteljau's additions: where there are few coefficients that is much less work
+    than a shift of each half. The halves and the bounds are those of the general way.
     """
     n = whole.degree()
     found: list[tuple[fmpq, fmpq]] = []
@@ -147,13 +160,19 @@ def _by_halving(whole: fmpz_poly) -> tuple[list[tuple[fmpq, fmpq]], list[_RootIn
 
 
 def _bernstein_coefficients(p: fmpz_poly) -> list[int]:
-    """The coefficients of p in the Bernstein basis of (0, 1), times a positive integer that makes them integers."""
+    """The coefficients of p in the Bernstein basis of (0, 1), times a positive integer that makes
+    them integers.
+    """
     n = p.degree()
     binomials = [comb(n, i) for i in range(n + 1)]
     scale = lcm(*binomials)
-    differences = [int(c) * (scale // binomial) for c, binomial in zip(p.coeffs(), binomials, strict=True)]
+    differences = [
+        int(c) * (scale // binomial) for c, binomial in zip(p.coeffs(), binomials, strict=True)
+    ]
     found = [differences[n]]
-    for difference in reversed(differences[:n]):  # from a sequence's differences at its start to the sequence
+    for difference in reversed(
+        differences[:n]
+    ):  # from a sequence's differences at its start to the sequence
         found = list(accumulate(found, initial=difference))
     return found
 
@@ -222,12 +241,14 @@ def _narrowed(part: _RootInterval) -> _RootInterval:
 
 
 def _cluster(q: fmpz_poly, bound: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
-    """A much shorter interval in (0, 1) which holds all roots of q there: q on it, its start and its width.
+    """A much shorter interval in (0, 1) which holds all roots of q there: q on it, its start and
+    its width.
 
-    None when that is not proved. It is when Descartes' bound for the interval is that for (0, 1), as the sum of the
-    bounds for disjoint parts never exceeds the bound for the whole. Where the interval may be is found by Newton's
-    method, to which roots that lie together look like a multiple one, from the left end as from the right; how long,
-    by the Taylor coefficients there, whose first ones are those of a polynomial with about these roots only.
+    None when that is not proved. It is when Descartes' bound for the interval is that for (0, 1),
+    as the sum of the bounds for disjoint parts never exceeds the bound for the whole. Where the
+    interval may be is found by Newton's method, to which roots that lie together look like a
+    multiple one, from the left end as from the right; how long, by the Taylor coefficients there,
+    whose first ones are those of a polynomial with about these roots only.
     """
     slope = q.derivative()
     # in whole numbers: reducing fractions of thousands of bits would take most of the time
@@ -236,7 +257,10 @@ def _cluster(q: fmpz_poly, bound: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
         return None
     steps = [int((bound * value << _CLUSTER_BITS) // derivative) for value, derivative in values]
     targets = -steps[0], 2**_CLUSTER_BITS - steps[1]
-    if abs(targets[0] - targets[1]) > 2**_CLUSTER_BITS // 4 or not -1 < targets[0] >> (_CLUSTER_BITS - 2) < 5:
+    if (
+        abs(targets[0] - targets[1]) > 2**_CLUSTER_BITS // 4
+        or not -1 < targets[0] >> (_CLUSTER_BITS - 2) < 5
+    ):
         return None
     last, centre = min((abs(step), target) for step, target in zip(steps, targets, strict=True))
     bits, contracted = _CLUSTER_BITS, False
@@ -262,20 +286,28 @@ def _cluster(q: fmpz_poly, bound: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
 
 
 def _edge(q: fmpz_poly, bound: int, right: bool, bits: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
-    """The same for the part 2^-bits of (0, 1) at its right or left end, unless it does not hold all the roots."""
+    """The same for the part 2^-bits of (0, 1) at its right or left end, unless it does not hold all
+    the roots.
+    """
     share = fmpq(1, 2**bits)
     return _holding(q, bound, 1 - share if right else fmpq(0), fmpq(1) if right else share)
 
 
-def _holding(q: fmpz_poly, bound: int, left: fmpq, right: fmpq) -> tuple[fmpz_poly, fmpq, fmpq] | None:
-    """q on (left, right), its start and its width, if that is proved to hold all roots of q in (0, 1)."""
+def _holding(
+    q: fmpz_poly, bound: int, left: fmpq, right: fmpq
+) -> tuple[fmpz_poly, fmpq, fmpq] | None:
+    """q on (left, right), its start and its width, if that is proved to hold all roots of q in (0,
+    1).
+    """
     narrow = on_unit_interval(q, left, right)
     held = narrow[0] != 0 and descartes_bound(narrow, q.degree()) == bound
     return (narrow, left, right - left) if held else None
 
 
 def root_bound(p: fmpz_poly) -> fmpq:
-    """A power of two above the moduli of all complex roots: 2 max |a_{n-i} / a_n|^(1/i), rounded up (Fujiwara)."""
+    """A power of two above the moduli of all complex roots: 2 max |a_{n-i} / a_n|^(1/i), rounded up
+    (Fujiwara).
+    """
     leading, *lower = (int(c).bit_length() for c in reversed(p.coeffs()))
     bits = max((-((leading - 1 - b) // i) for i, b in enumerate(lower, 1) if b), default=0)
     return fmpq(2) ** (1 + bits)

@@ -1,13 +1,16 @@
-"""Whether a Groebner basis over Q that somebody else has computed lies in the ideal of the equations, with proof.
+"""Whether a Groebner basis over Q that somebody else has computed lies in the ideal of the
+equations, with proof.
 
-Guarantee: True is a proof, which needs that the equations vanish in the quotient that the basis describes (`fibre`
-checks it). It does not rest on how the basis was found. False means that the search was given up.
+Guarantee: True is a proof, which needs that the equations vanish in the quotient that the basis
+describes (`fibre` checks it). It does not rest on how the basis was found. False means that the
+search was given up.
 
-The proof is in docs/method.md, "Bases by msolve". In short: S is a space of polynomials that are known to be in the
-ideal I, reduced by elements of the basis that are already proved, and J is the ideal of the basis, I in J. Of the
-monomials up to a degree that no proved leading monomial divides, those outside of the staircase are as many as the
-dimension of J there. Where S has so many dimensions it is all of J there, with the basis elements of that degree. The
-rank of S modulo a prime is a lower bound of its dimension. Where degrees fall, S is brought to echelon form over Q.
+The proof is in docs/method.md, "Bases by msolve". In short: S is a space of polynomials that are
+known to be in the ideal I, reduced by elements of the basis that are already proved, and J is the
+ideal of the basis, I in J. Of the monomials up to a degree that no proved leading monomial divides,
+those outside of the staircase are as many as the dimension of J there. Where S has so many
+dimensions it is all of J there, with the basis elements of that degree. The rank of S modulo a
+prime is a lower bound of its dimension. Where degrees fall, S is brought to echelon form over Q.
 """
 
 from __future__ import annotations
@@ -34,7 +37,8 @@ BEYOND = 4
 
 
 class _Level(NamedTuple):
-    """The monomials up to a degree, reduced by the proved elements: those that are left stand for themselves.
+    """The monomials up to a degree, reduced by the proved elements: those that are left stand for
+    themselves.
 
     Attributes
     ----------
@@ -47,12 +51,15 @@ class _Level(NamedTuple):
     columns: tuple[Monomial, ...]
 
 
-def lies_in_ideal(equations: Sequence[Rational], rules: Rules, basis: Sequence[Monomial], pause: Check) -> bool:
+def lies_in_ideal(
+    equations: Sequence[Rational], rules: Rules, basis: Sequence[Monomial], pause: Check
+) -> bool:
     """Whether all elements of a basis are proved to be in the ideal that the equations generate.
 
     Parameters
     ----------
-    equations : with the value zero in the quotient by the basis, in which the monomials of ``basis`` are independent.
+    equations : with the value zero in the quotient by the basis, in which the monomials of
+        ``basis`` are independent.
     rules : the reduced Groebner basis in the graded reverse lexicographic order.
     basis : the monomials that no leading monomial divides.
     pause : called now and then; it may raise to end the search.
@@ -101,7 +108,8 @@ def _level(width: int, degree: int, proved: Rules, staircase: frozenset[Monomial
 def _settled(
     level: _Level, known: Sequence[Rational], basis: Sequence[Monomial], pause: Check
 ) -> tuple[int, list[Rational]]:
-    """Up to which degree the basis is proved by multiples of known polynomials, and what falls below the level's.
+    """Up to which degree the basis is proved by multiples of known polynomials, and what falls
+    below the level's.
 
     Returns
     -------
@@ -122,7 +130,9 @@ def _settled(
         for m, c in exact.multiple(polynomials, source).items():
             matrix[i, position[m]] = c
     echelon, rank = matrix.rref()
-    low = next((j for j, m in enumerate(level.columns) if sum(m) < level.degree), len(level.columns))
+    low = next(
+        (j for j, m in enumerate(level.columns) if sum(m) < level.degree), len(level.columns)
+    )
     falls: list[Rational] = []
     for i in range(rank):
         row = [echelon[i, j] for j in range(len(order))]
@@ -136,7 +146,9 @@ def _settled(
 
 
 def _independent(level: _Level, polynomials: Sequence[Rational], pause: Check) -> list[_Source]:
-    """Reduced multiples that are independent modulo a prime by their entries in the columns, as many as there are."""
+    """Reduced multiples that are independent modulo a prime by their entries in the columns, as
+    many as there are.
+    """
     for prime in primes():
         try:
             rows = list(_Reduction(level, partial(_residue, prime), pause).rows(polynomials))
@@ -166,7 +178,8 @@ def _residue(prime: int, c: fmpq) -> nmod:
 
 
 class _Reduction:
-    """Polynomials up to a level's degree, reduced by what is proved there, over Q or modulo a prime.
+    """Polynomials up to a level's degree, reduced by what is proved there, over Q or modulo a
+    prime.
 
     Parameters
     ----------
@@ -198,7 +211,9 @@ class _Reduction:
         number, shift = source
         total: _Sparse = {}
         for m, c in polynomials[number].items():
-            self._add(total, self._table[tuple(map(sum, zip(m, shift, strict=True)))], self._number(c))
+            self._add(
+                total, self._table[tuple(map(sum, zip(m, shift, strict=True)))], self._number(c)
+            )
         return {m: c for m, c in total.items() if c}
 
     def _reduced(self, m: Monomial) -> _Sparse:
@@ -208,7 +223,9 @@ class _Reduction:
         for k, e in enumerate(m):
             if e:
                 below = self._table[shifted(m, k, -1)]
-                if len(below) != 1 or shifted(m, k, -1) not in below:  # it is reducible, and so is its multiple
+                if (
+                    len(below) != 1 or shifted(m, k, -1) not in below
+                ):  # it is reducible, and so is its multiple
                     total: _Sparse = {}
                     for n, c in below.items():
                         self._add(total, self._table[shifted(n, k)], c)

@@ -1,12 +1,16 @@
-"""msolve, an optional program: Groebner bases over Q, and all real solutions in boxes where they are finitely many.
+"""msolve, an optional program: Groebner bases over Q, and all real solutions in boxes where they
+are finitely many.
 
-Guarantee: an answer is the whole answer of a run that ended well; all else is a `MsolveError` with what was said. On
-Linux no file is left, whatever is killed: those that msolve reads and writes have no names.
+Guarantee: an answer is the whole answer of a run that ended well; all else is a `MsolveError` with
+what was said. On Linux no file is left, whatever is killed: those that msolve reads and writes have
+no names.
 
-Not guaranteed here: that msolve is right. Its Groebner basis over Q is lifted from bases modulo primes, and checked
-modulo another prime; `ptmcad.algebra.proved` proves it before it is used. The boxes are isolating, as msolve says.
+Not guaranteed here: that msolve is right. Its Groebner basis over Q is lifted from bases modulo
+primes, and checked modulo another prime; `ptmcad.algebra.proved` proves it before it is used. The
+boxes are isolating, as msolve says.
 
-Reference: Berthomieu, Eder, Safey El Din, msolve: a library for solving polynomial systems, ISSAC 2021.
+Reference: Berthomieu, Eder, Safey El Din, msolve: a library for solving polynomial systems, ISSAC
+2021.
 """
 
 from __future__ import annotations
@@ -53,19 +57,25 @@ def program() -> str | None:
     return shutil.which("msolve") or (str(wheel) if wheel.is_file() else None)
 
 
-def real_solutions(names: Sequence[str], equations: Sequence[str], timeout: float | None = None) -> tuple[Box, ...]:
-    """All real solutions of polynomial equations with integer coefficients, written out as sums of monomials.
+def real_solutions(
+    names: Sequence[str], equations: Sequence[str], timeout: float | None = None
+) -> tuple[Box, ...]:
+    """All real solutions of polynomial equations with integer coefficients, written out as sums of
+    monomials.
 
     Raises
     ------
-    MsolveError
-        When msolve is not found, does not end within ``timeout`` seconds, or finds infinitely many complex solutions.
+    MsolveError When msolve is not found, does not end within ``timeout`` seconds, or finds
+        infinitely many complex solutions.
     """
     return parsed(_answer(names, equations, (), timeout), len(names))
 
 
-def groebner_basis(equations: Sequence[str], unknowns: int, timeout: float | None = None) -> tuple[Terms, ...]:
-    """What msolve says is the reduced Groebner basis over Q, in the graded reverse lexicographic order.
+def groebner_basis(
+    equations: Sequence[str], unknowns: int, timeout: float | None = None
+) -> tuple[Terms, ...]:
+    """What msolve says is the reduced Groebner basis over Q, in the graded reverse lexicographic
+    order.
 
     Parameters
     ----------
@@ -73,38 +83,58 @@ def groebner_basis(equations: Sequence[str], unknowns: int, timeout: float | Non
 
     Raises
     ------
-    MsolveError
-        When msolve is not found, does not end within ``timeout`` seconds, or says no list of polynomials.
+    MsolveError When msolve is not found, does not end within ``timeout`` seconds, or says no list
+        of polynomials.
     """
-    return parsed_basis(_answer([f"u{k}" for k in range(unknowns)], equations, ("-g", "2"), timeout), unknowns)
+    return parsed_basis(
+        _answer([f"u{k}" for k in range(unknowns)], equations, ("-g", "2"), timeout), unknowns
+    )
 
 
-def _answer(names: Sequence[str], equations: Sequence[str], options: Sequence[str], timeout: float | None) -> str:
+def _answer(
+    names: Sequence[str], equations: Sequence[str], options: Sequence[str], timeout: float | None
+) -> str:
     command = program()
     if command is None:
-        raise MsolveError("msolve is not installed (pip install 'ptmcad[large]', or put it on the PATH)")
+        raise MsolveError(
+            "msolve is not installed (pip install 'ptmcad[large]', or put it on the PATH)"
+        )
     # only Linux opens a file anew, from its start, by the number of a descriptor
     made = tempfile.TemporaryFile if sys.platform == "linux" else tempfile.NamedTemporaryFile
     with made() as asked, made() as answer:
         asked.write((f"{','.join(names)}\n0\n" + ",\n".join(equations) + "\n").encode("ascii"))
         asked.flush()
         files = (asked.fileno(), answer.fileno())
-        paths = [f"/proc/self/fd/{k}" for k in files] if sys.platform == "linux" else [asked.name, answer.name]
+        paths = (
+            [f"/proc/self/fd/{k}" for k in files]
+            if sys.platform == "linux"
+            else [asked.name, answer.name]
+        )
         status, said = _run([command, *options, "-f", paths[0], "-o", paths[1]], files, timeout)
         data = answer.read(MAX_ANSWER + 1)
     if status or not data:
-        raise MsolveError(f"msolve failed with status {status}: {said[-300:].decode('ascii', 'backslashreplace')!r}")
+        raise MsolveError(
+            f"msolve failed with status {status}: {said[-300:].decode('ascii', 'backslashreplace')!r}"
+        )
     if len(data) > MAX_ANSWER:
         raise MsolveError(f"msolve's answer has more than {MAX_ANSWER} bytes")
     return data.decode("ascii", errors="backslashreplace")
 
 
-def _run(command: Sequence[str], files: tuple[int, int], timeout: float | None) -> tuple[int, bytes]:
-    """The status of a program that ends with this one, whatever ends it, and what it prints as errors."""
+def _run(
+    command: Sequence[str], files: tuple[int, int], timeout: float | None
+) -> tuple[int, bytes]:
+    """The status of a program that ends with this one, whatever ends it, and what it prints as
+    errors.
+    """
     end, lifeline = os.pipe()
     try:
         with subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, pass_fds=(end, *files)
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            pass_fds=(end, *files),
         ) as process:
             if hasattr(os, "O_ASYNC"):  # the kernel signals it when our end is closed
                 fcntl.fcntl(end, fcntl.F_SETOWN, process.pid)
@@ -124,14 +154,17 @@ def _run(command: Sequence[str], files: tuple[int, int], timeout: float | None) 
 
 
 def parsed_basis(answer: str, unknowns: int) -> tuple[Terms, ...]:
-    """The polynomials in msolve's answer, each with its terms in the order in which they are written.
+    """The polynomials in msolve's answer, each with its terms in the order in which they are
+    written.
 
     Raises
     ------
     MsolveError
         When it is no list of polynomials in u0, u1, and so on.
     """
-    text = "".join("".join(line for line in answer.splitlines() if not line.startswith("#")).split())
+    text = "".join(
+        "".join(line for line in answer.splitlines() if not line.startswith("#")).split()
+    )
     if not (text.startswith("[") and text.endswith("]:")):
         raise MsolveError(f"msolve's answer is not understood: {text[:100]!r}")
     return tuple(_polynomial(part, unknowns) for part in text[1:-2].split(","))

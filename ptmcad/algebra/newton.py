@@ -1,10 +1,10 @@
 """Balls around isolated real roots, by the interval Newton operator.
 
-Guarantee: a ball contains the root. How narrow it is depends on the working precision and on the root; nothing is
-concluded from it that a wide one would not prove as well.
+Guarantee: a ball contains the root. How narrow it is depends on the working precision and on the
+root; nothing is concluded from it that a wide one would not prove as well.
 
-Reference: Moore, Interval Analysis (1966); with a root in X and 0 not in p'(X), it lies in m - p(m) / p'(X) for any
-m in X, by the mean value theorem.
+Reference: Moore, Interval Analysis (1966); with a root in X and 0 not in p'(X), it lies in
+m - p(m) / p'(X) for any m in X, by the mean value theorem.
 """
 
 from __future__ import annotations
@@ -48,11 +48,14 @@ class Newton(NamedTuple):
                 low = middle
             else:  # the root, or too near to it to tell
                 break
-        # by its own means as far as the ball is to be narrow, where Newton's would not be at this precision
+        # by its own means as far as the ball is to be narrow, where Newton's would not be at this
+        # precision
         return refine(root, fmpq(1, 2 ** (ctx.prec - 8)) * (abs(root.middle) + 1)).ball
 
     def _narrowed(self, ball: arb) -> arb | None:
-        """The root of a ball in one of at most the square root of the precision's unit; None when that fails."""
+        """The root of a ball in one of at most the square root of the precision's unit; None when
+        that fails.
+        """
         while True:
             slope = self.slope(ball)
             if slope.contains(0):

@@ -1,12 +1,13 @@
 """Real number fields Q(a), a being a real root of an irreducible polynomial, and their elements.
 
-Guarantee: exact. Whether an element is zero, or rational, is decided by its residue and never by an enclosure; `ball`
-encloses its value, as narrowly as the precision allows.
+Guarantee: exact. Whether an element is zero, or rational, is decided by its residue and never by an
+enclosure; `ball` encloses its value, as narrowly as the precision allows.
 
-Residues have numbers many times as long as those that they come from: with parameters of forty digits, three thousand
-bits become thirty thousand. So an element is kept as the expression that it was made by, which is evaluated in three
-ways. Most are found to be irrational in the residues modulo a prime, whose numbers are short, and their enclosures are
-those of the expression; a residue over Q is computed when the prime does not tell.
+Residues have numbers many times as long as those that they come from: with parameters of forty
+digits, three thousand bits become thirty thousand. So an element is kept as the expression that it
+was made by, which is evaluated in three ways. Most are found to be irrational in the residues
+modulo a prime, whose numbers are short, and their enclosures are those of the expression; a residue
+over Q is computed when the prime does not tell.
 """
 
 from __future__ import annotations
@@ -37,7 +38,10 @@ class RingEvaluation:
     """
 
     def __init__(
-        self, embed: Callable[[fmpq_poly], Any], reduce: Callable[[Any], Any], inverse: Callable[[Any], Any]
+        self,
+        embed: Callable[[fmpq_poly], Any],
+        reduce: Callable[[Any], Any],
+        inverse: Callable[[Any], Any],
     ) -> None:
         self.embed, self.reduce, self.inverse = embed, reduce, inverse
         self._known: dict[Expression, Any] = {}
@@ -62,8 +66,12 @@ class Modulus:
 
     def __init__(self, polynomial: fmpz_poly) -> None:
         self.polynomial, self.degree = fmpq_poly(polynomial), int(polynomial.degree())
-        self.residues = RingEvaluation(lambda p: p % self.polynomial, lambda p: p % self.polynomial, self._inverse)
-        self.images = RingEvaluation(self._image, lambda p: p % self._modulo_prime, self._inverse_image)
+        self.residues = RingEvaluation(
+            lambda p: p % self.polynomial, lambda p: p % self.polynomial, self._inverse
+        )
+        self.images = RingEvaluation(
+            self._image, lambda p: p % self._modulo_prime, self._inverse_image
+        )
 
     @cached_property
     def _modulo_prime(self) -> nmod_poly:
@@ -88,7 +96,9 @@ class Modulus:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RealField:
-    """The field Q[T]/(modulus) with its embedding that sends T to ``root``, a real root of the irreducible modulus."""
+    """The field Q[T]/(modulus) with its embedding that sends T to ``root``, a real root of the
+    irreducible modulus.
+    """
 
     modulus: Modulus
     root: RealRoot
@@ -102,9 +112,13 @@ class RealField:
         return self.element(fmpq_poly([value]))
 
     def evaluation(self) -> RingEvaluation:
-        """In balls, at the root, whose enclosure is about as wide as one of the context's precision."""
+        """In balls, at the root, whose enclosure is about as wide as one of the context's
+        precision.
+        """
         generator = refine(self.root, fmpq(1, 2**ctx.prec) * (abs(self.root.middle) + 1)).ball
-        return RingEvaluation(lambda p: arb_poly(p)(generator), lambda ball: ball, lambda ball: 1 / ball)
+        return RingEvaluation(
+            lambda p: arb_poly(p)(generator), lambda ball: ball, lambda ball: 1 / ball
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -195,7 +209,9 @@ class FieldElement:
         return self * self.field.constant(factor)
 
 
-def polynomial_at(field: RealField, at: Sequence[FieldElement], p: Mapping[tuple[int, ...], fmpq]) -> FieldElement:
+def polynomial_at(
+    field: RealField, at: Sequence[FieldElement], p: Mapping[tuple[int, ...], fmpq]
+) -> FieldElement:
     """The value of a polynomial, in all of them or in the first, at elements of a field.
 
     Parameters

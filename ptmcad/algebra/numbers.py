@@ -1,4 +1,5 @@
-"""Real algebraic numbers: from the roots of polynomials to engine-neutral data, and back to be refined and compared.
+"""Real algebraic numbers: from the roots of polynomials to engine-neutral data, and back to be
+refined and compared.
 
 Guarantee: exact. Numbers are equal exactly when `compare` says so, however near they are.
 """
@@ -54,12 +55,16 @@ def refined(number: AlgebraicNumber, width: Fraction) -> AlgebraicNumber:
 def compare(a: AlgebraicNumber, b: AlgebraicNumber | Fraction) -> int:
     """The sign of a - b."""
     if isinstance(b, AlgebraicNumber):
-        # isolating intervals of one polynomial that overlap hold the same root if their union holds only one
+        # isolating intervals of one polynomial that overlap hold the same root if their union holds
+        # only one
         overlap = a.polynomial == b.polynomial and a.low <= b.high and b.low <= a.high
         if overlap and _one_root(a, min(a.low, b.low), max(a.high, b.high)):
             return 0
         while a.low <= b.high and b.low <= a.high:
-            a, b = refined(a, (a.high - a.low) / 2 or Fraction(1)), refined(b, (b.high - b.low) / 2 or Fraction(1))
+            a, b = (
+                refined(a, (a.high - a.low) / 2 or Fraction(1)),
+                refined(b, (b.high - b.low) / 2 or Fraction(1)),
+            )
         return 1 if a.low > b.high else -1
     return -order(from_fraction(b), root_of(a))
 
@@ -71,7 +76,9 @@ def _one_root(number: AlgebraicNumber, low: Fraction, high: Fraction) -> bool:
     return len(isolate(p, from_fraction(low), from_fraction(high))) == 1
 
 
-def roots_in(polynomial: PlanePolynomial, low: Fraction, high: Fraction) -> tuple[AlgebraicNumber, ...]:
+def roots_in(
+    polynomial: PlanePolynomial, low: Fraction, high: Fraction
+) -> tuple[AlgebraicNumber, ...]:
     """The roots, in the open interval, of an irreducible polynomial in the first axis alone."""
     p = coefficients_in(from_plane(polynomial), 1)[0]
     return tuple(algebraic_number(r) for r in isolate(p, from_fraction(low), from_fraction(high)))
@@ -91,4 +98,6 @@ def in_order(
 
 def fibre_roots(p: UnivariatePolynomial, low: fmpq, high: fmpq) -> tuple[AlgebraicNumber, ...]:
     """The different roots, in the open interval and in no order, of a polynomial that is not zero."""
-    return tuple(algebraic_number(r) for factor, _ in p.factor()[1] for r in isolate(factor, low, high))
+    return tuple(
+        algebraic_number(r) for factor, _ in p.factor()[1] for r in isolate(factor, low, high)
+    )

@@ -1,9 +1,11 @@
-"""The real points of a fibre with their multiplicities, and polynomials in the unknowns as numbers there.
+"""The real points of a fibre with their multiplicities, and polynomials in the unknowns as numbers
+there.
 
-Guarantee: exact, also where points are multiple. Each real solution is there once; its multiplicity is the dimension
-of the local algebra.
+Guarantee: exact, also where points are multiple. Each real solution is there once; its multiplicity
+is the dimension of the local algebra.
 
-Reference: Rouillier, Solving zero-dimensional systems through the rational univariate representation, AAECC 9 (1999).
+Reference: Rouillier, Solving zero-dimensional systems through the rational univariate
+representation, AAECC 9 (1999).
 """
 
 from __future__ import annotations
@@ -14,7 +16,12 @@ from math import prod
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, evaluate, univariate_representation
+from ptmcad.algebra.fibre import (
+    FibreAlgebra,
+    RationalPolynomial,
+    evaluate,
+    univariate_representation,
+)
 from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.number_field import Expression, FieldElement, Modulus, RealField, polynomial_at
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
@@ -57,7 +64,9 @@ def points(algebra: FibreAlgebra, bound: int | None = 1) -> FibrePoints:
     if separated is None:
         raise ArithmeticError("no form of the list separates the points of a fibre")
     radical, form = separated.minimal, separated.form
-    factors = [(factor, int(multiplicity)) for factor, multiplicity in separated.characteristic.factor()[1]]
+    factors = [
+        (factor, int(multiplicity)) for factor, multiplicity in separated.characteristic.factor()[1]
+    ]
     numerators = [separated.slope, *separated.coordinates]
     limit = root_bound(radical) if bound is None else fmpq(bound * sum(form) + 1)
     coordinates: dict[int, tuple[Modulus, list[Expression]]] = {}
@@ -71,7 +80,9 @@ def points(algebra: FibreAlgebra, bound: int | None = 1) -> FibrePoints:
             coordinates[number] = modulus, _coordinates(RealField(modulus, interval), numerators)
         modulus, residues = coordinates[number]
         field = RealField(modulus, interval)
-        found.append(RealPoint(field, tuple(FieldElement(field, r) for r in residues), multiplicity))
+        found.append(
+            RealPoint(field, tuple(FieldElement(field, r) for r in residues), multiplicity)
+        )
     return FibrePoints(tuple(found), form, int(radical.degree()), algebra.dimension)
 
 
@@ -80,8 +91,12 @@ def value_at(point: RealPoint, p: RationalPolynomial) -> FieldElement:
     return polynomial_at(point.field, point.unknowns, p)
 
 
-def real_values(algebra: FibreAlgebra, p: RationalPolynomial, bound: fmpq | None = None) -> tuple[RealRoot, ...]:
-    """The real numbers, in (-bound, bound), that p takes at complex points of the fibre, in increasing order."""
+def real_values(
+    algebra: FibreAlgebra, p: RationalPolynomial, bound: fmpq | None = None
+) -> tuple[RealRoot, ...]:
+    """The real numbers, in (-bound, bound), that p takes at complex points of the fibre, in
+    increasing order.
+    """
     factors = evaluate(algebra, p).charpoly().numer().factor()[1]
     radical = prod((factor for factor, _ in factors), start=fmpz_poly([1]))
     limit = root_bound(radical) if bound is None else bound
@@ -89,7 +104,9 @@ def real_values(algebra: FibreAlgebra, p: RationalPolynomial, bound: fmpq | None
 
 
 def _coordinates(field: RealField, numerators: Sequence[fmpq_poly]) -> list[Expression]:
-    """The unknowns at the points of one factor: quotients of the trace polynomials by the first of them."""
+    """The unknowns at the points of one factor: quotients of the trace polynomials by the first of
+    them.
+    """
     first, *others = map(field.element, numerators)
     inverse = first.inverse()  # it vanishes at no point of the fibre
     return [(other * inverse).expression for other in others]

@@ -1,7 +1,8 @@
-"""Polynomials and fractions over Z[x, y], x and y being the axes of a slice, and over Z[x, y, z] for a family of them.
+"""Polynomials and fractions over Z[x, y], x and y being the axes of a slice, and over Z[x, y, z]
+for a family of them.
 
-Guarantee: exact. Fractions are kept in lowest terms up to sign. What is said of Z[x, y] holds in either ring: a
-function answers in that of its arguments.
+Guarantee: exact. Fractions are kept in lowest terms up to sign. What is said of Z[x, y] holds in
+either ring: a function answers in that of its arguments.
 """
 
 from __future__ import annotations
@@ -11,7 +12,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import reduce
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpq_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
+from flint import (
+    Ordering,
+    fmpq,
+    fmpq_mpoly,
+    fmpq_mpoly_ctx,
+    fmpq_poly,
+    fmpz_mpoly,
+    fmpz_mpoly_ctx,
+    fmpz_poly,
+)
 
 from ptmcad.text.expressions import Expression
 from ptmcad.text.plane import PlanePolynomial
@@ -31,7 +41,9 @@ RationalPolynomial = fmpq_poly
 Monomial = tuple[int, ...]
 """Exponents of the unknowns."""
 UnknownPolynomial = dict[Monomial, fmpz_mpoly]
-"""A polynomial in the unknowns with coefficients in Z[x, y]: exponent vector -> nonzero coefficient."""
+"""A polynomial in the unknowns with coefficients in Z[x, y]: exponent vector -> nonzero
+coefficient.
+"""
 Ratio = tuple[fmpz_mpoly, fmpz_mpoly]
 """Numerator and nonzero denominator."""
 Ratios = Mapping[str, Ratio]
@@ -43,7 +55,9 @@ Values = Mapping[str, fmpq]
 def ratio(numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> Ratio:
     """numerator/denominator in lowest terms."""
     common = numerator.gcd(denominator)
-    return (numerator, denominator) if common.is_one() else (numerator / common, denominator / common)
+    return (
+        (numerator, denominator) if common.is_one() else (numerator / common, denominator / common)
+    )
 
 
 def add_ratios(left: Ratio, right: Ratio) -> Ratio:
@@ -67,7 +81,9 @@ def lcm(polynomials: Iterable[fmpz_mpoly]) -> fmpz_mpoly:
 
 
 def common_factor(polynomials: Iterable[fmpz_mpoly]) -> fmpz_mpoly:
-    """Greatest common divisor, integer content included; 0 when all are zero, in Z[x, y] when there are none."""
+    """Greatest common divisor, integer content included; 0 when all are zero, in Z[x, y] when there
+    are none.
+    """
     common: fmpz_mpoly | None = None
     for p in polynomials:
         common = p.gcd(constant_like(p, 0) if common is None else common)
@@ -77,15 +93,17 @@ def common_factor(polynomials: Iterable[fmpz_mpoly]) -> fmpz_mpoly:
 
 
 def irreducible_factors(*polynomials: Coefficient) -> list[Coefficient]:
-    """The different irreducible factors over Q that are not constant, primitive and without multiplicity."""
+    """The different irreducible factors over Q that are not constant, primitive and without
+    multiplicity.
+    """
     return list({str(f): f for p in polynomials for f, _ in factors_with_multiplicity(p)}.values())
 
 
 def factors_with_multiplicity(p: Coefficient) -> list[tuple[Coefficient, int]]:
     """The irreducible factors over Q that are not constant, primitive, each with its multiplicity.
 
-    The factorisation goes through polynomials over Q, because python-flint 0.9 sorts the factors over Z by coefficients
-    as machine integers and raises OverflowError for longer ones.
+    The factorisation goes through polynomials over Q, because python-flint 0.9 sorts the factors
+    over Z by coefficients as machine integers and raises OverflowError for longer ones.
     """
     ring = p.context()
     over_q = fmpq_mpoly_ctx.get(ring.names(), Ordering.degrevlex).from_dict(p.to_dict())
@@ -103,8 +121,14 @@ def multiplicity(p: Coefficient, factor: Coefficient) -> int:
 
 
 def _primitive(p: fmpq_mpoly, ring: fmpz_mpoly_ctx) -> fmpz_mpoly:
-    """The polynomial over Z without common factor, the coefficient of the highest exponents positive."""
-    integers = dict(zip((tuple(map(int, powers)) for powers in p.monoms()), integral(p.coeffs())[0], strict=True))
+    """The polynomial over Z without common factor, the coefficient of the highest exponents
+    positive.
+    """
+    integers = dict(
+        zip(
+            (tuple(map(int, powers)) for powers in p.monoms()), integral(p.coeffs())[0], strict=True
+        )
+    )
     content = math.gcd(*integers.values())
     if integers[max(integers)] < 0:
         content = -content
@@ -119,10 +143,14 @@ def integral(values: Iterable[fmpq]) -> tuple[list[int], int]:
 
 
 def from_terms(terms: Iterable[tuple[int, int, Fraction]]) -> tuple[fmpz_mpoly, int]:
-    """Terms with rational coefficients as (p, d), meaning p/d with p in Z[x, y] and an integer d > 0."""
+    """Terms with rational coefficients as (p, d), meaning p/d with p in Z[x, y] and an integer
+    d > 0.
+    """
     terms = tuple(terms)
     scale = math.lcm(*(c.denominator for _, _, c in terms))
-    return PLANE.from_dict({(i, j): c.numerator * (scale // c.denominator) for i, j, c in terms}), scale
+    return PLANE.from_dict(
+        {(i, j): c.numerator * (scale // c.denominator) for i, j, c in terms}
+    ), scale
 
 
 def from_expression(expression: Expression) -> Ratio:
@@ -133,7 +161,8 @@ def from_expression(expression: Expression) -> Ratio:
 
 
 def at_third(p: fmpz_mpoly, value: fmpq, degree: int | None = None) -> fmpz_mpoly:
-    """An element of Z[x, y, z] at a rational z, in Z[x, y]: the value times d^degree, d being the denominator of z.
+    """An element of Z[x, y, z] at a rational z, in Z[x, y]: the value times d^degree, d being the
+    denominator of z.
 
     Parameters
     ----------
@@ -160,7 +189,9 @@ def from_plane(p: PlanePolynomial) -> fmpz_mpoly:
 
 
 def coefficients_in(p: fmpz_mpoly, variable: int) -> tuple[fmpz_poly, ...]:
-    """Coefficients of p as a polynomial in one axis, constant first; each is a polynomial in the other axis."""
+    """Coefficients of p as a polynomial in one axis, constant first; each is a polynomial in the
+    other axis.
+    """
     rows: dict[int, dict[int, int]] = {}
     for monomial, c in p.terms():
         rows.setdefault(int(monomial[variable]), {})[int(monomial[1 - variable])] = int(c)
@@ -191,4 +222,7 @@ def point_values(parameters: Ratios, at: Sequence[fmpq]) -> dict[str, fmpq]:
     ZeroDivisionError
         Where a denominator vanishes there.
     """
-    return {name: evaluate(above, *at) / evaluate(below, *at) for name, (above, below) in parameters.items()}
+    return {
+        name: evaluate(above, *at) / evaluate(below, *at)
+        for name, (above, below) in parameters.items()
+    }

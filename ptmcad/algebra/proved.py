@@ -1,8 +1,9 @@
-"""The quotient at a point by a Groebner basis that msolve has found, with a proof that it is the equations' own.
+"""The quotient at a point by a Groebner basis that msolve has found, with a proof that it is the
+equations' own.
 
-Guarantee: exact, whatever msolve answers. The equations are zero in the quotient that its basis describes and the
-matrices of multiplication commute, so no solution was added; the basis lies in the ideal (`ptmcad.algebra.membership`),
-so none was lost.
+Guarantee: exact, whatever msolve answers. The equations are zero in the quotient that its basis
+describes and the matrices of multiplication commute, so no solution was added; the basis lies in
+the ideal (`ptmcad.algebra.membership`), so none was lost.
 """
 
 from __future__ import annotations
@@ -24,9 +25,13 @@ from ptmcad.errors import LimitReached
 
 
 def quotient_by_msolve(
-    equations: Sequence[RationalPolynomial], unknowns: int, seconds: float, largest: int | None = None
+    equations: Sequence[RationalPolynomial],
+    unknowns: int,
+    seconds: float,
+    largest: int | None = None,
 ) -> FibreAlgebra:
-    """The quotient by a basis that msolve has found, with proof that it is the quotient by the equations.
+    """The quotient by a basis that msolve has found, with proof that it is the quotient by the
+    equations.
 
     Parameters
     ----------
@@ -35,9 +40,9 @@ def quotient_by_msolve(
 
     Raises
     ------
-    MsolveError
-        When msolve gives no basis in time, or it is not proved to be one: then it may be right or wrong. Also where
-        the quotient by it is not finite: nothing that is claimed then is proved here.
+    MsolveError When msolve gives no basis in time, or it is not proved to be one: then it may be
+        right or wrong. Also where the quotient by it is not finite: nothing that is claimed then is
+        proved here.
     LimitReached
         When there are more solutions than wanted, as far as msolve is right.
     """
@@ -46,19 +51,25 @@ def quotient_by_msolve(
     try:
         basis = standard_monomials(tuple(rules), unknowns, bezout_bound(equations))
     except LimitReached:
-        raise MsolveError("msolve's basis has more solutions than Bezout's theorem allows") from None
+        raise MsolveError(
+            "msolve's basis has more solutions than Bezout's theorem allows"
+        ) from None
     if basis is None:
         raise MsolveError("msolve's basis is of infinitely many solutions, which is not proved")
     staircase = frozenset(basis)
     if any(m not in staircase for tail in rules.values() for m in tail):
         raise MsolveError("msolve's basis is not reduced")
     if largest is not None and len(basis) > largest:
-        raise LimitReached(f"there are {len(basis)} solutions with multiplicity, more than are counted at once")
+        raise LimitReached(
+            f"there are {len(basis)} solutions with multiplicity, more than are counted at once"
+        )
     algebra = fibre_of_rules(rules, basis, unknowns)
     pause = _clock(seconds)
     _check_quotient(equations, algebra, pause)
     if not lies_in_ideal(equations, rules, basis, pause):
-        raise MsolveError("msolve's basis is not proved to lie in the ideal of the equations: it may miss solutions")
+        raise MsolveError(
+            "msolve's basis is not proved to lie in the ideal of the equations: it may miss solutions"
+        )
     return algebra._replace(by_msolve=True)
 
 
@@ -99,7 +110,9 @@ def _rules(elements: Sequence[Terms]) -> Rules:
     return rules
 
 
-def _check_quotient(equations: Sequence[RationalPolynomial], algebra: FibreAlgebra, pause: Check) -> None:
+def _check_quotient(
+    equations: Sequence[RationalPolynomial], algebra: FibreAlgebra, pause: Check
+) -> None:
     """Refuse matrices that do not commute, or in which an equation is not zero.
 
     Raises
@@ -110,7 +123,9 @@ def _check_quotient(equations: Sequence[RationalPolynomial], algebra: FibreAlgeb
     for a, b in combinations(algebra.multiplication, 2):
         pause()
         if a * b != b * a:
-            raise MsolveError("msolve's basis is no Groebner basis: multiplications by two unknowns do not commute")
+            raise MsolveError(
+                "msolve's basis is no Groebner basis: multiplications by two unknowns do not commute"
+            )
     if not algebra.dimension:
         return
     one = fmpq_mat(algebra.dimension, 1, [fmpq(int(i == 0)) for i in range(algebra.dimension)])

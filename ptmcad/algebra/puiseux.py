@@ -1,16 +1,20 @@
-"""Branches of a plane curve beside an abscissa where they turn, meet or have a cusp: proved enclosures.
+"""Branches of a plane curve beside an abscissa where they turn, meet or have a cusp: proved
+enclosures.
 
-Guarantee: an enclosure that is returned contains the integral of the branch that was asked for; None means not proved.
+Guarantee: an enclosure that is returned contains the integral of the branch that was asked for;
+None means not proved.
 
-Beside a critical abscissa c a branch is a power series in s, u = c + X s^q (Puiseux). Newton's polygon shows q and the
-first exponents: again and again v is replaced by a constant plus s^e w, and the equation divided by the power of s that
-all its terms then have, until the branch is the only one through its point over s = 0. There w(s) is analytic, and its
-series proves a tube as anywhere else (`branches.tube_around`), now with the singular point at its middle instead of at
-its end. Taylor series in u would need panels that get narrower and narrower towards c.
+Beside a critical abscissa c a branch is a power series in s, u = c + X s^q (Puiseux). Newton's
+polygon shows q and the first exponents: again and again v is replaced by a constant plus s^e w, and
+the equation divided by the power of s that all its terms then have, until the branch is the only
+one through its point over s = 0. There w(s) is analytic, and its series proves a tube as anywhere
+else (`branches.tube_around`), now with the singular point at its middle instead of at its end.
+Taylor series in u would need panels that get narrower and narrower towards c.
 
-Nothing of this has to be known exactly. The point is known in balls, so what ought to vanish is known to be small only,
-and counts as error where it is divided by powers of s; that is why the panel ends a little beside c. Nor has the choice
-of q and e to be proved: a tube that contains the branch at one place contains it everywhere.
+Nothing of this has to be known exactly. The point is known in balls, so what ought to vanish is
+known to be small only, and counts as error where it is divided by powers of s; that is why the
+panel ends a little beside c. Nor has the choice of q and e to be proved: a tube that contains the
+branch at one place contains it everywhere.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -28,15 +32,21 @@ _STAGES = 4
 _MAX_POWER = 6
 """The greatest power of s for u - c; a cusp's is 2 or 3."""
 _NEWTON_RATIO = 8
-"""Of the lengths of Newton's steps, at least, from a start near a root of the multiplicity that is supposed."""
+"""Of the lengths of Newton's steps, at least, from a start near a root of the multiplicity that is
+supposed.
+"""
 _ROOM_BITS = 8
-"""A tube may be narrower by so many bits than is wanted, and roots are known better by so many to be found in it."""
+"""A tube may be narrower by so many bits than is wanted, and roots are known better by so many to
+be found in it.
+"""
 _ROOM = fmpq(65, 64)
 """What is counted from c is a little more than the width of a panel that begins beside c."""
 
 
 class Beside(NamedTuple):
-    """The interval from ``near`` to ``far`` on one side of the abscissa c, which is a number in the ball."""
+    """The interval from ``near`` to ``far`` on one side of the abscissa c, which is a number in the
+    ball.
+    """
 
     abscissa: arb
     near: fmpq
@@ -71,10 +81,14 @@ class _PuiseuxChart(NamedTuple):
 
 
 def puiseux_integral(
-    in_v: Sequence[fmpz_poly], beside: Beside, branch: Callable[[fmpq], RealRoot], order: int, allowed: fmpq
+    in_v: Sequence[fmpz_poly],
+    beside: Beside,
+    branch: Callable[[fmpq], RealRoot],
+    order: int,
+    allowed: fmpq,
 ) -> tuple[arb, fmpq] | None:
-    """An enclosure of the integral of a branch from ``near`` as far towards ``far`` as one series reaches, and how far
-    that is; None when none is proved.
+    """An enclosure of the integral of a branch from ``near`` as far towards ``far`` as one series
+    reaches, and how far that is; None when none is proved.
 
     Parameters
     ----------
@@ -101,7 +115,9 @@ def puiseux_integral(
     if tube.share < 1:
         reach = beside.width * tube.share**q
         start = beside.abscissa.mid().fmpq()
-        cut = simplest_between(*sorted((start + reach * fmpq(15, 16), start + reach * fmpq(63, 64))))
+        cut = simplest_between(
+            *sorted((start + reach * fmpq(15, 16), start + reach * fmpq(63, 64)))
+        )
     begin, end = beside.root(beside.near, q), beside.root(cut, q)
     if not (end <= tube.share and _is_branch(chart, tube, end, branch(cut))):
         return None
@@ -125,7 +141,9 @@ def _straightened(
         return None
     start, branches = origin
     rows = local_coefficients(in_v, beside.abscissa, arb(beside.width), start)
-    chart: _PuiseuxChart | None = _PuiseuxChart(1, arb_poly([start]), 0, rows, 0, branches, height - start)
+    chart: _PuiseuxChart | None = _PuiseuxChart(
+        1, arb_poly([start]), 0, rows, 0, branches, height - start
+    )
     for _ in range(_STAGES):
         if chart is None or chart.branches == 1:
             break
@@ -154,12 +172,16 @@ def _blown_up(chart: _PuiseuxChart, s: arb) -> _PuiseuxChart | None:
         lowered = (chart.lowered + first[upper]) * q + upper * e
         exponent = chart.exponent * q + e
         along = _spread(chart.along, q) + arb_poly([value]).left_shift(exponent)
-        return _PuiseuxChart(chart.power * q, along, exponent, shifted(rows, value), lowered, branches, there - value)
+        return _PuiseuxChart(
+            chart.power * q, along, exponent, shifted(rows, value), lowered, branches, there - value
+        )
     return None
 
 
 def _support(chart: _PuiseuxChart) -> dict[int, int]:
-    """For each power of w that matters and has one, the first power of s that its coefficient is known to have."""
+    """For each power of w that matters and has one, the first power of s that its coefficient is
+    known to have.
+    """
     first = {}
     for j, row in enumerate(chart.rows[: chart.branches + 1]):
         for i, c in enumerate(row.coeffs()[chart.lowered :]):
@@ -170,16 +192,23 @@ def _support(chart: _PuiseuxChart) -> dict[int, int]:
 
 
 def _edges(first: dict[int, int]) -> Iterator[tuple[int, int]]:
-    """The edges of Newton's polygon over these points, as pairs of powers of w, the least steep one first."""
+    """The edges of Newton's polygon over these points, as pairs of powers of w, the least steep one
+    first.
+    """
     upper = max(first, default=0)
     while upper > min(first, default=0):
-        lower = min((j for j in first if j < upper), key=lambda j: (fmpq(first[j] - first[upper], upper - j), j))
+        lower = min(
+            (j for j in first if j < upper),
+            key=lambda j: (fmpq(first[j] - first[upper], upper - j), j),
+        )
         yield upper, lower
         upper = lower
 
 
 def _root_near(p: arb_poly, start: arb) -> tuple[arb, int] | None:
-    """A root, as a ball, to which Newton's iteration leads, and its multiplicity: both as they seem to be."""
+    """A root, as a ball, to which Newton's iteration leads, and its multiplicity: both as they seem
+    to be.
+    """
     derivatives = [p]
     while derivatives[-1].degree() > 0:
         derivatives.append(derivatives[-1].derivative())
@@ -188,8 +217,11 @@ def _root_near(p: arb_poly, start: arb) -> tuple[arb, int] | None:
         x, previous, fine = start.mid(), None, abs(start).upper() / 2 ** (ctx.prec // 2)
         while previous is None or previous > fine:
             step = (value(x) / slope(x)).mid()
-            # near a simple root the iteration converges quadratically, near a multiple one by a constant factor
-            if not step.is_finite() or not (previous is None or abs(step) * _NEWTON_RATIO < previous):
+            # near a simple root the iteration converges quadratically, near a multiple one by a
+            # constant factor
+            if not step.is_finite() or not (
+                previous is None or abs(step) * _NEWTON_RATIO < previous
+            ):
                 break
             x, previous = (x - step).mid(), abs(step)
         else:
@@ -201,12 +233,16 @@ def _root_near(p: arb_poly, start: arb) -> tuple[arb, int] | None:
 
 
 def _regular(chart: _PuiseuxChart, beside: Beside) -> list[arb_poly]:
-    """The equation's coefficients as polynomials in s; what has negative powers of s is small, and a ball."""
+    """The equation's coefficients as polynomials in s; what has negative powers of s is small, and
+    a ball.
+    """
     least = beside.root(beside.near, chart.power).lower()
     regular = []
     for row in chart.rows:
         noise = arb(0)
-        for k in range(chart.lowered):  # so the k-th coefficient is divided as often as the power of s says
+        for k in range(
+            chart.lowered
+        ):  # so the k-th coefficient is divided as often as the power of s says
             noise = (noise + abs(row[k])) / least
         if not noise.is_finite():
             raise TooFewBits

@@ -1,9 +1,12 @@
-"""The quotient algebra Q(x, y)[unknowns]/I of a zero-dimensional ideal, by its multiplication table.
+"""The quotient algebra Q(x, y)[unknowns]/I of a zero-dimensional ideal, by its multiplication
+table.
 
-Guarantee: exact. The norm of an element h is the product of its values at the solutions, with multiplicity; it is the
-determinant of multiplication by h. The Hermite form is (b_i, b_j) -> trace(h b_i b_j) on the monomial basis.
+Guarantee: exact. The norm of an element h is the product of its values at the solutions, with
+multiplicity; it is the determinant of multiplication by h. The Hermite form is (b_i,
+b_j) -> trace(h b_i b_j) on the monomial basis.
 
-References: Lazard & Rouillier, J. Symb. Comp. 42 (2007); Le & Safey El Din, arXiv 2011.14136 (Hermite matrices).
+References: Lazard & Rouillier, J. Symb. Comp. 42 (2007); Le & Safey El Din, arXiv 2011.14136
+(Hermite matrices).
 """
 
 from __future__ import annotations
@@ -31,7 +34,9 @@ from ptmcad.algebra.polynomials import (
 from ptmcad.errors import LimitReached
 
 LINE = 1009
-"""The second axis is so much more than the first one on a line on which poles are looked for; any number does."""
+"""The second axis is so much more than the first one on a line on which poles are looked for; any
+number does.
+"""
 Vector = tuple[tuple[Coefficient, ...], Coefficient]
 """Coordinates on the monomial basis: numerators and one common denominator."""
 
@@ -103,7 +108,8 @@ def quotient_algebra(groebner: GroebnerBasis) -> QuotientAlgebra | None:
     one, zero = constant_like(some, 1), constant_like(some, 0)
     position = {m: i for i, m in enumerate(basis)}
     table: dict[Monomial, Vector] = {
-        m: (tuple(one if i == k else zero for i in range(len(basis))), one) for m, k in position.items()
+        m: (tuple(one if i == k else zero for i in range(len(basis))), one)
+        for m, k in position.items()
     }
     rules = dict(zip(groebner.leading, groebner.elements, strict=True))
     algebra = QuotientAlgebra(basis, table, zero, one)
@@ -129,7 +135,9 @@ def _normalised(row: Sequence[Coefficient], denominator: Coefficient) -> Vector:
     return tuple(c / common for c in row), denominator / common
 
 
-def _sum(algebra: QuotientAlgebra, terms: Sequence[tuple[Coefficient, Coefficient, Vector]]) -> Vector:
+def _sum(
+    algebra: QuotientAlgebra, terms: Sequence[tuple[Coefficient, Coefficient, Vector]]
+) -> Vector:
     """The sum of (a/b) v over (a, b, v)."""
     scale = lcm((algebra.one, *(b * v[1] for _, b, v in terms)))
     total = [algebra.zero] * algebra.dimension
@@ -185,9 +193,11 @@ def multiples(algebra: QuotientAlgebra, p: UnknownPolynomial) -> tuple[Vector, .
 
 
 def bounded_away_from_zero(rows: Sequence[Vector], product: Ratio, factor: Coefficient) -> bool:
-    """Whether the values of p at the solutions are proved to stay away from 0 near almost all points of a curve.
+    """Whether the values of p at the solutions are proved to stay away from 0 near almost all
+    points of a curve.
 
-    Also where solutions leave every bounded set. True is a proof; False means that the test did not decide.
+    Also where solutions leave every bounded set. True is a proof; False means that the test did not
+    decide.
 
     Parameters
     ----------
@@ -195,17 +205,20 @@ def bounded_away_from_zero(rows: Sequence[Vector], product: Ratio, factor: Coeff
     product : its `norm`, not zero.
     factor : the curve's irreducible polynomial.
 
-    Why: a coefficient of the characteristic polynomial is a sum of products of entries, one in each of some rows and
-    columns of the same numbers. So its pole along the curve has at most the order of such a product of entries, the
-    greatest of which is an assignment problem. When the constant one, the norm, has a pole of that order, the
-    polynomial times a common denominator keeps a constant coefficient that does not vanish on the curve, and its roots
-    stay away from 0 wherever that coefficient does.
+    Why: a coefficient of the characteristic polynomial is a sum of products of entries, one in each
+    of some rows and columns of the same numbers. So its pole along the curve has at most the order
+    of such a product of entries, the greatest of which is an assignment problem. When the constant
+    one, the norm, has a pole of that order, the polynomial times a common denominator keeps a
+    constant coefficient that does not vanish on the curve, and its roots stay away from 0 wherever
+    that coefficient does.
     """
     return _least_order(rows, factor) == _order(product[0], product[1], factor)
 
 
 def _least_order(rows: Sequence[Vector], factor: Coefficient) -> int | None:
-    """A bound from below for the order along a curve of each coefficient of a matrix's characteristic polynomial."""
+    """A bound from below for the order along a curve of each coefficient of a matrix's
+    characteristic polynomial.
+    """
     orders = [[_order(c, denominator, factor) for c in row] for row, denominator in rows]
     for k, row in enumerate(orders):
         row[k] = min(row[k] or 0, 0)  # a row may be left out with its column
@@ -213,8 +226,14 @@ def _least_order(rows: Sequence[Vector], factor: Coefficient) -> int | None:
 
 
 def _order(numerator: Coefficient, denominator: Coefficient, factor: Coefficient) -> int | None:
-    """The order of the zero of a fraction along a curve, negative for a pole; None for the fraction 0."""
-    return None if numerator.is_zero() else multiplicity(numerator, factor) - multiplicity(denominator, factor)
+    """The order of the zero of a fraction along a curve, negative for a pole; None for the fraction
+    0.
+    """
+    return (
+        None
+        if numerator.is_zero()
+        else multiplicity(numerator, factor) - multiplicity(denominator, factor)
+    )
 
 
 def multiplication_denominator(algebra: QuotientAlgebra) -> Coefficient:
@@ -228,16 +247,18 @@ def poles(
     coordinates: Sequence[int],
     remarks: Sequence[Coefficient] = (),
 ) -> list[Coefficient]:
-    """Those of the irreducible polynomials on which the characteristic polynomial of some coordinate has a pole.
+    """Those of the irreducible polynomials on which the characteristic polynomial of some
+    coordinate has a pole.
 
-    Near these points of the plane the coordinate is unbounded on the solutions. Often the entries' orders tell that
-    there is none, and a line of the plane that there is one: what f^n divides it divides on the line.
+    Near these points of the plane the coordinate is unbounded on the solutions. Often the entries'
+    orders tell that there is none, and a line of the plane that there is one: what f^n divides it
+    divides on the line.
 
     Parameters
     ----------
     suspects : each is found if and only if there is a pole.
-    remarks : of curves that no count depends on: found only if there is a pole and the line shows it, as it does but
-        for a coincidence of zeros.
+    remarks : of curves that no count depends on: found only if there is a pole and the line shows
+        it, as it does but for a coincidence of zeros.
     """
     found: list[Coefficient] = []
     x, y = algebra.one.context().gens()
@@ -247,9 +268,13 @@ def poles(
         for line, asked in (((x, x + LINE), (*suspects, *remarks)), ((x, y), suspects)):
             on_line = [scale.compose(*line) for scale in scales]
             left = [f for f in asked if f not in found and (_least_order(vectors, f) or 0) < 0]
-            if not left or any(scale.is_zero() for scale in on_line):  # so no curve of a pole is this line
+            if not left or any(
+                scale.is_zero() for scale in on_line
+            ):  # so no curve of a pole is this line
                 continue
-            coefficients = characteristic([[c.compose(*line) for c in row] for row in rows], on_line)
+            coefficients = characteristic(
+                [[c.compose(*line) for c in row] for row in rows], on_line
+            )
             for f in left:
                 power = f ** sum(multiplicity(scale, f) for scale in scales)
                 _, divisor = power.compose(*line).primitive()

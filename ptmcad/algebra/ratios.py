@@ -1,4 +1,5 @@
-"""A rational function of one variable from its values modulo a prime: its degrees, and what its numerator looks like.
+"""A rational function of one variable from its values modulo a prime: its degrees, and what its
+numerator looks like.
 
 Not guaranteed: that it is the function; that is so where the values left over are no accident.
 
@@ -41,7 +42,8 @@ class Numerator(NamedTuple):
 
 
 def numerator(points: Points, prime: int, known: Sequence[LinePolynomial] = ()) -> Numerator | None:
-    """Of the fraction of least degree through points (x, y); None where nearly all of them are needed for it.
+    """Of the fraction of least degree through points (x, y); None where nearly all of them are
+    needed for it.
 
     Parameters
     ----------
@@ -59,10 +61,15 @@ def numerator(points: Points, prime: int, known: Sequence[LinePolynomial] = ()) 
     return Numerator(exponents[-1], zero, gcd(*exponents) or 1)
 
 
-def restricted(p: Coefficient, line: tuple[tuple[int, int], tuple[int, int]], prime: int) -> LinePolynomial:
+def restricted(
+    p: Coefficient, line: tuple[tuple[int, int], tuple[int, int]], prime: int
+) -> LinePolynomial:
     """p on a line, of which two points are given: those of the parameters 0 and 1."""
     x, y = (nmod_poly([at, after - at], prime) for at, after in zip(*line, strict=True))
-    return sum((x ** int(i) * y ** int(j) * (int(c) % prime) for (i, j), c in p.terms()), nmod_poly([0], prime))
+    return sum(
+        (x ** int(i) * y ** int(j) * (int(c) % prime) for (i, j), c in p.terms()),
+        nmod_poly([0], prime),
+    )
 
 
 def weighted(numbers: Sequence[int], prime: int) -> int:

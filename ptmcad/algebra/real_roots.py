@@ -1,7 +1,8 @@
 """Real roots of integer polynomials: isolated, refined, compared, with rational points between.
 
-Guarantee: exact. Isolation (`isolation`) finds every root in the open interval; isolating intervals have rational ends,
-are disjoint and contain one root each, an interval of length zero being the root itself.
+Guarantee: exact. Isolation (`isolation`) finds every root in the open interval; isolating intervals
+have rational ends, are disjoint and contain one root each, an interval of length zero being the
+root itself.
 """
 
 from __future__ import annotations
@@ -23,7 +24,9 @@ Window = tuple[Interval, Interval]
 
 
 class RealRoot(NamedTuple):
-    """The only root of the squarefree ``polynomial`` in the open interval (low, high), or low itself if low == high."""
+    """The only root of the squarefree ``polynomial`` in the open interval (low, high), or low
+    itself if low == high.
+    """
 
     polynomial: fmpz_poly
     low: fmpq
@@ -127,7 +130,8 @@ def halve(root: RealRoot) -> RealRoot:
 def refine(root: RealRoot, width: fmpq) -> RealRoot:
     """The same root in an interval shorter than ``width``, by quadratic interval refinement.
 
-    Reference: Abbott, Quadratic interval refinement for real roots, ACM Commun. Comput. Algebra 48 (2014).
+    Reference: Abbott, Quadratic interval refinement for real roots, ACM Commun. Comput. Algebra 48
+    (2014).
     """
     p, low, high = root.polynomial, root.low, root.high
     if low == high or high - low < width:
@@ -145,7 +149,9 @@ def refine(root: RealRoot, width: fmpq) -> RealRoot:
             return RealRoot(p, left, left)
         right = left + step if sign(value) == sign(at_low) else left - step
         if low <= right <= high:
-            other = at_low if right == low else at_high if right == high else value_at(right, pieces)
+            other = (
+                at_low if right == low else at_high if right == high else value_at(right, pieces)
+            )
             if other == 0:
                 return RealRoot(p, right, right)
             if sign(other) != sign(value):
@@ -168,9 +174,11 @@ def refine(root: RealRoot, width: fmpq) -> RealRoot:
 
 
 def _values(p: fmpz_poly, low: fmpq, high: fmpq, width: fmpq) -> Callable[[fmpq, int], fmpq]:
-    """p at points of [low, high], for so many pieces: exact, or with the right sign and short if p is long.
+    """p at points of [low, high], for so many pieces: exact, or with the right sign and short if p
+    is long.
 
-    A short value comes from a ball that does not contain zero and is known more precisely than one piece of the secant.
+    A short value comes from a ball that does not contain zero and is known more precisely than one
+    piece of the secant.
     """
 
     def exact(at: fmpq, pieces: int) -> fmpq:
@@ -212,7 +220,11 @@ def is_root_of(divisor: fmpz_poly, root: RealRoot) -> bool:
     """Whether a divisor of the root's polynomial has the root too."""
     if divisor.degree() < 1:
         return False
-    return not sign_at(divisor, root.low) if root.is_rational else has_root_between(divisor, root.low, root.high)
+    return (
+        not sign_at(divisor, root.low)
+        if root.is_rational
+        else has_root_between(divisor, root.low, root.high)
+    )
 
 
 def vanishes_at(p: fmpz_poly, root: RealRoot) -> bool:
@@ -221,7 +233,9 @@ def vanishes_at(p: fmpz_poly, root: RealRoot) -> bool:
 
 
 def disjoint(roots: Sequence[RealRoot]) -> tuple[RealRoot, ...]:
-    """Different real numbers in increasing order, with closed isolating intervals that are pairwise disjoint."""
+    """Different real numbers in increasing order, with closed isolating intervals that are pairwise
+    disjoint.
+    """
     ordered = sorted(roots, key=lambda r: (r.low, r.high))
     changed = True
     while changed:
@@ -240,7 +254,9 @@ def disjoint(roots: Sequence[RealRoot]) -> tuple[RealRoot, ...]:
 
 
 def inside(roots: Sequence[RealRoot], interval: Interval) -> tuple[RealRoot, ...]:
-    """The same roots, in order, all inside an open interval, with closed isolating intervals inside it too."""
+    """The same roots, in order, all inside an open interval, with closed isolating intervals inside
+    it too.
+    """
     inner = list(roots)
     while inner and inner[0].low <= interval[0]:
         inner[0] = halve(inner[0])
@@ -250,6 +266,12 @@ def inside(roots: Sequence[RealRoot], interval: Interval) -> tuple[RealRoot, ...
 
 
 def gaps(isolated: Sequence[Any], window: tuple[Any, Any]) -> list[tuple[Any, Any]]:
-    """The parts of a window between the intervals of numbers in it, which are disjoint and in increasing order."""
-    ends = [window[0], *(end for number in isolated for end in (number.low, number.high)), window[1]]
+    """The parts of a window between the intervals of numbers in it, which are disjoint and in
+    increasing order.
+    """
+    ends = [
+        window[0],
+        *(end for number in isolated for end in (number.low, number.high)),
+        window[1],
+    ]
     return list(zip(ends[::2], ends[1::2], strict=True))

@@ -1,8 +1,10 @@
-"""Real roots of a polynomial in v that a reflection v to 2 m - v maps to itself, from those of one of half the degree.
+"""Real roots of a polynomial in v that a reflection v to 2 m - v maps to itself, from those of one
+of half the degree.
 
-Guarantee: as that of `real_roots.isolate`. With w = d (v - m), the polynomial is a multiple of q(w^2), so its roots are
-m +- sqrt(W)/d for the roots W >= 0 of q. Isolating intervals of these have rational square roots beyond their ends that
-are nearer than the next one: between them lies one root, and nothing else.
+Guarantee: as that of `real_roots.isolate`. With w = d (v - m), the polynomial is a multiple of
+q(w^2), so its roots are m +- sqrt(W)/d for the roots W >= 0 of q. Isolating intervals of these have
+rational square roots beyond their ends that are nearer than the next one: between them lies one
+root, and nothing else.
 """
 
 from __future__ import annotations
@@ -43,11 +45,14 @@ def isolate_reflected(
     distances = _square_roots(disjoint(found))
     above = [(middle + near / d, middle + far / d) for near, far in distances]
     below = [(middle - far / d, middle - near / d) for near, far in reversed(distances)]
-    return tuple(root for ends in (*below, *above) if (root := _within(p, *ends, low, high)) is not None)
+    return tuple(
+        root for ends in (*below, *above) if (root := _within(p, *ends, low, high)) is not None
+    )
 
 
 def _square_roots(roots: Sequence[RealRoot]) -> list[tuple[fmpq, fmpq]]:
-    """Intervals around the positive square roots of distinct positive numbers, disjoint, and the roots' own only.
+    """Intervals around the positive square roots of distinct positive numbers, disjoint, and the
+    roots' own only.
 
     The roots' intervals are pairwise disjoint, ends included.
     """
@@ -62,7 +67,9 @@ def _square_roots(roots: Sequence[RealRoot]) -> list[tuple[fmpq, fmpq]]:
 
 
 def _root_below(square: fmpq, bits: int) -> fmpq:
-    """The square root of a number, not negative, rounded down to so many bits behind the point; exact if it can be."""
+    """The square root of a number, not negative, rounded down to so many bits behind the point;
+    exact if it can be.
+    """
     p, q = int(square.p), int(square.q)
     if isqrt(p) ** 2 == p and isqrt(q) ** 2 == q:
         return fmpq(isqrt(p), isqrt(q))
@@ -75,7 +82,9 @@ def _root_above(square: fmpq, bits: int) -> fmpq:
 
 
 def _within(p: fmpz_poly, left: fmpq, right: fmpq, low: fmpq, high: fmpq) -> RealRoot | None:
-    """The only root of p in [left, right], if it lies in (low, high); the ends are none unless they are the same."""
+    """The only root of p in [left, right], if it lies in (low, high); the ends are none unless they
+    are the same.
+    """
     if right <= low or left >= high:
         return None
     if left == right:

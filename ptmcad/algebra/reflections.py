@@ -1,10 +1,13 @@
-"""Plane curves that a reflection along the fibres maps to themselves: (u, v) to (u, 2 m(u) - v), m linear.
+"""Plane curves that a reflection along the fibres maps to themselves: (u, v) to (u, 2 m(u) - v), m
+linear.
 
-Guarantee: exact. An axis that is found is one, proved by an identity of polynomials; no other line is one.
+Guarantee: exact. An axis that is found is one, proved by an identity of polynomials; no other line
+is one.
 
-If p = c_n v^n + c_(n-1) v^(n-1) + ... is the same after the reflection, with n even, then so is its set of n roots over
-each u, whose mean is m = -c_(n-1) / (n c_n). So there is one candidate, and it is an axis if p(u, m + w) has only even
-powers of w. Four oscillators have such a curve: the frame of one of them hides that it may be exchanged with another.
+If p = c_n v^n + c_(n-1) v^(n-1) + ... is the same after the reflection, with n even, then so is its
+set of n roots over each u, whose mean is m = -c_(n-1) / (n c_n). So there is one candidate, and it
+is an axis if p(u, m + w) has only even powers of w. Four oscillators have such a curve: the frame
+of one of them hides that it may be exchanged with another.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """A polynomial in two variables on the lines on which one of them is a rational number.
 
-Guarantee: exact. Hundreds of lines are asked for, so the coefficients are a matrix, and one line is one product with
-the powers of its number; three to five times faster than evaluating each coefficient, which reduces fractions.
+Guarantee: exact. Hundreds of lines are asked for, so the coefficients are a matrix, and one line is
+one product with the powers of its number; three to five times faster than evaluating each
+coefficient, which reduces fractions.
 """
 
 from __future__ import annotations

@@ -1,20 +1,23 @@
-"""Discriminants and resultants in Z[u] of polynomials in Z[u][v], by evaluation at integers and interpolation.
+"""Discriminants and resultants in Z[u] of polynomials in Z[u][v], by evaluation at integers and
+interpolation.
 
-Guarantee: exact. The number of evaluation points comes from a proved bound for the degree, see `orders`: nothing is
-left to chance. Long values are taken modulo primes, as many as a proved bound for the coefficients asks for; no prime
-is a bad one, as the formal discriminant commutes with every map of rings. Of a long polynomial that a reflection
-v to 2 m(u) - v maps to itself, the discriminant in (v - m)^2 is computed, of half the degree; where m = 0 that is left
-to the caller.
+Guarantee: exact. The number of evaluation points comes from a proved bound for the degree, see
+`orders`: nothing is left to chance. Long values are taken modulo primes, as many as a proved bound
+for the coefficients asks for; no prime is a bad one, as the formal discriminant commutes with every
+map of rings. Of a long polynomial that a reflection v to 2 m(u) - v maps to itself, the
+discriminant in (v - m)^2 is computed, of half the degree; where m = 0 that is left to the caller.
 
-The bound: a coefficient in Z[u] is at most the largest value on the circle |u| = 1, where |c(u)| is at most the sum
+The bound: a coefficient in Z[u] is at most the largest value on the circle |u| = 1, where |c(u)| is
+at most the sum
 |c|_1 of c's absolute coefficients. There Hadamard's inequality for Sylvester's matrix, with t v in place of v, says
 
     |res_v(p, q)| <= t^(-n m) (sum_i |p_i|_1^2 t^(2i))^(m/2) (sum_j |q_j|_1^2 t^(2j))^(n/2)    for every t > 0,
 
 and n^(n-2) disc_v(p) is up to sign the resultant of n p - v p' and p', both of degree n - 1.
 
-References: Collins, The calculation of multivariate polynomial resultants, J. ACM 18 (1971); Goldstein & Graham, SIAM
-Review 16 (1974); von zur Gathen & Gerhard, Modern Computer Algebra, sections 5.5 and 6.8.
+References: Collins, The calculation of multivariate polynomial resultants, J. ACM 18 (1971);
+Goldstein & Graham, SIAM Review 16 (1974); von zur Gathen & Gerhard, Modern Computer Algebra,
+sections 5.5 and 6.8.
 """
 
 from __future__ import annotations
@@ -37,7 +40,9 @@ Check = Callable[[], None]
 LONG = 100_000
 """Points times the product of the degrees in v; less takes milliseconds."""
 CALL = 150
-"""What one value modulo a prime costs besides Euclid's algorithm, in its steps (products of residues)."""
+"""What one value modulo a prime costs besides Euclid's algorithm, in its steps (products of
+residues).
+"""
 
 
 def nothing() -> None:
@@ -71,7 +76,10 @@ def _discriminant(p: Coefficients, bound: int, check: Check) -> fmpz_poly:
 
     def bits() -> int:  # of n^(n-2) times the discriminant
         norms = _norms(p)
-        return _bits([(n - i) * c for i, c in enumerate(norms[:-1])], [i * c for i, c in enumerate(norms)][1:])
+        return _bits(
+            [(n - i) * c for i, c in enumerate(norms[:-1])],
+            [i * c for i, c in enumerate(norms)][1:],
+        )
 
     def formal(value: Any) -> Any:
         if value.degree() == n:
@@ -85,11 +93,13 @@ def _discriminant(p: Coefficients, bound: int, check: Check) -> fmpz_poly:
 
 
 def _by_reflection(p: Coefficients, axis: fmpq_poly, check: Check) -> fmpz_poly:
-    """The discriminant of a polynomial of degree n = 2 k, which a reflection of v maps to itself, from that of q.
+    """The discriminant of a polynomial of degree n = 2 k, which a reflection of v maps to itself,
+    from that of q.
 
-    With p(v) d^n = q(W), W = w^2, w = d (v - m), the leading coefficients are the same, and the squares of the roots'
-    differences are d^2 times as large: disc_w q(w^2) = d^(n (n - 1)) disc p. And disc_w q(w^2) is
-    (-4)^k q_0 q_k disc(q)^2, as the roots come in pairs +-w with w^2 = W, whose product is (-1)^k q_0 / q_k.
+    With p(v) d^n = q(W), W = w^2, w = d (v - m), the leading coefficients are the same, and the
+    squares of the roots' differences are d^2 times as large: disc_w q(w^2) = d^(n (n - 1)) disc p.
+    And disc_w q(w^2) is (-4)^k q_0 q_k disc(q)^2, as the roots come in pairs +-w with w^2 = W,
+    whose product is (-1)^k q_0 / q_k.
     """
     n, q = len(p) - 1, squared(p, axis)
     full: fmpz_poly = (-4) ** (n // 2) * q[0] * q[-1] * discriminant(q, check) ** 2
@@ -108,7 +118,9 @@ def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_
         value = left.resultant(right)
         # the formal resultant of degrees n, m when one leading coefficient vanishes there
         if left.degree() < n:
-            value *= right.leading_coefficient() ** (n - left.degree()) * (-1) ** (m * (n - left.degree()))
+            value *= right.leading_coefficient() ** (n - left.degree()) * (-1) ** (
+                m * (n - left.degree())
+            )
         elif right.degree() < m:
             value *= left.leading_coefficient() ** (m - right.degree())
         return value
@@ -124,20 +136,24 @@ def _norms(p: Coefficients) -> list[int]:
 def _bits(p: Sequence[int], q: Sequence[int]) -> int:
     """A number b with 2^b larger than Hadamard's bound, from the coefficients' norms.
 
-    Of p and q with their coefficients reversed the resultant is the same up to sign; they stand for t < 1.
+    Of p and q with their coefficients reversed the resultant is the same up to sign; they stand for
+    t < 1.
     """
     return min(_least_bits(p, q), _least_bits(p[::-1], q[::-1]))
 
 
 def _least_bits(p: Sequence[int], q: Sequence[int]) -> int:
-    """For the best t among powers of 2: as long as the next one is better, for the logarithm is convex in log t.
+    """For the best t among powers of 2: as long as the next one is better, for the logarithm is
+    convex in log t.
 
     One is the best, unless p and q have no terms of degree n and m, and the resultant is zero.
     """
     n, m = len(p) - 1, len(q) - 1
 
     def bits(k: int) -> int:
-        left, right = (sum(c * c << 2 * k * i for i, c in enumerate(r)).bit_length() for r in (p, q))
+        left, right = (
+            sum(c * c << 2 * k * i for i, c in enumerate(r)).bit_length() for r in (p, q)
+        )
         return (m * left + n * right + 1) // 2 - k * n * m
 
     return next(least for k in count() if (least := bits(k)) <= bits(k + 1))
@@ -154,7 +170,8 @@ def _interpolated(
 
     Parameters
     ----------
-    formal : of values that are `fmpz_poly` or, modulo a prime, `nmod_poly`: an integer or a residue.
+    formal : of values that are `fmpz_poly` or, modulo a prime, `nmod_poly`: an integer or a
+        residue.
     effort : a bound for its degree, and the steps that a value takes modulo a prime.
     bits : gives a number b with 2^b larger than its coefficients.
     """
@@ -181,32 +198,45 @@ def _interpolated(
 
 
 def _primes_needed(degree: int, steps: int, bits: int) -> int:
-    """How many determine coefficients below 2^bits in absolute value; 0 where integers are estimated to be faster."""
-    # a value at u is longer than the coefficients by the length of u^degree, and FLINT takes it modulo primes, too
+    """How many determine coefficients below 2^bits in absolute value; 0 where integers are
+    estimated to be faster.
+    """
+    # a value at u is longer than the coefficients by the length of u^degree, and FLINT takes it
+    # modulo primes, too
     in_integers = (bits + degree * math.log2(degree / 2 + 2)) * steps
     return (bits + 1) // (PRIME_BITS - 1) + 1 if bits * (steps + CALL) < in_integers else 0
 
 
 def balanced(polynomials: Sequence[Coefficients]) -> tuple[list[tuple[fmpz_poly, ...]], int]:
-    """The polynomials with u and v in other units, in which their coefficients are short, and the unit of u.
+    """The polynomials with u and v in other units, in which their coefficients are short, and the
+    unit of u.
 
-    Numbers of many decimals put high powers of ten into the coefficients: where m^j divides every coefficient of u^j,
-    the substitution of u / m for u is one in integers. Discriminants and resultants with respect to v then have the
-    roots m times those before.
+    Numbers of many decimals put high powers of ten into the coefficients: where m^j divides every
+    coefficient of u^j, the substitution of u / m for u is one in integers. Discriminants and
+    resultants with respect to v then have the roots m times those before.
     """
     powers_of_v = range(max(map(len, polynomials)))
-    unit = _unit([math.gcd(*(int(c.content()) for p in polynomials for c in p[i : i + 1])) for i in powers_of_v])
+    unit = _unit(
+        [
+            math.gcd(*(int(c.content()) for p in polynomials for c in p[i : i + 1]))
+            for i in powers_of_v
+        ]
+    )
     rows = [[c // unit**i for i, c in enumerate(p)] for p in polynomials]
     length = max(len(c) for p in rows for c in p)
     unit = _unit([math.gcd(*(int(c[j]) for p in rows for c in p)) for j in range(length)])
     if unit == 1:
         return [tuple(p) for p in rows], 1
     powers = [unit**j for j in range(length)]
-    return [tuple(fmpz_poly([c[j] // powers[j] for j in range(len(c))]) for c in p) for p in rows], unit
+    return [
+        tuple(fmpz_poly([c[j] // powers[j] for j in range(len(c))]) for c in p) for p in rows
+    ], unit
 
 
 def _unit(common: Sequence[int]) -> int:
-    """A number whose j-th power divides the j-th of these (0 is divided by all), as large as is easily found."""
+    """A number whose j-th power divides the j-th of these (0 is divided by all), as large as is
+    easily found.
+    """
     unit = 0
     for j, g in enumerate(common):
         if j == 0 or g == 0:
@@ -214,17 +244,20 @@ def _unit(common: Sequence[int]) -> int:
         unit = unit or g
         while unit > 1 and g % unit**j:
             unit = math.gcd(unit, g // math.gcd(g, unit ** (j - 1)))
-    return max(unit, 1)  # made smaller for a later one, it is a divisor of what did for the earlier ones
+    return max(
+        unit, 1
+    )  # made smaller for a later one, it is a divisor of what did for the earlier ones
 
 
 def interpolate(
     at: Callable[[int], fmpz], degree: int, check: Check = nothing, modulus: fmpz | None = None
 ) -> fmpz_poly:
-    """The integer polynomial of degree at most ``degree`` with the given values at integers (Newton's form).
+    """The integer polynomial of degree at most ``degree`` with the given values at integers
+    (Newton's form).
 
-    Divided differences of an integer polynomial at integers are integers, so every division is exact. Where values are
-    known up to multiples of a modulus, prime to the factorial of the degree, the coefficients are the ones of least
-    absolute value.
+    Divided differences of an integer polynomial at integers are integers, so every division is
+    exact. Where values are known up to multiples of a modulus, prime to the factorial of the
+    degree, the coefficients are the ones of least absolute value.
     """
     if degree < 0:
         return fmpz_poly([])
@@ -237,21 +270,25 @@ def interpolate(
     for k in range(degree + 1):
         factorial *= max(k, 1)
         first_one = differences[0]
-        newton.append(first_one * pow(factorial, -1, modulus) % modulus if modulus else first_one // factorial)
+        newton.append(
+            first_one * pow(factorial, -1, modulus) % modulus if modulus else first_one // factorial
+        )
         differences = [b - a for a, b in pairwise(differences)]
     result = fmpz_poly([newton[-1]])
     for k in range(degree - 1, -1, -1):
         result = result * fmpz_poly([-(first + k), 1]) + newton[k]
     return (
-        result if modulus is None else fmpz_poly([(c + modulus // 2) % modulus - modulus // 2 for c in result.coeffs()])
+        result
+        if modulus is None
+        else fmpz_poly([(c + modulus // 2) % modulus - modulus // 2 for c in result.coeffs()])
     )
 
 
 def interpolate_rows(
     at: Callable[[int], fmpz_poly], degree: int, check: Check = nothing
 ) -> dict[tuple[int, ...], fmpz]:
-    """The coefficients of u^i w^j of a polynomial in Z[u, w], of at most this degree in u, from its values at integers
-    u."""
+    """The coefficients of u^i w^j of a polynomial in Z[u, w], of at most this degree in u, from its
+    values at integers u."""
     first = -(max(degree, 0) // 2)
     values = [at(first + k) for k in range(degree + 1)]
     found: dict[tuple[int, ...], fmpz] = {}

@@ -1,4 +1,5 @@
-"""Where the branches of a plane curve have a given direction: the proof that one is monotone, or steeper than a line.
+"""Where the branches of a plane curve have a given direction: the proof that one is monotone, or
+steeper than a line.
 
 Guarantee: exact. No point of the curve off the real roots of `tangent_resultant` has the direction.
 """
@@ -16,17 +17,20 @@ Direction = tuple[int, int]
 
 
 def tangency(p: Coefficient, direction: Direction) -> fmpz_mpoly:
-    """The polynomial dx p_x + dy p_y: on p = 0 it vanishes where that is tangent, and at singular points."""
+    """The polynomial dx p_x + dy p_y: on p = 0 it vanishes where that is tangent, and at singular
+    points.
+    """
     return p.derivative(0) * direction[0] + p.derivative(1) * direction[1]
 
 
 def tangent_resultant(p: Coefficient, direction: Direction) -> fmpz_poly:
-    """The squarefree polynomial in y that vanishes where p = 0 has such a (complex) point or a singular one.
+    """The squarefree polynomial in y that vanishes where p = 0 has such a (complex) point or a
+    singular one.
 
     Raises
     ------
-    ArithmeticError
-        When there are infinitely many: the curve contains a line of that direction, or a multiple component.
+    ArithmeticError When there are infinitely many: the curve contains a line of that direction, or
+        a multiple component.
     """
     eliminated = resultant(coefficients_in(p, 0), coefficients_in(tangency(p, direction), 0))
     if not eliminated:

@@ -1,8 +1,11 @@
-"""Polynomials over Z[u, w]: coefficients of one in three variables, discriminants, resultants, and common zeros.
+"""Polynomials over Z[u, w]: coefficients of one in three variables, discriminants, resultants, and
+common zeros.
 
-Guarantee: exact. As in `resultants`, proved bounds for the degrees say from how many values results are interpolated.
+Guarantee: exact. As in `resultants`, proved bounds for the degrees say from how many values results
+are interpolated.
 
-The ring Z[u, w] is that of `polynomials.PLANE`: u stands for the free parameter of a family, w for one of its axes.
+The ring Z[u, w] is that of `polynomials.PLANE`: u stands for the free parameter of a family, w for
+one of its axes.
 """
 
 from __future__ import annotations
@@ -14,7 +17,13 @@ from flint import fmpq, fmpz_poly
 
 from ptmcad.algebra import orders, resultants
 from ptmcad.algebra.bernstein import over, sign, table_of
-from ptmcad.algebra.polynomials import PLANE, Coefficient, UnivariatePolynomial, coefficients_in, irreducible_factors
+from ptmcad.algebra.polynomials import (
+    PLANE,
+    Coefficient,
+    UnivariatePolynomial,
+    coefficients_in,
+    irreducible_factors,
+)
 from ptmcad.algebra.real_roots import Interval
 from ptmcad.algebra.resultants import Check, interpolate_rows, nothing
 
@@ -25,7 +34,9 @@ _Univariate = Sequence[Sequence[fmpz_poly]]
 
 
 def rows_in(p: Coefficient, axis: int) -> tuple[Coefficient, ...]:
-    """An element of Z[x, y, z] as a polynomial in one axis (0 or 1) over Z[u, w], u being z and w the other axis."""
+    """An element of Z[x, y, z] as a polynomial in one axis (0 or 1) over Z[u, w], u being z and w
+    the other axis.
+    """
     rows: list[dict[tuple[int, ...], int]] = [{} for _ in range(int(p.degrees()[axis]) + 1)]
     for powers, c in p.terms():
         rows[int(powers[axis])][int(powers[2]), int(powers[1 - axis])] = int(c)
@@ -45,11 +56,15 @@ def discriminant(rows: Rows, check: Check = nothing) -> Coefficient:
 
 def resultant(p: Rows, q: Rows, check: Check = nothing) -> Coefficient:
     """The resultant with respect to v, up to a nonzero constant."""
-    return _interpolated([p, q], lambda ps: resultants.resultant(ps[0], ps[1], check), _of_two, check)
+    return _interpolated(
+        [p, q], lambda ps: resultants.resultant(ps[0], ps[1], check), _of_two, check
+    )
 
 
 def predicted_work(polynomials: Sequence[Rows]) -> int:
-    """Of the discriminant of one, or the resultant of two: values, times the cube of the degree, times bits."""
+    """Of the discriminant of one, or the resultant of two: values, times the cube of the degree,
+    times bits.
+    """
     shorter, _ = _deflated(polynomials)
     bound = _of_one if len(polynomials) == 1 else _of_two
     values = 1
@@ -60,7 +75,8 @@ def predicted_work(polynomials: Sequence[Rows]) -> int:
 
 
 def common_zeros(rows: Rows, check: Check = nothing) -> list[UnivariatePolynomial]:
-    """Irreducible polynomials among whose roots is the u of each common zero (u, w) of all coefficients.
+    """Irreducible polynomials among whose roots is the u of each common zero (u, w) of all
+    coefficients.
 
     Parameters
     ----------
@@ -77,7 +93,9 @@ def common_zeros(rows: Rows, check: Check = nothing) -> list[UnivariatePolynomia
         others = [row for row in present if not (row % factor).is_zero()]
         common = UnivariatePolynomial([])
         for other in others:
-            common = common.gcd(resultants.resultant(coefficients_in(factor, 1), coefficients_in(other, 1), check))
+            common = common.gcd(
+                resultants.resultant(coefficients_in(factor, 1), coefficients_in(other, 1), check)
+            )
             if common.degree() == 0:
                 break
         found += [p for p, _ in common.factor()[1]] if common.degree() > 0 else []
@@ -85,7 +103,8 @@ def common_zeros(rows: Rows, check: Check = nothing) -> list[UnivariatePolynomia
 
 
 def nowhere_zero(p: Coefficient, box: Sequence[Interval]) -> bool:
-    """Whether an element of Z[x, y, z] is proved to have no zero in an open box, by its Bernstein coefficients there.
+    """Whether an element of Z[x, y, z] is proved to have no zero in an open box, by its Bernstein
+    coefficients there.
 
     False means that the test did not decide.
     """
@@ -97,9 +116,12 @@ def _bits(row: Coefficient) -> int:
 
 
 def _degrees(rows: Rows, variable: int) -> tuple[UnivariatePolynomial, ...]:
-    """A power of one variable for each coefficient, that of its degree: all that bounds of degrees look at."""
+    """A power of one variable for each coefficient, that of its degree: all that bounds of degrees
+    look at.
+    """
     return tuple(
-        UnivariatePolynomial([] if row.is_zero() else [*([0] * int(row.degrees()[variable])), 1]) for row in rows
+        UnivariatePolynomial([] if row.is_zero() else [*([0] * int(row.degrees()[variable])), 1])
+        for row in rows
     )
 
 
@@ -120,13 +142,17 @@ def _interpolated(
     """What is computed over Z[w] at integers u, as an element of Z[u, w]."""
     shorter, (k, m) = _deflated(polynomials)
     degree = bound([_degrees(rows, 0) for rows in shorter])
-    in_w = [[coefficients_in(row, 1) for row in rows] for rows in shorter]  # of powers of w, in Z[u]
+    in_w = [
+        [coefficients_in(row, 1) for row in rows] for rows in shorter
+    ]  # of powers of w, in Z[u]
 
     def at(u: int) -> fmpz_poly:
         values = [[fmpz_poly([c(u) for c in row]) for row in rows] for rows in in_w]
         return compute(values) if all(any(rows) for rows in values) else fmpz_poly([])
 
-    return PLANE.from_dict({(i * k, j * m): c for (i, j), c in interpolate_rows(at, degree, check).items()})
+    return PLANE.from_dict(
+        {(i * k, j * m): c for (i, j), c in interpolate_rows(at, degree, check).items()}
+    )
 
 
 def _deflated(polynomials: Sequence[Rows]) -> tuple[list[Rows], tuple[int, int]]:
@@ -134,6 +160,9 @@ def _deflated(polynomials: Sequence[Rows]) -> tuple[list[Rows], tuple[int, int]]
     exponents = [powers for rows in polynomials for row in rows for powers, _ in row.terms()]
     k, m = (max(1, gcd(*(int(powers[variable]) for powers in exponents))) for variable in (0, 1))
     return [
-        tuple(PLANE.from_dict({(int(i) // k, int(j) // m): c for (i, j), c in row.terms()}) for row in rows)
+        tuple(
+            PLANE.from_dict({(int(i) // k, int(j) // m): c for (i, j), c in row.terms()})
+            for row in rows
+        )
         for rows in polynomials
     ], (k, m)

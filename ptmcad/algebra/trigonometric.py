@@ -1,7 +1,8 @@
-"""Polynomials in real unknowns and in cosines and sines of angles, with parameters, over Q; and their derivatives.
+"""Polynomials in real unknowns and in cosines and sines of angles, with parameters, over Q; and
+their derivatives.
 
-Guarantee: exact; the derivation by an angle sends cos to -sin and sin to cos, so the derivative of an energy is its
-true gradient.
+Guarantee: exact; the derivation by an angle sends cos to -sin and sin to cos, so the derivative of
+an energy is its true gradient.
 """
 
 from __future__ import annotations
@@ -15,7 +16,9 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from ptmcad.algebra.polynomials import Monomial
 
 
-def angle_sum(turns: Sequence[tuple[Any, Any]], multiples: Sequence[int], one: Any) -> tuple[Any, Any]:
+def angle_sum(
+    turns: Sequence[tuple[Any, Any]], multiples: Sequence[int], one: Any
+) -> tuple[Any, Any]:
     """Cosine and sine of a sum of multiples of angles, from those of each, in any commutative ring."""
     cosine, sine = one, one - one
     for (c, s), multiple in zip(turns, multiples, strict=True):
@@ -49,7 +52,10 @@ class TrigonometricRing(NamedTuple):
     @property
     def coordinates(self) -> tuple[str, ...]:
         """The names of the polynomials' variables that are no parameters."""
-        return tuple(f"{function}_{angle}" for angle in self.angles for function in ("cos", "sin")) + self.reals
+        return (
+            tuple(f"{function}_{angle}" for angle in self.angles for function in ("cos", "sin"))
+            + self.reals
+        )
 
     @property
     def width(self) -> int:
@@ -82,7 +88,9 @@ class TrigonometricRing(NamedTuple):
     def parameter(self, name: str) -> TrigonometricPolynomial:
         """A parameter or a real unknown."""
         if name in self.reals:
-            return self.context.gen(len(self.parameters) + 2 * len(self.angles) + self.reals.index(name))
+            return self.context.gen(
+                len(self.parameters) + 2 * len(self.angles) + self.reals.index(name)
+            )
         return self.context.gen(self.parameters.index(name))
 
     def cos(self, angle: str) -> TrigonometricPolynomial:
@@ -94,13 +102,17 @@ class TrigonometricRing(NamedTuple):
     def derivative(self, p: TrigonometricPolynomial, unknown: str) -> TrigonometricPolynomial:
         """The derivative of p by an unknown."""
         if unknown in self.reals:
-            return p.derivative(len(self.parameters) + 2 * len(self.angles) + self.reals.index(unknown))
+            return p.derivative(
+                len(self.parameters) + 2 * len(self.angles) + self.reals.index(unknown)
+            )
         k = len(self.parameters) + 2 * self.angles.index(unknown)
         c, s = self.context.gen(k), self.context.gen(k + 1)
         return p.derivative(k + 1) * c - p.derivative(k) * s
 
     def reduce(self, p: TrigonometricPolynomial) -> TrigonometricPolynomial:
-        """p with every even power of a cosine replaced by means of cos^2 + sin^2 = 1: a normal form on the torus."""
+        """p with every even power of a cosine replaced by means of cos^2 + sin^2 = 1: a normal form
+        on the torus.
+        """
         n = len(self.parameters)
         for index in range(len(self.angles)):
             k = n + 2 * index

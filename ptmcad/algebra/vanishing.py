@@ -1,13 +1,20 @@
-"""Where a polynomial vanishes at the solutions of a fibre: a divisor of the representation's polynomial.
+"""Where a polynomial vanishes at the solutions of a fibre: a divisor of the representation's
+polynomial.
 
-Guarantee: exact; a solution is a zero of the polynomial exactly when its root is one of the divisor.
+Guarantee: exact; a solution is a zero of the polynomial exactly when its root is one of the
+divisor.
 """
 
 from __future__ import annotations
 
 from flint import fmpq_poly, fmpz_poly
 
-from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, UnivariateRepresentation, evaluate
+from ptmcad.algebra.fibre import (
+    FibreAlgebra,
+    RationalPolynomial,
+    UnivariateRepresentation,
+    evaluate,
+)
 
 Divisor = fmpz_poly
 """In Z[T], of the representation's minimal polynomial."""

@@ -1,7 +1,7 @@
 """Polynomials over a rectangle of the plane: a proof that one has no zero there.
 
-Guarantee: `nowhere_zero` answers True only with proof. False means that the test did not decide, not that there is a
-zero.
+Guarantee: `nowhere_zero` answers True only with proof. False means that the test did not decide,
+not that there is a zero.
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ from ptmcad.algebra.real_roots import Interval, isolate, squarefree_part
 
 
 def nowhere_zero(p: Coefficient, x: Interval, y: Interval, depth: int = 4) -> bool:
-    """Whether p is proved to have no zero in the open rectangle, by the signs of its Bernstein coefficients.
+    """Whether p is proved to have no zero in the open rectangle, by the signs of its Bernstein
+    coefficients.
 
-    Undecided rectangles are cut in four, ``depth`` times; then the cuts must be free of zeros too, so strict signs are
-    asked for. A p in one variable is decided exactly.
+    Undecided rectangles are cut in four, ``depth`` times; then the cuts must be free of zeros too,
+    so strict signs are asked for. A p in one variable is decided exactly.
     """
     n, m = (int(d) for d in p.degrees())
     if n == 0 or m == 0:
@@ -30,4 +31,7 @@ def _is_free(table: Table, depth: int) -> bool:
     corners = table.layers[0].entries()
     if depth == 0 or corners[0] * corners[-1] <= 0:
         return False
-    return all((sign(part) and all(part.layers[0].entries())) or _is_free(part, depth - 1) for part in quarters(table))
+    return all(
+        (sign(part) and all(part.layers[0].entries())) or _is_free(part, depth - 1)
+        for part in quarters(table)
+    )

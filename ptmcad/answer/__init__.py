@@ -1,7 +1,8 @@
 """The answers, as plain data: nothing here computes or draws.
 
-What is done with an answer (`RegionMap.locate`, `Poses.table`) imports it, never the other way round. So the classes
-only declare such methods; `ptmcad.methods`, which `ptmcad` imports before anything else, enters them here.
+What is done with an answer (`RegionMap.locate`, `Poses.table`) imports it, never the other way
+round. So the classes only declare such methods; `ptmcad.methods`, which `ptmcad` imports before
+anything else, enters them here.
 """
 
 from __future__ import annotations

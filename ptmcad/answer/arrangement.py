@@ -1,7 +1,8 @@
-"""The arrangement of a map's regions: which there are, which are neighbours, in which order they lie along the sides.
+"""The arrangement of a map's regions: which there are, which are neighbours, in which order they
+lie along the sides.
 
-Guarantee: an arrangement depends on the map's regions alone, not on how the window was decomposed. `correspondence` is
-None only where two arrangements differ.
+Guarantee: an arrangement depends on the map's regions alone, not on how the window was decomposed.
+`correspondence` is None only where two arrangements differ.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ class Arrangement:
     ----------
     keys : of each region the count that tells it from its neighbours.
     neighbours : pairs of regions, the smaller number first, with an arc in common.
-    sides : for each of `SIDES`, the regions that touch it along an arc, in increasing order of the other coordinate.
+    sides : for each of `SIDES`, the regions that touch it along an arc, in increasing order of the
+        other coordinate.
     """
 
     keys: tuple[tuple[int, ...], ...]
@@ -39,15 +41,20 @@ class Arrangement:
 
 
 def correspondence(a: Arrangement, b: Arrangement) -> tuple[int, ...] | None:
-    """To each region of ``a`` one of ``b``, so that all is the same; None where there is no such correspondence.
+    """To each region of ``a`` one of ``b``, so that all is the same; None where there is no such
+    correspondence.
 
-    Colours are refined by those of neighbours; where some regions still have one colour, one of them is chosen and
-    tried with each of the same colour on the other side. Along the sides regions are known by their places, so that few
-    are left, and with trees and forests of islands, however symmetric, the first try is never wrong.
+    Colours are refined by those of neighbours; where some regions still have one colour, one of
+    them is chosen and tried with each of the same colour on the other side. Along the sides regions
+    are known by their places, so that few are left, and with trees and forests of islands, however
+    symmetric, the first try is never wrong.
     """
     if len(a.keys) != len(b.keys) or len(a.neighbours) != len(b.neighbours):
         return None
-    graphs = [[sorted(arrangement.around(n)) for n in range(len(arrangement.keys))] for arrangement in (a, b)]
+    graphs = [
+        [sorted(arrangement.around(n)) for n in range(len(arrangement.keys))]
+        for arrangement in (a, b)
+    ]
     return _matched(graphs, [_first_colours(a), _first_colours(b)])
 
 
@@ -68,7 +75,8 @@ def _matched(graphs: list[list[list[int]]], colours: list[Colours]) -> tuple[int
         return None
     sizes = Counter(first)
     if len(sizes) == len(first):
-        # regions of one colour have neighbours of the same colours: what keeps colours keeps neighbours
+        # regions of one colour have neighbours of the same colours: what keeps colours keeps
+        # neighbours
         places = {colour: n for n, colour in enumerate(second)}
         return tuple(places[colour] for colour in first)
     colour = min((c for c in sizes if sizes[c] > 1), key=lambda c: (sizes[c], c))
@@ -83,7 +91,9 @@ def _matched(graphs: list[list[list[int]]], colours: list[Colours]) -> tuple[int
 
 
 def _refined(graphs: list[list[list[int]]], colours: list[Colours]) -> tuple[list[int], list[int]]:
-    """The coarsest colours, numbered alike, of which each has the same colours around it wherever in the two graphs."""
+    """The coarsest colours, numbered alike, of which each has the same colours around it wherever
+    in the two graphs.
+    """
     now = _numbered(colours)
     while True:
         finer: list[Colours] = [

@@ -1,6 +1,8 @@
-"""Boundaries of regions as polylines and labels on a grid of pixels: a map as numbers for other programs.
+"""Boundaries of regions as polylines and labels on a grid of pixels: a map as numbers for other
+programs.
 
-Guarantee: a polyline says how far from it the curve may be; labels are those of the pixels' centres, exactly.
+Guarantee: a polyline says how far from it the curve may be; labels are those of the pixels'
+centres, exactly.
 """
 
 from __future__ import annotations
@@ -27,14 +29,15 @@ class Boundary:
 
     Attributes
     ----------
-    points : shape (n, 2), in the axes' order and units. In a certified map they go around a cell and end where they
-        began.
-    left, right : numbers of the regions at the left and right hand as one follows the points, the horizontal axis
-        being the first; None where it is undetermined, or outside of the window.
+    points : shape (n, 2), in the axes' order and units. In a certified map they go around a cell
+        and end where they began.
+    left, right : numbers of the regions at the left and right hand as one follows the points, the
+        horizontal axis being the first; None where it is undetermined, or outside of the window.
     component : number of the variety's component on which it lies; None in a certified map.
     kind : of that component.
-    distance : the curve is no further than that from the polyline, measured along the axis that is not the map's base;
-        on a line across the base along the base. Rounding of the points to floats comes on top.
+    distance : the curve is no further than that from the polyline, measured along the axis that is
+        not the map's base; on a line across the base along the base. Rounding of the points to
+        floats comes on top.
     """
 
     points: NDArray[np.float64]
@@ -72,7 +75,8 @@ class Grid:
     ----------
     x, y : shapes (columns,) and (rows,): the centres' coordinates, rounded to floats.
     names : of the two axes.
-    cell, region : shape (rows, columns), from the bottom: numbers of the cell and region at each centre.
+    cell, region : shape (rows, columns), from the bottom: numbers of the cell and region at each
+        centre.
     stable, total : the same for the numbers of solutions.
     """
 
@@ -86,12 +90,16 @@ class Grid:
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
-        """The window as left, right, bottom, top: what `imshow` calls so, together with ``origin="lower"``."""
+        """The window as left, right, bottom, top: what `imshow` calls so, together with
+        ``origin="lower"``.
+        """
         return extent_of(self.x, self.y)
 
     def arrays(self) -> dict[str, Any]:
         """All arrays by name, as `numpy.savez` takes them."""
-        return {name: getattr(self, name) for name in ("x", "y", "cell", "region", "stable", "total")}
+        return {
+            name: getattr(self, name) for name in ("x", "y", "cell", "region", "stable", "total")
+        }
 
     def __repr__(self) -> str:
         rows, columns = self.region.shape

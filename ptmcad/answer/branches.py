@@ -1,7 +1,8 @@
-"""Branches of solutions along a line, stable and unstable: a bifurcation diagram of some quantities, as data.
+"""Branches of solutions along a line, stable and unstable: a bifurcation diagram of some
+quantities, as data.
 
-Guarantee: at each point the solutions are all there are, and each number is right in every digit. Which points are on
-one branch is taken from their nearness, and no claim.
+Guarantee: at each point the solutions are all there are, and each number is right in every digit.
+Which points are on one branch is taken from their nearness, and no claim.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from ptmcad.text.enclosure import Enclosure
 
 @dataclass(frozen=True, slots=True)
 class BranchPoint:
-    """A solution at a value of the axis: the quantities, in their order; None for one that it does not have."""
+    """A solution at a value of the axis: the quantities, in their order; None for one that it does
+    not have.
+    """
 
     value: Fraction
     numbers: tuple[Enclosure | None, ...]
@@ -47,7 +50,8 @@ class Branches:
     ----------
     quantities : their names as they were asked for.
     units : of each, as the record declares it or in words; empty for one that has none of its own.
-    undecided : values of the axis at which not all solutions could be told apart; there the branches have gaps.
+    undecided : values of the axis at which not all solutions could be told apart; there the
+        branches have gaps.
     """
 
     name: str

@@ -1,7 +1,9 @@
-"""The values of a family's free parameter at which the arrangement of its members' regions changes, as plain data.
+"""The values of a family's free parameter at which the arrangement of its members' regions changes,
+as plain data.
 
-Guarantee: an `AlgebraicNumber` is the change, exactly; an `Enclosure` has members of different arrangements at its
-ends, and so contains a change. That there is no other change is said by ``complete``, and only with proof.
+Guarantee: an `AlgebraicNumber` is the change, exactly; an `Enclosure` has members of different
+arrangements at its ends, and so contains a change. That there is no other change is said by
+``complete``, and only with proof.
 """
 
 from __future__ import annotations
@@ -27,7 +29,8 @@ class Change:
     Attributes
     ----------
     value : exact, or enclosed between two members.
-    words : what changes as the parameter grows, a sentence each. They describe: nothing rests on them.
+    words : what changes as the parameter grows, a sentence each. They describe: nothing rests on
+        them.
     """
 
     value: AlgebraicNumber | Enclosure
@@ -48,14 +51,17 @@ class Changes:
     ----------
     free : the free parameter with its range.
     changes : in increasing order.
-    between : a value in each interval between neighbouring changes, or a change and an end of the range.
+    between : a value in each interval between neighbouring changes, or a change and an end of the
+        range.
     arrangements : of the members at these values.
-    others : further values at which curves meet, turn or pass the window's edge; on both sides of each the arrangement
-        is the same.
-    at_ends : what is otherwise at the lower and at the upper end of the range than beside it, a sentence each.
+    others : further values at which curves meet, turn or pass the window's edge; on both sides of
+        each the arrangement is the same.
+    at_ends : what is otherwise at the lower and at the upper end of the range than beside it, a
+        sentence each.
     complete : whether it is proved that the arrangement is the same from each change to the next.
     reason : how the changes were found, and why that is a proof or why it is none.
-    tolerance : of the range, how near to a change members are compared in words, and how wide enclosures are.
+    tolerance : of the range, how near to a change members are compared in words, and how wide
+        enclosures are.
     """
 
     free: Axis

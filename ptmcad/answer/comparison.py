@@ -1,7 +1,7 @@
 """Two maps of the same window compared: where they have different counts, and how large that is.
 
-Guarantee: areas are certified bounds, in the product of the axes' units. What a certified map leaves undetermined is in
-upper bounds only.
+Guarantee: areas are certified bounds, in the product of the axes' units. What a certified map
+leaves undetermined is in upper bounds only.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ class Comparison:
 
     Attributes
     ----------
-    decomposition : the window cut along the curves of both maps; its regions, which need not be connected, are where
-        both maps have the same pair of counts. It has neither equations nor counts of its own; of certified maps it has
-        the rectangles of both covers as its own.
+    decomposition : the window cut along the curves of both maps; its regions, which need not be
+        connected, are where both maps have the same pair of counts. It has neither equations nor
+        counts of its own; of certified maps it has the rectangles of both covers as its own.
     changes : the pairs of counts that differ.
     undetermined : the area where one of the maps is undetermined, or both; None of exact maps.
     """
@@ -68,4 +68,6 @@ class Comparison:
 
     def __repr__(self) -> str:
         share = share_text(self.share, self.undetermined is not None)
-        return f"<Comparison of {self.first.slice.name} and {self.second.slice.name}: {share} differ>"
+        return (
+            f"<Comparison of {self.first.slice.name} and {self.second.slice.name}: {share} differ>"
+        )

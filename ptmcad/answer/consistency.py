@@ -1,7 +1,7 @@
 """Whether the numbers by which the parts of a map refer to each other lead anywhere.
 
-Guarantee: after `check_numbers` every reference of a map has its target, and its samples are in the window. Whether the
-map is true is `ptmcad.verify`'s question.
+Guarantee: after `check_numbers` every reference of a map has its target, and its samples are in the
+window. Whether the map is true is `ptmcad.verify`'s question.
 """
 
 from __future__ import annotations
@@ -37,7 +37,9 @@ def check_numbers(result: RegionMap) -> None:
 def _of_stacks(result: RegionMap) -> Iterator[str]:
     for s, stack in enumerate(result.stacks):
         yield from _outside(stack.cells, len(result.cells), f"stack {s}", "cell")
-        yield from _outside((w.component for w in stack.walls), len(result.components), f"stack {s}", "component")
+        yield from _outside(
+            (w.component for w in stack.walls), len(result.components), f"stack {s}", "component"
+        )
         ends = [end for end in (stack.left, stack.right) if end is not None]
         yield from _outside(ends, len(result.critical_values), f"stack {s}", "critical value")
         if len(stack.cells) != len(stack.walls) + 1:
@@ -50,7 +52,11 @@ def _of_stacks(result: RegionMap) -> Iterator[str]:
             if (result.cells[number].stack, result.cells[number].level) != (s, level):
                 yield f"cell {number} is not at level {level} of stack {s}"
     if result.cover is not None:
-        if result.stacks or result.components or any(cell.stack is not None for cell in result.cells):
+        if (
+            result.stacks
+            or result.components
+            or any(cell.stack is not None for cell in result.cells)
+        ):
             yield "it has a cover, as certified maps have, and stacks or curves, as exact ones"
     elif sum(len(stack.cells) for stack in result.stacks) != len(result.cells):
         yield "not every cell is in one stack"
@@ -61,7 +67,11 @@ def _of_cells(result: RegionMap) -> Iterator[str]:
         yield from _outside((cell.region,), len(result.regions), f"cell {n}", "region")
         yield from _of_counts(cell, f"cell {n}")
         # where only stable equilibria are counted, a certified map has no boxes of the others
-        expected = (cell.total, cell.stable) if result.cover is not None and cell.total is None else (cell.total,)
+        expected = (
+            (cell.total, cell.stable)
+            if result.cover is not None and cell.total is None
+            else (cell.total,)
+        )
         if cell.solutions and len(cell.solutions) not in expected:
             yield f"cell {n} has {cell.total} equilibria and {len(cell.solutions)} boxes"
         region = result.regions[cell.region]
@@ -70,7 +80,9 @@ def _of_cells(result: RegionMap) -> Iterator[str]:
         for count in result.slice.count.kind.implied:
             if cell.number(count) != region.number(count):
                 yield f"cell {n} and its region {cell.region} differ in their counts"
-        if not all(axis.holds(value) for axis, value in zip(result.slice.axes, cell.sample, strict=True)):
+        if not all(
+            axis.holds(value) for axis, value in zip(result.slice.axes, cell.sample, strict=True)
+        ):
             yield f"the sample of cell {n} is not in the window"
 
 
@@ -95,7 +107,10 @@ def _of_regions(result: RegionMap) -> Iterator[str]:
 
 def _of_counts(part: Cell | Region, place: str) -> Iterator[str]:
     """The Morse index has to add up to the other counts, as far as these are known."""
-    if part.index is not None and (part.total, part.stable) != (sum(part.index), next(iter(part.index), None)):
+    if part.index is not None and (part.total, part.stable) != (
+        sum(part.index),
+        next(iter(part.index), None),
+    ):
         yield f"{place} has index {part.index}, {part.total} equilibria and {part.stable} stable ones"
 
 

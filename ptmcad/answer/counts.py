@@ -12,14 +12,18 @@ from ptmcad.model.criterion import Criterion
 from ptmcad.question.counts import Count
 
 MorseIndex = tuple[int, ...]
-"""Numbers of critical points by their number of negative eigenvalues: of two unknowns minima, saddles and maxima."""
+"""Numbers of critical points by their number of negative eigenvalues: of two unknowns minima,
+saddles and maxima.
+"""
 
 
 class Counted:
-    """What has counts of all kinds, such as a region or a cell of a map; None where one varies or is not known.
+    """What has counts of all kinds, such as a region or a cell of a map; None where one varies or
+    is not known.
 
-    Its classes have fields ``stable``, ``total`` and ``index``, and ``further`` where numbers of solutions at which a
-    predicate of `ptmcad.question.counts` holds are known: those by the names of their counts.
+    Its classes have fields ``stable``, ``total`` and ``index``, and ``further`` where numbers of
+    solutions at which a predicate of `ptmcad.question.counts` holds are known: those by the names
+    of their counts.
     """
 
     __slots__ = ()
@@ -60,8 +64,8 @@ class Counts(Counted):
     Attributes
     ----------
     stable : None where nothing says what a stable solution is.
-    index : numbers of solutions by the number of negative eigenvalues of the Hessian; None without a potential. On a
-        torus their alternating sum is zero.
+    index : numbers of solutions by the number of negative eigenvalues of the Hessian; None without
+        a potential. On a torus their alternating sum is zero.
     """
 
     total: int
@@ -70,17 +74,25 @@ class Counts(Counted):
 
     @property
     def working(self) -> int:
-        """The number by which an operation range is found: of stable solutions, or of all where none is told stable."""
+        """The number by which an operation range is found: of stable solutions, or of all where
+        none is told stable.
+        """
         return self.total if self.stable is None else self.stable
 
 
 def counts_of_signs(signs: Sequence[str], criterion: Criterion) -> Counts:
-    """The counts of solutions by the signs of their Hessians' eigenvalues, or of conditions for stability."""
-    return Counts(len(signs), criterion.number(map(criterion.is_stable, signs)), criterion.indices(signs))
+    """The counts of solutions by the signs of their Hessians' eigenvalues, or of conditions for
+    stability.
+    """
+    return Counts(
+        len(signs), criterion.number(map(criterion.is_stable, signs)), criterion.indices(signs)
+    )
 
 
 def counted_by(counted: Counted, count: Count) -> tuple[int, ...]:
-    """The count that distinguishes regions, as something to compare and sort by; (-1,) where it is not known."""
+    """The count that distinguishes regions, as something to compare and sort by; (-1,) where it is
+    not known.
+    """
     value = counted.number(count)
     return (-1,) if value is None else value if isinstance(value, tuple) else (value,)
 
@@ -98,9 +110,11 @@ def euler_sum(index: Sequence[int]) -> int:
 
 
 def operation_number(model: Model, found: Iterable[Counts]) -> int:
-    """The number of stable solutions that there are in an operation range: the greatest one that occurs.
+    """The number of stable solutions that there are in an operation range: the greatest one that
+    occurs.
 
-    A mechanism needs two of them at least: one that works in one stable pose everywhere has no range to be in. Those of
-    the paper's mechanism are never more, so that its ranges are where two are stable.
+    A mechanism needs two of them at least: one that works in one stable pose everywhere has no
+    range to be in. Those of the paper's mechanism are never more, so that its ranges are where two
+    are stable.
     """
     return max((1, model.nouns.usual, *(counts.working for counts in found)))

@@ -1,8 +1,8 @@
 """The best design within bounds as data: where it is, what it attains, and what no other exceeds.
 
-Guarantee: ``value`` is the exact evaluation at ``best``, enclosed. ``bound`` is exceeded by no design within the bounds
-that satisfies the conditions, but for designs on a set without interior (docs/method.md says which); where there is no
-such bound it is None, and ``proved`` is False.
+Guarantee: ``value`` is the exact evaluation at ``best``, enclosed. ``bound`` is exceeded by no
+design within the bounds that satisfies the conditions, but for designs on a set without interior
+(docs/method.md says which); where there is no such bound it is None, and ``proved`` is False.
 """
 
 from __future__ import annotations
@@ -21,7 +21,9 @@ from ptmcad.text.enclosure import Enclosure
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
-    """A design that was looked at; ``value`` is None where it has none: conditions or the count are not met."""
+    """A design that was looked at; ``value`` is None where it has none: conditions or the count are
+    not met.
+    """
 
     at: tuple[Fraction, ...]
     value: Enclosure | None
@@ -58,11 +60,11 @@ class BestDesign:
     evaluations : so many designs were evaluated exactly.
     seed : of the global search.
     points : the designs that were evaluated, in that order.
-    boxes : those on which the bound rests, without those on which a condition fails; none where there is no bound or it
-        does not rest on boxes.
+    boxes : those on which the bound rests, without those on which a condition fails; none where
+        there is no bound or it does not rest on boxes.
     parameters : of every design, as they are written.
-    maxima : where one parameter's widest ranges are, and whether they are attained there; empty where the bound does
-        not rest on exact critical values.
+    maxima : where one parameter's widest ranges are, and whether they are attained there; empty
+        where the bound does not rest on exact critical values.
     """
 
     name: str
@@ -94,7 +96,13 @@ class BestDesign:
         if self.best is None or self.value is None:
             return f"<BestDesign of {self.name}: none was found>"
         place = ", ".join(f"{name} = {float(value):.6g}" for name, value in self.best.items())
-        known = "proved" if self.proved else "bounded" if self.bound is not None else "no bound elsewhere"
+        known = (
+            "proved"
+            if self.proved
+            else "bounded"
+            if self.bound is not None
+            else "no bound elsewhere"
+        )
         return f"<BestDesign of {self.name}: {self.maximise} {float(self.value):.6g} at {place}, {known}>"
 
     if TYPE_CHECKING:  # `ptmcad.methods` has them

@@ -36,10 +36,13 @@ class FamilyMap:
     free : the free parameter with its range.
     values : of it, in increasing order.
     members : the map at each of the values.
-    surfaces : irreducible polynomials of the surfaces on which solutions meet, in the axes and the free parameter;
-        empty where algebra does not compute the family in common, as with free lengths.
-    text : what each parameter of the members is written as, in the axes, the free parameter and one another.
-    changes : where between the ends of the range the arrangement of the regions changes; None when not asked for.
+    surfaces : irreducible polynomials of the surfaces on which solutions meet, in the axes and the
+        free parameter; empty where algebra does not compute the family in common, as with free
+        lengths.
+    text : what each parameter of the members is written as, in the axes, the free parameter and one
+        another.
+    changes : where between the ends of the range the arrangement of the regions changes; None when
+        not asked for.
     """
 
     name: str

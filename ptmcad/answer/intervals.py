@@ -25,7 +25,9 @@ End = AlgebraicNumber | Fraction
 
 
 class Event(Enum):
-    """What happens to the numbers of solutions at a critical value: which of them meet, only a path shows."""
+    """What happens to the numbers of solutions at a critical value: which of them meet, only a path
+    shows.
+    """
 
     STABLE_PAIR = "a stable critical point and one of index 1"
     UNSTABLE_PAIR = "two unstable critical points"
@@ -44,7 +46,8 @@ class Change:
     ----------
     kind : the kind of the variety's component through it.
     before, after : the numbers of solutions on the two sides.
-    continuum : whether there are infinitely many solutions at the value; None where that is not known.
+    continuum : whether there are infinitely many solutions at the value; None where that is not
+        known.
     """
 
     at: AlgebraicNumber
@@ -65,16 +68,24 @@ class Change:
         return {0: Event.STABILITY, 1: Event.SINGLE}.get(change, Event.SEVERAL)
 
     def _pair(self) -> int | None:
-        """The smaller index of the two solutions that are more or less by one; None when no two neighbours are."""
+        """The smaller index of the two solutions that are more or less by one; None when no two
+        neighbours are.
+        """
         if self.before.index is None or self.after.index is None:
             return None
-        changed = {k: b - a for k, (a, b) in enumerate(zip(self.before.index, self.after.index, strict=True)) if a != b}
+        changed = {
+            k: b - a
+            for k, (a, b) in enumerate(zip(self.before.index, self.after.index, strict=True))
+            if a != b
+        }
         first = min(changed, default=0)
         pair = changed in ({first: 1, first + 1: 1}, {first: -1, first + 1: -1})
         return first if pair else None
 
     def _balanced(self) -> bool:
-        """Whether the alternating sum of the indices stays, as pairs keep it; what comes from infinity need not."""
+        """Whether the alternating sum of the indices stays, as pairs keep it; what comes from
+        infinity need not.
+        """
         if self.before.index is None or self.after.index is None:
             return False
         return euler_sum(self.before.index) == euler_sum(self.after.index)
@@ -93,11 +104,19 @@ class Change:
         if event is Event.UNCHANGED:
             return str(event.value)
         if event is Event.STABILITY:
-            return str(event.value) if self.before.index is not None else "solutions change their stability"
-        what = "several solutions" if event is Event.SEVERAL and not self._balanced() else event.value
+            return (
+                str(event.value)
+                if self.before.index is not None
+                else "solutions change their stability"
+            )
+        what = (
+            "several solutions" if event is Event.SEVERAL and not self._balanced() else event.value
+        )
         if first is not None and self.before.index is not None:
             names = [critical_point(k, len(self.before.index) - 1) for k in (first, first + 1)]
-            what = " and ".join(f"one {'stable equilibrium' if name == 'minimum' else name}" for name in names)
+            what = " and ".join(
+                f"one {'stable equilibrium' if name == 'minimum' else name}" for name in names
+            )
             what = "two saddles" if names == ["saddle", "saddle"] else what
         return f"{'gains' if self.after.total > self.before.total else 'loses'} {what}"
 
@@ -157,10 +176,13 @@ class CountIntervals:
     name : of the slice.
     along : the axis with its window.
     at : what was fixed on the line.
-    parameters : every parameter of the model as an expression in ``along`` (its first axis; no second one occurs).
+    parameters : every parameter of the model as an expression in ``along`` (its first axis; no
+        second one occurs).
     intervals : from the window's lower edge to its upper one.
-    changes : all critical values in the window in increasing order, those where no count changes among them.
-    working : the number of stable solutions in the operation range, or of all where nothing says what is stable.
+    changes : all critical values in the window in increasing order, those where no count changes
+        among them.
+    working : the number of stable solutions in the operation range, or of all where nothing says
+        what is stable.
     """
 
     name: str
@@ -183,13 +205,17 @@ class CountIntervals:
 
     @property
     def stretches(self) -> list[tuple[Fraction, Fraction]]:
-        """Intervals without a critical value, between rational numbers, from the lower edge to the upper one."""
+        """Intervals without a critical value, between rational numbers, from the lower edge to the
+        upper one.
+        """
         ends: list[End] = [self.along.low, *(change.at for change in self.changes), self.along.high]
         return [(upper(a), lower(b)) for a, b in pairwise(ends)]
 
     @property
     def operation(self) -> tuple[OperationSpan, ...]:
-        """The operation range: where there are so many stable solutions; of the paper's mechanism two."""
+        """The operation range: where there are so many stable solutions; of the paper's mechanism
+        two.
+        """
         groups = groupby(self.intervals, lambda i: i.counts.working == self.working)
         members = [list(group) for inside, group in groups if inside]
         return tuple(OperationSpan(group[0].low, group[-1].high, tuple(group)) for group in members)
@@ -209,8 +235,9 @@ def upper(end: End) -> Fraction:
 class CertifiedInterval:
     """An open interval, its ends' enclosures (exact at the window's edge), and the counts on it.
 
-    ``total`` is None when nothing could be decided at ``sample``; ``index`` is, too, where there is no potential, and
-    ``cones``, but for the paper's mechanism. ``stable`` is None where nothing says what is stable.
+    ``total`` is None when nothing could be decided at ``sample``; ``index`` is, too, where there is
+    no potential, and ``cones``, but for the paper's mechanism. ``stable`` is None where nothing
+    says what is stable.
     """
 
     low: Enclosure
@@ -223,13 +250,17 @@ class CertifiedInterval:
 
     @property
     def working(self) -> int | None:
-        """The number by which an operation range is found, as that of `Counts`; None where nothing is decided."""
+        """The number by which an operation range is found, as that of `Counts`; None where nothing
+        is decided.
+        """
         return self.total if self.stable is None else self.stable
 
 
 @dataclass(frozen=True, slots=True)
 class CertifiedChange:
-    """What lies between two intervals: the curves met there; ``proved`` when each was proved to be met exactly."""
+    """What lies between two intervals: the curves met there; ``proved`` when each was proved to be
+    met exactly.
+    """
 
     at: Enclosure
     names: tuple[str, ...]
@@ -247,5 +278,7 @@ class CertifiedIntervals:
 
     @property
     def stretches(self) -> list[tuple[Fraction, Fraction]]:
-        """Intervals without a critical value, between rational numbers, from the lower edge to the upper one."""
+        """Intervals without a critical value, between rational numbers, from the lower edge to the
+        upper one.
+        """
         return [(interval.low.high, interval.high.low) for interval in self.intervals]

@@ -11,9 +11,11 @@ from ptmcad.answer.regionmap import Status
 
 @dataclass(frozen=True, slots=True)
 class Location(Counted):
-    """Where a point lies; region, cell and counts are None unless the point is decided and in a cell.
+    """Where a point lies; region, cell and counts are None unless the point is decided and in a
+    cell.
 
-    A point on a curve that no count feels has counts of its own, and the region on both sides; it is in no cell.
+    A point on a curve that no count feels has counts of its own, and the region on both sides; it
+    is in no cell.
     """
 
     status: Status

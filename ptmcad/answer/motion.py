@@ -1,8 +1,9 @@
-"""The motion of one pose along a path of the map, through the falls where it vanishes, step by step, in floating point.
+"""The motion of one pose along a path of the map, through the falls where it vanishes, step by
+step, in floating point.
 
-Not guaranteed: more than `Step` says. Every step but those of a fall is an equilibrium, found by Newton's method; where
-a step has counts, they are the map's own, or those of an exact solution there, and as many different equilibria were
-found.
+Not guaranteed: more than `Step` says. Every step but those of a fall is an equilibrium, found by
+Newton's method; where a step has counts, they are the map's own, or those of an exact solution
+there, and as many different equilibria were found.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ class Step:
     falling : whether this is no equilibrium, but a place on the steepest descent to one.
     total, stable : exact numbers of all and of stable equilibria; None where they are not known.
     points : places of a mechanism's points, in its order; none of a system.
-    others : height of each equilibrium at this point, with whether it is stable; empty where they are not all known.
+    others : height of each equilibrium at this point, with whether it is stable; empty where they
+        are not all known.
     """
 
     share: float
@@ -101,7 +103,14 @@ class Motion:
     if TYPE_CHECKING:  # `ptmcad.methods` has them
 
         def save(
-            self, path: Any, *, fps: int = 20, size: Any = None, palette: Any = None, title: Any = None, dpi: int = 100
+            self,
+            path: Any,
+            *,
+            fps: int = 20,
+            size: Any = None,
+            palette: Any = None,
+            title: Any = None,
+            dpi: int = 100,
         ) -> None: ...
 
         def _repr_html_(self) -> str: ...

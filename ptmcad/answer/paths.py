@@ -1,4 +1,6 @@
-"""Paths of stable poses along a line, as data: how far each one can be followed, and where it snaps to."""
+"""Paths of stable poses along a line, as data: how far each one can be followed, and where it snaps
+to.
+"""
 
 from __future__ import annotations
 
@@ -28,10 +30,11 @@ class Fate(Enum):
 
 @dataclass(frozen=True, slots=True)
 class PathPoint:
-    """The unknowns at a value of the axis (angles not wrapped into one turn, so that they are continuous).
+    """The unknowns at a value of the axis (angles not wrapped into one turn, so that they are
+    continuous).
 
-    ``sides`` tells of each point of a mechanism whose height an unknown changes whether it is proved to be above the x
-    axis (1) or below (-1).
+    ``sides`` tells of each point of a mechanism whose height an unknown changes whether it is
+    proved to be above the x axis (1) or below (-1).
     """
 
     value: Fraction
@@ -42,7 +45,9 @@ class PathPoint:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """The pose to which a state goes at a critical value: its unknowns at that value itself, and ``sides`` as above."""
+    """The pose to which a state goes at a critical value: its unknowns at that value itself, and
+    ``sides`` as above.
+    """
 
     angles: tuple[Enclosure, ...]
     reals: tuple[Enclosure, ...] = ()
@@ -63,17 +68,20 @@ class PathEnd:
 
     Attributes
     ----------
-    at : the critical value or the window's edge; of springs with free lengths an enclosure of the critical value.
+    at : the critical value or the window's edge; of springs with free lengths an enclosure of the
+        critical value.
     last : the last point of the path, close to ``at``.
-    meeting : of the solutions on the path's side, the Morse indices (numbers of negative eigenvalues) of those that
-        meet there, the path's own included; without a potential 0 for a stable one, and 1 for another.
+    meeting : of the solutions on the path's side, the Morse indices (numbers of negative
+        eigenvalues) of those that meet there, the path's own included; without a potential 0 for a
+        stable one, and 1 for another.
     leaving : the same for those into which they go on beyond.
     energy : of the pose in which the path ends, at ``at`` itself; None where there is no target.
-    target : the stable pose to which the mechanism goes, at ``at`` itself; None at the window's edge, and where the
-        energy, of one value for each pose, does not tell it: under a moment it may turn for ever.
+    target : the stable pose to which the mechanism goes, at ``at`` itself; None at the window's
+        edge, and where the energy, of one value for each pose, does not tell it: under a moment it
+        may turn for ever.
     target_energy : its energy, at ``at`` itself.
-    among : whether it is proved that the pose vanishes together with one or more of the others in ``meeting``, and
-        not with which of them.
+    among : whether it is proved that the pose vanishes together with one or more of the others in
+        ``meeting``, and not with which of them.
     """
 
     fate: Fate
@@ -95,8 +103,8 @@ class PosePath:
     ----------
     number : of the pose at the start, counted from 1 in the order of ``ptmcad solve``.
     points : in increasing order of the axis, the start among them.
-    upright : whether all moving points of the mechanism are proved to be above the x axis (of the paper's, y3 > 0 and
-        y4 > 0) for all values between the first and the last point.
+    upright : whether all moving points of the mechanism are proved to be above the x axis (of the
+        paper's, y3 > 0 and y4 > 0) for all values between the first and the last point.
     reverse : whether all are proved to be below it.
     """
 
@@ -117,7 +125,9 @@ class PosePath:
         ends: tuple[PathEnd, PathEnd],
         sides: Iterable[Sequence[int]],
     ) -> PosePath:
-        """A path from its points and ends, and the sides of moving points: 1 above the x axis, -1 below, else 0."""
+        """A path from its points and ends, and the sides of moving points: 1 above the x axis, -1
+        below, else 0.
+        """
         own = list(map(set, sides))
         upright, reverse = (all(here == {of} for here in own) for of in (1, -1))
         return cls(number, start, tuple(points), *ends, upright, reverse)
@@ -130,15 +140,16 @@ class PosePath:
 @with_methods
 @dataclass(frozen=True, slots=True)
 class PosePaths:
-    """The paths of stable poses on a line; of all solutions where nothing says what a stable one is.
+    """The paths of stable poses on a line; of all solutions where nothing says what a stable one
+    is.
 
     Attributes
     ----------
-    joined : whether the points are solutions that were followed in floating point from one to the next, as those of
-        springs with free lengths are: each point is proved, and nothing between them; ``upright`` and ``reverse`` are
-        said of the points alone.
-    moved : the unknowns on which a moment or a force works somewhere on the line, so that no energy tells where a pose
-        goes that vanishes.
+    joined : whether the points are solutions that were followed in floating point from one to the
+        next, as those of springs with free lengths are: each point is proved, and nothing between
+        them; ``upright`` and ``reverse`` are said of the points alone.
+    moved : the unknowns on which a moment or a force works somewhere on the line, so that no energy
+        tells where a pose goes that vanishes.
     """
 
     name: str

@@ -1,6 +1,7 @@
 """Steps of a plan that both engines have.
 
-Guarantee: each saving that is named is made in the computation that the plan accompanies, or said to be switched off.
+Guarantee: each saving that is named is made in the computation that the plan accompanies, or said
+to be switched off.
 """
 
 from __future__ import annotations
@@ -27,7 +28,9 @@ def saving_step(name: str, without: frozenset[str], what: str = "", why: str = "
     what, why : in place of the saving's general words.
     """
     saving = BY_NAME[name]
-    return PlanStep(what or saving.what, name in without, KEPT if name in without else why or saving.why, name)
+    return PlanStep(
+        what or saving.what, name in without, KEPT if name in without else why or saving.why, name
+    )
 
 
 def own_steps(steps: Iterable[PlanStep]) -> list[PlanStep]:
@@ -45,13 +48,27 @@ def zero_parameters(slice: Slice) -> list[str]:
 
 
 def zero_terms(names: Sequence[str]) -> list[PlanStep]:
-    """The step that says so where parameters are zero: nothing is left of them once numbers are put in."""
-    return [PlanStep("terms of " + ", ".join(names), False, "they are zero on this slice")] if names else []
+    """The step that says so where parameters are zero: nothing is left of them once numbers are put
+    in.
+    """
+    return (
+        [PlanStep("terms of " + ", ".join(names), False, "they are zero on this slice")]
+        if names
+        else []
+    )
 
 
 def half_step(what: str, change: Involution | None, slice: Slice) -> list[PlanStep]:
-    """The step that says so where one half of the window was enough, as an involution takes the window to itself."""
+    """The step that says so where one half of the window was enough, as an involution takes the
+    window to itself.
+    """
     if change is None:
         return []
     moves = change.text(tuple(slice.model.unknowns), slice.axis_names)
-    return [PlanStep(f"{what} one half of the window", False, f"its solutions are those of the other half, by {moves}")]
+    return [
+        PlanStep(
+            f"{what} one half of the window",
+            False,
+            f"its solutions are those of the other half, by {moves}",
+        )
+    ]

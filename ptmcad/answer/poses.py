@@ -1,7 +1,8 @@
 """The solutions at one rational point: equilibria with everything that a designer asks of a pose.
 
-Guarantee: all real equilibria are there unless the status is UNDECIDED; every number is exact or an `Enclosure`. One
-that holds zero is of a number that is zero or too small to be distinguished from it.
+Guarantee: all real equilibria are there unless the status is UNDECIDED; every number is exact or an
+`Enclosure`. One that holds zero is of a number that is zero or too small to be distinguished from
+it.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ Vector = tuple[Enclosure, Enclosure]
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """A spring in a pose: ``name`` of its stiffness, nodes ``start`` and ``end``; ``force`` is its tension, the slope
-    of its energy by its length: negative when the spring is pushed."""
+    """A spring in a pose: ``name`` of its stiffness, nodes ``start`` and ``end``; ``force`` is its
+    tension, the slope of its energy by its length: negative when the spring is pushed."""
 
     name: str
     start: str
@@ -36,10 +37,12 @@ class Spring:
 
 @dataclass(frozen=True, slots=True)
 class TorsionSpring:
-    """A torsion spring in a pose, by the ``name`` of its angle; its energy is stiffness * (1 - cos(deflection)).
+    """A torsion spring in a pose, by the ``name`` of its angle; its energy is
+    stiffness * (1 - cos(deflection)).
 
-    ``deflection`` = angle - rest in radians, in (-pi, pi], and the same in ``degrees``, exact when rational;
-    ``moment`` = stiffness * sin(deflection), the energy's derivative: positive where it turns back what exceeds rest.
+    ``deflection`` = angle - rest in radians, in (-pi, pi], and the same in ``degrees``, exact when
+    rational; ``moment`` = stiffness * sin(deflection), the energy's derivative: positive where it
+    turns back what exceeds rest.
     """
 
     name: str
@@ -49,7 +52,11 @@ class TorsionSpring:
     moment: Enclosure
 
 
-_OF_TORSION = (("deflection", "rad", "deflection"), ("deflection", "deg", "degrees"), ("moment", "", "moment"))
+_OF_TORSION = (
+    ("deflection", "rad", "deflection"),
+    ("deflection", "deg", "degrees"),
+    ("moment", "", "moment"),
+)
 """What is said of a torsion spring: the words, the unit, and the field."""
 _TORSION = "deflection: angle - rest; moment: k sin(deflection), positive where it turns back an angle beyond rest"
 
@@ -78,7 +85,8 @@ def springs_of(
     linear, angular = elastic
     return {
         "springs": tuple(
-            Spring(s.name, s.start, s.end, constant(s.stiffness), *stretch(s), constant(s.free)) for s in linear
+            Spring(s.name, s.start, s.end, constant(s.stiffness), *stretch(s), constant(s.free))
+            for s in linear
         ),
         "torsion": tuple(TorsionSpring(s.name, constant(s.stiffness), *turn(s)) for s in angular),
     }
@@ -94,17 +102,19 @@ class Pose:
     degrees : the same in degrees, exact when rational.
     cosines_sines : cosine and sine of each.
     reals : the unknowns on the line.
-    nodes : the mechanism's points to their coordinates, in the unit of the lengths; none of another system.
-    energy : of springs and loads, in force times length, without the work of constant moments; or a system's potential.
-        None where there is none: of equations, and where a moment depends on another unknown.
+    nodes : the mechanism's points to their coordinates, in the unit of the lengths; none of another
+        system.
+    energy : of springs and loads, in force times length, without the work of constant moments; or a
+        system's potential. None where there is none: of equations, and where a moment depends on
+        another unknown.
     eigenvalues : of the Hessian by the unknowns, the smallest first; none without a potential.
     multiplicity : of the solution in its fibre; 1 exactly when the Jacobian is nonsingular.
     index : number of negative eigenvalues when the Hessian is nonsingular, else None.
-    stable : whether the Hessian is positive definite, or a system's conditions hold; None when it is singular, nothing
-        says what stable is, or it is not decided.
+    stable : whether the Hessian is positive definite, or a system's conditions hold; None when it
+        is singular, nothing says what stable is, or it is not decided.
     flat : whether all points of a mechanism lie on the x axis, exactly.
-    further : by the names of their counts, whether it is stable and predicates of `ptmcad.question.counts` hold, as far
-        as that is decided.
+    further : by the names of their counts, whether it is stable and predicates of
+        `ptmcad.question.counts` hold, as far as that is decided.
     torsion : the torsion springs, in the description's order.
     """
 
@@ -125,8 +135,8 @@ class Pose:
 
     @property
     def admissible(self) -> bool | None:
-        """Whether it is stable with every spring longer than its free length, as cables demand; None when the springs
-        have no free lengths, or it is not decided."""
+        """Whether it is stable with every spring longer than its free length, as cables demand;
+        None when the springs have no free lengths, or it is not decided."""
         return self.further.get(Count.ADMISSIBLE.value)
 
     @property
@@ -141,7 +151,9 @@ class Pose:
 
     @property
     def has_predicates(self) -> bool:
-        """Whether it is asked if predicates hold: where some spring has a free length, or it is said that they do."""
+        """Whether it is asked if predicates hold: where some spring has a free length, or it is
+        said that they do.
+        """
         return bool(self.further) or any(spring.free_length for spring in self.springs)
 
     @property
@@ -150,8 +162,8 @@ class Pose:
         return self.has_predicates and self.admissible is not True
 
     def quantities(self, model: Model) -> tuple[tuple[NamedNumber, ...], ...]:
-        """Unknowns, coordinates of points that move, springs' lengths and forces, torsion springs' deflections and
-        moments; the same ones for all poses of a model."""
+        """Unknowns, coordinates of points that move, springs' lengths and forces, torsion springs'
+        deflections and moments; the same ones for all poses of a model."""
         moving = () if model.whole is None else model.whole.moving
         unknowns = [
             NamedNumber(name, unit, number)
@@ -191,7 +203,9 @@ class Pose:
     def known_energy(self) -> Enclosure:
         """The energy of a pose that has one; raises `ValueError` for others."""
         if self.energy is None:
-            raise ValueError("equations, and moments that depend on other unknowns, leave solutions without an energy")
+            raise ValueError(
+                "equations, and moments that depend on other unknowns, leave solutions without an energy"
+            )
         return self.energy
 
 
@@ -205,13 +219,14 @@ class Poses:
     model : the mechanism or system.
     parameters : every one of its parameters to its value.
     equilibria : stable ones first, then by energy.
-    status : EXACT; CERTIFIED with free lengths, none degenerate; ON_VARIETY when an equilibrium is degenerate;
-        UNDECIDED with those that are proved when there are infinitely many or some could not be separated; see
-        ``remark``.
-    digits : significant digits that each enclosure settles, but for one that holds zero; one more where it cannot be
-        told from halfway between two texts of so many.
+    status : EXACT; CERTIFIED with free lengths, none degenerate; ON_VARIETY when an equilibrium is
+        degenerate; UNDECIDED with those that are proved when there are infinitely many or some
+        could not be separated; see ``remark``.
+    digits : significant digits that each enclosure settles, but for one that holds zero; one more
+        where it cannot be told from halfway between two texts of so many.
     bits : the precision that was needed.
-    units : of ``length`` and ``force``, where the record declares them; nothing but text depends on them.
+    units : of ``length`` and ``force``, where the record declares them; nothing but text depends on
+        them.
     undecided : number of boxes of configurations in which there may be more equilibria.
     """
 

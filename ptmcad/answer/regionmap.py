@@ -1,6 +1,7 @@
 """A region map: the result of a classification, independent of the engine that made it.
 
-Guarantee: every number in it is exact or an enclosure; `RegionMap.from_json(result.to_json())` gives an equal map.
+Guarantee: every number in it is exact or an enclosure; `RegionMap.from_json(result.to_json())`
+gives an equal map.
 """
 
 from __future__ import annotations
@@ -40,10 +41,11 @@ class Status(Enum):
 
 
 class Kind(Enum):
-    """Why a curve belongs to the variety: see `ptmcad.exact.variety`. An AUXILIARY one does not: no count changes
-    across it.
+    """Why a curve belongs to the variety: see `ptmcad.exact.variety`. An AUXILIARY one does not: no
+    count changes across it.
 
-    AUXILIARY curves are there only when a saving that leaves them out was switched off (`ptmcad.question.savings`).
+    AUXILIARY curves are there only when a saving that leaves them out was switched off
+    (`ptmcad.question.savings`).
     """
 
     CRITICAL = "critical"
@@ -55,7 +57,8 @@ class Kind(Enum):
 class Continuum(Enum):
     """How many solutions there are on a curve of the variety on which they are not isolated.
 
-    PROVED: at each of its points in the slice's domain. POSSIBLE: complex ones are, of real ones it is not decided.
+    PROVED: at each of its points in the slice's domain. POSSIBLE: complex ones are, of real ones it
+    is not decided.
     """
 
     PROVED = "infinitely many"
@@ -73,16 +76,18 @@ class System:
 
     Attributes
     ----------
-    unknowns : cosine and sine of each angle, in this order, then the real unknowns; the boxes of `Solution` are in
-        these coordinates.
-    relations : polynomials that vanish on the circles; of a certified map those that vanish where closed loops are
-        closed, if springs have free lengths: solutions are the potential's critical points among such configurations.
+    unknowns : cosine and sine of each angle, in this order, then the real unknowns; the boxes of
+        `Solution` are in these coordinates.
+    relations : polynomials that vanish on the circles; of a certified map those that vanish where
+        closed loops are closed, if springs have free lengths: solutions are the potential's
+        critical points among such configurations.
     potential : energy, in units of force times length; empty where equations are given.
-    gradient : the equations, whose common zeros are meant: of a potential its derivatives by the unknowns.
+    gradient : the equations, whose common zeros are meant: of a potential its derivatives by the
+        unknowns.
     hessian : their derivatives by the unknowns.
     inequalities, stability : what is positive at solutions that count, and at stable ones.
-    moments : of a certified map, where some moment depends on another unknown than its own: what is taken off the
-        potential's derivatives by the unknowns, in their order; empty elsewhere.
+    moments : of a certified map, where some moment depends on another unknown than its own: what is
+        taken off the potential's derivatives by the unknowns, in their order; empty elsewhere.
     """
 
     unknowns: tuple[str, ...]
@@ -104,7 +109,8 @@ class Component:
     polynomial : primitive, in Z[x, y] for the axes in their order.
     left_out : empty when the decomposition uses the component, else the reason why it does not.
     separates : whether some wall on it separates two regions.
-    continuum : whether solutions on it are not isolated; None where they are, or where that is not known.
+    continuum : whether solutions on it are not isolated; None where they are, or where that is not
+        known.
     """
 
     polynomial: PlanePolynomial
@@ -116,7 +122,8 @@ class Component:
 
 @dataclass(frozen=True, slots=True)
 class CriticalValue:
-    """A critical value on the base axis: the only root of ``polynomial`` in [low, high]; ``origin``: where from.
+    """A critical value on the base axis: the only root of ``polynomial`` in [low, high];
+    ``origin``: where from.
 
     ``polynomial`` holds integer coefficients, constant term first.
     """
@@ -129,7 +136,9 @@ class CriticalValue:
 
 @dataclass(frozen=True, slots=True)
 class Wall:
-    """Over its stack, the graph of the ``root``-th real root (from 0, in the window) of a component."""
+    """Over its stack, the graph of the ``root``-th real root (from 0, in the window) of a
+    component.
+    """
 
     component: int
     root: int
@@ -137,7 +146,8 @@ class Wall:
 
 @dataclass(frozen=True, slots=True)
 class Stack:
-    """The cells over the open base interval between two consecutive critical values (or the window's edge).
+    """The cells over the open base interval between two consecutive critical values (or the
+    window's edge).
 
     Attributes
     ----------
@@ -161,8 +171,9 @@ class Solution:
     Attributes
     ----------
     center : rational, in the order of the system's unknowns.
-    signs : the signs of the Hessian's eigenvalues there, positive ones first, such as ``"+-"`` for a saddle; without a
-        potential those of the conditions for stability in their order, ``0`` where one is zero.
+    signs : the signs of the Hessian's eigenvalues there, positive ones first, such as ``"+-"`` for
+        a saddle; without a potential those of the conditions for stability in their order, ``0``
+        where one is zero.
     """
 
     center: tuple[Fraction, ...]
@@ -172,14 +183,15 @@ class Solution:
 
 @dataclass(frozen=True, slots=True)
 class Cell(Counted):
-    """An open cell with its rational sample point and the counts there, which hold in the whole cell.
+    """An open cell with its rational sample point and the counts there, which hold in the whole
+    cell.
 
-    In a certified map ``stack`` is None and the cell is the connected component of the cover's complement that holds
-    its sample; ``level`` is its number. ``further`` is empty in an exact map that is
-    by no predicate.
+    In a certified map ``stack`` is None and the cell is the connected component of the cover's
+    complement that holds its sample; ``level`` is its number. ``further`` is empty in an exact map
+    that is by no predicate.
 
-    ``solutions`` proves the counts: disjoint boxes, one around each of the real solutions at the sample. Empty when the
-    counts were proved in another way.
+    ``solutions`` proves the counts: disjoint boxes, one around each of the real solutions at the
+    sample. Empty when the counts were proved in another way.
     """
 
     stack: int | None
@@ -200,7 +212,10 @@ class Cell(Counted):
 def _counts_in_words(counts: Cell | Region) -> str:
     """What is known of the counts, in few words."""
     known = ((counts.stable, "stable"), (counts.total, "in all"))
-    return " of ".join(f"{number} {word}" for number, word in known if number is not None) or "of unknown count"
+    return (
+        " of ".join(f"{number} {word}" for number, word in known if number is not None)
+        or "of unknown count"
+    )
 
 
 class Merge(Enum):
@@ -217,11 +232,12 @@ class Adjacency:
 
     Attributes
     ----------
-    merge : PROVEN when the arc is an artefact of the decomposition; EQUAL_COUNT when it lies on the variety and the
-        counts on both sides are equal; SEPARATED when they differ.
-    component : the variety's component that contains the arc; None when the arc is an artefact of the decomposition.
-    segment : for cells of neighbouring stacks, (low, high, height): the open segment that joins them, free of all
-        curves but a vertical line.
+    merge : PROVEN when the arc is an artefact of the decomposition; EQUAL_COUNT when it lies on the
+        variety and the counts on both sides are equal; SEPARATED when they differ.
+    component : the variety's component that contains the arc; None when the arc is an artefact of
+        the decomposition.
+    segment : for cells of neighbouring stacks, (low, high, height): the open segment that joins
+        them, free of all curves but a vertical line.
     """
 
     first: int
@@ -232,7 +248,8 @@ class Adjacency:
 
 
 class Reason(Enum):
-    """Why two or more half-branches leave no gap between them where they reach the line over a critical value.
+    """Why two or more half-branches leave no gap between them where they reach the line over a
+    critical value.
 
     PAIR: there are two of them, and an even number runs into each inner point of the window.
     EDGE: there is a single one, so it ends on the window's edge.
@@ -245,7 +262,9 @@ class Reason(Enum):
 
 
 Segment = tuple[Fraction, Fraction, Fraction]
-"""(low, high, height): the segment from low to high along the base axis, at a height on the other axis."""
+"""(low, high, height): the segment from low to high along the base axis, at a height on the other
+axis.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -255,11 +274,11 @@ class NonAdjacency:
     Attributes
     ----------
     critical_value : number of the critical value between the stacks.
-    left, right : numbers of consecutive cells, from below. No cell of ``left`` is adjacent to a cell of ``right`` but,
-        where there is a segment ``below``, the first to the first, and where there is one ``above``, the last to the
-        last.
-    below, above : segments free of the curves between which these cells reach the critical value; None at the window's
-        edge.
+    left, right : numbers of consecutive cells, from below. No cell of ``left`` is adjacent to a
+        cell of ``right`` but, where there is a segment ``below``, the first to the first, and where
+        there is one ``above``, the last to the last.
+    below, above : segments free of the curves between which these cells reach the critical value;
+        None at the window's edge.
     """
 
     critical_value: int
@@ -276,7 +295,8 @@ class Region(Counted):
 
     Attributes
     ----------
-    stable, total, index : None where it varies within the region (the chosen count does not tell it).
+    stable, total, index : None where it varies within the region (the chosen count does not tell
+        it).
     area : certified lower and upper bound, in the product of the axes' units.
     cells : numbers of its cells.
     sample : a point of the region of small height.
@@ -299,8 +319,8 @@ class Region(Counted):
 class PlanStep:
     """One decision of the plan: what, whether it is done or left out, and why.
 
-    ``saving`` is the name in `ptmcad.question.savings` of the saving that was made when the step is left out, and
-    switched off when it is done; empty for other steps.
+    ``saving`` is the name in `ptmcad.question.savings` of the saving that was made when the step is
+    left out, and switched off when it is done; empty for other steps.
     """
 
     what: str
@@ -315,7 +335,8 @@ class PlanStep:
 @with_methods
 @dataclass(frozen=True, slots=True, repr=False, kw_only=True)
 class RegionMap:
-    """The answer to a `Slice`; what is not given is what a certified map or a partial one does not have.
+    """The answer to a `Slice`; what is not given is what a certified map or a partial one does not
+    have.
 
     Attributes
     ----------
@@ -324,8 +345,9 @@ class RegionMap:
     complex_solutions : number of complex solutions at a generic point.
     precision : largest number of bits that signs of Hessians and areas needed.
     timings : seconds by stage; not part of equality.
-    cover : what a certified map leaves open, None in an exact map. A certified map has no components, critical values
-        and stacks; its cells are the connected components of the cover's complement in the open window.
+    cover : what a certified map leaves open, None in an exact map. A certified map has no
+        components, critical values and stacks; its cells are the connected components of the
+        cover's complement in the open window.
     """
 
     slice: Slice
@@ -353,7 +375,11 @@ class RegionMap:
     @property
     def only_stable(self) -> bool:
         """Whether the stable solutions alone are known, as in certified maps that count these."""
-        return any(cell.total is None or len(cell.solutions) < cell.total for cell in self.cells if cell.solutions)
+        return any(
+            cell.total is None or len(cell.solutions) < cell.total
+            for cell in self.cells
+            if cell.solutions
+        )
 
     @property
     def continua(self) -> dict[int, Continuum]:
@@ -379,7 +405,11 @@ class RegionMap:
         def grid(self, columns: int = 200, rows: int | None = None) -> Grid: ...
 
         def field(
-            self, value: str = "energy", pose: str = "stable:1", columns: int = 400, rows: int | None = None
+            self,
+            value: str = "energy",
+            pose: str = "stable:1",
+            columns: int = 400,
+            rows: int | None = None,
         ) -> Field: ...
 
         def to_dataframe(self, what: str = "regions", **options: Any) -> DataFrame: ...
@@ -397,5 +427,11 @@ class RegionMap:
         def explore(self) -> Any: ...
 
         def plot(
-            self, ax: Any = None, style: Any = "default", *, samples: bool = False, dpi: int = 150, **options: Any
+            self,
+            ax: Any = None,
+            style: Any = "default",
+            *,
+            samples: bool = False,
+            dpi: int = 150,
+            **options: Any,
         ) -> Any: ...

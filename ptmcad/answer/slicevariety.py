@@ -1,7 +1,9 @@
-"""The discriminant variety of a slice as a result of its own, without a decomposition of the window.
+"""The discriminant variety of a slice as a result of its own, without a decomposition of the
+window.
 
-Guarantee: the components are those that the region map of the slice has; the elimination system has integer
-coefficients and, its solutions are the singular equilibria over every point at which its equations have a meaning.
+Guarantee: the components are those that the region map of the slice has; the elimination system has
+integer coefficients and, its solutions are the singular equilibria over every point at which its
+equations have a meaning.
 """
 
 from __future__ import annotations
@@ -25,11 +27,13 @@ class EliminationSystem:
 
     Attributes
     ----------
-    unknowns : cosine and sine of each angle, such as ``"cos_th1"``, the unknowns on the line, and inverses of what is
-        not zero: of inequalities that exclude too many solutions, and of what vanishes on BOUNDARY components.
+    unknowns : cosine and sine of each angle, such as ``"cos_th1"``, the unknowns on the line, and
+        inverses of what is not zero: of inequalities that exclude too many solutions, and of what
+        vanishes on BOUNDARY components.
     axes : the two axes' names.
-    polynomials : the equilibrium equations, cos^2 + sin^2 - 1 for each angle, each inverse times what it is the inverse
-        of less 1, and last the determinant of the Hessian; each a tuple of terms.
+    polynomials : the equilibrium equations, cos^2 + sin^2 - 1 for each angle, each inverse times
+        what it is the inverse of less 1, and last the determinant of the Hessian; each a tuple of
+        terms.
     """
 
     unknowns: tuple[str, ...]
@@ -53,7 +57,8 @@ class SliceVariety:
 
     Attributes
     ----------
-    components : irreducible curves, each with its kind; those that have no point in the window say so in ``left_out``.
+    components : irreducible curves, each with its kind; those that have no point in the window say
+        so in ``left_out``.
     complex_solutions : number of complex solutions at a generic point.
     system : what Q(x, y) elimination started from.
     versions : of the programs that computed it.
@@ -80,5 +85,7 @@ class SliceVariety:
         return self.text()
 
     def __repr__(self) -> str:
-        degrees = ", ".join(f"{c.kind.value} of degree {c.polynomial.total_degree}" for c in self.components[:8])
+        degrees = ", ".join(
+            f"{c.kind.value} of degree {c.polynomial.total_degree}" for c in self.components[:8]
+        )
         return f"<SliceVariety {self.slice.name}: {degrees}{', …' if len(self.components) > 8 else ''}>"

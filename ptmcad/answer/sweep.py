@@ -1,7 +1,8 @@
 """The members of a sweep and what was found of each, as data.
 
-Guarantee: parameters' values are exact texts; areas and widths are decimals that bound the exact numbers from outside.
-Seconds and attempts aside, a member is the same whatever the order, the number of processes or the interruptions.
+Guarantee: parameters' values are exact texts; areas and widths are decimals that bound the exact
+numbers from outside. Seconds and attempts aside, a member is the same whatever the order, the
+number of processes or the interruptions.
 """
 
 from __future__ import annotations
@@ -28,9 +29,12 @@ class State(Enum):
 
     DONE = "done"
     REFUSED = "refused"
-    """no engine takes these values, or a hypothesis fails; asking again would give the same answer"""
+    """no engine takes these values, or a hypothesis fails; asking again would give the same answer
+    """
     FAILED = "failed"
-    """its process died or a limit stopped it, as many times as was to be tried; another run tries again"""
+    """its process died or a limit stopped it, as many times as was to be tried; another run tries
+    again
+    """
     WAITING = "waiting"
 
 
@@ -44,7 +48,8 @@ class CountedArea:
 
     Attributes
     ----------
-    count : the count that distinguishes regions, as text: ``2``, or ``2-3-1`` of an index; ``?`` where it is not known.
+    count : the count that distinguishes regions, as text: ``2``, or ``2-3-1`` of an index; ``?``
+        where it is not known.
     """
 
     count: str
@@ -58,7 +63,8 @@ class Widest:
 
     Attributes
     ----------
-    width : of the range; None where there is none in the window, or the ``remark`` says why there is no answer.
+    width : of the range; None where there is none in the window, or the ``remark`` says why there
+        is no answer.
     places : the values of the other axis at which it is attained or approached.
     proof : in words where it is attained or approached (`ptmcad.answer.widths.Maximum.words`).
     attainment : of the width (`ptmcad.answer.widths.overall`); of an older index not decided.
@@ -101,7 +107,8 @@ class Member:
     error : why there is no result.
     file : the result's JSON, below the sweep's folder.
     digest : SHA-256 of that file.
-    seconds : that the member took, in the process that computed it; not part of equality, as attempts are not.
+    seconds : that the member took, in the process that computed it; not part of equality, as
+        attempts are not.
     """
 
     number: int
@@ -124,7 +131,8 @@ class Member:
 @with_methods
 @dataclass(frozen=True, slots=True, repr=False)
 class Sweep:
-    """A sweep that has run, wholly or in part; its members are read from the index in its folder when asked for.
+    """A sweep that has run, wholly or in part; its members are read from the index in its folder
+    when asked for.
 
     Attributes
     ----------
@@ -150,7 +158,9 @@ class Sweep:
         try:
             return self.table()
         except ConfigError:  # the folder is gone, or its index is damaged: a repr fails of nothing
-            return f"<Sweep {self.name}: {len(self)} members, which cannot be read in {self.folder}>"
+            return (
+                f"<Sweep {self.name}: {len(self)} members, which cannot be read in {self.folder}>"
+            )
 
     if TYPE_CHECKING:  # `ptmcad.methods` has them
 

@@ -1,7 +1,7 @@
 """The width of the operation range against the other axis of a slice, as data.
 
-Guarantee: what is proved of the largest width is what `Maximum.place` and `Maximum.attainment` say; `Maximum.words` is
-the one text of it.
+Guarantee: what is proved of the largest width is what `Maximum.place` and `Maximum.attainment` say;
+`Maximum.words` is the one text of it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,9 @@ class Place(Enum):
 
 
 class Attainment(Enum):
-    """Whether a supremum is a value: what is counted on the line itself decides, not a limit from beside it."""
+    """Whether a supremum is a value: what is counted on the line itself decides, not a limit from
+    beside it.
+    """
 
     ATTAINED = "attained"
     APPROACHED = "approached but not attained"
@@ -46,10 +48,11 @@ class Maximum:
     ----------
     at : encloses its place on the other axis; exact where the place is a rational number.
     width : encloses the width.
-    critical : the critical value of the other axis at which the place is, or which alone the enclosure of it holds.
+    critical : the critical value of the other axis at which the place is, or which alone the
+        enclosure of it holds.
     ends : the range's ends there, or their limits, where they are known exactly.
-    attained : whether the width is that of a range, of an interval at all values but ``exceptions`` and ``doubtful``
-        ones; None where that is not decided.
+    attained : whether the width is that of a range, of an interval at all values but ``exceptions``
+        and ``doubtful`` ones; None where that is not decided.
     exceptions : values in an interval, or at its ends, at which it is not attained.
     doubtful : those at which that is not decided.
     """
@@ -74,7 +77,9 @@ class Maximum:
     def words(self, over: str, digits: int = DIGITS) -> str:
         """Where on the other axis the width is attained, or approached."""
         if self.place is Place.PLATEAU:
-            low, high = (AlgebraicNumber.of(end).text(digits) for end in (self.at.low, self.at.high))
+            low, high = (
+                AlgebraicNumber.of(end).text(digits) for end in (self.at.low, self.at.high)
+            )
             parts = [f"attained on the interval {over} from {low} to {high}"]
             if self.exceptions:
                 parts.append(f"except at {_listed(over, self.exceptions, digits)}")
@@ -96,7 +101,9 @@ class Maximum:
 
 
 def overall(maxima: Sequence[Maximum]) -> Attainment:
-    """Whether the largest width is attained anywhere: where places differ, one that certainly has it decides."""
+    """Whether the largest width is attained anywhere: where places differ, one that certainly has
+    it decides.
+    """
     most = max(m.width.high for m in maxima)
     certain = [m.attainment for m in maxima if m.attained and m.width.low == most]
     if len({m.attainment for m in maxima}) == 1:
@@ -122,8 +129,9 @@ class WidthRow:
 @with_methods
 @dataclass(frozen=True, slots=True)
 class OperationWidths:
-    """The answer of ``--over``; ``maxima`` is empty when there is no operation range in the window, and has several
-    entries when places tie or could not be distinguished. ``working`` is the number of stable solutions in a range."""
+    """The answer of ``--over``; ``maxima`` is empty when there is no operation range in the window,
+    and has several entries when places tie or could not be distinguished. ``working`` is the number
+    of stable solutions in a range."""
 
     name: str
     along: Axis
@@ -152,8 +160,8 @@ class CertifiedRange:
 
 @dataclass(frozen=True, slots=True)
 class CertifiedRow:
-    """The operation ranges at one value of the other axis; ``undecided`` when counts of a part are not known there,
-    and ``remark`` says why there is no answer at all."""
+    """The operation ranges at one value of the other axis; ``undecided`` when counts of a part are
+    not known there, and ``remark`` says why there is no answer at all."""
 
     value: Fraction
     operation: tuple[CertifiedRange, ...]
@@ -163,7 +171,8 @@ class CertifiedRow:
 
 @dataclass(frozen=True, slots=True)
 class CertifiedWidths:
-    """The answer of ``--over`` with free lengths: a table, of which the widest row is no proof of the widest range.
+    """The answer of ``--over`` with free lengths: a table, of which the widest row is no proof of
+    the widest range.
 
     ``working`` is the number of stable solutions that there are in a range at least.
     """

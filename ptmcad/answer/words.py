@@ -1,4 +1,6 @@
-"""What solutions are called: equilibria of a mechanism and solutions of a system, minima, saddles and maxima."""
+"""What solutions are called: equilibria of a mechanism and solutions of a system, minima, saddles
+and maxima.
+"""
 
 from __future__ import annotations
 
@@ -65,7 +67,9 @@ def followed(model: Model) -> str:
 
 def stable_of(model: Model, stable: int | None, total: int) -> str:
     """The number of all solutions, after that of stable ones where these are known."""
-    return counted(model, total) if stable is None else f"{stable} stable of {counted(model, total)}"
+    return (
+        counted(model, total) if stable is None else f"{stable} stable of {counted(model, total)}"
+    )
 
 
 def assignments(
@@ -82,12 +86,16 @@ def index_words(entries: int) -> str:
     >>> index_words(3), index_words(4)
     ('minima-saddles-maxima', 'minima-saddles of index 1-saddles of index 2-maxima')
     """
-    saddles = ["saddles"] if entries == 3 else [f"saddles of index {k}" for k in range(1, entries - 1)]
+    saddles = (
+        ["saddles"] if entries == 3 else [f"saddles of index {k}" for k in range(1, entries - 1)]
+    )
     return "-".join(["minima", *saddles, "maxima"])
 
 
 def count_words(template: str, model: Model, number: int = 2) -> str:
-    """The words of a kind of count (`ptmcad.question.counts`) for a model; ``number`` is how many there are of it."""
+    """The words of a kind of count (`ptmcad.question.counts`) for a model; ``number`` is how many
+    there are of it.
+    """
     entries = index_words(len(model.unknowns) + 1).split("-")
     many = noun(model, number)
     return template.format(
@@ -100,7 +108,9 @@ def count_words(template: str, model: Model, number: int = 2) -> str:
 
 
 def untold(model: Model) -> str:
-    """Why it is not said which equilibria are stable; empty where it is, and of equations that say nothing of it."""
+    """Why it is not said which equilibria are stable; empty where it is, and of equations that say
+    nothing of it.
+    """
     what = foreign(model)
     return what and f"nothing says which are stable, as {what} depends on another unknown"
 
@@ -117,8 +127,8 @@ def of_what(model: Model, parameters: Mapping[str, Fraction]) -> str:
 
 
 def moments_work(model: Model, unknowns: Collection[str]) -> str:
-    """What the moments on some unknowns do, and the forces on those that are no angles, that is in no energy; empty
-    where there are none.
+    """What the moments on some unknowns do, and the forces on those that are no angles, that is in
+    no energy; empty where there are none.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
 """The boundaries of a map's regions as polylines, for other programs to draw.
 
-Guarantee: each curve is within `Boundary.distance` of its polyline, as `ptmcad.exact.cad.chains` proves, and the
-distance is at most the tolerance unless it is said to be more; a certified map's polylines are its cells' own outlines.
+Guarantee: each curve is within `Boundary.distance` of its polyline, as `ptmcad.exact.cad.chains`
+proves, and the distance is at most the tolerance unless it is said to be more; a certified map's
+polylines are its cells' own outlines.
 """
 
 from __future__ import annotations
@@ -47,7 +48,9 @@ def boundaries(result: RegionMap, tolerance: Any = TOLERANCE) -> tuple[Boundary,
     """
     wanted = share_for("tolerance", tolerance)
     if not result.cells:
-        raise ConfigError(f"the map {result.slice.name} was stopped before it had cells: it has no boundaries")
+        raise ConfigError(
+            f"the map {result.slice.name} was stopped before it had cells: it has no boundaries"
+        )
     with within_doubles(result.slice):
         if result.cover is not None:
             return tuple(_outlines(result, result.cover))
@@ -56,7 +59,9 @@ def boundaries(result: RegionMap, tolerance: Any = TOLERANCE) -> tuple[Boundary,
 
 @dataclass(frozen=True, slots=True)
 class _Polyline:
-    """A polyline; the regions are those below and above it, or before and behind a line across the base."""
+    """A polyline; the regions are those below and above it, or before and behind a line across the
+    base.
+    """
 
     points: tuple[Share, ...]
     component: int
@@ -82,7 +87,9 @@ def _pieces(result: RegionMap, tolerance: Fraction) -> Iterator[_Polyline]:
     yield from _lines(result, chained)
 
 
-def _joined(before: list[_Polyline], after: list[_Polyline]) -> tuple[list[_Polyline], list[_Polyline]]:
+def _joined(
+    before: list[_Polyline], after: list[_Polyline]
+) -> tuple[list[_Polyline], list[_Polyline]]:
     """Pieces that go on, where there is only one that they can be; with those that end."""
     joined, used = [], set()
     for piece in after:
@@ -96,7 +103,8 @@ def _joined(before: list[_Polyline], after: list[_Polyline]) -> tuple[list[_Poly
 
 
 def _together(left: _Polyline, right: _Polyline) -> _Polyline:
-    # at the seam each has a height of its own, and its distance is proved for chords that begin or end there
+    # at the seam each has a height of its own, and its distance is proved for chords that begin or
+    # end there
     points = (*left.points, *right.points[left.points[-1] == right.points[0] :])
     return _Polyline(points, right.component, right.regions, max(left.distance, right.distance))
 
@@ -118,15 +126,26 @@ def _lines(result: RegionMap, chained: tuple[tuple[WallPolyline, ...], ...]) -> 
             at, radius = (spans[k][0] + spans[k][1]) / 2, (spans[k][1] - spans[k][0]) / 2
             ends = [c.points[-1][1] for c in chained[k]], [c.points[0][1] for c in chained[k + 1]]
             cells = [[result.cells[n].region for n in result.stacks[k + j].cells] for j in (0, 1)]
-            walls = [(h, c.distance) for j in (0, 1) for h, c in zip(ends[j], chained[k + j], strict=True)]
+            walls = [
+                (h, c.distance)
+                for j in (0, 1)
+                for h, c in zip(ends[j], chained[k + j], strict=True)
+            ]
             for low, high in pairwise(_apart(walls)):
                 middle = (low + high) / 2
-                sides = [own[sum(h < middle for h in heights)] for own, heights in zip(cells, ends, strict=True)]
-                yield _Polyline(((at, low), (at, high)), component, (sides[0], sides[1]), radius, across=True)
+                sides = [
+                    own[sum(h < middle for h in heights)]
+                    for own, heights in zip(cells, ends, strict=True)
+                ]
+                yield _Polyline(
+                    ((at, low), (at, high)), component, (sides[0], sides[1]), radius, across=True
+                )
 
 
 def _apart(walls: list[tuple[Fraction, Fraction]]) -> list[Fraction]:
-    """The window's edges and the heights at which walls end between them, of those that may be one point only one."""
+    """The window's edges and the heights at which walls end between them, of those that may be one
+    point only one.
+    """
     found: list[tuple[Fraction, Fraction]] = [(Fraction(0), Fraction(0))]
     for height, distance in sorted(walls):
         if height - found[-1][0] > distance + found[-1][1]:
@@ -140,8 +159,13 @@ def _drawn(result: RegionMap, piece: _Polyline) -> Boundary:
     """In the axes' order and units."""
     base = result.base
     axes = (result.slice.axes[base], result.slice.axes[1 - base])
-    units = [[a.at(c) for c in column] for a, column in zip(axes, zip(*piece.points, strict=True), strict=True)]
-    points = np.array([[float(v) for v in column] for column in (units if base == 0 else units[::-1])]).T
+    units = [
+        [a.at(c) for c in column]
+        for a, column in zip(axes, zip(*piece.points, strict=True), strict=True)
+    ]
+    points = np.array(
+        [[float(v) for v in column] for column in (units if base == 0 else units[::-1])]
+    ).T
     # along x what is above is at the left hand; along y what is at smaller x is
     below, above = piece.regions
     swapped = (base == 0) == piece.across
@@ -167,5 +191,8 @@ def _outlines(result: RegionMap, cover: Cover) -> Iterator[Boundary]:
         region = result.cells[cells[number]].region
         for corners in polygons:
             closed = np.concatenate([corners, corners[:1]])
-            points = [[float(low + step * int(c)) for c in closed[:, k]] for k, (step, low) in enumerate(scale)]
+            points = [
+                [float(low + step * int(c)) for c in closed[:, k]]
+                for k, (step, low) in enumerate(scale)
+            ]
             yield Boundary(np.array(points).T, region, None)

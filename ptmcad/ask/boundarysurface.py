@@ -1,8 +1,10 @@
-"""The boundary surface of a family: which members it is made of, and which neighbours a sheet joins.
+"""The boundary surface of a family: which members it is made of, and which neighbours a sheet
+joins.
 
-Guarantee: neighbours are joined where no listed change lies between them and their boundaries have the same shape:
-over the same number of strips of the base the same walls part the same counts. Where that fails, members are put nearer
-and nearer to one another, and a gap of at most `NARROWEST` is left.
+Guarantee: neighbours are joined where no listed change lies between them and their boundaries have
+the same shape: over the same number of strips of the base the same walls part the same counts.
+Where that fails, members are put nearer and nearer to one another, and a gap of at most `NARROWEST`
+is left.
 """
 
 from __future__ import annotations
@@ -30,11 +32,15 @@ from ptmcad.text.parsing import share_for
 TOLERANCE = Fraction(1, 100)
 MAX_MEMBERS = 120
 NARROWEST = Fraction(1, 1000)
-"""Of the free parameter's range: the widest gap that is left where the boundary's shape changes and counts do not."""
+"""Of the free parameter's range: the widest gap that is left where the boundary's shape changes and
+counts do not.
+"""
 NEAR = Fraction(1, 10**6)
 """Of the range: how near to a change the last member is."""
 _TOO_FAR = 5
-"""Sheets that are off by so many times the tolerance are none, when no more members are to be computed."""
+"""Sheets that are off by so many times the tolerance are none, when no more members are to be
+computed.
+"""
 _SHARES = tuple((1 - cos(pi * k / 4)) / 2 for k in range(5))
 """Of a strip's width: where members are compared."""
 
@@ -47,22 +53,24 @@ def boundary_surface(
     timeout: float | None = None,
     progress: Progress | None = None,
 ) -> BoundarySurface:
-    """The surface between regions of different counts in the space of the two axes and the free parameter.
+    """The surface between regions of different counts in the space of the two axes and the free
+    parameter.
 
     Parameters
     ----------
-    found : of a family whose changes are known; its members are computed again, with as many further ones as it takes.
-    tolerance : members are added until the boundary of one halfway between neighbours is this near to the sheet between
-        them, as a share of the window.
-    max_members : the most members that are computed; what is left then, `BoundarySurface.deviation` says.
+    found : of a family whose changes are known; its members are computed again, with as many
+        further ones as it takes.
+    tolerance : members are added until the boundary of one halfway between neighbours is this near
+        to the sheet between them, as a share of the window.
+    max_members : the most members that are computed; what is left then, `BoundarySurface.deviation`
+        says.
     timeout : seconds after which `LimitReached` is raised.
     progress : called as progress(stage, done, total).
 
     Raises
     ------
-    ConfigError
-        When the family's changes are not known, for a family that the exact engine does not take, and for a tolerance
-        that is not between 0 and 1.
+    ConfigError When the family's changes are not known, for a family that the exact engine does not
+        take, and for a tolerance that is not between 0 and 1.
     """
     share = share_for("tolerance", tolerance)
     if max_members < 2:
@@ -84,7 +92,8 @@ def surface_of(
     max_members: int = MAX_MEMBERS,
     options: Options = DEFAULTS,
 ) -> BoundarySurface:
-    """The boundary surface of a family of which it is known what its members have in common, and its changes.
+    """The boundary surface of a family of which it is known what its members have in common, and
+    its changes.
 
     Parameters
     ----------
@@ -124,9 +133,11 @@ class _Gap(NamedTuple):
     Attributes
     ----------
     slab : that interval.
-    places : of the three members in it, from 0 to 1; values are the denser the nearer they are to its ends.
+    places : of the three members in it, from 0 to 1; values are the denser the nearer they are to
+        its ends.
     low, middle, high : the values.
-    deviation : of the middle member from the sheet between the other two, infinite where there is none.
+    deviation : of the middle member from the sheet between the other two, infinite where there is
+        none.
     """
 
     slab: tuple[Fraction, Fraction]
@@ -153,10 +164,17 @@ class _SurfaceSearch:
     """
 
     def __init__(
-        self, common: Common, changes: Changes, tolerance: Fraction, max_members: int, options: Options
+        self,
+        common: Common,
+        changes: Changes,
+        tolerance: Fraction,
+        max_members: int,
+        options: Options,
     ) -> None:
         first = Members(common, options)
-        base = next((p.cut.variety.base for v in changes.between if (p := first.tried(v)) is not None), None)
+        base = next(
+            (p.cut.variety.base for v in changes.between if (p := first.tried(v)) is not None), None
+        )
         self.members = Members(common, options, base)
         self.tolerance, self.max_members = tolerance, max_members
         self.slabs = _slabs(changes, self.members)
@@ -197,7 +215,8 @@ class _SurfaceSearch:
         return found
 
     def _is_last(self, gap: _Gap) -> bool:
-        # where boundaries have the same shape, they come nearer and nearer, but for a jump at which their strips do
+        # where boundaries have the same shape, they come nearer and nearer, but for a jump at which
+        # their strips do
         narrowest = NARROWEST if gap.deviation == inf else NARROWEST / 16
         return gap.high - gap.low <= narrowest * self.width or len(self._known) >= self.max_members
 
@@ -224,7 +243,14 @@ class _SurfaceSearch:
         share = float((gap.high - gap.low) / self.width)
         heappush(heap, (-min(gap.deviation, share), gap.low, gap))
 
-    def _gap(self, slab: tuple[Fraction, Fraction], start: float, low: Fraction, end: float, high: Fraction) -> _Gap:
+    def _gap(
+        self,
+        slab: tuple[Fraction, Fraction],
+        start: float,
+        low: Fraction,
+        end: float,
+        high: Fraction,
+    ) -> _Gap:
         middle = (start + end) / 2
         value = _value(slab, middle, (low, high))
         return _Gap(slab, (start, middle, end), low, value, high, self._deviation(low, value, high))
@@ -242,7 +268,9 @@ class _SurfaceSearch:
         return found
 
     def _deviation(self, low: Fraction, middle: Fraction, high: Fraction) -> float:
-        """How far the middle member's boundary is from the sheet between the others, as a share of the window."""
+        """How far the middle member's boundary is from the sheet between the others, as a share of
+        the window.
+        """
         found = [self._boundary(value) for value in (low, middle, high)]
         if any(each is None or each.shape != (found[0] and found[0].shape) for each in found):
             return inf
@@ -258,8 +286,12 @@ class _SurfaceSearch:
         return float(most)
 
 
-def _value(slab: tuple[Fraction, Fraction], place: float, around: tuple[Fraction, Fraction]) -> Fraction:
-    """One with few digits near a place, between two others; denser at the slab's ends, where boundaries move fast."""
+def _value(
+    slab: tuple[Fraction, Fraction], place: float, around: tuple[Fraction, Fraction]
+) -> Fraction:
+    """One with few digits near a place, between two others; denser at the slab's ends, where
+    boundaries move fast.
+    """
     low, high = slab
     share = Fraction((1 - cos(pi * place)) / 2)
     value, near = low + (high - low) * share, (high - low) * min(share, 1 - share) / 2**6
@@ -276,7 +308,9 @@ def _place(slab: tuple[Fraction, Fraction], value: Fraction) -> float:
 
 
 def _slabs(changes: Changes, members: Members) -> list[tuple[Fraction, Fraction]]:
-    """The intervals between changes, from member to member, without the nearest surroundings of changes."""
+    """The intervals between changes, from member to member, without the nearest surroundings of
+    changes.
+    """
     free = changes.free
     near = NEAR * free.width
 
@@ -287,7 +321,15 @@ def _slabs(changes: Changes, members: Members) -> list[tuple[Fraction, Fraction]
     for change in changes:
         # of an enclosure the ends are members themselves
         exact = change.is_exact
-        highs.append(simplest_fraction(change.value.low - near, change.value.low) if exact else change.value.low)
-        lows.append(simplest_fraction(change.value.high, change.value.high + near) if exact else change.value.high)
+        highs.append(
+            simplest_fraction(change.value.low - near, change.value.low)
+            if exact
+            else change.value.low
+        )
+        lows.append(
+            simplest_fraction(change.value.high, change.value.high + near)
+            if exact
+            else change.value.high
+        )
     highs.append(end(free.high, changes.at_ends[1], free.high - near))
     return [slab for slab in zip(lows, highs, strict=True) if slab[0] < slab[1]]

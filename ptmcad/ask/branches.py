@@ -1,8 +1,10 @@
-"""Bifurcation diagrams: all solutions at many values of one axis, joined to branches between the critical values.
+"""Bifurcation diagrams: all solutions at many values of one axis, joined to branches between the
+critical values.
 
-Guarantee: critical values are those of `ptmcad.ask.ranges`, or the certified engine's with free lengths; the solutions
-at each value are all there are. Between two neighbouring values they are joined by nearness, each to one of the same
-Morse index; where that is ambiguous more values are tried in between. The joins are no claim.
+Guarantee: critical values are those of `ptmcad.ask.ranges`, or the certified engine's with free
+lengths; the solutions at each value are all there are. Between two neighbouring values they are
+joined by nearness, each to one of the same Morse index; where that is ambiguous more values are
+tried in between. The joins are no claim.
 """
 
 from __future__ import annotations
@@ -60,7 +62,8 @@ def branch_diagram(
     along, at : as for `ptmcad.ask.ranges.intervals`.
     names : as `ptmcad.ask.quantities.quantity` takes them.
     progress : called as progress("branches: interval", done, total).
-    line : `solutions_on_line` of the same slice and line, where other questions were asked of it before.
+    line : `solutions_on_line` of the same slice and line, where other questions were asked of it
+        before.
 
     Raises
     ------
@@ -80,7 +83,14 @@ def branch_diagram(
     shown, units = (q.name for q in asked), (unit_of(q, slice) for q in asked)
     undecided = tuple(line.undecided)
     return Branches(
-        slice.name, slice.model, slice.axes[varying], fixed, tuple(shown), tuple(units), tuple(branches), undecided
+        slice.name,
+        slice.model,
+        slice.axes[varying],
+        fixed,
+        tuple(shown),
+        tuple(units),
+        tuple(branches),
+        undecided,
     )
 
 
@@ -132,7 +142,11 @@ class SolutionsOnLine:
 
     def samples(self, low: Fraction, high: Fraction) -> list[Sample]:
         """Solutions at values in an interval, close enough to be joined."""
-        known = [s for value in values_between(low, high, SAMPLES, NEAR) if (s := self.at(value)) is not None]
+        known = [
+            s
+            for value in values_between(low, high, SAMPLES, NEAR)
+            if (s := self.at(value)) is not None
+        ]
         result = known[:1]
         for sample in known[1:]:
             result += [*self._between(result[-1], sample, HALVINGS), sample]
@@ -145,10 +159,16 @@ class SolutionsOnLine:
         middle = self.at(short((first.value + second.value) / 2, width))
         if middle is None:
             return []
-        return [*self._between(first, middle, depth - 1), middle, *self._between(middle, second, depth - 1)]
+        return [
+            *self._between(first, middle, depth - 1),
+            middle,
+            *self._between(middle, second, depth - 1),
+        ]
 
 
-def values_between(first: Fraction, last: Fraction, number: int, near: Iterable[Fraction]) -> list[Fraction]:
+def values_between(
+    first: Fraction, last: Fraction, number: int, near: Iterable[Fraction]
+) -> list[Fraction]:
     """Values on the way from the first to the last, closer to both, where branches turn.
 
     Parameters
@@ -172,7 +192,9 @@ def place_of(pose: Pose) -> _Place:
 
 
 def _pairs(first: Sample, second: Sample) -> tuple[dict[int, int], bool]:
-    """For the solutions at one value those at the next that are nearest, and whether no other comes near to that."""
+    """For the solutions at one value those at the next that are nearest, and whether no other comes
+    near to that.
+    """
     before, after = ([(p.index, p.stable, place_of(p)) for p in s.poses] for s in (first, second))
     distances = sorted(
         (sum((a - b) ** 2 for a, b in zip(p[2], q[2], strict=True)) ** 0.5, i, j)
@@ -185,7 +207,9 @@ def _pairs(first: Sample, second: Sample) -> tuple[dict[int, int], bool]:
     for distance, i, j in distances:
         if i not in pairs and j not in pairs.values():
             pairs[i], lengths[i] = j, distance
-    clear = all(lengths.get(i, 0.0) <= CLEAR * distance for distance, i, j in distances if pairs.get(i) != j)
+    clear = all(
+        lengths.get(i, 0.0) <= CLEAR * distance for distance, i, j in distances if pairs.get(i) != j
+    )
     return pairs, clear and len(pairs) == len(before) == len(after)
 
 

@@ -1,7 +1,8 @@
-"""The values at which the arrangement of a family's regions changes: by elimination, or else by bisection.
+"""The values at which the arrangement of a family's regions changes: by elimination, or else by
+bisection.
 
-Guarantee: with elimination every change is exact and none is missing. With bisection each change is enclosed between
-members of different arrangements, and it is said that others may be missing.
+Guarantee: with elimination every change is exact and none is missing. With bisection each change is
+enclosed between members of different arrangements, and it is said that others may be missing.
 """
 
 from __future__ import annotations
@@ -30,7 +31,13 @@ from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.config import Family, family_from
 from ptmcad.question.shipped import RecordSource
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, simplest_fraction, to_fraction
+from ptmcad.text.flint_numbers import (
+    from_fraction,
+    interval_of,
+    simplest_between,
+    simplest_fraction,
+    to_fraction,
+)
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import share_for
 
@@ -45,7 +52,8 @@ def changes(
     timeout: float | None = None,
     progress: Progress | None = None,
 ) -> Changes:
-    """The values of a family's free parameter at which the arrangement of the members' regions changes.
+    """The values of a family's free parameter at which the arrangement of the members' regions
+    changes.
 
     Parameters
     ----------
@@ -56,10 +64,10 @@ def changes(
 
     Raises
     ------
-    ConfigError
-        For anything wrong with the record or the tolerance, and for a family that the exact engine does not take.
-    HypothesisError
-        When members are degenerate, have infinitely many equilibria, or leave the domain of the geometry.
+    ConfigError For anything wrong with the record or the tolerance, and for a family that the exact
+        engine does not take.
+    HypothesisError When members are degenerate, have infinitely many equilibria, or leave the
+        domain of the geometry.
 
     >>> import ptmcad
     >>> found = ptmcad.changes({"system": {"unknowns": {"u": "real"}, "equations": ["u^2 - c + a^2 + b^2"]},
@@ -77,7 +85,9 @@ def changes(
     return changes_of(in_common(asked, options), share, options)
 
 
-def changes_of(common: Common, tolerance: Fraction = TOLERANCE, options: Options = DEFAULTS) -> Changes:
+def changes_of(
+    common: Common, tolerance: Fraction = TOLERANCE, options: Options = DEFAULTS
+) -> Changes:
     """The changes of a family of which it is known what its members have in common.
 
     Raises
@@ -86,7 +96,9 @@ def changes_of(common: Common, tolerance: Fraction = TOLERANCE, options: Options
         As `changes` does.
     """
     asked = common.family
-    certified = [value for value in asked.values if is_certified(asked.member(value), options.engine)]
+    certified = [
+        value for value in asked.values if is_certified(asked.member(value), options.engine)
+    ]
     if certified:
         raise ConfigError(
             f"where the arrangement changes is known from exact members, and that at {asked.free.name} = "
@@ -132,16 +144,20 @@ class Members:
 
         Raises
         ------
-        HypothesisError
-            When the member is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
+        HypothesisError When the member is degenerate, has infinitely many equilibria, or leaves the
+            domain of the geometry.
         """
         if value not in self._known:
             variety = self.common.variety
             known = None if variety is None else partial(variety.at, from_fraction(value))
             try:
-                self._known[value] = picture_of(self.family.member(value), known, self.check, self.base)
+                self._known[value] = picture_of(
+                    self.family.member(value), known, self.check, self.base
+                )
             except HypothesisError as error:
-                raise type(error)(f"{error} (at {self.family.free.name} = {text_of(value)})") from error
+                raise type(error)(
+                    f"{error} (at {self.family.free.name} = {text_of(value)})"
+                ) from error
         return self._known[value]
 
     def tried(self, value: Fraction) -> Picture | None:
@@ -188,11 +204,19 @@ def _compared(members: Members, critical: Sequence[RealRoot], tolerance: Fractio
             kept.append(k + 1)
         else:
             others.append(number)
-    spans = [(to_fraction(lows[k]), to_fraction(highs[m - 1])) for k, m in pairwise((*kept, len(lows)))]
+    spans = [
+        (to_fraction(lows[k]), to_fraction(highs[m - 1])) for k, m in pairwise((*kept, len(lows)))
+    ]
     between = [_typical(members, *_middle(*span)) for span in spans]
     if not all(_same(picture, pictures[k]) for (_, picture), k in zip(between, kept, strict=True)):
         raise ArithmeticError("members between two critical values have different arrangements")
-    where = "" if not roots else " but at one value" if len(roots) == 1 else f" but at {len(roots)} values"
+    where = (
+        ""
+        if not roots
+        else " but at one value"
+        if len(roots) == 1
+        else f" but at {len(roots)} values"
+    )
     return Changes(
         free,
         tuple(found),
@@ -236,14 +260,20 @@ def _at_ends(members: Members, tolerance: Fraction) -> tuple[tuple[str, ...], tu
     found: list[tuple[str, ...]] = []
     for end, low, high in places:
         there, beside = members.tried(end), members.tried(simplest_fraction(low, high))
-        found.append(() if there is None or beside is None or _same(beside, there) else described(beside, there))
+        found.append(
+            ()
+            if there is None or beside is None or _same(beside, there)
+            else described(beside, there)
+        )
     return found[0], found[1]
 
 
 def _near(
     members: Members, root: RealRoot, around: tuple[fmpq, fmpq], tolerance: Fraction
 ) -> tuple[Fraction, Fraction]:
-    """Simple values on both sides of a root, as near as the tolerance says, between the neighbouring ones."""
+    """Simple values on both sides of a root, as near as the tolerance says, between the
+    neighbouring ones.
+    """
     free = members.family.free
     gap = from_fraction(tolerance * free.width)
     below = simplest_between(max(around[0], root.low - gap), root.low)
@@ -252,9 +282,13 @@ def _near(
 
 
 def _words(
-    members: Members, near: tuple[Fraction, Fraction], sides: tuple[Picture, Picture], value: Fraction | None
+    members: Members,
+    near: tuple[Fraction, Fraction],
+    sides: tuple[Picture, Picture],
+    value: Fraction | None,
 ) -> tuple[str, ...]:
-    """What changes at a critical value; nothing where the arrangement is the same on both sides and, if known, there.
+    """What changes at a critical value; nothing where the arrangement is the same on both sides
+    and, if known, there.
 
     Parameters
     ----------
@@ -292,12 +326,22 @@ def _bisected(members: Members, tolerance: Fraction, reason: str) -> Changes:
     arrangements = tuple(members.at(value).arrangement for value in between)
     words = f"found by sampling {len(values)} members, not proved complete: {reason}"
     return Changes(
-        free, tuple(found), tuple(between), arrangements, (), _at_ends(members, tolerance), False, words, tolerance
+        free,
+        tuple(found),
+        tuple(between),
+        arrangements,
+        (),
+        _at_ends(members, tolerance),
+        False,
+        words,
+        tolerance,
     )
 
 
 def _simple_alike(members: Members, low: Fraction, high: Fraction) -> Fraction:
-    """A value of the closed interval with the arrangement that the samples in it have, the lower end being one."""
+    """A value of the closed interval with the arrangement that the samples in it have, the lower
+    end being one.
+    """
     if low < high:
         value = simplest_fraction(low, high)
         picture = members.tried(value)
@@ -306,8 +350,12 @@ def _simple_alike(members: Members, low: Fraction, high: Fraction) -> Fraction:
     return low
 
 
-def _brackets(members: Members, values: Sequence[Fraction], width: Fraction) -> Iterator[tuple[Fraction, Fraction]]:
-    """Neighbouring values of different arrangements no further apart than the width, in increasing order."""
+def _brackets(
+    members: Members, values: Sequence[Fraction], width: Fraction
+) -> Iterator[tuple[Fraction, Fraction]]:
+    """Neighbouring values of different arrangements no further apart than the width, in increasing
+    order.
+    """
     open_ = [pair for pair in pairwise(values) if not _same(*map(members.at, pair))][::-1]
     while open_:
         low, high = open_.pop()

@@ -1,7 +1,7 @@
 """What changes from one arrangement of regions to another, in words.
 
-Guarantee: none: regions of two members are taken for the same where a sample of the one lies in the other and the
-counts agree. Near enough to the change they are; no decision rests on it.
+Guarantee: none: regions of two members are taken for the same where a sample of the one lies in the
+other and the counts agree. Near enough to the change they are; no decision rests on it.
 """
 
 from __future__ import annotations
@@ -66,7 +66,9 @@ def _births(before: Picture, after: Picture, groups: list[_Same]) -> Iterator[st
     for table, one, several in ((appear, "appears", "appear"), (vanish, "vanishes", "vanish")):
         for key, number in table.items():
             of = _of(before, key)
-            yield f"a region of {of} {one}" if number == 1 else f"{number} regions of {of} {several}"
+            yield (
+                f"a region of {of} {one}" if number == 1 else f"{number} regions of {of} {several}"
+            )
 
 
 def _sides(before: Picture, after: Picture, kept: dict[int, int]) -> Iterator[str]:
@@ -74,7 +76,9 @@ def _sides(before: Picture, after: Picture, kept: dict[int, int]) -> Iterator[st
     for a, b in kept.items():
         key = before.arrangement.keys[a]
         name = f"{_article(before, key)} region of {_of(before, key)}"
-        changes = list(zip(SIDES, before.arrangement.touched(a), after.arrangement.touched(b), strict=True))
+        changes = list(
+            zip(SIDES, before.arrangement.touched(a), after.arrangement.touched(b), strict=True)
+        )
         for side, earlier, later in changes:
             if not earlier and later:
                 yield f"{name} reaches {_side(before, side)}"
@@ -84,10 +88,17 @@ def _sides(before: Picture, after: Picture, kept: dict[int, int]) -> Iterator[st
 
 def _contacts(before: Picture, after: Picture, kept: dict[int, int]) -> Iterator[str]:
     """Which regions become neighbours, or are neighbours no more."""
-    earlier = {tuple(sorted((kept[a], kept[b]))) for a, b in before.arrangement.neighbours if {a, b} <= kept.keys()}
+    earlier = {
+        tuple(sorted((kept[a], kept[b])))
+        for a, b in before.arrangement.neighbours
+        if {a, b} <= kept.keys()
+    }
     stay = set(kept.values())
     later = {pair for pair in after.arrangement.neighbours if set(pair) <= stay}
-    for pairs, verb in ((later - earlier, "become neighbours"), (earlier - later, "are neighbours no more")):
+    for pairs, verb in (
+        (later - earlier, "become neighbours"),
+        (earlier - later, "are neighbours no more"),
+    ):
         for pair in sorted(pairs):
             first, second = (_of(after, after.arrangement.keys[n]) for n in pair)
             yield f"regions of {first} and of {second} {verb}"

@@ -1,8 +1,9 @@
 """What a record asks and what that will cost, before anything is computed.
 
-Guarantee: what an engine would refuse without computing is refused here, in the same words. The number of complex
-solutions is exact at the point that is named, and so at all points but those of some curves. Where the degrees of the
-equations allow so many that counting them would itself take long, they are not counted.
+Guarantee: what an engine would refuse without computing is refused here, in the same words. The
+number of complex solutions is exact at the point that is named, and so at all points but those of
+some curves. Where the degrees of the equations allow so many that counting them would itself take
+long, they are not counted.
 """
 
 from __future__ import annotations
@@ -18,7 +19,14 @@ from ptmcad.algebra.bases import plan_text
 from ptmcad.algebra.fibre import WorkLimit
 from ptmcad.ask.classification import check_flat_loops, check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
-from ptmcad.ask.forecast import QUICK, Forecast, curve_text, forecast, seconds_to_discriminant, way_text
+from ptmcad.ask.forecast import (
+    QUICK,
+    Forecast,
+    curve_text,
+    forecast,
+    seconds_to_discriminant,
+    way_text,
+)
 from ptmcad.ask.forecast import cost_text as in_figures
 from ptmcad.ask.quantities import open_chain
 from ptmcad.ask.timed import returns_within
@@ -41,7 +49,9 @@ MAX_UNKNOWNS = 4
 MAX_SHOWN = 60
 """Characters of a parameter's value."""
 MAX_PROVED = 8
-"""Complex solutions: of more it is not proved that the slice is degenerate, which takes seconds and more."""
+"""Complex solutions: of more it is not proved that the slice is degenerate, which takes seconds and
+more.
+"""
 MAX_SECONDS = 4.0
 """For that proof."""
 MAX_SIZING = 1.5
@@ -60,9 +70,13 @@ MAX_COUNTED = 40
 MAX_BASIS = 100, 400, 4_000
 """Polynomials, terms of each and bits of a number in a basis of the equations at a point."""
 _UNCOUNTED = "not known: try single points first, by ptmcad solve"
-_UNSIZED = "not known: the critical curve's size is not told at once; try --timeout, or counts along lines"
+_UNSIZED = (
+    "not known: the critical curve's size is not told at once; try --timeout, or counts along lines"
+)
 _LONG = 16
-"""Complex solutions: with more of them the exact map takes so long that whoever asks for it is told."""
+"""Complex solutions: with more of them the exact map takes so long that whoever asks for it is
+told.
+"""
 _BY_INTERVALS = "; --engine certified encloses the map"
 
 
@@ -72,12 +86,14 @@ class CheckedSlice:
 
     Attributes
     ----------
-    complex_solutions : at ``sample``; None where they were not counted, or where there are infinitely many there.
+    complex_solutions : at ``sample``; None where they were not counted, or where there are
+        infinitely many there.
     bound : of their number by Bezout's theorem, where they were not counted because of it.
     engine : the one that ``--engine auto`` takes.
     cost : in words.
     forecast : what the exact map is predicted to take; None where the curve's size is not known.
-    bases : how Groebner bases at points are computed, in words; empty where they are small by the bound.
+    bases : how Groebner bases at points are computed, in words; empty where they are small by the
+        bound.
     """
 
     slice: Slice
@@ -95,7 +111,8 @@ def check(slice: Slice, sized: bool = True) -> CheckedSlice:
 
     Parameters
     ----------
-    sized : whether the size of the curve is asked for, which takes longer than all else, where solutions are not many.
+    sized : whether the size of the curve is asked for, which takes longer than all else, where
+        solutions are not many.
 
     Raises
     ------
@@ -103,9 +120,9 @@ def check(slice: Slice, sized: bool = True) -> CheckedSlice:
         When no engine takes the model.
     GeometryError
         When a parameter is not in the whole window what it needs to be, or that is not proved.
-    DegenerateSliceError, InfiniteSolutionsError
-        When some solution is multiple at every point of the slice, there are infinitely many, or there is none that
-        counts; with a point that shows it. Where a proof would take long, the cost says what was seen.
+    DegenerateSliceError, InfiniteSolutionsError When some solution is multiple at every point of
+        the slice, there are infinitely many, or there is none that counts; with a point that shows
+        it. Where a proof would take long, the cost says what was seen.
     """
     slice = proved(slice)
     # thirds and sevenths of the window: rarely on a curve that a person has in mind
@@ -120,11 +137,15 @@ def check(slice: Slice, sized: bool = True) -> CheckedSlice:
             elif not returns_within(MAX_EXPANDING, _check_certified, slice):
                 cost = _LARGE
         except ConfigError as error:
-            from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS  # loaded by what refuses
+            from ptmcad.certified.plain.problem import (
+                MAX_UNKNOWNS_AT_POINTS,
+            )  # loaded by what refuses
 
             if error.key != "unknowns" or len(slice.model.unknowns) > MAX_UNKNOWNS_AT_POINTS:
                 raise
-            cost = f"no map can be made, since {error.message}: ask for single points, by ptmcad solve"
+            cost = (
+                f"no map can be made, since {error.message}: ask for single points, by ptmcad solve"
+            )
         return CheckedSlice(slice, at, None, "certified", f"{cost}; {flat}" if flat else cost)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return CheckedSlice(slice, at, None, "exact", _UNCOUNTED)
@@ -146,8 +167,12 @@ _LARGE = (
 
 
 def _is_large(slice: Slice) -> bool:
-    """Whether the equations may take more than some tenths of a second to be written out as functions of the axes."""
-    longest = max((len(e.numerator) + len(e.denominator) for e in slice.parameters.values()), default=1)
+    """Whether the equations may take more than some tenths of a second to be written out as
+    functions of the axes.
+    """
+    longest = max(
+        (len(e.numerator) + len(e.denominator) for e in slice.parameters.values()), default=1
+    )
     return slice.model != ptm() and terms_of(slice.model) * longest > MAX_QUICK
 
 
@@ -158,7 +183,9 @@ def _check_certified(slice: Slice) -> None:
 
 
 def _check_bounded(slice: Slice) -> None:
-    """Refuse free lengths where no bounds of lengths that are unknown are known, as the certified engine does."""
+    """Refuse free lengths where no bounds of lengths that are unknown are known, as the certified
+    engine does.
+    """
     if slice.model == ptm() or not slice.model.reals:
         return
     from ptmcad.certified.plain.bounds import ranges
@@ -169,8 +196,12 @@ def _check_bounded(slice: Slice) -> None:
         ranges(branch, slice.axes)
 
 
-def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tuple[CheckedSlice, int]:
-    """The check of a slice that the exact engine takes, and the bound for its solutions by Bezout's theorem."""
+def _counted(
+    slice: Slice, sample: tuple[Fraction, Fraction], sized: bool
+) -> tuple[CheckedSlice, int]:
+    """The check of a slice that the exact engine takes, and the bound for its solutions by Bezout's
+    theorem.
+    """
     problem = problem_of(slice)
     values = problem.on.values((from_fraction(sample[0]), from_fraction(sample[1])))
     degree, bound = degree_bound(problem.system, values)
@@ -188,10 +219,14 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tu
             refused = f"not known: {seen}; a slice where that is so everywhere is refused"
             return CheckedSlice(slice, sample, found, "exact", refused), bound
         if not returns_within(MAX_SECONDS, _prove, slice):
-            late = "; that it is so everywhere, where the slice is refused, was not proved in the time"
+            late = (
+                "; that it is so everywhere, where the slice is refused, was not proved in the time"
+            )
             return CheckedSlice(slice, sample, found, "exact", f"not known: {seen}{late}"), bound
     if not found:
-        return CheckedSlice(slice, sample, None, "exact", f"not known: at the sample {doubt}"), bound
+        return CheckedSlice(
+            slice, sample, None, "exact", f"not known: at the sample {doubt}"
+        ), bound
     foretold = _foretold(problem, found) if not doubt and (sized or found > _LONG) else None
     words = _UNSIZED if foretold is None else in_figures(foretold)
     far = found > _LONG if foretold is None else not foretold.reachable
@@ -202,7 +237,9 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> tu
 
 
 def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
-    """The forecast for a slice with simple solutions; None where the curve is too large to tell its size at once."""
+    """The forecast for a slice with simple solutions; None where the curve is too large to tell its
+    size at once.
+    """
     found = sizes(problem, solutions, MAX_SIZING, WorkLimit(MAX_COUNTED, *MAX_BASIS))
     if found is None:
         return None
@@ -229,7 +266,8 @@ def _prove(slice: Slice) -> None:
 
 
 def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int | None, str]:
-    """The number of different complex solutions at a point, and what casts doubt on the slice, in words.
+    """The number of different complex solutions at a point, and what casts doubt on the slice, in
+    words.
 
     Raises
     ------
@@ -254,7 +292,9 @@ def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[in
 
 
 def _encloses(slice: Slice) -> bool:
-    """Whether the certified engine takes a slice that the exact one takes too, as far as that is known at once."""
+    """Whether the certified engine takes a slice that the exact one takes too, as far as that is
+    known at once.
+    """
     if _is_large(slice):
         return False
     try:
@@ -265,18 +305,26 @@ def _encloses(slice: Slice) -> bool:
 
 
 def warning(slice: Slice) -> str:
-    """What to say before an exact map that will take long; empty where it will not, or nobody knows."""
+    """What to say before an exact map that will take long; empty where it will not, or nobody
+    knows.
+    """
     if slice.model == ptm():
         return ""
     found = check(slice, sized=False)
     if found.engine != "exact" or (found.complex_solutions or 0) <= _LONG:
         return ""
-    takes = "the exact map's cost is" if found.cost.startswith("not known") else "the exact map takes"
-    return f"the equations have {found.complex_solutions} complex solutions, and {takes} {found.cost}"
+    takes = (
+        "the exact map's cost is" if found.cost.startswith("not known") else "the exact map takes"
+    )
+    return (
+        f"the equations have {found.complex_solutions} complex solutions, and {takes} {found.cost}"
+    )
 
 
 def foretold(slice: Slice) -> Iterator[str]:
-    """What is known of an exact map before its heavy part: solutions, the curve, how it is projected, the cost."""
+    """What is known of an exact map before its heavy part: solutions, the curve, how it is
+    projected, the cost.
+    """
     found = check(slice)
     if found.complex_solutions is not None:
         yield f"{found.complex_solutions} complex solutions"
@@ -285,7 +333,9 @@ def foretold(slice: Slice) -> Iterator[str]:
         yield way_text(found.forecast)
     if found.bases:
         yield f"bases at points of {found.bases}"
-    yield f"the whole map takes {found.cost}" if found.forecast is not None else f"cost {found.cost}"
+    yield (
+        f"the whole map takes {found.cost}" if found.forecast is not None else f"cost {found.cost}"
+    )
 
 
 def asked_text(slice: Slice) -> Iterator[str]:
@@ -295,10 +345,17 @@ def asked_text(slice: Slice) -> Iterator[str]:
     yield f"{'system' if mechanism is None else 'mechanism':<12}{model.name}"
     yield f"{'unknowns':<12}{', '.join(f'{name} ({kind.value})' for name, kind in model.unknowns.items())}"
     if mechanism is not None:
-        words = (f"{number} {one if number == 1 else many}" for (one, many), number in mechanism.census.items())
+        words = (
+            f"{number} {one if number == 1 else many}"
+            for (one, many), number in mechanism.census.items()
+        )
         yield f"{'parts':<12}{', '.join(words)}"
         yield from (f"{key:<12}{law}" for key, law in mechanism.laws.items())
-    values = {name: e.to_text(slice.axis_names) for name, e in slice.parameters.items() if name not in slice.axis_names}
+    values = {
+        name: e.to_text(slice.axis_names)
+        for name, e in slice.parameters.items()
+        if name not in slice.axis_names
+    }
     fixed = [
         f"{name} = {value if len(value) <= MAX_SHOWN else shown(slice.text.get(name, value), MAX_SHOWN)}"
         for name, value in merged(values, model).items()
@@ -312,10 +369,18 @@ def asked_text(slice: Slice) -> Iterator[str]:
 def cost_text(found: CheckedSlice) -> Iterator[str]:
     """What it will cost as lines of text."""
     slice = found.slice
-    at = ", ".join(f"{a.name} = {short_text(value)}" for a, value in zip(slice.axes, found.sample, strict=True))
-    number = "not counted" if found.complex_solutions is None else _complex(found.complex_solutions, f" at {at}")
+    at = ", ".join(
+        f"{a.name} = {short_text(value)}" for a, value in zip(slice.axes, found.sample, strict=True)
+    )
+    number = (
+        "not counted"
+        if found.complex_solutions is None
+        else _complex(found.complex_solutions, f" at {at}")
+    )
     if found.bound is not None:
-        number = "at most " + _complex(found.bound, ", or infinitely many, by the equations' degrees")
+        number = "at most " + _complex(
+            found.bound, ", or infinitely many, by the equations' degrees"
+        )
     yield f"{'solutions':<12}{number}"
     if found.forecast is not None:
         yield f"{'curves':<12}{curve_text(found.forecast, slice.axis_names)}"

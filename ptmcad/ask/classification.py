@@ -1,7 +1,8 @@
-"""From a slice to its region map by one of two engines: the exact one by algebra, the certified one by intervals.
+"""From a slice to its region map by one of two engines: the exact one by algebra, the certified one
+by intervals.
 
-Guarantee: bad options are refused before anything is computed. No engine gives a wrong count: the exact one leaves
-nothing open, the certified one says what it leaves open.
+Guarantee: bad options are refused before anything is computed. No engine gives a wrong count: the
+exact one leaves nothing open, the certified one says what it leaves open.
 
 Only the engine that is used is loaded.
 """
@@ -56,28 +57,31 @@ def classify(
     Parameters
     ----------
     slice : a slice, the file of a record or the name of a shipped one, or a mapping like a record.
-    engine : ``"exact"``, ``"certified"``, or ``"auto"``: certified where springs have a free length, else exact.
+    engine : ``"exact"``, ``"certified"``, or ``"auto"``: certified where springs have a free
+        length, else exact.
     count : which count distinguishes regions; the slice's own when None.
-    timeout : seconds after which `LimitReached` is raised; loading the certified engine, and compiling it in the first
-        run on a machine, is no part of them.
-    tolerance : the certified engine stops when at most this share of the window's area is undetermined; the exact
-        engine leaves none.
-    area_tolerance : largest relative width of each region's area bounds, 1e-4 when None; for the exact engine.
-    jobs : number of threads of the certified engine, all processors when None; the exact engine uses one.
+    timeout : seconds after which `LimitReached` is raised; loading the certified engine, and
+        compiling it in the first run on a machine, is no part of them.
+    tolerance : the certified engine stops when at most this share of the window's area is
+        undetermined; the exact engine leaves none.
+    area_tolerance : largest relative width of each region's area bounds, 1e-4 when None; for the
+        exact engine.
+    jobs : number of threads of the certified engine, all processors when None; the exact engine
+        uses one.
     progress : called as progress(stage, done, total).
     partial : called with the map after each stage that improves it.
-    resume : a certified map of the same slice and count, stopped or not, from which to go on. Its cover is taken as
-        it stands: what `ptmcad.verify` says of the result rests on it.
-    areas : False leaves the regions' areas out: of each is then known that it is at most the window's. The certified
-        engine gets them at no extra cost, and gives them in any case.
+    resume : a certified map of the same slice and count, stopped or not, from which to go on. Its
+        cover is taken as it stands: what `ptmcad.verify` says of the result rests on it.
+    areas : False leaves the regions' areas out: of each is then known that it is at most the
+        window's. The certified engine gets them at no extra cost, and gives them in any case.
 
     Raises
     ------
-    ConfigError
-        For an unknown engine or count, a tolerance out of range, an option that the engine does not have, a
-        slice that the engine does not take, or a map to go on from that is not of this slice.
-    HypothesisError
-        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
+    ConfigError For an unknown engine or count, a tolerance out of range, an option that the engine
+        does not have, a slice that the engine does not take, or a map to go on from that is not of
+        this slice.
+    HypothesisError When the slice is degenerate, has infinitely many equilibria, or leaves the
+        domain of the geometry.
     LimitReached
         After ``timeout`` seconds, with what there is of the map as ``partial``.
     """
@@ -86,7 +90,9 @@ def classify(
         engine=engine,
         timeout=timeout,
         tolerance=None if tolerance is None else share_for("tolerance", tolerance),
-        area_tolerance=None if area_tolerance is None else share_for("area_tolerance", area_tolerance),
+        area_tolerance=None
+        if area_tolerance is None
+        else share_for("area_tolerance", area_tolerance),
         jobs=jobs,
         progress=progress,
         without=_names(without, keep),
@@ -140,7 +146,9 @@ def region_map(slice: Slice, options: Options, known: Known | None = None) -> Re
         check_taken(slice)
         compiling = prepare(slice, options)
     started = perf_counter()
-    options = replace(options, deadline=None if options.timeout is None else started + options.timeout)
+    options = replace(
+        options, deadline=None if options.timeout is None else started + options.timeout
+    )
     if certified:
         result = _certified(slice, options)
         timed = replace(result, timings={**result.timings, "total": perf_counter() - started})
@@ -160,11 +168,14 @@ def region_map(slice: Slice, options: Options, known: Known | None = None) -> Re
 
 def _check_no_areas(options: Options) -> None:
     if options.area_tolerance is not None:
-        raise ConfigError("areas are not asked for, but a tolerance for them is given: leave one out", key="areas")
+        raise ConfigError(
+            "areas are not asked for, but a tolerance for them is given: leave one out", key="areas"
+        )
 
 
 def prepare(slice: Slice, options: Options) -> float:
-    """Load what an engine needs, and compile it where this machine has not done so: no part of any time limit.
+    """Load what an engine needs, and compile it where this machine has not done so: no part of any
+    time limit.
 
     Returns
     -------
@@ -172,8 +183,8 @@ def prepare(slice: Slice, options: Options) -> float:
 
     Raises
     ------
-    ConfigError
-        Where the certified engine is wanted and numba is missing, or the memory limit leaves it no room.
+    ConfigError Where the certified engine is wanted and numba is missing, or the memory limit
+        leaves it no room.
     """
     if is_certified(slice, options.engine):
         if "imports" in options.without:
@@ -184,7 +195,8 @@ def prepare(slice: Slice, options: Options) -> float:
 
 
 def load_certified(progress: Progress | None = None, options: Options | None = None) -> float:
-    """Load the certified engine, and compile it where this machine has not done so; the seconds that this took.
+    """Load the certified engine, and compile it where this machine has not done so; the seconds
+    that this took.
 
     Parameters
     ----------
@@ -241,14 +253,20 @@ def _certified(slice: Slice, options: Options) -> RegionMap:
         found = stop.partial
         if flat := flat_loops(slice):
             stop = LimitReached(f"{stop}; {flat}", found)
-        if earlier is None or (isinstance(found, RegionMap) and found.undetermined < earlier.undetermined):
+        if earlier is None or (
+            isinstance(found, RegionMap) and found.undetermined < earlier.undetermined
+        ):
             raise stop
         kept_map = replace(earlier, status=Status.PARTIAL)
-        raise LimitReached(f"{stop}; the map to go on from has no more, and is kept", partial=kept_map) from stop
+        raise LimitReached(
+            f"{stop}; the map to go on from has no more, and is kept", partial=kept_map
+        ) from stop
 
 
 def flat_loops(slice: Slice) -> str:
-    """What to say of loops that leave parts of a certified map undecided; empty where nothing is known of any."""
+    """What to say of loops that leave parts of a certified map undecided; empty where nothing is
+    known of any.
+    """
     mechanism = looped(slice.model)
     if mechanism is None:
         return ""
@@ -280,7 +298,8 @@ def check_resumable(slice: Slice, earlier: RegionMap) -> None:
     """
     if earlier.cover is None:
         raise ConfigError(
-            "this is no certified map: only one that the certified engine made can be gone on from", key="resume"
+            "this is no certified map: only one that the certified engine made can be gone on from",
+            key="resume",
         )
     other = earlier.slice
     different = [

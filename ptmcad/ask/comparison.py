@@ -1,8 +1,8 @@
 """Where two maps of the same window differ.
 
-Guarantee: exact. The window is cut along the curves of both maps into cells in which neither count changes; each cell's
-counts are those of both maps at its sample, and areas are integrated as a map's own. Certified maps have no curves: see
-`ptmcad.ask.coverdifference`.
+Guarantee: exact. The window is cut along the curves of both maps into cells in which neither count
+changes; each cell's counts are those of both maps at its sample, and areas are integrated as a
+map's own. Certified maps have no curves: see `ptmcad.ask.coverdifference`.
 """
 
 from __future__ import annotations
@@ -33,12 +33,13 @@ TOLERANCE = Fraction(1, 10**6)
 
 
 def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE) -> Comparison:
-    """The difference of two maps with the same axes, window and count, both exact or both certified.
+    """The difference of two maps with the same axes, window and count, both exact or both
+    certified.
 
     Raises
     ------
-    ConfigError
-        When they are not such maps; where one of them contradicts itself, the error's key is ``first`` or ``second``.
+    ConfigError When they are not such maps; where one of them contradicts itself, the error's key
+        is ``first`` or ``second``.
     """
     expect(second, RegionMap, "other", A_MAP)
     _check(first, second)
@@ -46,7 +47,12 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
         return _certified(first, first.cover, second, second.cover)
     components = _union([c for m in (first, second) for c in m.components if c.separates])
     # at a sample both maps have to say what they count there
-    others = [replace(c, left_out=HARMLESS) for m in (first, second) for c in m.components if not c.separates]
+    others = [
+        replace(c, left_out=HARMLESS)
+        for m in (first, second)
+        for c in m.components
+        if not c.separates
+    ]
     x, y = map(interval_of, first.slice.axes)
     cut = cut_along((x, y), seen_from([*components, *_union(others)]))
     points, count = cut.samples(first.slice.axis_names), first.slice.count
@@ -67,7 +73,9 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
         if key[0] != key[1]:
             changes.append(Change(before, after, number, bounds[number]))
     decomposition = _as_map(first, components, cut, points, (of_cell, bounds))
-    return Comparison(first, second, decomposition, tuple(sorted(changes, key=lambda c: -c.area[0])))
+    return Comparison(
+        first, second, decomposition, tuple(sorted(changes, key=lambda c: -c.area[0]))
+    )
 
 
 def _certified(first: RegionMap, one: Cover, second: RegionMap, other: Cover) -> Comparison:
@@ -105,7 +113,9 @@ def _check(first: RegionMap, second: RegionMap) -> None:
         ("count", first.slice.count, second.slice.count),
     ):
         if one != other:
-            raise ConfigError(f"the maps have not the same {what}: {_shown(one)}, and {_shown(other)}")
+            raise ConfigError(
+                f"the maps have not the same {what}: {_shown(one)}, and {_shown(other)}"
+            )
     ours, others = first.slice.units, second.slice.units
     if any(others.get(quantity, name) != name for quantity, name in ours.items()):
         raise ConfigError("the maps have not the same units: one window is not the other")
@@ -125,7 +135,9 @@ def _union(components: Sequence[Component]) -> list[Component]:
 def _region(result: RegionMap, at: Point) -> int:
     found = locate(result, {name: at[name] for name in at.names}).region
     if found is None:
-        raise ConfigError(f"the map {result.slice.name} contradicts itself; check it with ptmcad verify")
+        raise ConfigError(
+            f"the map {result.slice.name} contradicts itself; check it with ptmcad verify"
+        )
     return found
 
 

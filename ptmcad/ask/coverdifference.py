@@ -1,7 +1,8 @@
 """Where two certified maps of the same window differ.
 
-Guarantee: exact. What is outside both covers falls into components in which neither count changes, and whose areas are
-integers of lattice squares; what is in a cover may have any count, and is in the upper bounds only.
+Guarantee: exact. What is outside both covers falls into components in which neither count changes,
+and whose areas are integers of lattice squares; what is in a cover may have any count, and is in
+the upper bounds only.
 """
 
 from __future__ import annotations
@@ -62,9 +63,13 @@ def side(result: RegionMap, cover: Cover) -> ComparedMap:
         When it contradicts itself.
     """
     complement, cells = component_cells(result, cover)
-    region_of = {place: result.cells[cell].region for place, cell in cells.items() if place is not None}
+    region_of = {
+        place: result.cells[cell].region for place, cell in cells.items() if place is not None
+    }
     if not all(region < len(result.regions) for region in region_of.values()):
-        raise ConfigError("the map contradicts itself (a cell is in no region); check it with ptmcad verify")
+        raise ConfigError(
+            "the map contradicts itself (a cell is in no region); check it with ptmcad verify"
+        )
     return ComparedMap(result, complement, region_of)
 
 
@@ -84,11 +89,15 @@ def cover_difference(first: ComparedMap, second: ComparedMap) -> Comparison:
     possible = _possible(certain, (first.areas(steps), second.areas(steps)), steps**2)
     numbers = {pair: n for n, pair in enumerate(largest)}
     square = first.result.slice.area / steps**2
-    bounds: dict[tuple[Key, Key], Bounds] = {p: (square * certain[p], square * possible(p)) for p in numbers}
+    bounds: dict[tuple[Key, Key], Bounds] = {
+        p: (square * certain[p], square * possible(p)) for p in numbers
+    }
     cells = [(n, numbers[first.key(a), second.key(b)]) for n, (a, b) in held.items()]
     decomposition = _as_map(first.result, complement, cells, list(bounds.values()))
     changes = [
-        Change(*held[largest[pair]], number, bounds[pair]) for pair, number in numbers.items() if pair[0] != pair[1]
+        Change(*held[largest[pair]], number, bounds[pair])
+        for pair, number in numbers.items()
+        if pair[0] != pair[1]
     ]
     return Comparison(
         first.result,
@@ -103,22 +112,36 @@ def _finer(cover: Cover, steps: int) -> list[tuple[int, int, int, int]]:
     """A cover's rectangles on a lattice with more steps."""
     by = steps // cover.steps
     cover = stepped(cover)
-    return [(by * left, by * right, by * bottom, by * top) for left, right, bottom, top in cover.rectangles]
+    return [
+        (by * left, by * right, by * bottom, by * top)
+        for left, right, bottom, top in cover.rectangles
+    ]
 
 
 def _held(complement: Components, sides: Sequence[ComparedMap]) -> dict[int, Held]:
-    """For each component outside both covers the regions of both maps that hold it, where both have one."""
+    """For each component outside both covers the regions of both maps that hold it, where both have
+    one.
+    """
     corners = np.array(complement.rectangles, dtype=np.int64).reshape(-1, 4)
     found = []
     for of in sides:
         if of.complement.frames is not None:
             found.append(_located(of, complement))
             continue
-        tree, coarser = of.complement.subdivision, complement.cover.steps // of.complement.cover.steps
+        tree, coarser = (
+            of.complement.subdivision,
+            complement.cover.steps // of.complement.cover.steps,
+        )
         leaves = tree.leaves_right_above(corners[:, 0] // coarser, corners[:, 2] // coarser)
-        assert (tree.state[leaves] == FREE).all()  # what is outside both covers is outside each of them
+        assert (
+            tree.state[leaves] == FREE
+        ).all()  # what is outside both covers is outside each of them
         found.append([of.region_of.get(place) for place in of.complement.owner[leaves].tolist()])
-    return {n: (a, b) for n, (a, b) in enumerate(zip(*found, strict=True)) if a is not None and b is not None}
+    return {
+        n: (a, b)
+        for n, (a, b) in enumerate(zip(*found, strict=True))
+        if a is not None and b is not None
+    }
 
 
 def _located(of: ComparedMap, complement: Components) -> list[int | None]:
@@ -149,12 +172,17 @@ def _possible(
 
 
 def _as_map(
-    first: RegionMap, complement: Components, cells: Sequence[tuple[int, int]], bounds: Sequence[Bounds]
+    first: RegionMap,
+    complement: Components,
+    cells: Sequence[tuple[int, int]],
+    bounds: Sequence[Bounds],
 ) -> RegionMap:
     """The decomposition in the form that pictures read, from each cell's component and region."""
     x, y = first.slice.axes
     window = ((x.low, x.high), (y.low, y.high))
-    points = [Point(first.slice.axis_names, *next(samples(complement, n, window))) for n, _ in cells]
+    points = [
+        Point(first.slice.axis_names, *next(samples(complement, n, window))) for n, _ in cells
+    ]
     members: list[list[int]] = [[] for _ in bounds]
     for cell, (_, region) in enumerate(cells):
         members[region].append(cell)
@@ -168,7 +196,8 @@ def _as_map(
             Region(None, None, None, area, tuple(numbers), points[numbers[0]])
             for area, numbers in zip(bounds, members, strict=True)
         ),
-        undetermined=1 - Fraction(sum(complement.areas[n] for n, _ in cells), complement.cover.steps**2),
+        undetermined=1
+        - Fraction(sum(complement.areas[n] for n, _ in cells), complement.cover.steps**2),
         plan=(),
         cover=complement.cover,
     )

@@ -1,6 +1,7 @@
 """The best design within bounds, with its exact value and a proof of what no design exceeds.
 
-Guarantee: that of `ptmcad.answer.design`. The search decides where the proof begins, and nothing else.
+Guarantee: that of `ptmcad.answer.design`. The search decides where the proof begins, and nothing
+else.
 """
 
 from __future__ import annotations
@@ -13,7 +14,15 @@ from typing import Any
 
 from ptmcad.answer.design import BestDesign, Evaluation
 from ptmcad.ask.designing.optimiser import Enough, Point, best_of, within
-from ptmcad.ask.designing.proof import Proof, ProofLimits, bounded, bounder_of, exact_maximum, most_on_lines, place_of
+from ptmcad.ask.designing.proof import (
+    Proof,
+    ProofLimits,
+    bounded,
+    bounder_of,
+    exact_maximum,
+    most_on_lines,
+    place_of,
+)
 from ptmcad.ask.designing.values import Evaluate, Value, evaluator
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError
@@ -53,24 +62,28 @@ def design(
     timeout: float | None = None,
     progress: Progress | None = None,
 ) -> BestDesign:
-    """The design within bounds that makes a range, an area, a barrier or an expression as large as possible.
+    """The design within bounds that makes a range, an area, a barrier or an expression as large as
+    possible.
 
     Parameters
     ----------
-    question : the file of a record, or a mapping like one; its key ``design`` says what the next ones do not.
-    maximise : ``range`` (the length of the widest interval of ``along`` with the wanted number of stable poses),
-        ``area`` (of the regions with that number), ``barrier`` (the energy that it takes to leave ``pose`` for another
-        stable one), or a quantity or an expression as of ``ptmcad map --value``.
+    question : the file of a record, or a mapping like one; its key ``design`` says what the next
+        ones do not.
+    maximise : ``range`` (the length of the widest interval of ``along`` with the wanted number of
+        stable poses), ``area`` (of the regions with that number), ``barrier`` (the energy that it
+        takes to leave ``pose`` for another stable one), or a quantity or an expression as of
+        ``ptmcad map --value``.
     over : the design parameters with their bounds.
     along : of a range the axis along which it lies, the first one if not given.
-    where : conditions: ``stable`` (how many, 2 if not given), ``tension`` (true), ``conditions`` (inequalities between
-        the design parameters).
+    where : conditions: ``stable`` (how many, 2 if not given), ``tension`` (true), ``conditions``
+        (inequalities between the design parameters).
     pose : such as ``stable:1``, for a barrier or an expression.
     tolerance : how far the proved bound may lie above the value, as a share of it.
     seed : of the global search.
     evaluations : at most so many designs are evaluated before the proof begins.
     boxes : at most so many boxes of designs are looked at for the proof.
-    timeout : seconds after which the search or the proof stops; the answer then has the bound that is proved so far.
+    timeout : seconds after which the search or the proof stops; the answer then has the bound that
+        is proved so far.
     progress : called as progress(stage, done, total).
 
     Raises
@@ -91,7 +104,9 @@ def design(
     share = share_for("tolerance", tolerance)
     for key, number in (("evaluations", evaluations), ("boxes", boxes), ("seed", seed)):
         least = 0 if key == "seed" else 1
-        if number is not None and (isinstance(number, bool) or not isinstance(number, int) or number < least):
+        if number is not None and (
+            isinstance(number, bool) or not isinstance(number, int) or number < least
+        ):
             raise ConfigError(f"{number!r:.60} is not a whole number from {least} on", key=key)
     search = _DesignSearch(asked, timeout, progress)
     proof = search.run(share, seed, evaluations, boxes)
@@ -128,7 +143,11 @@ class _DesignSearch:
         self.report("discriminant variety", 0, 1)
         bounder = bounder_of(asked, tolerance)
         space = bounder.space if isinstance(bounder, Lengths) else None
-        common = in_common(asked.family, Options()) if asked.aim is Aim.AREA and asked.family is not None else None
+        common = (
+            in_common(asked.family, Options())
+            if asked.aim is Aim.AREA and asked.family is not None
+            else None
+        )
         self.value_of = evaluator(asked, common, space)
         usual = EVALUATIONS + PER_PARAMETER * (len(asked.over) - 1)
         self._search(seed, evaluations or (UNPROVED * usual if isinstance(bounder, str) else usual))
@@ -137,7 +156,11 @@ class _DesignSearch:
         proof = bounded(asked, bounder, self._improved, ProofLimits(tolerance, boxes, self._go_on))
         if space is not None:
             self._confirm()
-        return proof if proof.bound is None else proof._replace(bound=max(proof.bound, most_on_lines(asked)))
+        return (
+            proof
+            if proof.bound is None
+            else proof._replace(bound=max(proof.bound, most_on_lines(asked)))
+        )
 
     def _search(self, seed: int, most: int) -> None:
         bounds = [(axis.low, axis.high) for axis in self.asked.over]
@@ -154,7 +177,9 @@ class _DesignSearch:
         self._simpler()
 
     def _simpler(self) -> None:
-        """Look at the simplest designs near the best one: corners of conditions, and kinks, are often there."""
+        """Look at the simplest designs near the best one: corners of conditions, and kinks, are
+        often there.
+        """
         for share in SIMPLER:
             if self.best is None or self.over_time:
                 return
@@ -162,7 +187,9 @@ class _DesignSearch:
             for axis, at in zip(self.asked.over, self.best[0], strict=True):
                 reach = axis.width * share
                 low, high = (from_fraction(end) for end in (at - reach, at + reach))
-                point.append(min(max(to_fraction(simplest_between(low, high)), axis.low), axis.high))
+                point.append(
+                    min(max(to_fraction(simplest_between(low, high)), axis.low), axis.high)
+                )
             self.look(tuple(point))
 
     def _confirm(self) -> None:
@@ -177,7 +204,9 @@ class _DesignSearch:
             self.points[point] = found
             if found is not None:
                 if found.value.low > known.value.high or found.value.high < known.value.low:
-                    raise ArithmeticError(f"the range at {point} has two lengths, {known.value} and {found.value}")
+                    raise ArithmeticError(
+                        f"the range at {point} has two lengths, {known.value} and {found.value}"
+                    )
                 self.best = (point, found)
                 return
             left = [(p, v) for p, v in self.points.items() if v is not None]
@@ -191,7 +220,9 @@ class _DesignSearch:
         if point not in self.points:
             assert self.value_of is not None  # made before the first look
             found = self.points[point] = self.value_of(self._named(point))
-            if found is not None and (self.best is None or found.value.low > self.best[1].value.low):
+            if found is not None and (
+                self.best is None or found.value.low > self.best[1].value.low
+            ):
                 self.best = (point, found)
         return self.points[point]
 
@@ -205,7 +236,9 @@ class _DesignSearch:
         return not self.over_time
 
     def _exactly(self, maxima: Sequence[Any], evaluations: int) -> Proof:
-        """The proof by exact critical values of the one parameter, and a curve of values for the picture."""
+        """The proof by exact critical values of the one parameter, and a curve of values for the
+        picture.
+        """
         (axis,) = self.asked.over
         places = [place_of(m) for m in maxima]
         inside = [min(max(p, axis.low), axis.high) for p in places]
@@ -219,7 +252,10 @@ class _DesignSearch:
                 break
             self.report("designs", number, len(wanted))
             self.look((value,))
-        where = "; ".join(m.words(axis.name) for m in maxima) or "there is no such range within the bounds"
+        where = (
+            "; ".join(m.words(axis.name) for m in maxima)
+            or "there is no such range within the bounds"
+        )
         bound = max((m.width.high for m in maxima), default=Fraction(0))
         return Proof(bound, f"by exact critical values: {where}", maxima=tuple(maxima))
 
@@ -229,8 +265,12 @@ class _DesignSearch:
         best, value = self.best if self.best is not None else (None, None)
         low = Fraction(0) if value is None else value.value.low
         if proof.boxes and proof.bound is not None and proof.bound < low:
-            raise ArithmeticError(f"a design has {float(low)}, more than the bound {float(proof.bound)} of all")
-        proved = proof.bound is not None and best is not None and proof.bound <= (1 + tolerance) * low
+            raise ArithmeticError(
+                f"a design has {float(low)}, more than the bound {float(proof.bound)} of all"
+            )
+        proved = (
+            proof.bound is not None and best is not None and proof.bound <= (1 + tolerance) * low
+        )
         return BestDesign(
             name=asked.name,
             model=asked.model,
@@ -248,7 +288,9 @@ class _DesignSearch:
             proved=proved,
             reason=proof.reason,
             seed=seed,
-            points=tuple(Evaluation(p, None if v is None else v.value) for p, v in self.points.items()),
+            points=tuple(
+                Evaluation(p, None if v is None else v.value) for p, v in self.points.items()
+            ),
             boxes=proof.boxes,
             parameters=asked.text,
             maxima=proof.maxima,

@@ -32,17 +32,18 @@ def family(
     Parameters
     ----------
     question : the file of a record with ``free``, or a mapping like one.
-    values : of the free parameter; those that the record states when None. ``"between"`` stands for one between each
-        two neighbouring changes.
-    changes : whether to find where the arrangement of the regions changes, too; see `ptmcad.changes`.
+    values : of the free parameter; those that the record states when None. ``"between"`` stands for
+        one between each two neighbouring changes.
+    changes : whether to find where the arrangement of the regions changes, too; see
+        `ptmcad.changes`.
     engine, areas, jobs, progress : as of `ptmcad.classify`, for each member.
 
     Raises
     ------
     ConfigError
         For anything wrong with the record, or a value outside of the free parameter's range.
-    HypothesisError
-        When a member is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
+    HypothesisError When a member is degenerate, has infinitely many equilibria, or leaves the
+        domain of the geometry.
 
     >>> import ptmcad
     >>> found = ptmcad.family({"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": "F", "F4": "F"},
@@ -69,5 +70,12 @@ def family(
         common = common._replace(family=asked)
     members = tuple(result for _, result in members_of(common, options))
     return FamilyMap(
-        asked.name, asked.free, asked.values, members, common.surfaces, asked.record.title, found, asked.text
+        asked.name,
+        asked.free,
+        asked.values,
+        members,
+        common.surfaces,
+        asked.record.title,
+        found,
+        asked.text,
     )

@@ -1,13 +1,15 @@
 """What an exact map will take, in seconds and memory, from counts of what there is to compute.
 
-Not guaranteed: the time is a sum over the stages of what each has to do, with constants fitted to measurements
-(docs/benchmarks/forecast.csv), within a factor of three on the shipped and on most random slices.
+Not guaranteed: the time is a sum over the stages of what each has to do, with constants fitted to
+measurements (docs/benchmarks/forecast.csv), within a factor of three on the shipped and on most
+random slices.
 
-Equations become a curve by arithmetic with the entries of multiplication tables, as many as the square of the number of
-solutions, each product of which takes time as the square of their terms; and by an interpolation of the norm.
-The curve's discriminant follows the product of its degrees. All that comes after grows with the cells of the window and
-the walls between them. Where the curve and its discriminant are quick they are computed, and the cells counted
-(`ptmcad.exact.survey`); where they are not, the number of cells is not known, and what is usual at the curve's size is
+Equations become a curve by arithmetic with the entries of multiplication tables, as many as the
+square of the number of solutions, each product of which takes time as the square of their terms;
+and by an interpolation of the norm. The curve's discriminant follows the product of its degrees.
+All that comes after grows with the cells of the window and the walls between them. Where the curve
+and its discriminant are quick they are computed, and the cells counted (`ptmcad.exact.survey`);
+where they are not, the number of cells is not known, and what is usual at the curve's size is
 taken.
 """
 
@@ -22,21 +24,30 @@ from ptmcad.exact.survey import Survey
 MAX_DEGREE = 50
 """Of the curve in an axis, in the mean of both: beyond, the map may take hours."""
 QUICK = 0.8
-"""Seconds for the curve and its discriminant, up to which they are computed to know better what comes after."""
+"""Seconds for the curve and its discriminant, up to which they are computed to know better what
+comes after.
+"""
 _START = 0.2
 """Seconds that a process takes before it computes."""
 _TABLE, _NORM = 5.6e-7, 2.25e-6
-"""Seconds for the product of two terms in an entry of the multiplication tables, and for a term of the norm."""
+"""Seconds for the product of two terms in an entry of the multiplication tables, and for a term of
+the norm.
+"""
 _UNIT = 144
 """A product of the curve's degrees, to which the next seconds belong."""
 _DISCRIMINANT, _BY_SIZE = 0.034, 1.8
 """Seconds for the curve's discriminant, and with what power of the product they grow."""
 _CELL = 7.1e-6
-"""Seconds to count in a cell, by the square of the number of solutions and the root of the terms of an entry."""
+"""Seconds to count in a cell, by the square of the number of solutions and the root of the terms of
+an entry.
+"""
 _WALLS, _BY_WALLS, _BY_DEGREE = 1.3e-4, 0.94, 1.69
-"""Seconds for adjacency and area along one wall of degree 1, and with what powers of both numbers they grow."""
+"""Seconds for adjacency and area along one wall of degree 1, and with what powers of both numbers
+they grow.
+"""
 _USUAL, _BY_USUAL = 0.0178, 1.24
-"""Seconds, for each solution, of all that comes after the discriminant where cells are not counted."""
+"""Seconds, for each solution, of all that comes after the discriminant where cells are not counted.
+"""
 _LIBRARIES, _MEGABYTES, _MEMORY_BY_SIZE = 38, 3.0, 1.3
 """Of memory likewise."""
 WITHIN = 3
@@ -79,7 +90,11 @@ def seconds_to_discriminant(solutions: int, sizes: CurveSizes) -> float:
     """What the curve and its discriminant are predicted to take."""
     across, up = _powers(sizes)
     tables = _TABLE * (solutions * sizes.table_terms) ** 2
-    return tables + _NORM * solutions**2 * sizes.terms + _DISCRIMINANT * math.pow(across * up / _UNIT, _BY_SIZE)
+    return (
+        tables
+        + _NORM * solutions**2 * sizes.terms
+        + _DISCRIMINANT * math.pow(across * up / _UNIT, _BY_SIZE)
+    )
 
 
 def seconds_after(solutions: int, sizes: CurveSizes, seen: Survey | None) -> float:
@@ -92,15 +107,20 @@ def seconds_after(solutions: int, sizes: CurveSizes, seen: Survey | None) -> flo
 
 
 def forecast(solutions: int, sizes: CurveSizes, seen: Survey | None = None) -> Forecast:
-    """The forecast for a number of complex solutions, a critical curve, and what is known of the cells.
+    """The forecast for a number of complex solutions, a critical curve, and what is known of the
+    cells.
 
     >>> found = forecast(6, CurveSizes((24, 12), 24, (2, 1)))
     >>> found.seconds < 1, found.reachable, found.points
     (True, True, 265)
     """
     across, up = _powers(sizes)
-    seconds = _START + seconds_to_discriminant(solutions, sizes) + seconds_after(solutions, sizes, seen)
-    return Forecast(sizes, seconds, _LIBRARIES + _MEGABYTES * (across * up / _UNIT) ** _MEMORY_BY_SIZE)
+    seconds = (
+        _START + seconds_to_discriminant(solutions, sizes) + seconds_after(solutions, sizes, seen)
+    )
+    return Forecast(
+        sizes, seconds, _LIBRARIES + _MEGABYTES * (across * up / _UNIT) ** _MEMORY_BY_SIZE
+    )
 
 
 def curve_text(found: Forecast, names: tuple[str, str]) -> str:

@@ -1,7 +1,8 @@
 """Where a rational point lies in a region map.
 
-Guarantee: exact, however near the point is to a wall. The answer comes from the map's stored walls: signs of the stored
-polynomials at the point and numbers of their real roots below it; in a certified map from its cover, in integers.
+Guarantee: exact, however near the point is to a wall. The answer comes from the map's stored walls:
+signs of the stored polynomials at the point and numbers of their real roots below it; in a
+certified map from its cover, in integers.
 """
 
 from __future__ import annotations
@@ -39,15 +40,23 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
 
     Raises
     ------
-    ConfigError
-        When the names are not the two axes, a value is not an exact number, or the map contradicts itself.
+    ConfigError When the names are not the two axes, a value is not an exact number, or the map
+        contradicts itself.
     """
     names = result.slice.axis_names
-    expect(at, (Mapping, Point), "point", f"the values of {names[0]} and {names[1]} by name, or a mapping of them")
+    expect(
+        at,
+        (Mapping, Point),
+        "point",
+        f"the values of {names[0]} and {names[1]} by name, or a mapping of them",
+    )
     point = _point(result, at)
     inside = all(axis.holds(value) for axis, value in zip(result.slice.axes, point, strict=True))
     if not inside:  # of the open window, which is what a map is of
-        on_edge = all(axis.low <= value <= axis.high for axis, value in zip(result.slice.axes, point, strict=True))
+        on_edge = all(
+            axis.low <= value <= axis.high
+            for axis, value in zip(result.slice.axes, point, strict=True)
+        )
         return Location(Status.ON_EDGE if on_edge else Status.OUTSIDE)
     if result.cover is not None:
         return _locate_outside_cover(result, result.cover, point)
@@ -66,13 +75,18 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
 
 
 def _cell_at(result: RegionMap, u: fmpq, v: fmpq) -> int:
-    """The number of the cell that holds a point, by its coordinates along the base and across it, on no curve."""
+    """The number of the cell that holds a point, by its coordinates along the base and across it,
+    on no curve.
+    """
     curves = _curves(result)
     stack, on_critical = stack_over(result, u)
     if stack >= len(result.stacks):
-        raise ConfigError(f"the map contradicts itself: there is no stack {stack}; check it with ptmcad verify")
+        raise ConfigError(
+            f"the map contradicts itself: there is no stack {stack}; check it with ptmcad verify"
+        )
     if on_critical:
-        # the point lies on an artefact of the decomposition: step to the stack at its left along a free segment
+        # the point lies on an artefact of the decomposition: step to the stack at its left along a
+        # free segment
         u = _step_left(result, curves, u, v, stack)
     below = level_at(curves, u, v, interval_of(result.slice.axes[1 - result.base]))
     try:
@@ -85,11 +99,15 @@ def _cell_at(result: RegionMap, u: fmpq, v: fmpq) -> int:
     return number
 
 
-_ON_REGULAR = "on a curve of the variety; counted at the point itself, where all solutions are regular"
+_ON_REGULAR = (
+    "on a curve of the variety; counted at the point itself, where all solutions are regular"
+)
 
 
 def _on_curves(result: RegionMap, met: Sequence[Component], at: tuple[fmpq, fmpq]) -> Location:
-    """A point on curves of the variety: with the counts there, where solutions are regular and no count changes."""
+    """A point on curves of the variety: with the counts there, where solutions are regular and no
+    count changes.
+    """
     many = next((c.continuum for c in met if c.continuum is not None), None)
     remark = "" if many is None else f"{many.value} {noun(result.slice.model)}"
     # a margin of a predicate may be zero on a critical curve, too
@@ -104,14 +122,25 @@ def _on_curves(result: RegionMap, met: Sequence[Component], at: tuple[fmpq, fmpq
         return Location(Status.ON_VARIETY)
     cell = next((result.cells[number] for number in _cells_beside(result, at)), None)
     if cell is None or any(
-        there not in (None, here) for there, here in ((cell.total, counts.total), (cell.stable, counts.stable))
+        there not in (None, here)
+        for there, here in ((cell.total, counts.total), (cell.stable, counts.stable))
     ):
         return Location(Status.ON_VARIETY)
-    return Location(Status.EXACT, cell.region, None, counts.total, counts.stable, counts.index, remark=_ON_REGULAR)
+    return Location(
+        Status.EXACT,
+        cell.region,
+        None,
+        counts.total,
+        counts.stable,
+        counts.index,
+        remark=_ON_REGULAR,
+    )
 
 
 def _cells_beside(result: RegionMap, at: tuple[fmpq, fmpq]) -> Iterator[int]:
-    """Cells beside a point on curves, each reached along a segment that meets no other point of the curves."""
+    """Cells beside a point on curves, each reached along a segment that meets no other point of the
+    curves.
+    """
     curves = [from_plane(c.polynomial) for c in result.components if not c.left_out]
     for direction, varying in enumerate((result.base, 1 - result.base)):
         traces = [univariate(coefficients_in(p, varying), at[1 - direction]) for p in curves]
@@ -119,7 +148,9 @@ def _cells_beside(result: RegionMap, at: tuple[fmpq, fmpq]) -> Iterator[int]:
             step = (from_fraction(result.slice.axes[varying].high) - at[direction]) / 2
             while any(_meets(p, at[direction], step) for p in traces):
                 step = step / 2
-            yield _cell_at(result, *((at[0] + step, at[1]) if direction == 0 else (at[0], at[1] + step)))
+            yield _cell_at(
+                result, *((at[0] + step, at[1]) if direction == 0 else (at[0], at[1] + step))
+            )
 
 
 def _meets(p: UnivariatePolynomial, start: fmpq, step: fmpq) -> bool:
@@ -128,13 +159,17 @@ def _meets(p: UnivariatePolynomial, start: fmpq, step: fmpq) -> bool:
 
 
 _KEPT = 4
-"""Maps of which what locates points is kept for the next one: many points may be asked of some maps in turn."""
+"""Maps of which what locates points is kept for the next one: many points may be asked of some maps
+in turn.
+"""
 Made = TypeVar("Made")
 
 
-def _kept(latest: list[tuple[RegionMap, Made]], result: RegionMap, make: Callable[[], Made]) -> Made:
-    """What was made for this very map, or is made now; the latest ones are kept, by identity: to compare whole maps
-    would take longer."""
+def _kept(
+    latest: list[tuple[RegionMap, Made]], result: RegionMap, make: Callable[[], Made]
+) -> Made:
+    """What was made for this very map, or is made now; the latest ones are kept, by identity: to
+    compare whole maps would take longer."""
     for k, (known, made) in enumerate(latest):
         if known is result:
             latest.append(latest.pop(k))
@@ -152,16 +187,22 @@ def _curves(result: RegionMap) -> list[FibredCurve]:
 _latest_curves: list[tuple[RegionMap, list[FibredCurve]]] = []
 
 
-def _locate_outside_cover(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> Location:
+def _locate_outside_cover(
+    result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]
+) -> Location:
     complement, cells = component_cells(result, cover)
     number = cells.get(complement.locate(*in_steps(result, cover, point)))
     if number is None:
         return Location(Status.UNDECIDED)
     cell = result.cells[number]
-    return Location(Status.CERTIFIED, cell.region, number, cell.total, cell.stable, cell.index, cell.further)
+    return Location(
+        Status.CERTIFIED, cell.region, number, cell.total, cell.stable, cell.index, cell.further
+    )
 
 
-def in_steps(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
+def in_steps(
+    result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]
+) -> tuple[Fraction, Fraction]:
     """Lattice coordinates."""
     u, v = (a.share(x) * cover.steps for a, x in zip(result.slice.axes, point, strict=True))
     return u, v
@@ -190,7 +231,9 @@ def _component_cells(result: RegionMap, cover: Cover) -> tuple[Components, dict[
         except ValueError as error:
             raise _contradiction(f"the sample of cell {number} is not in the window") from error
         if place is None or place in cells:
-            raise _contradiction(f"the sample of cell {number} is in the cover or in the component of another cell")
+            raise _contradiction(
+                f"the sample of cell {number} is in the cover or in the component of another cell"
+            )
         cells[place] = number
     return complement, cells
 
@@ -219,7 +262,9 @@ def stack_over(result: RegionMap, u: fmpq) -> tuple[int, bool]:
 
 
 def _step_left(result: RegionMap, curves: list[FibredCurve], u: fmpq, v: fmpq, stack: int) -> fmpq:
-    """An abscissa in the stack at the left of u from which the horizontal segment to (u, v) meets no curve."""
+    """An abscissa in the stack at the left of u from which the horizontal segment to (u, v) meets
+    no curve.
+    """
     width = u - from_fraction(result.stacks[stack].sample)
     while any(has_root_between(c.trace(v), u - width, u) for c in curves):
         width = width / 2

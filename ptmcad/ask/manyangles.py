@@ -1,8 +1,9 @@
-"""Critical points in more than three angles at one point, where a Groebner basis over Q may not end.
+"""Critical points in more than three angles at one point, where a Groebner basis over Q may not
+end.
 
-Guarantee: a count is exact or proved. The basis is tried as long as it stays small; beyond, the certified engine
-searches the torus at the point, which decides everything but a degenerate solution in about a second for four angles
-and half a minute for five. Neither goes on without end.
+Guarantee: a count is exact or proved. The basis is tried as long as it stays small; beyond, the
+certified engine searches the torus at the point, which decides everything but a degenerate solution
+in about a second for four angles and half a minute for five. Neither goes on without end.
 
 Algebra is loaded where it is used: who asks for a point with free lengths does without.
 """
@@ -27,18 +28,23 @@ if TYPE_CHECKING:
     from ptmcad.algebra.fibre import WorkLimit
 
 FEW = 3
-"""Unknowns of which a basis is computed whatever it takes: there are seldom more than 64 solutions."""
+"""Unknowns of which a basis is computed whatever it takes: there are seldom more than 64 solutions.
+"""
 _MAX_WORK = 64, 120, 500, 5_000
 """Solutions, and polynomials, terms and bits of a basis, which take about two seconds."""
 
 _MAX_BY_MSOLVE = 150
-"""Solutions, whose algebra takes some tens of seconds: 70 take ten, of which the basis's proof is the half."""
+"""Solutions, whose algebra takes some tens of seconds: 70 take ten, of which the basis's proof is
+the half.
+"""
 
 
 def work_for(model: Model) -> WorkLimit | None:
-    """How much work the exact solutions at a point may be before the certified engine is asked; None for any.
+    """How much work the exact solutions at a point may be before the certified engine is asked;
+    None for any.
 
-    It takes critical points of a function of angles alone; with free lengths nothing else is asked anyway.
+    It takes critical points of a function of angles alone; with free lengths nothing else is asked
+    anyway.
     """
     from ptmcad.algebra.fibre import WorkLimit
 
@@ -48,7 +54,9 @@ def work_for(model: Model) -> WorkLimit | None:
 
 
 def work_by_msolve() -> WorkLimit | None:
-    """How much work the exact solutions may be where the search has not told all apart; None without msolve."""
+    """How much work the exact solutions may be where the search has not told all apart; None
+    without msolve.
+    """
     from ptmcad.algebra.bases import SMALL
     from ptmcad.algebra.msolve import program
 
@@ -60,7 +68,8 @@ def counts_by_search(model: Model, point: Mapping[str, Fraction], timeout: float
 
     Parameters
     ----------
-    timeout : seconds after which the search is given up; None for as many as it takes, which are bounded.
+    timeout : seconds after which the search is given up; None for as many as it takes, which are
+        bounded.
 
     Raises
     ------
@@ -73,8 +82,12 @@ def counts_by_search(model: Model, point: Mapping[str, Fraction], timeout: float
         from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
     tried = "the Groebner basis of the equations grows beyond what is computed at a point"
     if len(model.unknowns) > MAX_UNKNOWNS_AT_POINTS:
-        raise LimitReached(f"{tried}, and the certified engine takes up to {MAX_UNKNOWNS_AT_POINTS} unknowns there")
-    counter = plain_counter(point_slice(model, point), MAX_UNKNOWNS_AT_POINTS, _clock(tried, timeout))
+        raise LimitReached(
+            f"{tried}, and the certified engine takes up to {MAX_UNKNOWNS_AT_POINTS} unknowns there"
+        )
+    counter = plain_counter(
+        point_slice(model, point), MAX_UNKNOWNS_AT_POINTS, _clock(tried, timeout)
+    )
     found = counter.at(Fraction(0), Fraction(0), Count.INDEX)
     if not found.decided or found.total is None:
         raise LimitReached(
@@ -98,7 +111,9 @@ def _clock(tried: str, timeout: float | None) -> Callable[[], None]:
 
 
 def poses_by_search(mechanism: Model, point: Mapping[str, Fraction], digits: int) -> Poses:
-    """All equilibria at a point, by the certified engine; UNDECIDED where they were not all told apart."""
+    """All equilibria at a point, by the certified engine; UNDECIDED where they were not all told
+    apart.
+    """
     with loading("the certified engine"):
         from ptmcad.certified.plain.poses import plain_poses
     return plain_poses(mechanism, point, digits)

@@ -1,7 +1,7 @@
 """The members of a family, from the discriminant variety that they have in common.
 
-Guarantee: a member's map is that of its slice alone, timings apart. What cannot be computed in common, is computed for
-the member alone.
+Guarantee: a member's map is that of its slice alone, timings apart. What cannot be computed in
+common, is computed for the member alone.
 """
 
 from __future__ import annotations
@@ -80,13 +80,15 @@ class Restored:
 
         Raises
         ------
-        ConfigError
-            When the maps do not say of what the family's parameters are made, or that divides by zero at this value.
+        ConfigError When the maps do not say of what the family's parameters are made, or that
+            divides by zero at this value.
         """
         try:
             return member_like(self.maps.members[0].slice, self.text, self.free.name, value)
         except ExpressionError as error:
-            raise ConfigError(f"{error.message} (at {self.free.name} = {text_of(value)})") from error
+            raise ConfigError(
+                f"{error.message} (at {self.free.name} = {text_of(value)})"
+            ) from error
 
 
 class Common(NamedTuple):
@@ -131,8 +133,8 @@ def member_map(common: Common, value: Fraction, options: Options = DEFAULTS) -> 
 def in_common(asked: AskedFamily, options: Options = DEFAULTS) -> Common:
     """What the members of a family have in common, computed once.
 
-    Nothing, where all members are certified, where the parameters are too large to be expanded in three variables, or
-    where a generic member is exceptional; then each says so itself.
+    Nothing, where all members are certified, where the parameters are too large to be expanded in
+    three variables, or where a generic member is exceptional; then each says so itself.
     """
     if all(is_certified(asked.member(value), options.engine) for value in asked.values):
         return Common(asked, None)
@@ -158,4 +160,6 @@ def in_space(asked: AskedFamily) -> SystemOnAxes:
 
     system = system_from(asked.model)
     x, y = (a.name for a in asked.axes)
-    return SystemOnAxes(system, space_parameters(system.ring.parameters, asked.text, (x, y, asked.free.name)))
+    return SystemOnAxes(
+        system, space_parameters(system.ring.parameters, asked.text, (x, y, asked.free.name))
+    )

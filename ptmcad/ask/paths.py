@@ -1,12 +1,15 @@
-"""Paths of stable poses along a line where springs have free lengths, from proved solution to proved solution.
+"""Paths of stable poses along a line where springs have free lengths, from proved solution to
+proved solution.
 
-Guarantee: critical values are enclosed as `ptmcad.certified.intervals` encloses them; every point of a path is a proved
-solution, the pose at the end of a snap is one of all the proved stable ones there.
+Guarantee: critical values are enclosed as `ptmcad.certified.intervals` encloses them; every point
+of a path is a proved solution, the pose at the end of a snap is one of all the proved stable ones
+there.
 
-Not guaranteed: that the points of a path are one branch. From each to the next it is followed in floating point by
-Newton's method in small parts, and found among the proved solutions again. Nor which solutions meet where it vanishes:
-that is told by the numbers on both sides, of all solutions, wherever they are. Where several stable poses are left,
-steepest descent in floating point says to which of them it falls.
+Not guaranteed: that the points of a path are one branch. From each to the next it is followed in
+floating point by Newton's method in small parts, and found among the proved solutions again. Nor
+which solutions meet where it vanishes: that is told by the numbers on both sides, of all solutions,
+wherever they are. Where several stable poses are left, steepest descent in floating point says to
+which of them it falls.
 """
 
 from __future__ import annotations
@@ -44,7 +47,9 @@ DIGITS = 12
 POINTS = 16
 """In each interval, closer to its ends, where branches turn."""
 NEAR = Fraction(1, 10**5)
-"""How near to a critical value a path comes, against its interval's length, and to the window's edge."""
+"""How near to a critical value a path comes, against its interval's length, and to the window's
+edge.
+"""
 SAME = 1e-5
 _PI = (Fraction(314159265358979323846, 10**20), Fraction(314159265358979323847, 10**20))
 
@@ -54,8 +59,8 @@ def follower(slice: Slice, along: str, at: Mapping[str, Any], start: Fraction) -
 
     Raises
     ------
-    ConfigError
-        When the start is critical, or not distinguished from a critical value, and for closed loops.
+    ConfigError When the start is critical, or not distinguished from a critical value, and for
+        closed loops.
     """
     mechanism = open_chain(slice.model)
     if mechanism is None:
@@ -70,13 +75,18 @@ def follower(slice: Slice, along: str, at: Mapping[str, Any], start: Fraction) -
     inside = any(low < start < high for low, high in intervals.stretches)
     here = line.at(start) if inside else None
     if here is None:
-        raise ConfigError(f"{along} = {start} is a critical value, or not told from one: start beside it", key="--path")
+        raise ConfigError(
+            f"{along} = {start} is a critical value, or not told from one: start beside it",
+            key="--path",
+        )
     return JoinedFollower(slice, mechanism, line, here, (varying, value), intervals)
 
 
 @dataclass(frozen=True, slots=True)
 class _Reached:
-    """The followed pose: at a value, in floating point with angles that go on beyond a turn, and as it is proved."""
+    """The followed pose: at a value, in floating point with angles that go on beyond a turn, and as
+    it is proved.
+    """
 
     value: Fraction
     at: Floats
@@ -150,7 +160,9 @@ class JoinedFollower:
             reached.append(current)
         return reached, PathEnd(Fate.WINDOW, edge, self._point(current))
 
-    def _values(self, start: Fraction, side: int) -> Iterator[tuple[Fraction, CertifiedChange | None]]:
+    def _values(
+        self, start: Fraction, side: int
+    ) -> Iterator[tuple[Fraction, CertifiedChange | None]]:
         """Values from the start in one direction; with a change the first one beyond it."""
         stretches = self.intervals.stretches
         changes = list(self.intervals.changes)
@@ -176,7 +188,9 @@ class JoinedFollower:
         gap = apart(unknowns_of(pose), at, len(self.slice.model.angles))
         return float(np.abs(gap).max())
 
-    def _is_joined(self, track: Track, current: _Reached, done: float, beyond: Pose, share: float) -> bool:
+    def _is_joined(
+        self, track: Track, current: _Reached, done: float, beyond: Pose, share: float
+    ) -> bool:
         """Whether another stable pose goes on as the one beyond a pitchfork, too."""
         before = self.line.at(current.value)
         for pose in () if before is None else before.poses:
@@ -198,8 +212,8 @@ class JoinedFollower:
         value: Fraction,
         change: CertifiedChange | None,
     ) -> PathEnd:
-        """What becomes of a pose that could not be followed to a value, where it has to be missing, or that at a
-        pitchfork becomes one with others.
+        """What becomes of a pose that could not be followed to a value, where it has to be missing,
+        or that at a pitchfork becomes one with others.
         """
         stopped = self._undecided(current, change)
         before, after = self.line.at(current.value), self.line.at(value)
@@ -214,7 +228,9 @@ class JoinedFollower:
             if goes_on is None or sorted(meeting + leaving) != [0, 1]:
                 return stopped
             own = int(goes_on[1].negatives[0])
-            meeting, leaving = (tuple(sorted((own, *meeting))), (own,)) if meeting else ((0,), (0, *leaving))
+            meeting, leaving = (
+                (tuple(sorted((own, *meeting))), (own,)) if meeting else ((0,), (0, *leaving))
+            )
         if 0 not in meeting:
             return stopped
         met = replace(stopped, fate=Fate.VANISH, meeting=meeting, leaving=leaving)
@@ -238,7 +254,9 @@ class JoinedFollower:
 
     def _point(self, reached: _Reached) -> PathPoint:
         pose = reached.pose
-        angles = [_on_turn(angle, float(v)) for angle, v in zip(pose.angles, reached.at, strict=False)]
+        angles = [
+            _on_turn(angle, float(v)) for angle, v in zip(pose.angles, reached.at, strict=False)
+        ]
         sides = _sides(pose, self.mechanism.rising)
         return PathPoint(reached.value, tuple(angles), pose.reals, sides)
 

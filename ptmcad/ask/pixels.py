@@ -1,7 +1,7 @@
 """What a map says at the centres of a grid's pixels.
 
-Guarantee: exact. A column of pixels is answered at once: every wall's place among the centres comes from signs of its
-polynomial at centres; a certified map's pixels from its cover, in integers.
+Guarantee: exact. A column of pixels is answered at once: every wall's place among the centres comes
+from signs of its polynomial at centres; a certified map's pixels from its cover, in integers.
 """
 
 from __future__ import annotations
@@ -30,12 +30,13 @@ Labels = NDArray[np.int64]
 
 
 def grid(result: RegionMap, columns: int = 200, rows: int | None = None) -> Grid:
-    """Cell, region and counts at the centres of so many pixels along the first axis and, if not as many, the second.
+    """Cell, region and counts at the centres of so many pixels along the first axis and, if not as
+    many, the second.
 
     Raises
     ------
-    ConfigError
-        When the numbers are not positive or there are more than `MAX_PIXELS` pixels, or the map has no cells yet.
+    ConfigError When the numbers are not positive or there are more than `MAX_PIXELS` pixels, or the
+        map has no cells yet.
     """
     down = columns if rows is None else rows
     for name, number in (("columns", columns), ("rows", down)):
@@ -44,11 +45,18 @@ def grid(result: RegionMap, columns: int = 200, rows: int | None = None) -> Grid
     if columns * down > MAX_PIXELS:
         raise ConfigError(f"{columns} x {down} pixels are more than {MAX_PIXELS}")
     if not result.cells:
-        raise ConfigError(f"the map {result.slice.name} was stopped before it had cells: there is nothing to show")
+        raise ConfigError(
+            f"the map {result.slice.name} was stopped before it had cells: there is nothing to show"
+        )
     centres = [
-        [a.middle(k, int(n)) for k in range(int(n))] for a, n in zip(result.slice.axes, (columns, down), strict=True)
+        [a.middle(k, int(n)) for k in range(int(n))]
+        for a, n in zip(result.slice.axes, (columns, down), strict=True)
     ]
-    cells = _exact(result, centres) if result.cover is None else _certified(result, result.cover, centres)
+    cells = (
+        _exact(result, centres)
+        if result.cover is None
+        else _certified(result, result.cover, centres)
+    )
     with within_doubles(result.slice):
         x, y = (np.array([float(v) for v in values]) for values in centres)
     return Grid(
@@ -83,7 +91,10 @@ def _exact(result: RegionMap, centres: list[list[Fraction]]) -> Labels:
         number, on_critical = stack_over(result, u)
         if on_critical:
             for row, v in enumerate(centres[1 - base]):
-                cell = locate(result, dict(zip(result.slice.axis_names, (at, v)[:: 1 - 2 * base], strict=True))).cell
+                cell = locate(
+                    result,
+                    dict(zip(result.slice.axis_names, (at, v)[:: 1 - 2 * base], strict=True)),
+                ).cell
                 image[k, row] = NONE if cell is None else cell
             continue
         stack = result.stacks[number]
@@ -145,7 +156,11 @@ def _certified(result: RegionMap, cover: Cover, centres: list[list[Fraction]]) -
     image = labels.reshape(rows, columns)
     # a centre on a line of the lattice may touch a closed rectangle at its left or below
     on_line = [{k for k, p in enumerate(values) if p.denominator == 1} for values in places]
-    unsure = {(row, column) for row in range(rows) for column in (range(columns) if row in on_line[1] else on_line[0])}
+    unsure = {
+        (row, column)
+        for row in range(rows)
+        for column in (range(columns) if row in on_line[1] else on_line[0])
+    }
     if complement.frames is not None:
         slanted = complement.frames.frame_of[leaf].reshape(rows, columns) >= 0
         unsure |= {(int(row), int(column)) for row, column in np.argwhere(slanted)}

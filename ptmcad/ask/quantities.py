@@ -1,7 +1,8 @@
 """Quantities of a solution by name: its energy, an unknown, a spring's force, a point's place.
 
-Guarantee: names, units and messages of all commands are these. Values are taken in two ways: `of_pose` encloses them,
-and `ptmcad.ask.fields.quantities` computes them in floating point, for many solutions at once.
+Guarantee: names, units and messages of all commands are these. Values are taken in two ways:
+`of_pose` encloses them, and `ptmcad.ask.fields.quantities` computes them in floating point, for
+many solutions at once.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ _TIMES = " × "
 
 
 class QuantityKind(Enum):
-    """What a quantity is of a solution; where it belongs to a part of the mechanism, the word before the colon."""
+    """What a quantity is of a solution; where it belongs to a part of the mechanism, the word
+    before the colon.
+    """
 
     ENERGY = "energy"
     STIFFNESS = "stiffness"
@@ -39,7 +42,13 @@ class QuantityKind(Enum):
 
 
 OF_ENERGY = (QuantityKind.ENERGY, QuantityKind.STIFFNESS, QuantityKind.BARRIER)
-OF_PARTS = (QuantityKind.FORCE, QuantityKind.LENGTH, QuantityKind.ANGLE, QuantityKind.X, QuantityKind.Y)
+OF_PARTS = (
+    QuantityKind.FORCE,
+    QuantityKind.LENGTH,
+    QuantityKind.ANGLE,
+    QuantityKind.X,
+    QuantityKind.Y,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,17 +86,20 @@ def quantity(model: Model, text: str, key: str = OPTION) -> Quantity:
         hint = did_you_mean(text.strip(), known, "; there are " if known else "")
         raise ConfigError(f"{text[:60]!r} is no quantity of {model.name}{hint}", key=key)
     if found.kind is QuantityKind.BARRIER:
-        raise ConfigError("a barrier is no number of a pose alone: `ptmcad map --value barrier` has it", key=key)
+        raise ConfigError(
+            "a barrier is no number of a pose alone: `ptmcad map --value barrier` has it", key=key
+        )
     return found
 
 
 def named(model: Model, text: str, key: str) -> Quantity | None:
-    """The quantity that ``energy``, ``stiffness``, ``barrier`` or KIND:NAME stands for; None for another text.
+    """The quantity that ``energy``, ``stiffness``, ``barrier`` or KIND:NAME stands for; None for
+    another text.
 
     Raises
     ------
-    ConfigError
-        When the model has no energy, or no such part; its key is the option that the text was given to.
+    ConfigError When the model has no energy, or no such part; its key is the option that the text
+        was given to.
     """
     word, colon, name = (part.strip() for part in text.partition(":"))
     if not colon:
@@ -95,7 +107,9 @@ def named(model: Model, text: str, key: str) -> Quantity | None:
         return None if kind is None else _of_energy(model, kind, key)
     kind = next((kind for kind in OF_PARTS if kind.value == word), None)
     if kind is None:
-        raise ConfigError(f"{word[:60]!r} is not among {listed([kind.value for kind in OF_PARTS])}", key=key)
+        raise ConfigError(
+            f"{word[:60]!r} is not among {listed([kind.value for kind in OF_PARTS])}", key=key
+        )
     return _of_part(model, kind, name, key)
 
 
@@ -112,15 +126,23 @@ def quantities(model: Model) -> dict[str, Quantity]:
     mechanism = open_chain(model)
     if mechanism is not None:
         *of_springs, _, x, y = OF_PARTS
-        found += [_of_part(model, kind, name, OPTION) for kind in of_springs for name in mechanism.spring_numbers]
-        found += [_of_part(model, kind, name, OPTION) for name in mechanism.moving for kind in (x, y)]
+        found += [
+            _of_part(model, kind, name, OPTION)
+            for kind in of_springs
+            for name in mechanism.spring_numbers
+        ]
+        found += [
+            _of_part(model, kind, name, OPTION) for name in mechanism.moving for kind in (x, y)
+        ]
     return {q.name: q for q in found if q is not None}
 
 
 def unit_of(quantity: Quantity, slice: Slice) -> str:
     """The unit, where the record declares units in those: such as ``N·mm`` for ``force × length``."""
     words = quantity.unit.split(_TIMES)
-    return ("·" if all(w in slice.units for w in words) else _TIMES).join(slice.units.get(w, w) for w in words)
+    return ("·" if all(w in slice.units for w in words) else _TIMES).join(
+        slice.units.get(w, w) for w in words
+    )
 
 
 def of_pose(quantity: Quantity, pose: Pose) -> Enclosure | None:
@@ -154,12 +176,16 @@ def unknown(model: Model, name: str) -> Quantity | None:
 def _of_energy(model: Model, kind: QuantityKind, key: str) -> Quantity:
     if kind.value not in (*model.criterion.numbers, *model.criterion.differences):
         there = ", ".join(quantities(model))
-        raise ConfigError(f"solutions of {model.name} have no energy{there and f'; there are {there}'}", key=key)
+        raise ConfigError(
+            f"solutions of {model.name} have no energy{there and f'; there are {there}'}", key=key
+        )
     return Quantity(kind.value, kind, f"force{_TIMES}length" if model.whole else "")
 
 
 def open_chain(model: Model) -> Mechanism | None:
-    """The mechanism, of whose parts quantities are known by name: none yet with closed loops or X-joints."""
+    """The mechanism, of whose parts quantities are known by name: none yet with closed loops or
+    X-joints.
+    """
     mechanism = model.whole
     return None if mechanism is None or mechanism.closing or mechanism.xjoints else mechanism
 
@@ -173,11 +199,19 @@ def _of_part(model: Model, kind: QuantityKind, name: str, key: str) -> Quantity:
         case QuantityKind.FORCE | QuantityKind.LENGTH:
             what, known, unit = "spring", tuple(springs), kind.value
         case _:
-            what, known, unit = "point", () if mechanism is None else tuple(mechanism.points), "length"
+            what, known, unit = (
+                "point",
+                () if mechanism is None else tuple(mechanism.points),
+                "length",
+            )
     if mechanism is not model.whole and kind is not QuantityKind.ANGLE:
-        raise ConfigError(f"of closed loops, as {model.name} has, only the unknowns are told yet", key=key)
+        raise ConfigError(
+            f"of closed loops, as {model.name} has, only the unknowns are told yet", key=key
+        )
     if name not in known:
         there = f": they are {', '.join(known)}" if known else ": there are none"
-        raise ConfigError(f"{model.name} has no {what} {name[:60]!r}{did_you_mean(name, known) or there}", key=key)
+        raise ConfigError(
+            f"{model.name} has no {what} {name[:60]!r}{did_you_mean(name, known) or there}", key=key
+        )
     number = model.angles.index(name) if kind is QuantityKind.ANGLE else springs.get(name, 0)
     return Quantity(f"{kind.value}:{name}", kind, unit, part=name, number=number)

@@ -1,7 +1,8 @@
-"""Ranges: where along a line the counts are constant, how wide the operation range gets, where stable poses snap.
+"""Ranges: where along a line the counts are constant, how wide the operation range gets, where
+stable poses snap.
 
-Guarantee: ends are exact algebraic numbers, widths are enclosed, paths are proved; see `line`, `width` and `path`.
-Where springs have free lengths paths are what `ptmcad.ask.paths` says.
+Guarantee: ends are exact algebraic numbers, widths are enclosed, paths are proved; see `line`,
+`width` and `path`. Where springs have free lengths paths are what `ptmcad.ask.paths` says.
 """
 
 from __future__ import annotations
@@ -69,7 +70,9 @@ def pose_paths(
     varying, other, value = varying_axis(slice, along, at)
     axis, begin, model = slice.axes[varying], number_for("--path", start), slice.model
     if not axis.holds(begin):
-        raise ConfigError(f"{begin} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path")
+        raise ConfigError(
+            f"{begin} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path"
+        )
     joined = has_free_lengths(slice, along, at)
     follower: ExactFollower | JoinedFollower
     # both bring numpy, which intervals and widths do without
@@ -84,7 +87,9 @@ def pose_paths(
     stable = [k for k, pose in enumerate(follower.poses, 1) if model.criterion.works(pose.stable)]
     if number is not None and number not in stable:
         what = f"{len(stable)} {model.criterion.poses}"
-        raise ConfigError(f"{number} is none of the {what} at {along} = {begin}, counted from 1", key="--pose")
+        raise ConfigError(
+            f"{number} is none of the {what} at {along} = {begin}, counted from 1", key="--pose"
+        )
     found = []
     chosen = stable if number is None else [number]
     for done, k in enumerate(chosen):

@@ -1,8 +1,9 @@
-"""The mesh of a family's boundary surface: between neighbouring members' walls, strips of triangles.
+"""The mesh of a family's boundary surface: between neighbouring members' walls, strips of
+triangles.
 
-Guarantee: every vertex is a point of `ptmcad.exact.strips`, at a member's value. The walls of members that are joined
-are cut at the same shares of their strips, so finely that chords of some of the members' walls miss no middle by more
-than the tolerance, up to the depth of subdivision.
+Guarantee: every vertex is a point of `ptmcad.exact.strips`, at a member's value. The walls of
+members that are joined are cut at the same shares of their strips, so finely that chords of some of
+the members' walls miss no middle by more than the tolerance, up to the depth of subdivision.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ _WELD = float(JUMP)
 
 
 class Mesh(NamedTuple):
-    """Vertices and triangles; each triangle's sheet, and each vertex's member by its number among all values."""
+    """Vertices and triangles; each triangle's sheet, and each vertex's member by its number among
+    all values.
+    """
 
     vertices: NDArray[np.float64]
     faces: NDArray[np.int64]
@@ -44,7 +47,9 @@ def mesh_of(runs: Sequence[Joined], axes: Axes, tolerance: Fraction) -> Mesh:
     ----------
     tolerance : how far chords of walls may miss the walls' middles, as a share of the window.
     """
-    numbers = {value: n for n, value in enumerate(sorted({value for run in runs for value, _ in run}))}
+    numbers = {
+        value: n for n, value in enumerate(sorted({value for run in runs for value, _ in run}))
+    }
     builder = _Builder(axes, numbers)
     for run in runs:
         for number in range(len(run[0][1].strips)):
@@ -78,19 +83,28 @@ def _add_openings(builder: _Builder, run: Joined) -> None:
         for place in sorted(before.keys() & after.keys()):
             sheet = builder.sheet(place[1], run[k : k + 2])
             rows = []
-            for (value, strips), opening in zip(run[k : k + 2], (before[place], after[place]), strict=True):
-                ends = [builder.point(strips.base, opening.at, height) for height in (opening.low, opening.high)]
+            for (value, strips), opening in zip(
+                run[k : k + 2], (before[place], after[place]), strict=True
+            ):
+                ends = [
+                    builder.point(strips.base, opening.at, height)
+                    for height in (opening.low, opening.high)
+                ]
                 rows.append(builder.row(value, ends))
             builder.band(sheet, *rows)
 
 
 def _shares(builder: _Builder, run: Joined, number: int, tolerance: float) -> list[float]:
-    """Where the walls of a strip are cut, the same for all members: from 0 to 1, denser towards both ends."""
+    """Where the walls of a strip are cut, the same for all members: from 0 to 1, denser towards
+    both ends.
+    """
     some = [strips for _, strips in (run[0], run[len(run) // 3], run[2 * len(run) // 3], run[-1])]
 
     def columns(place: float) -> NDArray[np.float64]:
         found = [(s.base, s.at(number, _share(place))) for s in some]
-        return np.array([[builder.point(base, at, h) for h in heights] for base, (at, *heights) in found])
+        return np.array(
+            [[builder.point(base, at, h) for h in heights] for base, (at, *heights) in found]
+        )
 
     known = {place: columns(place) for place in (0.0, 0.25, 0.5, 0.75, 1.0)}
     pending = list(pairwise(sorted(known)))
@@ -109,12 +123,18 @@ def _share(place: float) -> float:
     return (1 - cos(pi * place)) / 2 if 0 < place < 1 else place
 
 
-def _deviation(first: NDArray[np.float64], middle: NDArray[np.float64], last: NDArray[np.float64]) -> float:
-    """The largest distance of a middle point from its chord; arrays of points of the window's unit square."""
+def _deviation(
+    first: NDArray[np.float64], middle: NDArray[np.float64], last: NDArray[np.float64]
+) -> float:
+    """The largest distance of a middle point from its chord; arrays of points of the window's unit
+    square.
+    """
     chord, way = last - first, middle - first
     length = np.hypot(chord[..., 0], chord[..., 1])
     cross = np.abs(chord[..., 0] * way[..., 1] - chord[..., 1] * way[..., 0])
-    return float(np.max(np.divide(cross, length, out=np.zeros_like(cross), where=length > 0), initial=0.0))
+    return float(
+        np.max(np.divide(cross, length, out=np.zeros_like(cross), where=length > 0), initial=0.0)
+    )
 
 
 class _Builder:
@@ -163,7 +183,11 @@ class _Builder:
     def band(self, sheet: int, lower: Sequence[int], upper: Sequence[int]) -> None:
         """Two triangles between each two columns, parted along the shorter diagonal."""
         for (a, b), (d, c) in zip(pairwise(lower), pairwise(upper), strict=True):
-            halves = ((a, b, c), (a, c, d)) if self._apart(a, c) <= self._apart(b, d) else ((a, b, d), (b, c, d))
+            halves = (
+                ((a, b, c), (a, c, d))
+                if self._apart(a, c) <= self._apart(b, d)
+                else ((a, b, d), (b, c, d))
+            )
             self.faces += halves
             self.of_sheet += [sheet] * 2
 
@@ -178,4 +202,6 @@ class _Builder:
         heights = values[member] if len(member) else np.zeros(0)
         vertices = np.column_stack([*scaled, heights])
         faces = np.array(self.faces, dtype=np.int64).reshape(-1, 3)
-        return Mesh(vertices, faces, np.array(self.of_sheet, dtype=np.int64), member, tuple(self.sheets))
+        return Mesh(
+            vertices, faces, np.array(self.of_sheet, dtype=np.int64), member, tuple(self.sheets)
+        )

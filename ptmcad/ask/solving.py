@@ -35,12 +35,15 @@ def solve(
 
     Parameters
     ----------
-    question : a slice, the file of a record, or a mapping like one: the point is given by values of its axes.
-    digits : significant digits that every number settles, 1 to `MAX_DIGITS`; more digits cost more time.
+    question : a slice, the file of a record, or a mapping like one: the point is given by values of
+        its axes.
+    digits : significant digits that every number settles, 1 to `MAX_DIGITS`; more digits cost more
+        time.
     model : the mechanism or system where no question is given; the paper's mechanism when None.
-    parameters : by the names of a problem record (of the paper's mechanism L1, L2, rho, k or k1, k2, k3, F3, F4, F3x,
-        F4x, l0 or l0_1, l0_2, l0_3), with its defaults: lengths 1, stiffness 100, no load, free lengths 0. Text, int,
-        Fraction, Decimal, float (its shortest decimal) or one of numpy's numbers.
+    parameters : by the names of a problem record (of the paper's mechanism L1, L2, rho, k or k1,
+        k2, k3, F3, F4, F3x, F4x, l0 or l0_1, l0_2, l0_3), with its defaults: lengths 1, stiffness
+        100, no load, free lengths 0. Text, int, Fraction, Decimal, float (its shortest decimal) or
+        one of numpy's numbers.
 
     Raises
     ------
@@ -48,13 +51,22 @@ def solve(
         For a name or a value that is wrong, with the name.
     """
     if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MAX_DIGITS:
-        raise ConfigError(f"{shown(repr(digits), 60)} is not a number of digits from 1 to {MAX_DIGITS}", key="digits")
+        raise ConfigError(
+            f"{shown(repr(digits), 60)} is not a number of digits from 1 to {MAX_DIGITS}",
+            key="digits",
+        )
     if isinstance(question, int):
-        raise ConfigError(f"give the number of digits by name: digits={shown(repr(question), 60)}", key="digits")
+        raise ConfigError(
+            f"give the number of digits by name: digits={shown(repr(question), 60)}", key="digits"
+        )
     if question is not None:
         if model is not None:
-            raise ConfigError("a slice or record has a model of its own: leave one out", key="model")
-        return replace(poses_at(*point_from(question, parameters), digits), units=units_of(question))
+            raise ConfigError(
+                "a slice or record has a model of its own: leave one out", key="model"
+            )
+        return replace(
+            poses_at(*point_from(question, parameters), digits), units=units_of(question)
+        )
     if model is None:
         model = ptm()
     expect(model, Model, "model", A_MODEL)
@@ -64,8 +76,9 @@ def solve(
 def poses_at(model: Model, parameters: Numbers, digits: int) -> Poses:
     """All solutions of a model; only the engine that is used is loaded.
 
-    Of a mechanism with more than three angles whose basis grows too large it is the certified one, see `manyangles`;
-    where that leaves the point undecided, the exact one with a basis by msolve, if it is installed.
+    Of a mechanism with more than three angles whose basis grows too large it is the certified one,
+    see `manyangles`; where that leaves the point undecided, the exact one with a basis by msolve,
+    if it is installed.
 
     Parameters
     ----------

@@ -1,8 +1,10 @@
-"""The exact engine's steps one by one, for any mechanism or system: the variety, an open CAD, counts at a point.
+"""The exact engine's steps one by one, for any mechanism or system: the variety, an open CAD,
+counts at a point.
 
-Guarantee: exact, as the map is that these are the steps of; none of them draws or stores anything. Where the basis at a
-point grows too large in more than three angles, the count is one that the certified engine proves; where it does not
-tell, one from a basis by msolve, proved, if that is installed.
+Guarantee: exact, as the map is that these are the steps of; none of them draws or stores anything.
+Where the basis at a point grows too large in more than three angles, the count is one that the
+certified engine proves; where it does not tell, one from a basis by msolve, proved, if that is
+installed.
 """
 
 from __future__ import annotations
@@ -35,8 +37,8 @@ def discriminant_variety(question: Question) -> SliceVariety:
     """The curves in Z[x, y] off which numbers of solutions are locally constant.
 
     >>> found = discriminant_variety({
-    ...     "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}, "axes": {"a": [-2, 2], "b": [-2, 2]},
-    ... })
+    ...     "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}, "axes": {"a":
+    [-2, 2], "b": [-2, 2]}, ... })
     >>> [component.polynomial.text(("a", "b")) for component in found.components]
     ['4*a^3 - 27*b^2']
 
@@ -61,7 +63,8 @@ def discriminant_variety(question: Question) -> SliceVariety:
 def open_cad(question: Question) -> tuple[Point, ...]:
     """A rational point of each cell of an open cylindrical algebraic decomposition of the window.
 
-    The points lie off the variety, and at least one lies in each connected part of the window without the variety.
+    The points lie off the variety, and at least one lies in each connected part of the window
+    without the variety.
 
     Parameters
     ----------
@@ -82,7 +85,8 @@ def open_cad(question: Question) -> tuple[Point, ...]:
 
 
 def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object) -> Counts:
-    """Numbers of solutions of a mechanism or system at a rational point: in all, stable, and by index.
+    """Numbers of solutions of a mechanism or system at a rational point: in all, stable, and by
+    index.
 
     >>> from ptmcad.question.config import make_system
     >>> counts_at(make_system(unknowns={"x": "real"}, equations=["x^3 - a*x + b"]), a=1, b="1/10").total
@@ -90,26 +94,35 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
 
     Parameters
     ----------
-    timeout : seconds after which a search for critical points in more than three angles, whose basis grew too large
-        for algebra, is given up; None for no limit.
+    timeout : seconds after which a search for critical points in more than three angles, whose
+        basis grew too large for algebra, is given up; None for no limit.
     values : of the parameters, as text, int or Fraction; a mechanism's have defaults.
 
     Raises
     ------
-    ConfigError
-        For a name or a value that is wrong, with the name; also for springs that have a free length.
+    ConfigError For a name or a value that is wrong, with the name; also for springs that have a
+        free length.
     HypothesisError
         When some solution is singular, or there are infinitely many.
     LimitReached
         When that search was given up, or did not tell all solutions apart.
     """
-    if timeout is not None and (isinstance(timeout, bool) or not isinstance(timeout, int | float) or not timeout > 0):
-        raise ConfigError(f"{shown(repr(timeout), 60)} is not a positive number of seconds", key="timeout")
+    if timeout is not None and (
+        isinstance(timeout, bool) or not isinstance(timeout, int | float) or not timeout > 0
+    ):
+        raise ConfigError(
+            f"{shown(repr(timeout), 60)} is not a positive number of seconds", key="timeout"
+        )
     if isinstance(model, Slice):
-        raise ConfigError("a count is of a mechanism or a system: give the slice's model, and all values", key="model")
+        raise ConfigError(
+            "a count is of a mechanism or a system: give the slice's model, and all values",
+            key="model",
+        )
     expect(model, Model, "model", A_MODEL)
     point = point_from_mapping(values, model)
-    without_free_lengths(model, {n: constant(v) for n, v in point.items()}, "an exact count is", "use ptmcad.solve")
+    without_free_lengths(
+        model, {n: constant(v) for n, v in point.items()}, "an exact count is", "use ptmcad.solve"
+    )
     system = system_from(model)
     exact = {name: from_fraction(point[name]) for name in system.ring.parameters}
     try:

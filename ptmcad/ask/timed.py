@@ -2,7 +2,8 @@
 
 C code that does not return to the interpreter cannot be stopped in any other way.
 
-Guarantee: the other process ends in time, by the system's own clock, also where this one has been killed before.
+Guarantee: the other process ends in time, by the system's own clock, also where this one has been
+killed before.
 """
 
 import pickle
@@ -28,7 +29,8 @@ pickle.dump(error, sys.stdout.buffer)
 
 
 def returns_within(seconds: float, work: Callable[..., object], *arguments: object) -> bool:
-    """Whether a function returns in time; False also where its process cannot be started or comes to grief.
+    """Whether a function returns in time; False also where its process cannot be started or comes
+    to grief.
 
     Parameters
     ----------
@@ -42,10 +44,14 @@ def returns_within(seconds: float, work: Callable[..., object], *arguments: obje
     """
     command = [sys.executable, "-P", "-c", _PROGRAM, str(seconds), *sys.path]
     try:
-        done = subprocess.run(command, input=pickle.dumps((work, arguments)), capture_output=True, check=False)
+        done = subprocess.run(
+            command, input=pickle.dumps((work, arguments)), capture_output=True, check=False
+        )
     except OSError:
         return False
-    if done.returncode != 0 or not done.stdout:  # what a library prints before it aborts is no answer
+    if (
+        done.returncode != 0 or not done.stdout
+    ):  # what a library prints before it aborts is no answer
         return False
     error = pickle.loads(done.stdout)
     if error is not None:

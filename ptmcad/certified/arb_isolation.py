@@ -1,4 +1,5 @@
-"""Isolated solutions in Arb's ball arithmetic: for what floats cannot separate, and for any number of digits.
+"""Isolated solutions in Arb's ball arithmetic: for what floats cannot separate, and for any number
+of digits.
 
 Guarantee: as for `ptmcad.certified.isolation`, with the same lemmas but none of its code.
 """
@@ -26,7 +27,8 @@ class Isolated:
 
 
 def newton(system: EquationSystem, box: Box, precision: int) -> tuple[Box, bool] | None:
-    """The box that the linearised equations leave of a box, and whether it is proved to hold exactly one zero.
+    """The box that the linearised equations leave of a box, and whether it is proved to hold
+    exactly one zero.
 
     None when there is no solution in the box (discarding formulas included).
     """
@@ -52,7 +54,9 @@ def newton(system: EquationSystem, box: Box, precision: int) -> tuple[Box, bool]
         radii = [box[k].rad() for k in unknowns]
         shrunk, proved = list(box), False
         for complete in (True, False):
-            rows, pivots = _elimination(arb_mat(size, size, [entry.mid() for entry in entries]), radii, complete)
+            rows, pivots = _elimination(
+                arb_mat(size, size, [entry.mid() for entry in entries]), radii, complete
+            )
             matrix, constant = rows * jacobian, rows * residual
             inside = len(pivots) == size
             for i, pivot in pivots.items():
@@ -77,19 +81,30 @@ def newton(system: EquationSystem, box: Box, precision: int) -> tuple[Box, bool]
         return tuple(shrunk), proved
 
 
-def _elimination(middle: arb_mat, radii: Sequence[arb], complete: bool) -> tuple[arb_mat, dict[int, int]]:
-    """Row operations that solve for one unknown in each row, and which; any are valid, rounding needs no care.
+def _elimination(
+    middle: arb_mat, radii: Sequence[arb], complete: bool
+) -> tuple[arb_mat, dict[int, int]]:
+    """Row operations that solve for one unknown in each row, and which; any are valid, rounding
+    needs no care.
 
-    Gauss-Jordan elimination with full pivoting; when not ``complete``, without its steps upwards, so that next to a
-    singular matrix the rows that are regular stay useful.
+    Gauss-Jordan elimination with full pivoting; when not ``complete``, without its steps upwards,
+    so that next to a singular matrix the rows that are regular stay useful.
     """
     size = middle.nrows()
     rows = arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
     pivots: dict[int, int] = {}
     for _ in range(size):
         current = rows * middle
-        free = [(i, j) for i in range(size) if i not in pivots for j in range(size) if j not in pivots.values()]
-        row, column = max(free, key=lambda place: float(abs(current[place].mid()) * radii[place[1]]))
+        free = [
+            (i, j)
+            for i in range(size)
+            if i not in pivots
+            for j in range(size)
+            if j not in pivots.values()
+        ]
+        row, column = max(
+            free, key=lambda place: float(abs(current[place].mid()) * radii[place[1]])
+        )
         factor = current[row, column].mid()
         if not _nonzero(factor):
             break
@@ -129,9 +144,14 @@ def refined(equations: EquationSystem, box: Box, precision: int) -> Box:
 
 
 def isolate_arb(
-    system: EquationSystem, equations: EquationSystem, start: Sequence[Box], precision: int, budget: int
+    system: EquationSystem,
+    equations: EquationSystem,
+    start: Sequence[Box],
+    precision: int,
+    budget: int,
 ) -> list[Isolated] | None:
-    """Isolate the solutions in some boxes; a zero may be found more than once. None when the budget does not suffice.
+    """Isolate the solutions in some boxes; a zero may be found more than once. None when the budget
+    does not suffice.
 
     Parameters
     ----------

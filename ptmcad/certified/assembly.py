@@ -1,8 +1,9 @@
 """From a cover and counts at points to a region map.
 
-Guarantee: every cell's counts are proved at its sample, and hold in the whole cell because no curve enters it. A
-component of the cover's complement gets no cell when its counts were not decided, or when it is a pocket: so small that
-it may be an artefact of the boxes, with the same counts as a larger component beside it. Its area is then undetermined.
+Guarantee: every cell's counts are proved at its sample, and hold in the whole cell because no curve
+enters it. A component of the cover's complement gets no cell when its counts were not decided, or
+when it is a pocket: so small that it may be an artefact of the boxes, with the same counts as a
+larger component beside it. Its area is then undetermined.
 """
 
 from __future__ import annotations
@@ -26,8 +27,9 @@ from ptmcad.question.slice import Point, Slice
 MAX_COUNTED = 500
 """Components whose counts are computed; smaller ones are undetermined."""
 POCKET_SHARE = Fraction(1, 4000)
-"""Share of the window, or a tenth of the cover's if that is less: smaller components with the counts of a larger one
-beside them are taken for artefacts. So a region that is there in truth appears as the cover shrinks."""
+"""Share of the window, or a tenth of the cover's if that is less: smaller components with the
+counts of a larger one beside them are taken for artefacts. So a region that is there in truth
+appears as the cover shrinks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,24 +52,40 @@ class Assembler:
 
         Parameters
         ----------
-        late : asked before each count but the first; components that are not counted when it says True, the smallest
-            ones, stay undetermined.
+        late : asked before each count but the first; components that are not counted when it says
+            True, the smallest ones, stay undetermined.
         """
         cover = complement.cover
         pocket = min(POCKET_SHARE * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
         counted = self._counts(complement, pocket, late)
-        kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)]
+        kept = [
+            n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)
+        ]
         known = frozenset(kept)
         square = self.slice.area / cover.steps**2
         cells, regions = [], []
         for region, n in enumerate(kept):
             sample, count = counted[n]
             cells.append(
-                Cell(None, n, sample, region, count.total, count.stable, count.index, count.solutions, count.further)
+                Cell(
+                    None,
+                    n,
+                    sample,
+                    region,
+                    count.total,
+                    count.stable,
+                    count.index,
+                    count.solutions,
+                    count.further,
+                )
             )
             low, high = area_bounds(complement, n, known)
             area = (low * square, high * square)
-            regions.append(Region(count.stable, count.total, count.index, area, (region,), sample, count.further))
+            regions.append(
+                Region(
+                    count.stable, count.total, count.index, area, (region,), sample, count.further
+                )
+            )
         open_area = cover.steps**2 - sum(complement.areas[n] for n in kept)
         return RegionMap(
             slice=self.slice,
@@ -85,7 +103,9 @@ class Assembler:
     def _counts(
         self, complement: Components, pocket: Fraction, late: Callable[[], bool]
     ) -> dict[int, tuple[Point, PointCount]]:
-        """Samples and counts of the components, largest first, as far as they are decided; small ones only easily."""
+        """Samples and counts of the components, largest first, as far as they are decided; small
+        ones only easily.
+        """
         horizontal, vertical = self.slice.axes
         window = ((horizontal.low, horizontal.high), (vertical.low, vertical.high))
         counted = {}
@@ -109,12 +129,16 @@ def _is_pocket(
     counted: Mapping[int, tuple[Point, PointCount]],
     which: Count,
 ) -> bool:
-    """Whether a component is smaller than ``least`` and a larger one at the same cluster has the same count."""
+    """Whether a component is smaller than ``least`` and a larger one at the same cluster has the
+    same count.
+    """
     if complement.areas[n] >= least:
         return False
     near = set(complement.clusters_at[n])
     mine = counted_by(counted[n][1], which)
     return any(
-        m < n and counted_by(counted[m][1], which) == mine and near.intersection(complement.clusters_at[m])
+        m < n
+        and counted_by(counted[m][1], which) == mine
+        and near.intersection(complement.clusters_at[m])
         for m in counted
     )

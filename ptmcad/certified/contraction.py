@@ -1,11 +1,13 @@
-"""Contraction of a box around the solutions of a system: natural tests, mean-value test, and the linearised equations.
+"""Contraction of a box around the solutions of a system: natural tests, mean-value test, and the
+linearised equations.
 
-Guarantee: a box that is discarded holds no solution, and a contracted box holds every solution of the box that it was
-made of. (Lemmas 4 to 8, 24 and 25 of docs/soundness.md.)
+Guarantee: a box that is discarded holds no solution, and a contracted box holds every solution of
+the box that it was made of. (Lemmas 4 to 8, 24 and 25 of docs/soundness.md.)
 
 References
 ----------
-Neumaier, Interval Methods for Systems of Equations (1990), chapter 5; Hansen & Sengupta, BIT 21 (1981).
+Neumaier, Interval Methods for Systems of Equations (1990), chapter 5; Hansen & Sengupta, BIT 21
+(1981).
 """
 
 from __future__ import annotations
@@ -27,7 +29,8 @@ SWEEP_SHRINKAGE = 0.8
 
 
 class Workspace(NamedTuple):
-    """Arrays that a search uses again for every box; flat, because nested ones slow the search down by a tenth.
+    """Arrays that a search uses again for every box; flat, because nested ones slow the search down
+    by a tenth.
 
     Attributes
     ----------
@@ -36,7 +39,8 @@ class Workspace(NamedTuple):
     middle_low, middle_high : the box with its unknowns at their middles.
     radius : of each unknown.
     j_low, j_high : the Jacobian over the box, shape (m, n).
-    matrix, inverse : what `precondition` eliminates, and the row operations; shapes (m, n) and (m, m).
+    matrix, inverse : what `precondition` eliminates, and the row operations; shapes (m, n) and (m,
+        m).
     pivots : the column that each row solves for, or -1.
     """
 
@@ -151,8 +155,12 @@ def determined(quotient: Indices, low: Floats, high: Floats) -> bool:
 
 
 @compiled
-def narrowed(quotient: Indices, low: Floats, high: Floats, box_low: Floats, box_high: Floats) -> bool:
-    """Intersect the variable of a row of ``System.solved`` with its value at solutions; False when nothing is left."""
+def narrowed(
+    quotient: Indices, low: Floats, high: Floats, box_low: Floats, box_high: Floats
+) -> bool:
+    """Intersect the variable of a row of ``System.solved`` with its value at solutions; False when
+    nothing is left.
+    """
     if determined(quotient, low, high):
         x, rest, slope = quotient[0], quotient[1], quotient[2]
         u, v = reciprocal(low[slope], high[slope])
@@ -166,7 +174,9 @@ def narrowed(quotient: Indices, low: Floats, high: Floats, box_low: Floats, box_
 
 @compiled
 def survives(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> bool:
-    """Narrow the axes that are solved for, and run all stages but the Jacobian; False when there is no solution."""
+    """Narrow the axes that are solved for, and run all stages but the Jacobian; False when there is
+    no solution.
+    """
     program, stages, _, _, _, cheap, rest, costly, nonnegative, solved, solved_end = system
     low, high = work.low, work.high
     begin = ZERO
@@ -190,7 +200,9 @@ def survives(system: Arguments, box_low: Floats, box_high: Floats, work: Workspa
 
 
 @compiled
-def contract_curve(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace, space: Linear) -> bool:
+def contract_curve(
+    system: Arguments, box_low: Floats, box_high: Floats, work: Workspace, space: Linear
+) -> bool:
     """The same as `contract` by affine forms, without derivatives."""
     for _ in range(SWEEPS):
         if not survives(system, box_low, box_high, work):
@@ -205,10 +217,11 @@ def contract_curve(system: Arguments, box_low: Floats, box_high: Floats, work: W
 
 @compiled
 def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> int:
-    """Test a box and enclose its equations' derivatives: -1 no solution, 0 a derivative may be unbounded, 1 done.
+    """Test a box and enclose its equations' derivatives: -1 no solution, 0 a derivative may be
+    unbounded, 1 done.
 
-    Afterwards ``work`` has the middle and the radii of the box, the equations there, their derivatives over the box,
-    and the middles of these.
+    Afterwards ``work`` has the middle and the radii of the box, the equations there, their
+    derivatives over the box, and the middles of these.
     """
     program, stages, unknowns, equations, jacobian = system[:5]
     low, high, low_at, high_at, middle_low, middle_high, radius, j_low, j_high, matrix = work[:10]
@@ -266,8 +279,12 @@ def row_coefficient(i: int, j: int, work: Workspace) -> tuple[float, float]:
 
 
 @inlined
-def solve_row(system: Arguments, i: int, pivot: int, box_low: Floats, box_high: Floats, work: Workspace) -> int:
-    """Row i of the preconditioned linear equations, solved for its pivot: -1 no solution, 1 much narrower, 0 else."""
+def solve_row(
+    system: Arguments, i: int, pivot: int, box_low: Floats, box_high: Floats, work: Workspace
+) -> int:
+    """Row i of the preconditioned linear equations, solved for its pivot: -1 no solution, 1 much
+    narrower, 0 else.
+    """
     unknowns, equations = system.unknowns, system.equations
     middle_low, radius = work.middle_low, work.radius
     c_low, c_high = row_constant(i, equations, work)

@@ -21,9 +21,13 @@ def controls(coefficients: Sequence[fmpq], start: fmpq, length: fmpq) -> list[fm
     composed: list[fmpq] = []
     for c in reversed(coefficients):
         # Horner's rule: (...) (start + length t) + c
-        composed = [start * a + length * b for a, b in zip([*composed, fmpq(0)], [fmpq(0), *composed], strict=True)]
+        composed = [
+            start * a + length * b
+            for a, b in zip([*composed, fmpq(0)], [fmpq(0), *composed], strict=True)
+        ]
         composed[0] += c
     degree = len(coefficients) - 1
     return [
-        sum((fmpq(comb(k, j), comb(degree, j)) * composed[j] for j in range(k + 1)), fmpq(0)) for k in range(degree + 1)
+        sum((fmpq(comb(k, j), comb(degree, j)) * composed[j] for j in range(k + 1)), fmpq(0))
+        for k in range(degree + 1)
     ]

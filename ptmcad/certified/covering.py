@@ -1,7 +1,8 @@
-"""Covers of enclosed curves: the rectangles of their boxes, or pieces of strips that are as thin as is asked.
+"""Covers of enclosed curves: the rectangles of their boxes, or pieces of strips that are as thin as
+is asked.
 
-Guarantee: each point of the window that lies on the projection of a curve lies in a rectangle. (Lemmas 12 and 16 of
-docs/soundness.md.)
+Guarantee: each point of the window that lies on the projection of a curve lies in a rectangle.
+(Lemmas 12 and 16 of docs/soundness.md.)
 """
 
 from __future__ import annotations
@@ -29,14 +30,17 @@ from ptmcad.model.involutions import Involution
 START_TILES = 8
 """Tiles of the window along each axis, with which a search begins."""
 MAX_TILES = 1000
-"""Rectangles that the search begins with at most, when it goes on from a cover: each costs a search of all angles."""
+"""Rectangles that the search begins with at most, when it goes on from a cover: each costs a search
+of all angles.
+"""
 BATCH = 4096
 SLACK = 0.9
 """Pieces are made so thin that their areas sum up to this part of what may be left undetermined."""
 CUT_COVERAGE = 0.5
 """A strip is cut if its finest pieces cover less than this part of its rectangle."""
 HALVINGS = 200
-"""Of the area by which a piece may be larger than its strip, at most; below, floats are exhausted."""
+"""Of the area by which a piece may be larger than its strip, at most; below, floats are exhausted.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +49,8 @@ class Lattice:
 
     Attributes
     ----------
-    change : an involution that takes to itself the window, of each tile of which that or its image is searched.
+    change : an involution that takes to itself the window, of each tile of which that or its image
+        is searched.
     """
 
     window: Window
@@ -60,7 +65,9 @@ class Lattice:
         array, size = rectangle_array(found), self.steps // START_TILES
         around = array[:, [0, 0, 2, 2]] // size * size + np.array([0, size, 0, size])
         # a tile that is its own image is searched whole
-        alone = (around == self.images(around, self.steps)).all(axis=1) & (array <= around)[:, [1, 3]].all(axis=1)
+        alone = (around == self.images(around, self.steps)).all(axis=1) & (array <= around)[
+            :, [1, 3]
+        ].all(axis=1)
         return cover_of(np.concatenate([array, self.images(array[~alone], self.steps)]), self.steps)
 
     def images(self, rectangles: Integers, steps: int) -> Integers:
@@ -68,7 +75,9 @@ class Lattice:
         if self.change is None:
             return rectangles
         sides = [
-            rectangles[:, [2 * j, 2 * j + 1]] if sign > 0 else steps - rectangles[:, [2 * j + 1, 2 * j]]
+            rectangles[:, [2 * j, 2 * j + 1]]
+            if sign > 0
+            else steps - rectangles[:, [2 * j + 1, 2 * j]]
             for j, sign in zip(self.change.axes, self.change.axis_signs, strict=True)
         ]
         return np.concatenate(sides, axis=1)
@@ -84,7 +93,9 @@ def outward(window: Window, rectangles: Integers, steps: int) -> Boxes:
     result = np.empty((len(rectangles), 4))
     for k, (low, high) in enumerate(window):
         lines, places = np.unique(rectangles[:, 2 * k : 2 * k + 2], return_inverse=True)
-        around = [enclosing_floats(low + (high - low) * Fraction(line, steps)) for line in lines.tolist()]
+        around = [
+            enclosing_floats(low + (high - low) * Fraction(line, steps)) for line in lines.tolist()
+        ]
         result[:, [k, 2 + k]] = np.array(around).reshape(-1, 2)[places.reshape(-1, 2), [0, 1]]
     return result
 
@@ -95,9 +106,13 @@ def first_rectangles(lattice: Lattice, resume: Cover | None) -> Boxes:
         steps = START_TILES
         tiles = np.array([(i, i + 1, j, j + 1) for i in range(steps) for j in range(steps)])
         others = lattice.images(tiles, steps).tolist()
-        rectangles = tiles[[tile <= other for tile, other in zip(tiles.tolist(), others, strict=True)]]
+        rectangles = tiles[
+            [tile <= other for tile, other in zip(tiles.tolist(), others, strict=True)]
+        ]
     else:
-        most = min(Fraction(MAX_TILES), START_TILES**2 / max(share_of(resume), Fraction(1, MAX_TILES)))
+        most = min(
+            Fraction(MAX_TILES), START_TILES**2 / max(share_of(resume), Fraction(1, MAX_TILES))
+        )
         steps, rectangles = resume.steps, rectangle_array(gathered(resume, int(most)))
     return outward(lattice.window, rectangles, steps)
 
@@ -108,7 +123,9 @@ def share_of(cover: Cover) -> Fraction:
 
 
 def meeting(rectangles: Boxes, boxes: Boxes) -> NDArray[np.bool_]:
-    """Which rectangles and which boxes' projections have points in common: shape (rectangles, boxes)."""
+    """Which rectangles and which boxes' projections have points in common: shape (rectangles,
+    boxes).
+    """
     half = boxes.shape[1] // 2
     low, high = boxes[:, :2], boxes[:, half : half + 2]
     result: NDArray[np.bool_] = np.ones((len(rectangles), len(boxes)), dtype=np.bool_)
@@ -121,7 +138,9 @@ def meeting(rectangles: Boxes, boxes: Boxes) -> NDArray[np.bool_]:
 def box_rectangles(enclosures: Sequence[CurveEnclosure]) -> Boxes:
     """The projections of all boxes, shape (k, 4)."""
     boxes = [enclosure.boxes() for enclosure in enclosures]
-    return np.concatenate([np.concatenate([b[:, :2], b[:, b.shape[1] // 2 :][:, :2]], axis=1) for b in boxes])
+    return np.concatenate(
+        [np.concatenate([b[:, :2], b[:, b.shape[1] // 2 :][:, :2]], axis=1) for b in boxes]
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -145,14 +164,17 @@ class Thinning:
         return self.whole_area + self.lattice.copies * float(areas_of_pieces(self.thin, 0.0).sum())
 
     def cover(self, area: float, most: int | None = None) -> Cover:
-        """A cover whose area is about the given one, or the least; the more it may be the fewer the pieces are.
+        """A cover whose area is about the given one, or the least; the more it may be the fewer the
+        pieces are.
 
         Parameters
         ----------
         most : number of pieces that is not exceeded by more than a factor.
         """
         step = self._step(area, most)
-        return self.lattice.cover(np.concatenate([pieces(self.whole, inf), pieces(self.thin, step)]))
+        return self.lattice.cover(
+            np.concatenate([pieces(self.whole, inf), pieces(self.thin, step)])
+        )
 
     def number(self, area: float) -> int:
         """About how many rectangles `cover` has."""
@@ -165,7 +187,10 @@ class Thinning:
         step = float((right - left) * (top - bottom))
         for _ in range(HALVINGS):
             enough = areas_of_pieces(self.thin, step).sum() <= wanted
-            if enough or (most is not None and numbers_of_pieces(self.thin, step).sum() > most / self.lattice.copies):
+            if enough or (
+                most is not None
+                and numbers_of_pieces(self.thin, step).sum() > most / self.lattice.copies
+            ):
                 break
             step /= 2
         return step

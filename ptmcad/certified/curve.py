@@ -30,7 +30,9 @@ class CriticalCurve:
         return np.ones(2 + len(self.ranges)) if self.weights is None else self.weights
 
     def start(self, window: Boxes) -> Boxes:
-        """Boxes over rectangles (low x, low y, high x, high y) of the window that hold the whole curve over them."""
+        """Boxes over rectangles (low x, low y, high x, high y) of the window that hold the whole
+        curve over them.
+        """
         count = len(window)
         low = np.tile(np.array([r[0] for r in self.ranges]), (count, 1))
         high = np.tile(np.array([r[1] for r in self.ranges]), (count, 1))

@@ -1,7 +1,9 @@
-"""The certified engine: from a slice to a region map of which the undecided part is known and small.
+"""The certified engine: from a slice to a region map of which the undecided part is known and
+small.
 
-Guarantee: the counts of each cell hold at every one of its points. What is not decided is in the map's cover, or in a
-component of the cover's complement that has no cell; `RegionMap.undetermined` is its exact share of the window.
+Guarantee: the counts of each cell hold at every one of its points. What is not decided is in the
+map's cover, or in a component of the cover's complement that has no cell; `RegionMap.undetermined`
+is its exact share of the window.
 """
 
 from __future__ import annotations
@@ -18,7 +20,14 @@ import numpy as np
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.assembly import Assembler
-from ptmcad.certified.covering import Lattice, Thinning, box_rectangles, first_rectangles, share_of, thinning
+from ptmcad.certified.covering import (
+    Lattice,
+    Thinning,
+    box_rectangles,
+    first_rectangles,
+    share_of,
+    thinning,
+)
 from ptmcad.certified.loading import load, may_be_slanted
 from ptmcad.certified.pace import SAFETY, Pace
 from ptmcad.certified.plain.curves import curves
@@ -50,22 +59,30 @@ MAX_BOXES = 6_000_000
 MAX_RECTANGLES = 3_000_000
 """In a cover made of strips: its JSON has some 40 bytes for each, and Python some 200."""
 STRIP_TRIAL_RATIO = 0.1
-"""Strips are tried as soon as the square of the boxes' share is at most so many times the tolerance: that of strips is
-about the square at best."""
+"""Strips are tried as soon as the square of the boxes' share is at most so many times the
+tolerance: that of strips is about the square at best."""
 STRIP_TARGET_SHARE = 0.5
 """... and used as soon as the finest ones would leave less than this part of it."""
 FIRST_MAP_SHARE = Fraction(97, 100)
-"""... and the first one when they have left this part; at the end of the first level there is one in any case."""
+"""... and the first one when they have left this part; at the end of the first level there is one
+in any case.
+"""
 COARSE_SHARE = Fraction(1, 4)
-"""While the boxes have more of the window, maps on the way do without strips, which would gain little."""
+"""While the boxes have more of the window, maps on the way do without strips, which would gain
+little.
+"""
 SECONDS_PER_RECTANGLE = 3e-5
 """That a map takes for each rectangle, with its JSON: less, on most machines."""
 MAP_SHRINK_RATIO = Fraction(9, 10)
-"""A map on the way is worth making when the boxes' share is at most this part of what it was at the last one."""
+"""A map on the way is worth making when the boxes' share is at most this part of what it was at the
+last one.
+"""
 SLANTED_SHARE = Fraction(1, 500)
 """Slanted pieces are tried once the boxes have at most this part of the window."""
 LAST_SHARE = 0.7
-"""Of the time that a process has when it is asked to leave: the rest is for tasks to end and for the map's text."""
+"""Of the time that a process has when it is asked to leave: the rest is for tasks to end and for
+the map's text.
+"""
 EARLY = 1.5
 """Seconds before the time limit: a search that ends earlier says so."""
 LATTICE_STEPS = 2**24
@@ -77,13 +94,14 @@ def certified_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
 
     Parameters
     ----------
-    options : of which ``deadline`` counts, not ``timeout``; `ptmcad.certified.loading.load`, which compiles, comes
-        before it is set. Maps on the way are complete but for a larger undetermined area.
+    options : of which ``deadline`` counts, not ``timeout``; `ptmcad.certified.loading.load`, which
+        compiles, comes before it is set. Maps on the way are complete but for a larger undetermined
+        area.
 
     Raises
     ------
-    GeometryError
-        When a parameter is not in the whole window what the proofs ask for, or that could not be proved.
+    GeometryError When a parameter is not in the whole window what the proofs ask for, or that could
+        not be proved.
     LimitReached
         At the deadline, or when doubles are exhausted, with the map so far as ``partial``.
     """
@@ -112,11 +130,17 @@ class _MapSearch:
             steps *= 2
         horizontal, vertical = slice.axes
         self.resumed = None if options.resume is None else options.resume.cover
-        whole = self.resumed is not None or may_be_slanted(options) or "mirror-images" in options.without
+        whole = (
+            self.resumed is not None
+            or may_be_slanted(options)
+            or "mirror-images" in options.without
+        )
         window = (horizontal.low, horizontal.high), (vertical.low, vertical.high)
         self.lattice = Lattice(window, steps, None if whole else halving(slice))
         wanted = curves(slice, slice.count, options.without)
-        self.enclosures: list[CurveEnclosure] = begin(wanted, first_rectangles(self.lattice, self.resumed))
+        self.enclosures: list[CurveEnclosure] = begin(
+            wanted, first_rectangles(self.lattice, self.resumed)
+        )
         plan = plan_of(slice, wanted, options.without, self.lattice.change)
         self.assembler = Assembler(slice, plain_counter(slice), plan, _versions())
         self.best: RegionMap | None = None
@@ -138,7 +162,9 @@ class _MapSearch:
         except SystemExit:
             if self.options.partial is not None:
                 until = self.clock() + LAST_SHARE * LAST_SECONDS
-                self.pace.deadline = until if self.pace.deadline is None else min(until, self.pace.deadline)
+                self.pace.deadline = (
+                    until if self.pace.deadline is None else min(until, self.pace.deadline)
+                )
                 self._hand_over(Fraction(1))
             raise
 
@@ -153,7 +179,9 @@ class _MapSearch:
             start, regions = self.clock(), self.seconds["regions"]
             report = self._report(undetermined)
             self._thinned = None
-            in_time = refine(self.enclosures, self.area * 4.0**-level, self.jobs, report, self._late)
+            in_time = refine(
+                self.enclosures, self.area * 4.0**-level, self.jobs, report, self._late
+            )
             self.seconds["curves"] += self.clock() - start - (self.seconds["regions"] - regions)
             if not in_time:
                 return self._stopped(self._at_limit())
@@ -183,7 +211,9 @@ class _MapSearch:
         return self._stopped(f"the search ended at {self.boxes():,} boxes")
 
     def _at_limit(self) -> str:
-        """Why a search ended for its deadline, in words: before it, where much was kept for the last map."""
+        """Why a search ended for its deadline, in words: before it, where much was kept for the
+        last map.
+        """
         kept = self.pace.left()
         if kept < EARLY:
             return "the time limit was reached"
@@ -194,7 +224,8 @@ class _MapSearch:
         return may_be_slanted(self.options) and undetermined <= SLANTED_SHARE
 
     def _slanted(self, undetermined: Fraction, area: float) -> RegionMap | None:
-        """The map of a cover with slanted pieces; None where it leaves too much, and then it may be the best so far.
+        """The map of a cover with slanted pieces; None where it leaves too much, and then it may be
+        the best so far.
 
         Parameters
         ----------
@@ -206,7 +237,9 @@ class _MapSearch:
             self._hand_over(undetermined)
         start = self.clock()
         lattice = Lattice(self.lattice.window, MAX_STEPS)
-        cover = slanting(self.enclosures, lattice).cover(self.tolerance, self.jobs, lambda: self._must_end(boxes))
+        cover = slanting(self.enclosures, lattice).cover(
+            self.tolerance, self.jobs, lambda: self._must_end(boxes)
+        )
         self.seconds["curves"] += self.clock() - start
         result = self.map(cover, Status.CERTIFIED, None if self.pace.late(boxes) else area)
         if result.undetermined <= self.tolerance:
@@ -223,22 +256,32 @@ class _MapSearch:
         return sum(enclosure.number() for enclosure in self.enclosures)
 
     def thin_cover(self, undetermined: Fraction) -> Cover | None:
-        """A cover of strips that are thin enough for the tolerance, if they can be, in the time that there is."""
+        """A cover of strips that are thin enough for the tolerance, if they can be, in the time
+        that there is.
+        """
         allowed = self.tolerance
-        if undetermined**2 > STRIP_TRIAL_RATIO * allowed or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes()):
+        if (
+            undetermined** 2 > STRIP_TRIAL_RATIO * allowed
+            or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes())
+        ):
             return None
         start = self.clock()
         strips = self._strips()
         target = float(allowed) * self.area
-        enough = strips.least() <= STRIP_TARGET_SHARE * target and strips.number(target) <= MAX_RECTANGLES
+        enough = (
+            strips.least() <= STRIP_TARGET_SHARE * target
+            and strips.number(target) <= MAX_RECTANGLES
+        )
         cover = strips.cover(target) if enough else None
         self.seconds["curves"] += self.clock() - start
         return cover
 
     def partial(self) -> RegionMap:
-        """The map so far, with strips as thin as they can be for not many more rectangles than boxes.
+        """The map so far, with strips as thin as they can be for not many more rectangles than
+        boxes.
 
-        Where there is no time for it, or another one has a smaller undetermined area, it is the best that was made.
+        Where there is no time for it, or another one has a smaller undetermined area, it is the
+        best that was made.
         """
         boxes = self.boxes()
         if self.best is not None and self.pace.cost(boxes) > self.pace.left():
@@ -251,14 +294,17 @@ class _MapSearch:
         if known is not None and share_of(known) < share_of(cover):
             cover = known
         found = self.map(cover, Status.PARTIAL)
-        return found if self.best is None or found.undetermined < self.best.undetermined else self.best
+        return (
+            found if self.best is None or found.undetermined < self.best.undetermined else self.best
+        )
 
     def map(self, cover: Cover, status: Status, area: float | None = None) -> RegionMap:
         """The map of a cover; what is not counted when the time is over is undetermined.
 
         Parameters
         ----------
-        area : of a box's projection, below which the search has left it alone; without it specks stay.
+        area : of a box's projection, below which the search has left it alone; without it specks
+            stay.
         """
         start, boxes = self.clock(), self.boxes()
         times = self.seconds | {"total": start - self.pace.started}
@@ -290,7 +336,9 @@ class _MapSearch:
         return SAFETY * (self.pace.map.of(pieces) + self.pace.text.of(pieces)) < self.pace.left()
 
     def _must_end(self, boxes: int) -> bool:
-        """Whether the search has to end for the last map of so many boxes; a process that is to leave ends here."""
+        """Whether the search has to end for the last map of so many boxes; a process that is to
+        leave ends here.
+        """
         leave_if_asked()
         return self.pace.late(boxes)
 
@@ -305,7 +353,9 @@ class _MapSearch:
             self._thinned = None
             enclosed = share_of(self._box_cover())
             self.pace.looked(self.clock() - start)
-            if enclosed <= (FIRST_MAP_SHARE if self.best is None else MAP_SHRINK_RATIO * self.enclosed):
+            if enclosed <= (
+                FIRST_MAP_SHARE if self.best is None else MAP_SHRINK_RATIO * self.enclosed
+            ):
                 self._hand_over(enclosed)
             self.pace.resumed()
         return False
@@ -318,7 +368,11 @@ class _MapSearch:
         enclosed : the boxes' share of the window.
         """
         start = self.clock()
-        found = self.partial() if enclosed <= COARSE_SHARE else self.map(self._box_cover(), Status.PARTIAL)
+        found = (
+            self.partial()
+            if enclosed <= COARSE_SHARE
+            else self.map(self._box_cover(), Status.PARTIAL)
+        )
         self.enclosed = min(enclosed, self.enclosed)
         if found.undetermined < self._least() and self.options.partial is not None:
             made = self.clock()
@@ -358,18 +412,29 @@ class _MapSearch:
         def report(treated: int, waiting: int) -> None:
             level = treated / max(treated + 8 * waiting, 1)  # most of those that wait are cut again
             share = self._kept(undetermined)
-            progress(f"undetermined {percent(share)}", self.search_progress.at(float(share), level), PARTS)
+            progress(
+                f"undetermined {percent(share)}",
+                self.search_progress.at(float(share), level),
+                PARTS,
+            )
 
         return report
 
     def _least(self) -> Fraction:
-        """What the best map leaves undetermined of those that were handed over, and the one to go on from."""
-        return min((found.undetermined for found in (self.best, self.options.resume) if found), default=Fraction(1))
+        """What the best map leaves undetermined of those that were handed over, and the one to go
+        on from.
+        """
+        return min(
+            (found.undetermined for found in (self.best, self.options.resume) if found),
+            default=Fraction(1),
+        )
 
     def _kept(self, enclosed: Fraction) -> Fraction:
-        """What a stop would leave undetermined, where the boxes have at most this share of the window.
+        """What a stop would leave undetermined, where the boxes have at most this share of the
+        window.
 
-        It is what the map leaves that `run` makes then, if there is the time to make it: else what the best one leaves.
+        It is what the map leaves that `run` makes then, if there is the time to make it: else what
+        the best one leaves.
         """
         # half of the time there is: other programs may take the processors meanwhile
         in_time = SAFETY * self.pace.map.of(self.boxes()) < LAST_SHARE * LAST_SECONDS / 2

@@ -1,7 +1,8 @@
 """Polynomials near a curve of solutions, and how small the equations are along them.
 
-Guarantee: `residual` bounds the equations' absolute values along polynomials, for the whole interval of their variable;
-nothing is proved of the polynomials themselves, which Newton's method finds on power series.
+Guarantee: `residual` bounds the equations' absolute values along polynomials, for the whole
+interval of their variable; nothing is proved of the polynomials themselves, which Newton's method
+finds on power series.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ SMALL_STEP = 1e-15
 
 @inlined
 def eliminated(system: Arguments, work: Workspace) -> bool:
-    """Row operations from the middles of the Jacobian that was run last, columns weighted by the radii; False where
-    there are none."""
+    """Row operations from the middles of the Jacobian that was run last, columns weighted by the
+    radii; False where there are none."""
     jacobian = system.jacobian
     for i in range(jacobian.shape[0]):
         for j in range(jacobian.shape[1]):
@@ -41,7 +42,9 @@ def eliminated(system: Arguments, work: Workspace) -> bool:
 
 @compiled
 def approach(system: Arguments, point: Floats, work: Workspace) -> bool:
-    """Move a point near to a zero of the equations, along all unknowns but u, in place; False where that fails."""
+    """Move a point near to a zero of the equations, along all unknowns but u, in place; False where
+    that fails.
+    """
     equations, unknowns = system.equations, system.unknowns
     for _ in range(NEWTON_STEPS):
         run(system.program, point, point, work.low, work.high, ZERO, system.stages[3])
@@ -51,7 +54,9 @@ def approach(system: Arguments, point: Floats, work: Workspace) -> bool:
         for i in range(len(equations)):
             step = 0.0
             for k in range(len(equations)):
-                step += work.inverse[i, k] * 0.5 * (work.low[equations[k]] + work.high[equations[k]])
+                step += (
+                    work.inverse[i, k] * 0.5 * (work.low[equations[k]] + work.high[equations[k]])
+                )
             if not abs(step) < MAX_STEP:
                 return False
             point[unknowns[work.pivots[i]]] -= step
@@ -62,8 +67,11 @@ def approach(system: Arguments, point: Floats, work: Workspace) -> bool:
 
 
 @compiled
-def expanded(system: Arguments, point: Floats, u: int, radius: float, order: int, work: Workspace) -> Floats:
-    """Coefficients of a curve of zeros through a point, about, in t = (u - middle)/radius; shape (variables, order+2).
+def expanded(
+    system: Arguments, point: Floats, u: int, radius: float, order: int, work: Workspace
+) -> Floats:
+    """Coefficients of a curve of zeros through a point, about, in t = (u - middle)/radius; shape
+    (variables, order+2).
 
     The last column is zero.
     """
@@ -88,7 +96,9 @@ def expanded(system: Arguments, point: Floats, u: int, radius: float, order: int
 
 @compiled
 def _about_all(z: Floats) -> tuple[Floats, Floats]:
-    """Enclosures of the polynomials' coefficients about every point of [-1, 1]: of p(s + t) for all s there."""
+    """Enclosures of the polynomials' coefficients about every point of [-1, 1]: of p(s + t) for all
+    s there.
+    """
     variables, terms = z.shape
     low, high = np.zeros((variables, terms)), np.zeros((variables, terms))
     for x in range(variables):

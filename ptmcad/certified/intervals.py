@@ -1,4 +1,5 @@
-"""The intervals of constant count along a line for springs with free lengths: the certified engine's answer as a table.
+"""The intervals of constant count along a line for springs with free lengths: the certified
+engine's answer as a table.
 
 Guarantee: every digit is right; what was not decided is called undecided and has no counts.
 """
@@ -16,7 +17,9 @@ from ptmcad.question.line import on_line, varying_axis
 from ptmcad.question.slice import Axis, Slice
 
 
-def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits: int) -> CertifiedIntervals:
+def certified_intervals(
+    slice: Slice, along: str, at: Mapping[str, Any], digits: int
+) -> CertifiedIntervals:
     """The intervals of constant count on a line of a slice whose springs have free lengths.
 
     Parameters
@@ -27,11 +30,11 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
 
     Raises
     ------
-    ConfigError
-        When ``along`` is no axis, or ``at`` does not name exactly the other one with an exact number.
-    GeometryError
-        When a parameter is not on the whole line what the proofs ask for, or that could not be proved. The line need
-        not lie in the slice's window, so nothing that is known of the window is used.
+    ConfigError When ``along`` is no axis, or ``at`` does not name exactly the other one with an
+        exact number.
+    GeometryError When a parameter is not on the whole line what the proofs ask for, or that could
+        not be proved. The line need not lie in the slice's window, so nothing that is known of the
+        window is used.
     """
     with loading("the certified engine"):
         from ptmcad.certified.line import intervals_and_changes

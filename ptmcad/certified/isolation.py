@@ -1,18 +1,26 @@
-"""Proofs that a box holds exactly one zero of a square system, by the signs of its equations on opposite faces.
+"""Proofs that a box holds exactly one zero of a square system, by the signs of its equations on
+opposite faces.
 
-Guarantee: a box of which `isolated` says True holds exactly one zero of the equations, an inner point. (Lemma 9 of
-docs/soundness.md.)
+Guarantee: a box of which `isolated` says True holds exactly one zero of the equations, an inner
+point. (Lemma 9 of docs/soundness.md.)
 
 References
 ----------
-Miranda, Boll. Un. Mat. Ital. 3 (1940); Neumaier, Interval Methods for Systems of Equations (1990), section 5.1.
+Miranda, Boll. Un. Mat. Ital. 3 (1940); Neumaier, Interval Methods for Systems of Equations (1990),
+section 5.1.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ptmcad.certified.contraction import Workspace, linearise, precondition, row_coefficient, row_constant
+from ptmcad.certified.contraction import (
+    Workspace,
+    linearise,
+    precondition,
+    row_coefficient,
+    row_constant,
+)
 from ptmcad.certified.system import Arguments
 from ptmcad.formulas.compiled import compiled, inlined
 from ptmcad.formulas.intervals import Floats
@@ -25,7 +33,8 @@ ATTEMPTS = 10
 
 @compiled
 def inflated(equations: Arguments, box: Floats, weights: Floats, work: Workspace) -> Floats:
-    """A box around the given one that is proved to hold exactly one zero; an empty array if none is found.
+    """A box around the given one that is proved to hold exactly one zero; an empty array if none is
+    found.
 
     Parameters
     ----------
@@ -52,9 +61,11 @@ def inflated(equations: Arguments, box: Floats, weights: Floats, work: Workspace
 
 @inlined
 def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> bool:
-    """Whether it is proved that the equations have exactly one zero in the box, and that it is an inner point.
+    """Whether it is proved that the equations have exactly one zero in the box, and that it is an
+    inner point.
 
-    With Y the preconditioner, A = Y J(box), c = Y f(middle) and r the half-widths, |c_i| + sum_{j not i} |A_ij| r_j <
+    With Y the preconditioner, A = Y J(box), c = Y f(middle) and r the half-widths, |c_i| + sum_{j
+    not i} |A_ij| r_j <
     |A_ii| r_i for each i. So (Y f)_i has opposite signs on opposite faces, which proves existence (Miranda), and no
     matrix in A is singular, which proves uniqueness.
     """
@@ -72,7 +83,10 @@ def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
             if j == pivots[i]:
                 # the half-width about the middle, rounded down
                 x = unknowns[j]
-                own = down(mignitude(u, v) * min(down(box_high[x] - middle[x]), down(middle[x] - box_low[x])))
+                own = down(
+                    mignitude(u, v)
+                    * min(down(box_high[x] - middle[x]), down(middle[x] - box_low[x]))
+                )
             else:
                 others = up(others + up(magnitude(u, v) * radius[j]))
         if not others < own:

@@ -1,12 +1,15 @@
-"""What holds at a critical value at which a branch ends, for springs with free lengths: a pose there, and energies.
+"""What holds at a critical value at which a branch ends, for springs with free lengths: a pose
+there, and energies.
 
-Guarantee: every enclosure holds the number at the critical value, wherever that lies in its own enclosure. The pose
-that is reached is proved to be the branch of the one beyond. The energy of the branch that ends differs from that at a
-place beside by no more than the distance times the largest slope: along a branch of critical points the energy changes
-with the parameter alone, which is bounded on the torus.
+Guarantee: every enclosure holds the number at the critical value, wherever that lies in its own
+enclosure. The pose that is reached is proved to be the branch of the one beyond. The energy of the
+branch that ends differs from that at a place beside by no more than the distance times the largest
+slope: along a branch of critical points the energy changes with the parameter alone, which is
+bounded on the torus.
 
-Not guaranteed: that the branch ends in the degenerate pose that Newton's method finds from its last place. That pose is
-proved, it lies at the critical value, and its energy is one that the branch may have there.
+Not guaranteed: that the branch ends in the degenerate pose that Newton's method finds from its last
+place. That pose is proved, it lies at the critical value, and its energy is one that the branch may
+have there.
 """
 
 from __future__ import annotations
@@ -43,12 +46,14 @@ _NEAREST = Fraction(1, 2**60)
 
 
 class LineFormulas(NamedTuple):
-    """A mechanism on unknown angles, on a line: variable 0 is the axis, the next ones are the angles.
+    """A mechanism on unknown angles, on a line: variable 0 is the axis, the next ones are the
+    angles.
 
     Attributes
     ----------
     equations : of equilibrium.
-    folds : the same and the Hessian's determinant, with the axis as a further unknown, the last one, and no parameter.
+    folds : the same and the Hessian's determinant, with the axis as a further unknown, the last
+        one, and no parameter.
     numbers : the energy, and the heights of the rising points.
     """
 
@@ -74,7 +79,9 @@ def line_formulas(mechanism: Mechanism, parameters: Mapping[str, Expression]) ->
     )
 
 
-def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> Landing | None:
+def landing(
+    line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint
+) -> Landing | None:
     """What holds at a critical value; None where that is not proved.
 
     Parameters
@@ -94,20 +101,28 @@ def landing(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoin
             return None
         there = tube.hull()
         reached, *heights = evaluated(line.numbers, (ball_over(at.low, at.high), *there))
-        return Landing(Target(tuple(map(enclosure_of, there)), (), signs_of(heights)), energy, enclosure_of(reached))
+        return Landing(
+            Target(tuple(map(enclosure_of, there)), (), signs_of(heights)),
+            energy,
+            enclosure_of(reached),
+        )
 
 
 def merger(line: LineFormulas, at: Enclosure, last: PathPoint, beyond: PathPoint) -> Landing | None:
-    """The same where the pose beyond is what several become, of which ``last`` is one; None where that is not proved.
+    """The same where the pose beyond is what several become, of which ``last`` is one; None where
+    that is not proved.
 
-    The pose in which they merge is told, without proof, to lie about where those on both sides are, no farther off than
-    these are from each other; an angle beyond that is not told from half turns, as that of a flat pose, is one of them.
+    The pose in which they merge is told, without proof, to lie about where those on both sides are,
+    no farther off than these are from each other; an angle beyond that is not told from half turns,
+    as that of a flat pose, is one of them.
     """
     energy = _energy_at(line, at, last)
     if energy is None:
         return None
     angles = tuple(
-        b if (ball_of(b.low).union(ball_of(b.high)) / arb.pi()).contains_integer() else _around(a, b)
+        b
+        if (ball_of(b.low).union(ball_of(b.high)) / arb.pi()).contains_integer()
+        else _around(a, b)
         for a, b in zip(last.angles, beyond.angles, strict=True)
     )
     return Landing(Target(angles, (), beyond.sides), energy, energy)
@@ -120,7 +135,9 @@ def _around(first: Enclosure, second: Enclosure) -> Enclosure:
 
 
 def _energy_at(line: LineFormulas, at: Enclosure, last: PathPoint) -> Enclosure | None:
-    """The energy of a branch at the critical value at which it ends; None where the branch is not proved."""
+    """The energy of a branch at the critical value at which it ends; None where the branch is not
+    proved.
+    """
     with ctx.workprec(BITS):
         place = _located(line, last)
         if place is None:
@@ -134,18 +151,25 @@ def _energy_at(line: LineFormulas, at: Enclosure, last: PathPoint) -> Enclosure 
 
 
 def _located(line: LineFormulas, point: PathPoint) -> Reached | None:
-    """A pose's branch: the solution that is proved to be the only one about its enclosures; None without proof."""
+    """A pose's branch: the solution that is proved to be the only one about its enclosures; None
+    without proof.
+    """
     guess = tuple(ball_of(angle.center) for angle in point.angles)
-    place = at_value(line.equations, point.value, guess, 2 * max(angle.radius for angle in point.angles))
+    place = at_value(
+        line.equations, point.value, guess, 2 * max(angle.radius for angle in point.angles)
+    )
     if place is None or not all(
-        a.contains(ball_over(b.low, b.high)) for a, b in zip(place.alone(point.value), point.angles, strict=True)
+        a.contains(ball_over(b.low, b.high))
+        for a, b in zip(place.alone(point.value), point.angles, strict=True)
     ):
         return None
     return Reached(point.value, place, place)
 
 
 def _fold(line: LineFormulas, at: Enclosure, place: Reached) -> tuple[arb, ...] | None:
-    """The degenerate pose at a critical value that Newton's method finds from a place beside; None without proof."""
+    """The degenerate pose at a critical value that Newton's method finds from a place beside; None
+    without proof.
+    """
     tube = at_value(line.folds, Fraction(0), (*place.point, ball_of(at.center)))
     if tube is None:
         return None

@@ -1,8 +1,10 @@
-"""The values along a line of a slice at which counts change, enclosed, and the counts between them, proved.
+"""The values along a line of a slice at which counts change, enclosed, and the counts between them,
+proved.
 
-Guarantee: on each interval of the result the numbers of minima, saddles, maxima and cones are constant. What was not
-decided lies in one of the changes between them; one that is `proved` holds nothing but isolated critical values, each
-proved to be the only one near it. Another one may hold none.
+Guarantee: on each interval of the result the numbers of minima, saddles, maxima and cones are
+constant. What was not decided lies in one of the changes between them; one that is `proved` holds
+nothing but isolated critical values, each proved to be the only one near it. Another one may hold
+none.
 """
 
 from __future__ import annotations
@@ -39,8 +41,11 @@ MIN_PART = Fraction(1, 2**16)
 """Parts of the line of this share are not halved."""
 
 
-def intervals_and_changes(slice: Slice, bits: int) -> tuple[tuple[CertifiedInterval, ...], tuple[CertifiedChange, ...]]:
-    """The counts on the line of a slice's first axis, and what lies between them; the other axis has one value.
+def intervals_and_changes(
+    slice: Slice, bits: int
+) -> tuple[tuple[CertifiedInterval, ...], tuple[CertifiedChange, ...]]:
+    """The counts on the line of a slice's first axis, and what lies between them; the other axis
+    has one value.
 
     Intervals and the changes between them, both in increasing order.
 
@@ -51,11 +56,14 @@ def intervals_and_changes(slice: Slice, bits: int) -> tuple[tuple[CertifiedInter
     axis, value = slice.axes[0], slice.axes[1].low
     wanted = curves(slice, Count.INDEX)
     found: list[list[CertifiedChange]] = [[] for _ in wanted]
-    # what is quick to search comes first: what it leaves undecided need not be looked at closely again
+    # what is quick to search comes first: what it leaves undecided need not be looked at closely
+    # again
     for k in sorted(range(len(wanted)), key=lambda k: len(wanted[k].system.tape)):
         undecided = _joined([change for some in found for change in some if not change.proved])
         found[k] = list(_changes(slice, wanted[k], bits, undecided))
-    changes = _joined([c for some in found for c in some if c.at.high > axis.low and c.at.low < axis.high])
+    changes = _joined(
+        [c for some in found for c in some if c.at.high > axis.low and c.at.low < axis.high]
+    )
     counter = plain_counter(slice)
     edges = (Enclosure(end, end) for end in (axis.low, axis.high))
     low = next(edges)
@@ -65,13 +73,17 @@ def intervals_and_changes(slice: Slice, bits: int) -> tuple[tuple[CertifiedInter
             sample = _simple(low.high, high.low)
             counts = counter.at(sample, value, Count.INDEX)
             total, stable = _numbers(slice, counts)
-            intervals.append(CertifiedInterval(low, high, counts.index, counts.cones, sample, total, stable))
+            intervals.append(
+                CertifiedInterval(low, high, counts.index, counts.cones, sample, total, stable)
+            )
         low = high
     return tuple(intervals), changes
 
 
 def _numbers(slice: Slice, counts: PointCount) -> tuple[int | None, int | None]:
-    """All equilibria and the stable ones; nothing where it is known what is stable, but not of each of them."""
+    """All equilibria and the stable ones; nothing where it is known what is stable, but not of each
+    of them.
+    """
     criterion = slice.model.criterion
     found = [criterion.is_stable(solution.signs) for solution in counts.solutions]
     stable = criterion.number(found)
@@ -83,8 +95,8 @@ def _numbers(slice: Slice, counts: PointCount) -> tuple[int | None, int | None]:
 def _changes(
     slice: Slice, curve: CriticalCurve, bits: int, undecided: Sequence[CertifiedChange]
 ) -> Iterator[CertifiedChange]:
-    """Where the line meets a curve; parts of it that are too hard as a whole are halved while the budget lasts, but for
-    what is ``undecided`` in them."""
+    """Where the line meets a curve; parts of it that are too hard as a whole are halved while the
+    budget lasts, but for what is ``undecided`` in them."""
     system = on_line(curve.system, 0)
     equations = replace(system, vanishing=(_NONE, _NONE, _NONE), nonnegative=_NONE)
     axis, value = slice.axes[0], slice.axes[1].low
@@ -98,10 +110,16 @@ def _changes(
         ends = enclosing_floats(low)[0], enclosing_floats(high)[1]
         start = curve.start(np.array([[ends[0], fixed[0], ends[1], fixed[1]]]))
         limits = MIN_BOX_WIDTH, BUDGET, MAX_OPEN_BOXES
-        found = isolate(system.arguments(), equations.arguments(), start, limits, curve.importance())
+        found = isolate(
+            system.arguments(), equations.arguments(), start, limits, curve.importance()
+        )
         total += found.used
         left, variables = found.left(), start.shape[1] // 2
-        if (found.used >= BUDGET or len(left) > MAX_OPEN_BOXES) and high - low > smallest and total < MAX_BOXES:
+        if (
+            (found.used >= BUDGET or len(left) > MAX_OPEN_BOXES)
+            and high - low > smallest
+            and total < MAX_BOXES
+        ):
             inside = [
                 (max(low, change.at.low), min(high, change.at.high))
                 for change in undecided
@@ -115,10 +133,14 @@ def _changes(
         for box in left:
             open_part = Enclosure(Fraction(float(box[0])), Fraction(float(box[variables])))
             yield CertifiedChange(open_part, (curve.name,), False)
-        # ``narrow`` was contracted with the equations alone; its number can be enclosed to any precision
+        # ``narrow`` was contracted with the equations alone; its number can be enclosed to any
+        # precision
         for row in found.narrow:
             with ctx.workprec(bits):
-                floats = [ball(Fraction(float(row[k])), Fraction(float(row[variables + k]))) for k in range(variables)]
+                floats = [
+                    ball(Fraction(float(row[k])), Fraction(float(row[variables + k])))
+                    for k in range(variables)
+                ]
                 box = (floats[0], ball(value, value), *floats[2:])
             exact = refined(equations, box, bits)[0]
             yield CertifiedChange(Enclosure(lower(exact), upper(exact)), (curve.name,), True)
@@ -129,7 +151,9 @@ _NONE = np.empty(0, np.int64)
 
 def on_line(system: EquationSystem, varying: int) -> EquationSystem:
     """The square system that is left when the other axis has a value."""
-    kept = np.array([k for k, unknown in enumerate(system.unknowns) if unknown != 1 - varying], np.int64)
+    kept = np.array(
+        [k for k, unknown in enumerate(system.unknowns) if unknown != 1 - varying], np.int64
+    )
     # the value is fixed: what the equations say of it must not narrow the floats around it
     solved = system.solved[system.solved[:, 0] == varying]
     jacobian = np.ascontiguousarray(system.jacobian[:, kept])

@@ -1,7 +1,8 @@
-"""What the affine forms of a system's formulas say together of a box: linear equations with bounded errors.
+"""What the affine forms of a system's formulas say together of a box: linear equations with bounded
+errors.
 
-Guarantee: `contract_linear` discards a box only if it holds no solution, and leaves every solution in the box that it
-shrinks. (Lemma 25 of docs/soundness.md.)
+Guarantee: `contract_linear` discards a box only if it holds no solution, and leaves every solution
+in the box that it shrinks. (Lemma 25 of docs/soundness.md.)
 """
 
 from __future__ import annotations
@@ -39,7 +40,8 @@ ROUNDS = 2
 
 
 class Rows(NamedTuple):
-    """Rows: the sum over j of slopes[i, j] e_j, plus centers[i], plus a number of at most errors[i], is zero.
+    """Rows: the sum over j of slopes[i, j] e_j, plus centers[i], plus a number of at most
+    errors[i], is zero.
 
     Attributes
     ----------
@@ -72,7 +74,14 @@ def space_for(system: Arguments, variables: int) -> Linear:
     return Linear(
         np.zeros((len(system.program.operations) + 1, FIRST + LANES)),
         frame_for(system.unknowns, variables),
-        Rows(np.empty((m, n)), np.empty(m), np.empty(m), np.empty(m, np.int64), np.empty(n), np.empty(n)),
+        Rows(
+            np.empty((m, n)),
+            np.empty(m),
+            np.empty(m),
+            np.empty(m, np.int64),
+            np.empty(n),
+            np.empty(n),
+        ),
     )
 
 
@@ -80,11 +89,13 @@ def space_for(system: Arguments, variables: int) -> Linear:
 def contract_linear(
     system: Arguments, box_low: Floats, box_high: Floats, low: Floats, high: Floats, space: Linear
 ) -> int:
-    """Shrink the box in place around the solutions in it: -1 there are none, 1 it is much narrower, 0 else.
+    """Shrink the box in place around the solutions in it: -1 there are none, 1 it is much narrower,
+    0 else.
 
     Parameters
     ----------
-    low, high : of the tape's nodes before the Jacobian, run in intervals on the box or on one around it.
+    low, high : of the tape's nodes before the Jacobian, run in intervals on the box or on one
+        around it.
     """
     forms, frame, rows = space
     set_frame(frame, box_low, box_high)
@@ -125,7 +136,9 @@ def _take(rows: Rows, count: int, places: Indices, forms: Floats) -> int:
 
 @compiled
 def _eliminate(rows: Rows, equal: int, count: int) -> bool:
-    """Solve one more row for the unknown that it knows best, and put that into all others; False if none is left."""
+    """Solve one more row for the unknown that it knows best, and put that into all others; False if
+    none is left.
+    """
     slopes, centers, errors, pivots = rows.slopes, rows.centers, rows.errors, rows.pivots
     n = slopes.shape[1]
     best, row, column = MIN_GAIN, -1, -1
@@ -157,7 +170,9 @@ def _eliminate(rows: Rows, equal: int, count: int) -> bool:
 
 @compiled
 def _bound(rows: Rows, i: int, nonnegative: bool) -> bool:
-    """What row i, zero or not negative, says of each unknown where the others are bounded; False if it cannot hold."""
+    """What row i, zero or not negative, says of each unknown where the others are bounded; False if
+    it cannot hold.
+    """
     slopes, low, high = rows.slopes, rows.low, rows.high
     center, error = rows.centers[i], rows.errors[i]
     least = most = size = 0.0
@@ -187,7 +202,9 @@ def _bound(rows: Rows, i: int, nonnegative: bool) -> bool:
 
 
 @compiled
-def _shrink(unknowns: Indices, box_low: Floats, box_high: Floats, frame: AffineFrame, rows: Rows) -> int:
+def _shrink(
+    unknowns: Indices, box_low: Floats, box_high: Floats, frame: AffineFrame, rows: Rows
+) -> int:
     """Carry the bounds of each e_j over to the box; returns what `contract_linear` does."""
     result = 0
     for j in range(len(unknowns)):

@@ -1,8 +1,9 @@
 """All compiled code made ready: read from disk, or compiled where this machine has not done it yet.
 
-Guarantee: after `load` nothing is compiled in this process any more, whatever the slice; so no compilation falls into
-the time that a limit allows. What slanted pieces alone need, half of all, is loaded where they may be wanted.
-Processes that begin together on a new machine compile once: one does, and the others wait for it.
+Guarantee: after `load` nothing is compiled in this process any more, whatever the slice; so no
+compilation falls into the time that a limit allows. What slanted pieces alone need, half of all, is
+loaded where they may be wanted. Processes that begin together on a new machine compile once: one
+does, and the others wait for it.
 """
 
 from __future__ import annotations
@@ -29,10 +30,13 @@ from ptmcad.options import Options
 STAGE = "compiling the certified engine, once on this machine:"
 Progress = Callable[[str, int, int], None]
 MIN_GARBAGE = 20_000
-"""New objects between two collections while numba compiles, which makes millions that live: a seventh of its time went
-into looking for garbage among them. More would gain nothing and take memory."""
+"""New objects between two collections while numba compiles, which makes millions that live: a
+seventh of its time went into looking for garbage among them. More would gain nothing and take
+memory."""
 SLANTED_BELOW = Fraction(1, 2000)
-"""Tolerances below are met by slanted pieces: of upright ones it takes twice as many for half of the error."""
+"""Tolerances below are met by slanted pieces: of upright ones it takes twice as many for half of
+the error.
+"""
 _done: list[bool] = []
 """For each time that all was made ready, whether slanted pieces were."""
 
@@ -47,13 +51,14 @@ def load(progress: Progress | None = None, options: Options | None = None) -> fl
 
     Parameters
     ----------
-    progress : called as progress(STAGE, done, total) with numbers of functions, as long as some have to be compiled.
+    progress : called as progress(STAGE, done, total) with numbers of functions, as long as some
+        have to be compiled.
     options : of what is wanted; all that there is is made ready where nothing is said.
 
     Returns
     -------
-    The seconds that compiling took now, here or in a process that was waited for; 0 where all was read from disk, or
-    had been loaded before.
+    The seconds that compiling took now, here or in a process that was waited for; 0 where all was
+    read from disk, or had been loaded before.
     """
     slanted = options is None or may_be_slanted(options)
     if slanted in _done or True in _done:
@@ -72,7 +77,9 @@ def load(progress: Progress | None = None, options: Options | None = None) -> fl
 
 @contextmanager
 def _fewer_collections() -> Iterator[None]:
-    """Without most of the garbage collector's rounds, unless a caller has switched it off or made them fewer yet."""
+    """Without most of the garbage collector's rounds, unless a caller has switched it off or made
+    them fewer yet.
+    """
     youngest, *older = gc.get_threshold()
     gc.set_threshold(max(youngest, MIN_GARBAGE) if youngest else 0, *older)
     try:
@@ -104,7 +111,9 @@ class _Compiling(Listener):
 
     def _report(self) -> None:
         if self.progress is not None:
-            self.progress(STAGE, sum(bool(function.overloads) for function in FUNCTIONS), len(FUNCTIONS))
+            self.progress(
+                STAGE, sum(bool(function.overloads) for function in FUNCTIONS), len(FUNCTIONS)
+            )
 
 
 def _functions(slanted: bool) -> Iterator[None]:
@@ -116,7 +125,9 @@ def _functions(slanted: bool) -> Iterator[None]:
     square = np.array([[0.0, 0.0, 1.0, 1.0]])
     line, point = _systems()
     if slanted:
-        tubes(line.arguments(), line.alone().arguments(), square, weights, (0, 0.0, 1.0), (2, 1e-3, 4))
+        tubes(
+            line.arguments(), line.alone().arguments(), square, weights, (0, 0.0, 1.0), (2, 1e-3, 4)
+        )
         yield
         return
     distinct(square, square, 0)

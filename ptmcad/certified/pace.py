@@ -1,7 +1,9 @@
-"""The pace of a search: when it hands over a map on the way, and when it ends so that the last map is made in time.
+"""The pace of a search: when it hands over a map on the way, and when it ends so that the last map
+is made in time.
 
-Guarantee: maps on the way take at most `MAP_TIME_SHARE` of the time and `ALLOWANCE` seconds, as far as what a map
-takes is foreseen; the search is asked to end while `SAFETY` times what the last map is foreseen to take is left.
+Guarantee: maps on the way take at most `MAP_TIME_SHARE` of the time and `ALLOWANCE` seconds, as far
+as what a map takes is foreseen; the search is asked to end while `SAFETY` times what the last map
+is foreseen to take is left.
 
 Nothing here decides what is in a map: only when it is made.
 """
@@ -23,7 +25,9 @@ MIN_RESERVE = 1.0
 RESERVE_SHARE = 0.02
 """... or this part of the time that there is in all, if that is more."""
 MAX_RESERVE_SHARE = 1 / 3
-"""Of the time in all, kept for the last map on a busy machine while it is not known what a map takes."""
+"""Of the time in all, kept for the last map on a busy machine while it is not known what a map
+takes.
+"""
 MIN_TIMED_BOXES = 4000
 """Of fewer boxes the time says nothing about what each of them takes."""
 
@@ -41,8 +45,12 @@ class Cost:
         self.known = [*self.known[-1:], (boxes, seconds)]
 
     def of(self, boxes: int) -> float:
-        """The seconds that the work on so many boxes will take: with more boxes more, with fewer no less."""
-        foreseen = (seconds * max(1.0, boxes / max(known, MIN_TIMED_BOXES)) for known, seconds in self.known)
+        """The seconds that the work on so many boxes will take: with more boxes more, with fewer no
+        less.
+        """
+        foreseen = (
+            seconds * max(1.0, boxes / max(known, MIN_TIMED_BOXES)) for known, seconds in self.known
+        )
         return max(foreseen, default=self.each * boxes)
 
 
@@ -53,9 +61,11 @@ class Pace:
     Attributes
     ----------
     deadline : reading of the clock at which all has to be done; None without a limit.
-    work : reading of a clock that runs while this process works: by the other one it takes longer on a busy machine.
+    work : reading of a clock that runs while this process works: by the other one it takes longer
+        on a busy machine.
     started : reading of the clock at the start.
-    thin, map, text : what it takes to find the strips, to make a map of their cover, and to hand that over.
+    thin, map, text : what it takes to find the strips, to make a map of their cover, and to hand
+        that over.
     spent : seconds that maps on the way took.
     """
 
@@ -91,7 +101,9 @@ class Pace:
         return self.thin.of(boxes) + self.map.of(boxes) + self.text.of(boxes)
 
     def late(self, boxes: int) -> bool:
-        """Whether the search has to end; to be asked after each of its tasks, which it measures too."""
+        """Whether the search has to end; to be asked after each of its tasks, which it measures
+        too.
+        """
         now = self.clock()
         if self.deadline is None:
             return False
@@ -104,12 +116,16 @@ class Pace:
         self._asked = self.clock()
 
     def looked(self, seconds: float) -> None:
-        """It took so many seconds to see whether a map on the way is worth while: that is not done all the time."""
+        """It took so many seconds to see whether a map on the way is worth while: that is not done
+        all the time.
+        """
         self.spent += seconds
         self._look_at = self.clock() + seconds / (MAP_TIME_SHARE / 2)
 
     def due(self, boxes: int, *, thinned: bool = True) -> bool:
-        """Whether there is time for a map on the way, without strips if they are not wanted or known."""
+        """Whether there is time for a map on the way, without strips if they are not wanted or
+        known.
+        """
         if self.clock() < self._look_at:
             return False
         cost = self.cost(boxes) - (0.0 if thinned else self.thin.of(boxes))

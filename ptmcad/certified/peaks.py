@@ -1,10 +1,12 @@
-"""Of the paper's mechanism the configurations in which spring 3 has no length: whether the energy has a peak there.
+"""Of the paper's mechanism the configurations in which spring 3 has no length: whether the energy
+has a peak there.
 
 Guarantee: decided exactly. Rational arithmetic in Q(sqrt(W)) only, so that no sign is rounded.
 
-With |L1 - L2| < rho < L1 + L2 there are two, mirror images: A3 and A4 meet at the corner of the triangle with sides
-rho, L1, L2, at height H = +-sqrt(W). Springs 1 and 2 are as long as the bars there. Near such a point U is -k3 l0_3 l3
-plus a smooth function whose slope along d3 is g: a peak where |g| < k3 l0_3, and a regular point where |g| is larger.
+With |L1 - L2| < rho < L1 + L2 there are two, mirror images: A3 and A4 meet at the corner of the
+triangle with sides rho, L1, L2, at height H = +-sqrt(W). Springs 1 and 2 are as long as the bars
+there. Near such a point U is -k3 l0_3 l3 plus a smooth function whose slope along d3 is g: a peak
+where |g| < k3 l0_3, and a regular point where |g| is larger.
 """
 
 from __future__ import annotations
@@ -16,9 +18,11 @@ from fractions import Fraction
 
 @dataclass(frozen=True, slots=True)
 class Peaks:
-    """``count`` peaks; ``regular`` is False where one is about to appear or vanish, or where springs degenerate.
+    """``count`` peaks; ``regular`` is False where one is about to appear or vanish, or where
+    springs degenerate.
 
-    When ``regular`` holds, minima - saddles + maxima + count = 0 (if there are finitely many, none degenerate).
+    When ``regular`` holds, minima - saddles + maxima + count = 0 (if there are finitely many, none
+    degenerate).
     """
 
     count: int
@@ -26,7 +30,9 @@ class Peaks:
 
 
 def peaks(values: Mapping[str, Fraction]) -> Peaks:
-    """Those of the mechanism at values of all variables of its description, in any unit of stiffness."""
+    """Those of the mechanism at values of all variables of its description, in any unit of
+    stiffness.
+    """
     rho, p1, p2 = values["rho"], values["L1"], values["L2"]
     regular = not any(creases_at(values))
     if values["k3"] * values["l0_3"] == 0:
@@ -42,7 +48,9 @@ def peaks(values: Mapping[str, Fraction]) -> Peaks:
 
 
 def creases_at(values: Mapping[str, Fraction]) -> tuple[bool, bool]:
-    """Whether rho = L2 and rho = L1 at a point, so that spring 1 or 2, if it has a free length, may have no length."""
+    """Whether rho = L2 and rho = L1 at a point, so that spring 1 or 2, if it has a free length, may
+    have no length.
+    """
     rho = values["rho"]
     return (
         rho == values["L2"] and bool(values["k1"] * values["l0_1"]),
@@ -62,12 +70,15 @@ def excess_of_pull(values: Mapping[str, Fraction]) -> tuple[Fraction, Fraction]:
     pull1, pull2, pull3 = (values[f"k{i}"] * values[f"l0_{i}"] for i in (1, 2, 3))
     c1, c2 = (rho**2 + p1**2 - p2**2) / (2 * rho * p1), (rho**2 + p2**2 - p1**2) / (2 * rho * p2)
     c12 = (rho**2 - p1**2 - p2**2) / (2 * p1 * p2)
-    # r1 = a1 H + b1 and r2 = a2 H + b2 are E1 and E2 without spring 3, whose quadratic part vanishes
+    # r1 = a1 H + b1 and r2 = a2 H + b2 are E1 and E2 without spring 3, whose quadratic part
+    # vanishes
     a1 = (values["k2"] * rho - pull2 * rho / p2 + values["F3x"]) / p1
     a2 = (values["k1"] * rho - pull1 * rho / p1 - values["F4x"]) / p2
     b1, b2 = -values["F3"] * c1, -values["F4"] * c2
     # |g|^2 s12^2 - pull3^2 s12^2 = even + odd H, with s12 = rho H/(L1 L2)
-    even = (a1**2 + a2**2 + 2 * a1 * a2 * c12 - (pull3 * rho / (p1 * p2)) ** 2) * height_squared(values)
+    even = (a1**2 + a2**2 + 2 * a1 * a2 * c12 - (pull3 * rho / (p1 * p2)) ** 2) * height_squared(
+        values
+    )
     even += b1**2 + b2**2 + 2 * b1 * b2 * c12
     odd = 2 * (a1 * b1 + a2 * b2 + (a1 * b2 + a2 * b1) * c12)
     return even, odd

@@ -1,6 +1,7 @@
 """The plan of the certified engine, as far as it is known before anything is computed.
 
-Guarantee: each saving that is named here is made, or is said to have been switched off. Loads neither numpy nor numba.
+Guarantee: each saving that is named here is made, or is said to have been switched off. Loads
+neither numpy nor numba.
 """
 
 from __future__ import annotations
@@ -16,7 +17,11 @@ from ptmcad.question.slice import Slice
 def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
     """What is known of the plan before anything is computed."""
     free_lengths = slice.model.free_lengths
-    absent = [name for name in free_lengths if name not in slice.parameters or not slice.parameters[name].numerator]
+    absent = [
+        name
+        for name in free_lengths
+        if name not in slice.parameters or not slice.parameters[name].numerator
+    ]
     zero = [name for name in zero_parameters(slice) if name not in free_lengths]
     steps = [saving_step("imports", without, "imports of matplotlib and sympy")]
     steps += zero_terms([*zero, *absent])

@@ -1,7 +1,8 @@
 """The count of solutions at a rational point, and how long it is searched for.
 
-Guarantee: when a `PointCount` is decided, each solution (where stable ones alone are counted, each of these) has
-its own box, proved to hold exactly one, and it is proved that there are no others. What is not proved is undecided.
+Guarantee: when a `PointCount` is decided, each solution (where stable ones alone are counted, each
+of these) has its own box, proved to hold exactly one, and it is proved that there are no others.
+What is not proved is undecided.
 """
 
 from __future__ import annotations
@@ -19,20 +20,23 @@ QUICK_BUDGET = 6_000
 BUDGET = 60_000
 """Boxes in floating point for one point."""
 MIN_BOX_WIDTHS = (1e-8, 1e-4)
-"""Boxes this narrow are left to Arb; the second number counts where the first leaves too many, next to a fold."""
+"""Boxes this narrow are left to Arb; the second number counts where the first leaves too many, next
+to a fold.
+"""
 PRECISIONS = (128, 320)
 
 
 @dataclass(frozen=True, slots=True)
 class PointCount(Counted):
-    """The counts at a point; None where the count asked for does not need them, and where nothing is decided.
+    """The counts at a point; None where the count asked for does not need them, and where nothing
+    is decided.
 
     Attributes
     ----------
     index : numbers of minima, saddles and maxima.
     cones : configurations in which springs have no length and the energy has a peak.
-    solutions : disjoint boxes, angles in radians: all solutions, or the minima when only these were counted. Where
-        nothing is decided those that are proved, without signs where these are open.
+    solutions : disjoint boxes, angles in radians: all solutions, or the minima when only these were
+        counted. Where nothing is decided those that are proved, without signs where these are open.
     open : boxes in which there may be more of them.
     further : by the names of predicates, how many of the stable solutions they hold at.
     """
@@ -62,7 +66,9 @@ def boxed(unique: Boxes, narrow: Boxes, signs: str, unknowns: Sequence[int]) -> 
     for c, k in zip(center, unknowns, strict=True):
         room = min(room, c - unique[k], unique[k + variables] - c)
         need = max(need, c - narrow[k], narrow[k + variables] - c)
-    return Solution(tuple(map(Fraction, center)), radius_between(Fraction(need), Fraction(room)), signs)
+    return Solution(
+        tuple(map(Fraction, center)), radius_between(Fraction(need), Fraction(room)), signs
+    )
 
 
 def radius_between(need: Fraction, room: Fraction) -> Fraction:

@@ -1,9 +1,11 @@
-"""Refinement of the curves' enclosure, level by level: each level quarters the area at which boxes are left alone.
+"""Refinement of the curves' enclosure, level by level: each level quarters the area at which boxes
+are left alone.
 
-Guarantee: at every moment the boxes that are left contain all curves over the rectangles at the start: also where an
-exception (a signal's, a lack of memory or of threads) breaks into any statement here. Such a break may leave boxes
-twice, which costs time, but never leaves one out. The boxes of a finished level depend on nothing but the system and
-the start: not on the number of threads, nor on the time.
+Guarantee: at every moment the boxes that are left contain all curves over the rectangles at the
+start: also where an exception (a signal's, a lack of memory or of threads) breaks into any
+statement here. Such a break may leave boxes twice, which costs time, but never leaves one out. The
+boxes of a finished level depend on nothing but the system and the start: not on the number of
+threads, nor on the time.
 """
 
 from __future__ import annotations
@@ -25,7 +27,9 @@ BATCH = 64
 
 @dataclass(slots=True)
 class CurveEnclosure:
-    """The boxes of one curve: those that the present level has not reached, and those that it has left alone."""
+    """The boxes of one curve: those that the present level has not reached, and those that it has
+    left alone.
+    """
 
     curve: CriticalCurve
     waiting: list[Boxes]
@@ -53,13 +57,15 @@ def refine(
     report: Callable[[int, int], None] | None = None,
     late: Callable[[], bool] | None = None,
 ) -> bool:
-    """One level: bisect until every box's projection has at most the given area. False when it was to end before.
+    """One level: bisect until every box's projection has at most the given area. False when it was
+    to end before.
 
     Parameters
     ----------
     report : called with the numbers of boxes treated and waiting.
-    late : called before the first task and after each, when the enclosures have what the tasks have found; it may
-        take its time, in which the running tasks end. No task is begun after it has said True.
+    late : called before the first task and after each, when the enclosures have what the tasks have
+        found; it may take its time, in which the running tasks end. No task is begun after it has
+        said True.
     """
     for enclosure in enclosures:
         enclosure.waiting = [*enclosure.waiting, *enclosure.small]
@@ -96,8 +102,9 @@ def _refine_one(
                 enclosure.small.append(found.small)
             queue.extend(_batches([found.waiting]))
             del running[future]
-        # The only statement that takes boxes away. Until it is done the batches of before are still there: of those
-        # that an interruption cuts short nothing is lost, and what they have left is there twice at worst.
+        # The only statement that takes boxes away. Until it is done the batches of before are still
+        # there: of those that an interruption cuts short nothing is lost, and what they have left
+        # is there twice at worst.
         enclosure.waiting = [*queue, *running.values()]
         if report is not None:
             report(treated, sum(len(batch) for batch in queue))

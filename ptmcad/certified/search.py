@@ -1,11 +1,13 @@
-"""Branch and prune: boxes that may hold solutions of a system, contracted and bisected until they are small.
+"""Branch and prune: boxes that may hold solutions of a system, contracted and bisected until they
+are small.
 
-Guarantee: every solution in the boxes at the start lies in one of the boxes at the end, those still waiting included.
-Each box that is called proved holds exactly one zero of the equations, and it lies in the narrow box that comes with
-it; two proved boxes may hold the same zero. (Lemmas 9 and 11 of docs/soundness.md.)
+Guarantee: every solution in the boxes at the start lies in one of the boxes at the end, those still
+waiting included. Each box that is called proved holds exactly one zero of the equations, and it
+lies in the narrow box that comes with it; two proved boxes may hold the same zero. (Lemmas 9 and 11
+of docs/soundness.md.)
 
-The search knows no mathematics: `ptmcad.certified.contraction` discards and shrinks, `ptmcad.certified.isolation`
-proves.
+The search knows no mathematics: `ptmcad.certified.contraction` discards and shrinks,
+`ptmcad.certified.isolation` proves.
 """
 
 from __future__ import annotations
@@ -27,13 +29,16 @@ Boxes = Floats
 """Shape (k, 2v): low ends of the v variables, then high ends."""
 CUT = 0.5
 SOLVED_WEIGHT = 0.1
-"""Of the width of an axis that the equations are solved for: it follows from the other variables."""
+"""Of the width of an axis that the equations are solved for: it follows from the other variables.
+"""
 MAX_SLIVER_RATIO = 8
-"""With an axis that is solved for a box is left alone only if it is at most this many times as long in any variable as
-its projection would be as a square: a box whose edge alone has the value of the axis has no area, and says nothing."""
+"""With an axis that is solved for a box is left alone only if it is at most this many times as long
+in any variable as its projection would be as a square: a box whose edge alone has the value of the
+axis has no area, and says nothing."""
 FLAT = 1e-6
-"""So are other boxes whose area is less than this part of what is asked: all of a box may lie at one value of an axis,
-at which a spring may have no length, before its other variables have been looked at."""
+"""So are other boxes whose area is less than this part of what is asked: all of a box may lie at
+one value of an axis, at which a spring may have no length, before its other variables have been
+looked at."""
 MAX_PROOF_WIDTH = 1e-2
 """Boxes at most this wide are tried for a proof of existence."""
 NEVER = -1.0
@@ -45,7 +50,8 @@ class SearchLimits(NamedTuple):
 
     Attributes
     ----------
-    area : boxes whose projection to variables 0 and 1 has at most this area are not bisected further.
+    area : boxes whose projection to variables 0 and 1 has at most this area are not bisected
+        further.
     width : nor are those that are at most this wide; widths count by their weights.
     proof_width : boxes at most this wide are tried for a proof that they hold exactly one zero.
     budget : number of boxes after which the search stops.
@@ -65,7 +71,8 @@ class SearchResult(NamedTuple):
     Attributes
     ----------
     unique, narrow : boxes that hold exactly one zero each, and narrower ones around it, row by row.
-    small : boxes that were not bisected further, for their size or because no float lies between their ends.
+    small : boxes that were not bisected further, for their size or because no float lies between
+        their ends.
     waiting : boxes that were not treated.
     used : number of boxes treated.
     """
@@ -81,7 +88,9 @@ class SearchResult(NamedTuple):
         return np.concatenate((self.small, self.waiting))
 
 
-def search_curve(system: Arguments, start: Boxes, area: float, budget: int, weights: Floats) -> SearchResult:
+def search_curve(
+    system: Arguments, start: Boxes, area: float, budget: int, weights: Floats
+) -> SearchResult:
     """Enclose a curve in the plane of variables 0 and 1 (the first two unknowns).
 
     Parameters
@@ -89,11 +98,17 @@ def search_curve(system: Arguments, start: Boxes, area: float, budget: int, weig
     area, budget : see `SearchLimits`.
     weights : shape (v,): the variable whose width times its weight is largest is bisected.
     """
-    return branch_and_prune(system, system, start, SearchLimits(area, NEVER, NEVER, budget, MAX_BOXES), weights)
+    return branch_and_prune(
+        system, system, start, SearchLimits(area, NEVER, NEVER, budget, MAX_BOXES), weights
+    )
 
 
 def isolate(
-    system: Arguments, equations: Arguments, start: Boxes, limits: tuple[float, int, int], weights: Floats
+    system: Arguments,
+    equations: Arguments,
+    start: Boxes,
+    limits: tuple[float, int, int],
+    weights: Floats,
 ) -> SearchResult:
     """Isolate the solutions of a square system.
 
@@ -106,7 +121,11 @@ def isolate(
     """
     width, budget, allowed = limits
     return branch_and_prune(
-        system, equations, start, SearchLimits(NEVER, width, MAX_PROOF_WIDTH, budget, allowed), weights
+        system,
+        equations,
+        start,
+        SearchLimits(NEVER, width, MAX_PROOF_WIDTH, budget, allowed),
+        weights,
     )
 
 
@@ -116,7 +135,9 @@ def branch_and_prune(
 ) -> SearchResult:
     """The one loop of both."""
     variables = start.shape[1] // 2
-    larger = system if len(system.program.operations) > len(equations.program.operations) else equations
+    larger = (
+        system if len(system.program.operations) > len(equations.program.operations) else equations
+    )
     work = workspace(larger, variables)
     linear = limits.area > 0 and len(system.unknowns) <= LANES
     space = space_for(system, variables)
@@ -135,7 +156,11 @@ def branch_and_prune(
         used += 1
         for k in range(len(box)):
             box[k] = stack[top, k]
-        kept = contract_curve(system, low, high, work, space) if linear else contract(system, low, high, work)
+        kept = (
+            contract_curve(system, low, high, work, space)
+            if linear
+            else contract(system, low, high, work)
+        )
         if not kept:
             continue
         widest, width = widest_of(system, box, weights, work, SOLVED_WEIGHT)
@@ -150,20 +175,30 @@ def branch_and_prune(
                 proved += 1
                 continue
         area = (high[0] - low[0]) * (high[1] - low[1])
-        if widest < 0 or width <= limits.width or (area <= limits.area and (area > flat or width <= longest)):
+        if (
+            widest < 0
+            or width <= limits.width
+            or (area <= limits.area and (area > flat or width <= longest))
+        ):
             small = _with(small, finished, box)
             finished += 1
             continue
         stack = halved(stack, top, box, widest)
         top += 2
     return SearchResult(
-        unique[:proved].copy(), narrow[:proved].copy(), small[:finished].copy(), stack[:top].copy(), used
+        unique[:proved].copy(),
+        narrow[:proved].copy(),
+        small[:finished].copy(),
+        stack[:top].copy(),
+        used,
     )
 
 
 @inlined
 def is_known(variable: int, system: Arguments, work: Workspace) -> bool:
-    """Whether the equations, solved for the variable, bound it over the box that was contracted last."""
+    """Whether the equations, solved for the variable, bound it over the box that was contracted
+    last.
+    """
     for k in range(len(system.solved)):
         if system.solved[k, 0] == variable and determined(system.solved[k], work.low, work.high):
             return True
@@ -174,7 +209,8 @@ def is_known(variable: int, system: Arguments, work: Workspace) -> bool:
 def widest_of(
     system: Arguments, box: Floats, weights: Floats, work: Workspace, solved_weight: float
 ) -> tuple[int, float]:
-    """The unknown to bisect, -1 where no float lies between the ends of any, and its width by weights.
+    """The unknown to bisect, -1 where no float lies between the ends of any, and its width by
+    weights.
 
     Parameters
     ----------

@@ -1,11 +1,14 @@
-"""Covers with slanted pieces: the window halved into leaves, over each of which all solutions lie in a few tubes.
+"""Covers with slanted pieces: the window halved into leaves, over each of which all solutions lie
+in a few tubes.
 
-Guarantee: each solution in the boxes of the enclosures projects into the cover. (Lemma 31 of docs/soundness.md.)
+Guarantee: each solution in the boxes of the enclosures projects into the cover. (Lemma 31 of
+docs/soundness.md.)
 
-A leaf is done when no box is over it, or when tubes are found that hold all solutions in its boxes, are disjoint, and
-part it in the way that `ptmcad.cover.rectangles.Patch` asks for. Else it is quartered, the largest ones first, until
-what is left is small enough; over that the cover has rectangles. So around smooth pieces of the curves leaves stay
-large however small the tolerance is, and towards cusps and crossings they shrink geometrically.
+A leaf is done when no box is over it, or when tubes are found that hold all solutions in its boxes,
+are disjoint, and part it in the way that `ptmcad.cover.rectangles.Patch` asks for. Else it is
+quartered, the largest ones first, until what is left is small enough; over that the cover has
+rectangles. So around smooth pieces of the curves leaves stay large however small the tolerance is,
+and towards cusps and crossings they shrink geometrically.
 """
 
 from __future__ import annotations
@@ -43,8 +46,8 @@ MAX_LEAF = Fraction(1, 4)
 BISECTIONS, BISECTIONS_PER_BOX = 300, 2
 """Boxes that are treated until all are in tubes."""
 TUBE_SHARE = Fraction(1, 200)
-"""Of the tolerance: half width of tubes, as a part of the window, at most. The curves would have to be fifty times as
-long as the window for tubes to use up half of it."""
+"""Of the tolerance: half width of tubes, as a part of the window, at most. The curves would have to
+be fifty times as long as the window for tubes to use up half of it."""
 MIN_HALF = Fraction(1, 2**38)
 """... and thinner ones are not asked for: doubles have not many digits more."""
 MAX_LEAVES = 20_000
@@ -54,7 +57,8 @@ SPECK_SHARE = Fraction(3, 4)
 MERGED = 8
 """Tubes are one if they are nearer to each other than this many times their half widths."""
 LEAVES_PER_JOB = 4
-"""Leaves that are quartered before it is asked again whether it is late: some tenths of a second."""
+"""Leaves that are quartered before it is asked again whether it is late: some tenths of a second.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,23 +93,32 @@ class Slanting:
     def cover(self, tolerance: Fraction, jobs: int, late: Callable[[], bool]) -> Cover:
         """A cover that leaves at most this part of the window undetermined.
 
-        It leaves more when it was late, or where leaves become too many, or tubes cannot be thin enough.
+        It leaves more when it was late, or where leaves become too many, or tubes cannot be thin
+        enough.
         """
         steps = self.lattice.steps
         limit = int(SPECK_SHARE * tolerance * steps**2)
         window = (0, steps, 0, steps)
-        first = _Leaf(window, tuple(_sorted(enclosure.boxes()) for enclosure in self.enclosures), window)
+        first = _Leaf(
+            window, tuple(_sorted(enclosure.boxes()) for enclosure in self.enclosures), window
+        )
         number, total = 0, first.area
         waiting = [(-total, number, first)]
         patches: list[Patch] = []
         rectangles: set[Rectangle] = set()
         with ThreadPoolExecutor(jobs) as pool:
             while waiting and total > limit and len(waiting) <= MAX_LEAVES and not late():
-                chosen = [heappop(waiting)[2] for _ in range(min(len(waiting), LEAVES_PER_JOB * jobs))]
-                quarters = [(leaf, quarter) for leaf in chosen for quarter in _quarters(leaf.rectangle)]
+                chosen = [
+                    heappop(waiting)[2] for _ in range(min(len(waiting), LEAVES_PER_JOB * jobs))
+                ]
+                quarters = [
+                    (leaf, quarter) for leaf in chosen for quarter in _quarters(leaf.rectangle)
+                ]
                 rectangles |= {leaf.inner for leaf in chosen if not _quarters(leaf.rectangle)}
                 total -= sum(leaf.area for leaf in chosen if _quarters(leaf.rectangle))
-                for found in pool.map(lambda pair: self._settled(pair[1], pair[0].boxes, tolerance), quarters):
+                for found in pool.map(
+                    lambda pair: self._settled(pair[1], pair[0].boxes, tolerance), quarters
+                ):
                     if isinstance(found, Patch):
                         patches.append(found)
                     elif found is not None:
@@ -114,7 +127,9 @@ class Slanting:
         rectangles |= {leaf.inner for _, _, leaf in waiting}
         return Cover(steps, tuple(sorted(rectangles)), tuple(sorted(patches)))
 
-    def _settled(self, rectangle: Rectangle, around: tuple[Boxes, ...], tolerance: Fraction) -> _Leaf | Patch | None:
+    def _settled(
+        self, rectangle: Rectangle, around: tuple[Boxes, ...], tolerance: Fraction
+    ) -> _Leaf | Patch | None:
         """None where no box is over the rectangle, the tubes where they can be had, else the leaf."""
         frame = outward(self.lattice.window, np.array([rectangle]), self.lattice.steps)
         boxes = tuple(
@@ -125,7 +140,10 @@ class Slanting:
         if inner is None:
             return None
         leaf = _Leaf(rectangle, boxes, inner)
-        small = max(rectangle[1] - rectangle[0], rectangle[3] - rectangle[2]) <= MAX_LEAF * self.lattice.steps
+        small = (
+            max(rectangle[1] - rectangle[0], rectangle[3] - rectangle[2])
+            <= MAX_LEAF * self.lattice.steps
+        )
         if not small or sum(map(len, boxes)) > MAX_BOXES:
             return leaf
         wide = inner[1] - inner[0] >= inner[3] - inner[2]
@@ -135,7 +153,9 @@ class Slanting:
                 return patch
         return leaf
 
-    def _over(self, frame: Boxes, boxes: Boxes, system: Arguments, enclosure: CurveEnclosure) -> Boxes:
+    def _over(
+        self, frame: Boxes, boxes: Boxes, system: Arguments, enclosure: CurveEnclosure
+    ) -> Boxes:
         """The boxes over a frame, one rectangle, bisected until they are small enough."""
         boxes = boxes[meeting(frame, boxes)[0]]
         if not len(boxes):
@@ -152,7 +172,9 @@ class Slanting:
         if not hulls:
             return None
         low, high = np.min([h[0] for h in hulls], axis=0), np.max([h[1] for h in hulls], axis=0)
-        around = from_boxes(self.lattice.window, low[None], high[None], self.lattice.steps).rectangles
+        around = from_boxes(
+            self.lattice.window, low[None], high[None], self.lattice.steps
+        ).rectangles
         if not around:
             return None
         left, right, bottom, top = around[0]
@@ -167,15 +189,23 @@ class Slanting:
         low, high = self.lattice.window[1 - along]
         most = float((high - low) * max(tolerance * TUBE_SHARE, MIN_HALF))
         hulls = [_hull(own) for own in leaf.boxes if len(own)]
-        interval = (along, min(float(h[0][along]) for h in hulls), max(float(h[1][along]) for h in hulls))
+        interval = (
+            along,
+            min(float(h[0][along]) for h in hulls),
+            max(float(h[1][along]) for h in hulls),
+        )
         order = order_for(tolerance)
         found: list[Tube] = []
         ends = leaf.inner[2 * along], leaf.inner[2 * along + 1]
-        for own, whole, alone, enclosure in zip(leaf.boxes, self.whole, self.alone, self.enclosures, strict=True):
+        for own, whole, alone, enclosure in zip(
+            leaf.boxes, self.whole, self.alone, self.enclosures, strict=True
+        ):
             if not len(own):
                 continue
             budget = BISECTIONS + BISECTIONS_PER_BOX * len(own)
-            result = tubes(whole, alone, own, enclosure.curve.importance(), interval, (order, most, budget))
+            result = tubes(
+                whole, alone, own, enclosure.curve.importance(), interval, (order, most, budget)
+            )
             if result.left:
                 return None
             found += self._on_lattice(result, along, ends)
@@ -191,11 +221,18 @@ class Slanting:
         length = (ends[1] - ends[0]) * step / radius
         scale = steps / (top - bottom)
         result = []
-        for coefficients, half in zip(found.coefficients.tolist(), found.half.tolist(), strict=True):
+        for coefficients, half in zip(
+            found.coefficients.tolist(), found.half.tolist(), strict=True
+        ):
             heights = controls(
-                [from_fraction(Fraction(c)) for c in coefficients], from_fraction(start), from_fraction(length)
+                [from_fraction(Fraction(c)) for c in coefficients],
+                from_fraction(start),
+                from_fraction(length),
             )
-            places = tuple(round_half((height - from_fraction(bottom)) * from_fraction(scale)) for height in heights)
+            places = tuple(
+                round_half((height - from_fraction(bottom)) * from_fraction(scale))
+                for height in heights
+            )
             result.append(Tube(ceil(Fraction(half) * scale) + 1, places))
         return result
 
@@ -254,7 +291,9 @@ def _merged(found: list[Tube]) -> list[Tube]:
     return result
 
 
-def _parted(rectangle: Rectangle, along: int, ends: tuple[int, int], found: list[Tube]) -> Patch | None:
+def _parted(
+    rectangle: Rectangle, along: int, ends: tuple[int, int], found: list[Tube]
+) -> Patch | None:
     """The patch of tubes in as low a frame as there can be, if it is one."""
     if not found:
         return None

@@ -1,7 +1,8 @@
-"""Equations that are linear in an axis, solved for it: what value the axis has at solutions, without a search for it.
+"""Equations that are linear in an axis, solved for it: what value the axis has at solutions,
+without a search for it.
 
-Guarantee: a solution satisfies rest + slope v = 0 for each `Quotient` of its system, v being the axis; neither formula
-has v in it. (Lemma 21 of docs/soundness.md.)
+Guarantee: a solution satisfies rest + slope v = 0 for each `Quotient` of its system, v being the
+axis; neither formula has v in it. (Lemma 21 of docs/soundness.md.)
 """
 
 from __future__ import annotations
@@ -27,8 +28,9 @@ def quotients(vanishing: Iterable[Formula], axes: Iterable[int]) -> tuple[Quotie
     Parameters
     ----------
     vanishing : formulas without a `meet` that may be empty.
-    axes : unknowns that the configuration tells, as it tells loads, stiffnesses and free lengths. To solve for an axis
-        that springs' directions depend on is sound, and no use: the direction of a short one may be anything.
+    axes : unknowns that the configuration tells, as it tells loads, stiffnesses and free lengths.
+        To solve for an axis that springs' directions depend on is sound, and no use: the direction
+        of a short one may be anything.
     """
     formulas = list(dict.fromkeys(vanishing))
     return tuple(q for axis in axes for formula in formulas for q in _quotient(formula, axis))
@@ -36,7 +38,9 @@ def quotients(vanishing: Iterable[Formula], axes: Iterable[int]) -> tuple[Quotie
 
 def occurs(variable: int, formula: Formula) -> bool:
     """Whether the formula has the variable in it."""
-    return any(n.operation is Operation.VARIABLE and n.variable == variable for n in nodes_of([formula]))
+    return any(
+        n.operation is Operation.VARIABLE and n.variable == variable for n in nodes_of([formula])
+    )
 
 
 def _quotient(formula: Formula, axis: int) -> Iterator[Quotient]:

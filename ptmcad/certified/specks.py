@@ -1,12 +1,14 @@
 """Specks: small clusters of a cover that no curve enters after all.
 
-Guarantee: a cluster is taken away only if no box that may hold a part of a curve meets it; what is left is a cover of
-the curves still. (A point of a curve in a cluster lies in a box of its enclosure, which meets the cluster and so is
-searched again; no box that the search leaves meets it. Where one half of the window is searched, that holds of the
-point or its image, and no box meets the cluster or its image.)
+Guarantee: a cluster is taken away only if no box that may hold a part of a curve meets it; what is
+left is a cover of the curves still. (A point of a curve in a cluster lies in a box of its
+enclosure, which meets the cluster and so is searched again; no box that the search leaves meets it.
+Where one half of the window is searched, that holds of the point or its image, and no box meets the
+cluster or its image.)
 
-Where a box is contracted to a sliver at its edge, its projection is small at once, and it is left alone although the
-next bisection would discard it. Such slivers are a few hundred-thousandths of the window, and seen in each picture.
+Where a box is contracted to a sliver at its edge, its projection is small at once, and it is left
+alone although the next bisection would discard it. Such slivers are a few hundred-thousandths of
+the window, and seen in each picture.
 """
 
 from __future__ import annotations
@@ -31,8 +33,8 @@ MAX_SHARE = Fraction(1, 10_000)
 ROUNDS, FINER = 3, 4.0**-2
 """Boxes are bisected so often until their projections are so many times smaller."""
 MAX_GROWTH = 2
-"""A cluster of which there are more than so many times the boxes after a round is no speck: along a curve, there are
-four times as many."""
+"""A cluster of which there are more than so many times the boxes after a round is no speck: along a
+curve, there are four times as many."""
 BUDGET = 20_000
 """Boxes that are treated for each curve in a round: about a tenth of a second."""
 MAX_PAIRS = 3 * 10**7
@@ -67,7 +69,9 @@ def without_specks(
         curve, left, searched, met = enclosure.curve, own, ~held, _entered(specks, own)
         for number in range(1, ROUNDS + 1):
             near, finer = left[met[searched].any(axis=0)], area * FINER**number
-            left = search_curve(curve.system.arguments(), near, finer, BUDGET, curve.importance()).left()
+            left = search_curve(
+                curve.system.arguments(), near, finer, BUDGET, curve.importance()
+            ).left()
             before, met = met.sum(axis=1), _entered(specks, left)
             searched &= met.sum(axis=1) <= MAX_GROWTH * before
         held = ~searched | met.any(axis=1)

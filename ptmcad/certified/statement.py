@@ -1,6 +1,7 @@
 """What a certified map says of its problem: the equations as text, and the plan.
 
-Guarantee: the potential is written from the mechanism's description, in the names of problem records.
+Guarantee: the potential is written from the mechanism's description, in the names of problem
+records.
 """
 
 from __future__ import annotations
@@ -22,16 +23,20 @@ from ptmcad.text.tree import to_text
 
 
 def system_text(model: Model, has_free_lengths: bool = False) -> System:
-    """The potential, of a mechanism with square roots; gradient and Hessian are its derivatives by the unknowns.
+    """The potential, of a mechanism with square roots; gradient and Hessian are its derivatives by
+    the unknowns.
 
-    The work of constant moments is in it, so that it has another value after each turn; where a moment depends on
-    another unknown, moments are stated beside it. Of closed loops with free lengths the potential, and as relations
-    what is zero where each loop is closed. Of a system without a potential, and of loops without free lengths, the
-    equations. What is positive at solutions is there as the record says it.
+    The work of constant moments is in it, so that it has another value after each turn; where a
+    moment depends on another unknown, moments are stated beside it. Of closed loops with free
+    lengths the potential, and as relations what is zero where each loop is closed. Of a system
+    without a potential, and of loops without free lengths, the equations. What is positive at
+    solutions is there as the record says it.
     """
     unknowns, own, mechanism = tuple(model.unknowns), equations_in(model), model.whole
     written, positive, stable = conditions_of(model)
-    equations, conditions, stability = (tuple(map(to_text, some)) for some in (written, positive.values(), stable))
+    equations, conditions, stability = (
+        tuple(map(to_text, some)) for some in (written, positive.values(), stable)
+    )
     if mechanism is None or (equations and not has_free_lengths):
         potential = "" if own is None or own.potential is None else to_text(own.potential)
         return System(unknowns, (), potential, equations, (), conditions, stability)
@@ -39,7 +44,9 @@ def system_text(model: Model, has_free_lengths: bool = False) -> System:
     moments = split_moments(mechanism)
     beside = {moment.unknown: to_text(moment.value) for moment in moments.coupled}
     stated = tuple(beside.get(unknown, "0") for unknown in unknowns if beside)
-    return System(unknowns, relations, energy_text(mechanism, moments), (), (), conditions, moments=stated)
+    return System(
+        unknowns, relations, energy_text(mechanism, moments), (), (), conditions, moments=stated
+    )
 
 
 def energy_text(mechanism: Mechanism, moments: Split) -> str:
@@ -67,7 +74,11 @@ def plan_of(
     return (
         *beforehand(slice, without),
         *(
-            PlanStep(curve.name, True, f"enclosed by branch and prune in {len(curve.system.unknowns)} unknowns")
+            PlanStep(
+                curve.name,
+                True,
+                f"enclosed by branch and prune in {len(curve.system.unknowns)} unknowns",
+            )
             for curve in curves
         ),
         *half_step("curves over", change, slice),

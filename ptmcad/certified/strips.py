@@ -1,11 +1,13 @@
-"""Strips: what a small box's linearised equations say of the curve's projection to the window, as thin rectangles.
+"""Strips: what a small box's linearised equations say of the curve's projection to the window, as
+thin rectangles.
 
-Guarantee: the projection of each solution in a box lies in the box's strip, and so in one of the strip's pieces.
-(Lemma 16 of docs/soundness.md.)
+Guarantee: the projection of each solution in a box lies in the box's strip, and so in one of the
+strip's pieces. (Lemma 16 of docs/soundness.md.)
 
-Along a smooth curve a box's rectangle is as thick as it is long, but the strip is only as thick as the curve is bent:
-its thickness goes with the square of its length. So pieces of strips cover as little as the boxes of several more
-levels of the search, for the price of a few multiplications each.
+Along a smooth curve a box's rectangle is as thick as it is long, but the strip is only as thick as
+the curve is bent: its thickness goes with the square of its length. So pieces of strips cover as
+little as the boxes of several more levels of the search, for the price of a few multiplications
+each.
 """
 
 from __future__ import annotations
@@ -30,8 +32,9 @@ from ptmcad.formulas.intervals import Floats
 from ptmcad.formulas.rounding import down, multiply, reciprocal, up
 
 Strips = NDArray[np.float64]
-"""Shape (k, 11): left, bottom, right, top of a box's projection; v, the coordinate (0 or 1) that is enclosed when
-the other one, u, is known, or -1 where neither is; mu, mv; enclosures of c and q in v = mv + c + q (u - mu)."""
+"""Shape (k, 11): left, bottom, right, top of a box's projection; v, the coordinate (0 or 1) that is
+enclosed when the other one, u, is known, or -1 where neither is; mu, mv; enclosures of c and q in
+v = mv + c + q (u - mu)."""
 NONE: Strips = np.empty((0, 11))
 _V, _MU, _MV, _C, _Q = 4, 5, 6, 7, 9
 MAX_PIECES = 256
@@ -81,7 +84,13 @@ def strips(system: Arguments, boxes: Boxes) -> Strips:
 
 @inlined
 def _solved(
-    system: Arguments, i: int, low: Floats, high: Floats, work: Workspace, strip: Floats, thinnest: float
+    system: Arguments,
+    i: int,
+    low: Floats,
+    high: Floats,
+    work: Workspace,
+    strip: Floats,
+    thinnest: float,
 ) -> float:
     """Row i as a strip, if that is thinner than the thinnest so far; its thickness."""
     unknowns, middle, radius = system.unknowns, work.middle_low, work.radius
@@ -126,13 +135,17 @@ def _shape(strip: NDArray[np.float64], v: int) -> tuple[float, float, float]:
 
 @compiled
 def _number_of_pieces(strip: NDArray[np.float64], area: float) -> int:
-    """Into how many pieces a strip is cut if each may cover about ``area`` for being a step instead of slanted."""
+    """Into how many pieces a strip is cut if each may cover about ``area`` for being a step instead
+    of slanted.
+    """
     if strip[_V] < 0:
         return 1
     v = int(strip[_V])
     along, slope, thickness = _shape(strip, v)
     rise = along * slope
-    wanted: float = min(sqrt(along * rise / area) if area > 0 else inf, rise / (MIN_PIECE_RISE * thickness + 1e-300))
+    wanted: float = min(
+        sqrt(along * rise / area) if area > 0 else inf, rise / (MIN_PIECE_RISE * thickness + 1e-300)
+    )
     if thickness > strip[2 + v] - strip[v]:
         return 1
     return ceil(min(max(wanted, 1.0), float(MAX_PIECES)))
@@ -164,7 +177,9 @@ def areas_of_pieces(strips: Strips, area: float) -> NDArray[np.float64]:
 
 @compiled
 def pieces(strips: Strips, area: float) -> Boxes:
-    """Rectangles (left, bottom, right, top) that cover the strips, each of about ``area`` more than the strip."""
+    """Rectangles (left, bottom, right, top) that cover the strips, each of about ``area`` more than
+    the strip.
+    """
     numbers = numbers_of_pieces(strips, area)
     room = 0
     for k in range(len(numbers)):
@@ -184,7 +199,9 @@ def pieces(strips: Strips, area: float) -> Boxes:
         for s in range(number):
             end = strip[3 - v] if s == number - 1 else start + (strip[3 - v] - start) / (number - s)
             # u in [start, end], both of them floats that neighbouring pieces share
-            low, high = multiply(strip[_Q], strip[_Q + 1], down(start - strip[_MU]), up(end - strip[_MU]))
+            low, high = multiply(
+                strip[_Q], strip[_Q + 1], down(start - strip[_MU]), up(end - strip[_MU])
+            )
             low = down(strip[_MV] + down(strip[_C] + low))
             high = up(strip[_MV] + up(strip[_C + 1] + high))
             # a number that is not one, from an overflow, says nothing

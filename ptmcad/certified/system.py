@@ -1,7 +1,8 @@
 """Systems of equations in a box: what a search looks for, as a tape with named outputs.
 
-Guarantee: an `EquationSystem` says which points are solutions: those at which the equations vanish and the nonnegative
-formulas are at least zero. Everything else in it holds at each solution and serves to discard boxes.
+Guarantee: an `EquationSystem` says which points are solutions: those at which the equations vanish
+and the nonnegative formulas are at least zero. Everything else in it holds at each solution and
+serves to discard boxes.
 """
 
 from __future__ import annotations
@@ -25,13 +26,15 @@ class EquationSystem:
 
     Attributes
     ----------
-    tape : stage 0 has the first two equations and cheap formulas that vanish with them, stage 1 the other equations,
-        stage 2 the formulas that discard boxes, stage 3 the Jacobian, row by row.
-    unknowns : int64 (n,): the numbers of the variables that are searched; others are fixed (narrow) intervals.
+    tape : stage 0 has the first two equations and cheap formulas that vanish with them, stage 1 the
+        other equations, stage 2 the formulas that discard boxes, stage 3 the Jacobian, row by row.
+    unknowns : int64 (n,): the numbers of the variables that are searched; others are fixed (narrow)
+        intervals.
     equations : int64 (m,): places on the tape.
     jacobian : int64 (m, n): places of df_i/dx_j.
-    solved : int64 (k, 3): a variable and the places of two formulas, rest and slope, with rest + slope v = 0 for the
-        variable's value v at each solution. They stand before ``solved_end``, at the beginning of the tape.
+    solved : int64 (k, 3): a variable and the places of two formulas, rest and slope, with
+        rest + slope v = 0 for the variable's value v at each solution. They stand before
+        ``solved_end``, at the beginning of the tape.
     formulas : the equations, and their derivatives by the unknowns.
     """
 
@@ -46,8 +49,8 @@ class EquationSystem:
     formulas: tuple[Sequence[Formula], Sequence[Sequence[Formula]]]
 
     def alone(self) -> EquationSystem:
-        """The same equations and derivatives, on a tape without anything else: at points that are no solutions,
-        formulas that are equal at solutions only may exclude each other."""
+        """The same equations and derivatives, on a tape without anything else: at points that are
+        no solutions, formulas that are equal at solutions only may exclude each other."""
         equations, jacobian = self.formulas
         return system(equations, [int(x) for x in self.unknowns], jacobian=jacobian)
 
@@ -60,7 +63,9 @@ class EquationSystem:
 
 
 class Arguments(NamedTuple):
-    """An `EquationSystem` for compiled code; what vanishes at solutions is known after stage 0, 1 and 2 in turn."""
+    """An `EquationSystem` for compiled code; what vanishes at solutions is known after stage 0, 1
+    and 2 in turn.
+    """
 
     program: Program
     stages: Indices
@@ -89,9 +94,11 @@ def system(
     ----------
     equations : differentiable formulas, without a `meet` that may be empty; the two cheapest first.
     unknowns : numbers of the variables to search; for a curve the two axes come first.
-    vanishing : formulas that vanish at every solution, beside the equations: cheap ones without a `meet`, then others.
+    vanishing : formulas that vanish at every solution, beside the equations: cheap ones without a
+        `meet`, then others.
     nonnegative : formulas that are at least zero at every solution looked for.
-    jacobian : the equations' derivatives by the unknowns, where there are better formulas than those of the graph.
+    jacobian : the equations' derivatives by the unknowns, where there are better formulas than
+        those of the graph.
     solved : of formulas that vanish at solutions; their variables are among the unknowns.
     """
     if jacobian is None:

@@ -1,11 +1,13 @@
 """Tubes: polynomials, and how far the solutions in some boxes are from them at most.
 
-Guarantee: each solution of the equations in the boxes that `tubes` was given lies in one of its tubes, in the
-coordinate of the plane that the other one tells; or it says that it failed. (Lemma 29 of docs/soundness.md.)
+Guarantee: each solution of the equations in the boxes that `tubes` was given lies in one of its
+tubes, in the coordinate of the plane that the other one tells; or it says that it failed. (Lemma 29
+of docs/soundness.md.)
 
-A polynomial is found by Newton's method on power series; that it is near the solutions follows from how small the
-equations are along it, with a bound of their next coefficient over the whole interval, and from the derivatives over
-each box. So the half width falls with a power of the interval's length, and boxes need not be small.
+A polynomial is found by Newton's method on power series; that it is near the solutions follows from
+how small the equations are along it, with a bound of their next coefficient over the whole
+interval, and from the derivatives over each box. So the half width falls with a power of the
+interval's length, and boxes need not be small.
 """
 
 from __future__ import annotations
@@ -24,7 +26,9 @@ from ptmcad.formulas.intervals import Floats, run
 from ptmcad.formulas.rounding import down, magnitude, multiply, up
 
 ITERATIONS = 30
-"""Of the bound of the distance from the polynomial: each multiplies what is above the limit by a matrix."""
+"""Of the bound of the distance from the polynomial: each multiplies what is above the limit by a
+matrix.
+"""
 SHRINKAGES = 3
 """Times that a box is made smaller by what is known of the distance."""
 MAX_TUBES = 6
@@ -39,7 +43,8 @@ class Tubes(NamedTuple):
 
     Attributes
     ----------
-    coefficients : shape (k, order + 1), of the other coordinate's polynomials in t, as exact as floats are.
+    coefficients : shape (k, order + 1), of the other coordinate's polynomials in t, as exact as
+        floats are.
     half : half widths.
     middle, radius : the interval lies in middle - radius and middle + radius, computed exactly.
     left : number of boxes whose solutions are in no tube; the rest means nothing unless it is 0.
@@ -54,7 +59,9 @@ class Tubes(NamedTuple):
 
 @compiled
 def _centered(z: Floats, start: float, end: float) -> tuple[float, float]:
-    """The values of a polynomial over an interval within [-1, 1]: its coefficients about the middle, summed up."""
+    """The values of a polynomial over an interval within [-1, 1]: its coefficients about the
+    middle, summed up.
+    """
     c = 0.5 * (start + end)
     r = up(max(end - c, c - start))
     n = len(z)
@@ -72,8 +79,12 @@ def _centered(z: Floats, start: float, end: float) -> tuple[float, float]:
 
 
 @compiled
-def _spread(z: Floats, low: Floats, high: Floats, u: int, curve: tuple[Floats, Floats], far: Floats) -> bool:
-    """The polynomials' values over a box, and how far its points are from these at most; False where no number is."""
+def _spread(
+    z: Floats, low: Floats, high: Floats, u: int, curve: tuple[Floats, Floats], far: Floats
+) -> bool:
+    """The polynomials' values over a box, and how far its points are from these at most; False
+    where no number is.
+    """
     middle, radius = z[u, 0], z[u, 1]
     t_low = max(down(down(low[u] - middle) / radius), -1.0)
     t_high = min(up(up(high[u] - middle) / radius), 1.0)
@@ -87,8 +98,12 @@ def _spread(z: Floats, low: Floats, high: Floats, u: int, curve: tuple[Floats, F
 
 
 @compiled
-def _operator(system: Arguments, residual: Floats, work: Workspace, rest: Floats, bound: Floats) -> None:
-    """What bounds solutions' distances from the polynomials: they are at most ``bound`` plus ``rest`` times them."""
+def _operator(
+    system: Arguments, residual: Floats, work: Workspace, rest: Floats, bound: Floats
+) -> None:
+    """What bounds solutions' distances from the polynomials: they are at most ``bound`` plus
+    ``rest`` times them.
+    """
     m = len(system.equations)
     for i in range(m):
         bound[i] = 0.0
@@ -98,7 +113,9 @@ def _operator(system: Arguments, residual: Floats, work: Workspace, rest: Floats
             p = q = 0.0
             for k in range(m):
                 place = system.jacobian[k, work.pivots[j]]
-                a, b = multiply(work.inverse[i, k], work.inverse[i, k], work.low[place], work.high[place])
+                a, b = multiply(
+                    work.inverse[i, k], work.inverse[i, k], work.low[place], work.high[place]
+                )
                 p, q = down(p + a), up(q + b)
             if i == j:
                 p, q = down(1.0 - q), up(1.0 - p)
@@ -122,9 +139,17 @@ def _iterate(system: Arguments, rest: Floats, bound: Floats, work: Workspace, fa
 
 @compiled
 def _distance(
-    system: Arguments, z: Floats, residual: Floats, low: Floats, high: Floats, u: int, far: Floats, work: Workspace
+    system: Arguments,
+    z: Floats,
+    residual: Floats,
+    low: Floats,
+    high: Floats,
+    u: int,
+    far: Floats,
+    work: Workspace,
 ) -> float:
-    """How far in all variables the solutions in a box are from the polynomials at most; -1 where there is none.
+    """How far in all variables the solutions in a box are from the polynomials at most; -1 where
+    there is none.
 
     ``far`` becomes these bounds, variable by variable.
     """
@@ -146,7 +171,9 @@ def _distance(
         before = far.max()
         _iterate(system, rest, bound, work, far)
         for x in range(variables):
-            if x != u and (down(curve_low[x] - far[x]) > high[x] or up(curve_high[x] + far[x]) < low[x]):
+            if x != u and (
+                down(curve_low[x] - far[x]) > high[x] or up(curve_high[x] + far[x]) < low[x]
+            ):
                 return -1.0
         if not far.max() <= 0.5 * before:
             break
@@ -170,9 +197,10 @@ def tubes(
     system : what the solutions are of.
     equations : the same equations and their derivatives alone.
     weights : shape (v,), of the variables' widths when a box is bisected.
-    along : the coordinate u of the plane, 0 or 1, along which the tubes go, and the ends of an interval that holds
-        that of all boxes.
-    limits : the order of the polynomials, the half width that is not exceeded, and how many boxes are bisected.
+    along : the coordinate u of the plane, 0 or 1, along which the tubes go, and the ends of an
+        interval that holds that of all boxes.
+    limits : the order of the polynomials, the half width that is not exceeded, and how many boxes
+        are bisected.
     """
     u, start, end = along
     order, most, budget = limits
@@ -196,9 +224,21 @@ def tubes(
             count += 1
     left = len(boxes)
     if count > 0:
-        left = _refined(system, equations, boxes, weights, centers[:count], residuals, half, (u, most, budget), work)
+        left = _refined(
+            system,
+            equations,
+            boxes,
+            weights,
+            centers[:count],
+            residuals,
+            half,
+            (u, most, budget),
+            work,
+        )
     used = half[:count] >= 0
-    return Tubes(centers[:count, 1 - u, : order + 1][used], half[:count][used], middle, radius, left)
+    return Tubes(
+        centers[:count, 1 - u, : order + 1][used], half[:count][used], middle, radius, left
+    )
 
 
 @inlined
@@ -215,7 +255,9 @@ def _reach(residual: Floats, work: Workspace) -> float:
 
 @compiled
 def _middles(equations: Arguments, boxes: Boxes, u: int, middle: float, work: Workspace) -> Floats:
-    """Points of the curves over the middle, about: where Newton's method ends that begins in boxes next to it."""
+    """Points of the curves over the middle, about: where Newton's method ends that begins in boxes
+    next to it.
+    """
     variables = boxes.shape[1] // 2
     distance = np.abs(0.5 * (boxes[:, u] + boxes[:, variables + u]) - middle)
     order = np.argsort(distance)
@@ -259,7 +301,8 @@ def _refined(
     limits: tuple[int, float, int],
     work: Workspace,
 ) -> int:
-    """Bisect boxes until their solutions are near one of the centers, or the budget is gone; what is left then.
+    """Bisect boxes until their solutions are near one of the centers, or the budget is gone; what
+    is left then.
 
     ``half`` becomes what it has to be.
     """
@@ -269,7 +312,9 @@ def _refined(
     distance = np.empty(variables)
     least = 0.0
     for x in (0, 1):
-        least = max(least, (np.max(boxes[:, variables + x]) - np.min(boxes[:, x])) * weights[x] / FINEST)
+        least = max(
+            least, (np.max(boxes[:, variables + x]) - np.min(boxes[:, x])) * weights[x] / FINEST
+        )
     stack = np.empty((len(boxes) + 200, 2 * variables))
     stack[: len(boxes)] = boxes
     top = len(boxes)

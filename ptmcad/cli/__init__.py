@@ -1,10 +1,12 @@
 """The command line: one module per command, imported only when it is asked for.
 
-A command module is listed in `COMMANDS` and defines ``command``, a click command that delegates to plain functions.
+A command module is listed in `COMMANDS` and defines ``command``, a click command that delegates to
+plain functions.
 
-Guarantee: the exit status is 0 when done, 1 when a check failed, 2 for bad input or output, 3 when a limit stopped
-the computation or a point that `solve` was asked about is undecided, 130 after Ctrl-C, 143 after SIGTERM and 129 after
-SIGHUP; bad input gets one message on standard error, no traceback.
+Guarantee: the exit status is 0 when done, 1 when a check failed, 2 for bad input or output, 3 when
+a limit stopped the computation or a point that `solve` was asked about is undecided, 130 after
+Ctrl-C, 143 after SIGTERM and 129 after SIGHUP; bad input gets one message on standard error, no
+traceback.
 """
 
 from __future__ import annotations
@@ -62,9 +64,12 @@ class _LazyGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        # click before 8.2 takes a name that begins with any sign for an option, and shows the help as if all were well
+        # click before 8.2 takes a name that begins with any sign for an option, and shows the help
+        # as if all were well
         if args[0] not in COMMANDS and not ctx.resilient_parsing:
-            raise click.UsageError(f"there is no command {quoted(args[0])}{did_you_mean(args[0], COMMANDS)}", ctx)
+            raise click.UsageError(
+                f"there is no command {quoted(args[0])}{did_you_mean(args[0], COMMANDS)}", ctx
+            )
         return super().resolve_command(ctx, args)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
@@ -100,10 +105,15 @@ def _show_version(context: click.Context, wanted: bool) -> None:
 
 
 def run(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line in this process and return its exit status; `ptmcad.__main__` runs it in a watched one."""
+    """Run the command line in this process and return its exit status; `ptmcad.__main__` runs it in
+    a watched one.
+    """
     given = len(sys.argv) - 1 if arguments is None else len(arguments)
     if given > MAX_ARGUMENTS:
-        click.echo(f"error: {given} arguments are given, more than {MAX_ARGUMENTS}: write a problem record", err=True)
+        click.echo(
+            f"error: {given} arguments are given, more than {MAX_ARGUMENTS}: write a problem record",
+            err=True,
+        )
         return 2
     try:
         if COMPLETION in os.environ:
@@ -111,7 +121,9 @@ def run(arguments: Sequence[str] | None = None) -> int:
 
             return answer(group, os.environ[COMPLETION], "ptmcad", COMPLETION)
         with _warnings_as_lines():
-            status = group.main(args=arguments if given else ["--help"], prog_name="ptmcad", standalone_mode=False)
+            status = group.main(
+                args=arguments if given else ["--help"], prog_name="ptmcad", standalone_mode=False
+            )
         if sys.stdout is not None:  # None when it was closed by the caller
             sys.stdout.flush()
     except click.ClickException as error:
@@ -126,9 +138,14 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return _exhausted()
     except PtmcadError as error:
         more = len(error.faults) - 1 if isinstance(error, ConfigError) else 0
-        click.echo(f"error: {error}{f' (and {more} more: ptmcad check lists them)' if more else ''}", err=True)
+        click.echo(
+            f"error: {error}{f' (and {more} more: ptmcad check lists them)' if more else ''}",
+            err=True,
+        )
         return 2
-    except OSError as error:  # mostly standard output that is full; files of results raise OutputError
+    except (
+        OSError
+    ) as error:  # mostly standard output that is full; files of results raise OutputError
         if error.errno == ENOMEM:
             return _exhausted()
         place = f": {error.filename}" if error.filename else ""
@@ -167,15 +184,27 @@ def _exhausted() -> int:
 
 
 def _one_line(error: click.ClickException) -> str:
-    """What click refuses as a `ConfigError` would say it: the option or argument, and what is wrong with it."""
+    """What click refuses as a `ConfigError` would say it: the option or argument, and what is wrong
+    with it.
+    """
     context: click.Context | None = getattr(error, "ctx", None)
     command = context.command_path if context else "ptmcad"
     text = error.format_message()
     if isinstance(error, click.NoSuchOption):
-        options = [name for p in context.command.get_params(context) for name in p.opts] if context else []
+        options = (
+            [name for p in context.command.get_params(context) for name in p.opts]
+            if context
+            else []
+        )
         text = f"{error.option_name}: there is no such option{did_you_mean(error.option_name, options)}"
     elif isinstance(error, click.BadParameter) and error.param is not None:
-        key = error.param.opts[0] if isinstance(error.param, click.Option) else error.param.human_readable_name
-        text = f"{key}: {'is missing' if isinstance(error, click.MissingParameter) else error.message}"
+        key = (
+            error.param.opts[0]
+            if isinstance(error.param, click.Option)
+            else error.param.human_readable_name
+        )
+        text = (
+            f"{key}: {'is missing' if isinstance(error, click.MissingParameter) else error.message}"
+        )
     text = shown(text[:1].lower() + text[1:] if " " in text.partition(":")[0] else text).rstrip(".")
     return text if text.endswith("?") else f"{text}; see {command} --help"

@@ -1,4 +1,6 @@
-"""``ptmcad animate``: the motion of a mechanism along a path of its map, through the snap, as GIF or MP4."""
+"""``ptmcad animate``: the motion of a mechanism along a path of its map, through the snap, as GIF
+or MP4.
+"""
 
 from __future__ import annotations
 
@@ -52,15 +54,31 @@ def _style(size: str | None, palette: str | None, title: str | None) -> PictureS
               help="Which pose is followed, as `ptmcad map` numbers them, at the path's start.")  # fmt: skip
 @click.option("--frames", type=click.IntRange(2, 600), default=90, show_default=True,
               help="Pictures along the path; each fall has a third of that beside.")  # fmt: skip
-@click.option("--fps", type=click.IntRange(1, MAX_FPS), default=20, show_default=True, help="Pictures in a second.")
+@click.option(
+    "--fps",
+    type=click.IntRange(1, MAX_FPS),
+    default=20,
+    show_default=True,
+    help="Pictures in a second.",
+)
 @click.option("--size", metavar="WxH", help="Of the film, as 9x5in.  [default: 9x5.1in]")
-@click.option("--dpi", type=click.IntRange(50, 400), default=100, show_default=True, help="Pixels to the inch.")
-@click.option("--palette", metavar="NAME|COLOUR,..", help="As of `ptmcad plot`.  [default: default]")
+@click.option(
+    "--dpi",
+    type=click.IntRange(50, 400),
+    default=100,
+    show_default=True,
+    help="Pixels to the inch.",
+)
+@click.option(
+    "--palette", metavar="NAME|COLOUR,..", help="As of `ptmcad plot`.  [default: default]"
+)
 @click.option("--title", metavar="TEXT", help="Title, '' for none.  [default: the slice's heading]")
 @tolerance_option
 @out_option
 @name_option("NAME-motion")
-@format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}; mp4 needs the program ffmpeg.", "gif")
+@format_option(
+    FORMATS, f"Files to write, of {', '.join(FORMATS)}; mp4 needs the program ffmpeg.", "gif"
+)
 @limit_options
 @gathered(style=_style)
 def command(
@@ -94,7 +112,10 @@ def command(
 
         with stored_in(asked.config if stored else None):
             motion = motion_of(result, path, pose, frames, progress)
-            film = {each: picture(each, lambda path: render.save_film(motion, path, style, fps, dpi)) for each in names}
+            film = {
+                each: picture(each, lambda path: render.save_film(motion, path, style, fps, dpi))
+                for each in names
+            }
             write_files(out, film)
     click.echo(f"{question_of(result.slice)}\n{summary(motion)}")
     report_written(out, names)

@@ -1,4 +1,6 @@
-"""``ptmcad bench``: error against run time of several methods, side by side; and two such studies compared."""
+"""``ptmcad bench``: error against run time of several methods, side by side; and two such studies
+compared.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,9 @@ def _seconds(key: str, value: float) -> float:
 
 
 @click.command("bench")
-@click.argument("configs", nargs=-1, type=PATH, shell_complete=files(".yaml", ".yml"), metavar="[CONFIG]...")
+@click.argument(
+    "configs", nargs=-1, type=PATH, shell_complete=files(".yaml", ".yml"), metavar="[CONFIG]..."
+)
 @click.option("--compare", nargs=2, type=PATH, metavar="OLD NEW",
               help="Compare two JSON files of earlier runs; measure nothing.")  # fmt: skip
 @out_option
@@ -43,7 +47,9 @@ def _seconds(key: str, value: float) -> float:
 @click.option("--time-limit", type=float, default=60.0, show_default=True, callback=reading(_seconds), metavar="S",
               help="Seconds for each method on each slice; what does not fit is left out, and reported.")  # fmt: skip
 @click.option("--quick", is_flag=True, help="Fewer and coarser settings.")
-@click.option("--page", is_flag=True, help="Write error-time.md too, a page of all studies in the folder.")
+@click.option(
+    "--page", is_flag=True, help="Write error-time.md too, a page of all studies in the folder."
+)
 def command(
     *,
     configs: tuple[Path, ...],
@@ -83,7 +89,9 @@ def command(
     from ptmcad.studies.bench.study import RIVALS, measure
     from ptmcad.verification import verify
 
-    check_writable(out, (*(f"{slice.name}.{suffix}" for slice, _ in slices for suffix in SUFFIXES), PAGE))
+    check_writable(
+        out, (*(f"{slice.name}.{suffix}" for slice, _ in slices for suffix in SUFFIXES), PAGE)
+    )
     for number, (slice, path) in enumerate(slices):
         with ProgressBar() as progress:
 
@@ -108,7 +116,10 @@ def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
     slices = [(load(path), record_file(path)) for path in configs or (Path(DEFAULT),)]
     names = [slice.name for slice, _ in slices]
     if len(set(names)) < len(names):
-        raise ConfigError(f"two records have the name {next(n for n in names if names.count(n) > 1)}", key="CONFIG")
+        raise ConfigError(
+            f"two records have the name {next(n for n in names if names.count(n) > 1)}",
+            key="CONFIG",
+        )
     return slices
 
 

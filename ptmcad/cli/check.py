@@ -41,9 +41,15 @@ def command(*, record: Path, limits: ResourceLimits) -> int:
             click.echo("after so many faults no more were looked for", err=True)
         return 2
     with held(limits):
-        with clock_stopped(limits.timeout):  # the time that the import takes is not the computation's
+        with clock_stopped(
+            limits.timeout
+        ):  # the time that the import takes is not the computation's
             from ptmcad.ask.checking import asked_text, check, cost_text
-        slice = asked.member(asked.values[len(asked.values) // 2]) if isinstance(asked, Family) else asked
+        slice = (
+            asked.member(asked.values[len(asked.values) // 2])
+            if isinstance(asked, Family)
+            else asked
+        )
         for line in asked_text(slice):  # whatever stops the rest, this is known
             click.echo(line)
         try:
@@ -57,9 +63,14 @@ def command(*, record: Path, limits: ResourceLimits) -> int:
             click.echo(f"{'family':<12}of {len(asked.values)} such slices, {asked.free.name} from {asked.free.low} to "
                        f"{asked.free.high}; above is the one in the middle")  # fmt: skip
         if designed is not None:
-            over = ", ".join(f"{a.name} in [{shortest_text(a.low)}, {shortest_text(a.high)}]" for a in designed.over)
+            over = ", ".join(
+                f"{a.name} in [{shortest_text(a.low)}, {shortest_text(a.high)}]"
+                for a in designed.over
+            )
             of = f" of {designed.along}" if designed.along else ""
-            click.echo(f"{'design':<12}{designed.maximise}{of} over {over}; above is the record without it")
+            click.echo(
+                f"{'design':<12}{designed.maximise}{of} over {over}; above is the record without it"
+            )
         if sweeping is not None:
             from ptmcad.sweeping.estimate import sweep_text
 

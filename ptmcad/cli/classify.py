@@ -60,12 +60,13 @@ def _wanted(
 def classify_to_files(slice: Slice, options: Options, output: Output, spent: float = 0.0) -> Any:
     """Classify the slice, write the files asked for, and return the `RegionMap`.
 
-    Guarantee: the folder has been proved writable before the computation starts; files are written all or none.
+    Guarantee: the folder has been proved writable before the computation starts; files are written
+    all or none.
 
     Parameters
     ----------
-    spent : the part of the options' ``timeout``, in seconds, that was needed to read and check the map from which to
-        go on.
+    spent : the part of the options' ``timeout``, in seconds, that was needed to read and check the
+        map from which to go on.
 
     Raises
     ------
@@ -81,10 +82,14 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
 
     with ProgressBar() as progress:
         options = replace(options, progress=progress, partial=handed_over if watched() else None)
-        with clock_stopped(options.timeout, spent):  # the time that the import takes is not the computation's
+        with clock_stopped(
+            options.timeout, spent
+        ):  # the time that the import takes is not the computation's
             from ptmcad.ask.classification import prepare, region_map
 
-            _report_why_none(slice, options, output, "the engine was still being loaded or compiled")
+            _report_why_none(
+                slice, options, output, "the engine was still being loaded or compiled"
+            )
             compiling = prepare(slice, options)
         earlier = options.resume
         reason = "the first level of the search was not done"
@@ -109,7 +114,9 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
 
 
 def _report_why_none(slice: Slice, options: Options, output: Output, reason: str) -> None:
-    """Say why there is no map yet to the process that watches, when maps of this engine can be gone on from."""
+    """Say why there is no map yet to the process that watches, when maps of this engine can be gone
+    on from.
+    """
     from ptmcad.ask.engines import is_certified
 
     if "json" in output.formats and is_certified(slice, options.engine):
@@ -118,11 +125,16 @@ def _report_why_none(slice: Slice, options: Options, output: Output, reason: str
 
 
 def _hand_over(result: Any, name: str, output: Output) -> str:
-    """Give the result so far to the process that watches, which saves it if this one has to be stopped; its text."""
+    """Give the result so far to the process that watches, which saves it if this one has to be
+    stopped; its text.
+    """
     text = output.text(result)
     if "json" in output.formats:
         state = "partial" if result.status.value == "partial" else "complete"
-        place, beside = str(output.out / f"{name}.json"), names_of(name, output.among((*PICTURES, *DATA)))
+        place, beside = (
+            str(output.out / f"{name}.json"),
+            names_of(name, output.among((*PICTURES, *DATA))),
+        )
         send(Topic.RESULT, state, text, _open_share(result), place, *beside)
     return text
 
@@ -137,7 +149,12 @@ def _save(result: Any, name: str, output: Output) -> None:
     # first: drawing may take longer than there is time
     file = f"{name}.json" if "json" in output.formats else ""
     text = _hand_over(result, name, output) if file else ""
-    write_result(output.out, output.drawing.writers(result, name, output.among((*PICTURES, *DATA))), file, text)
+    write_result(
+        output.out,
+        output.drawing.writers(result, name, output.among((*PICTURES, *DATA))),
+        file,
+        text,
+    )
 
 
 def explanation(steps: Iterable[Any]) -> str:
@@ -164,7 +181,9 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
         steps = beforehand(slice, off)
     else:
         steps = plan.beforehand(slice, off, options.areas)
-    click.echo(f"plan of {slice.name}, {'certified' if certified else 'exact'} engine, before it starts:")
+    click.echo(
+        f"plan of {slice.name}, {'certified' if certified else 'exact'} engine, before it starts:"
+    )
     click.echo(explanation(steps))
     if not certified:
         from ptmcad.ask.checking import foretold
@@ -195,9 +214,13 @@ def _names_of_savings(key: str, names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _one(key: str, given: tuple[str, ...]) -> str | None:
-    """An option that is given once, where it is; of more than one the last would count and nobody be told."""
+    """An option that is given once, where it is; of more than one the last would count and nobody
+    be told.
+    """
     if len(given) > 1:
-        raise ConfigError("a family has one free parameter: `ptmcad sweep` goes through several", key=key)
+        raise ConfigError(
+            "a family has one free parameter: `ptmcad sweep` goes through several", key=key
+        )
     return given[0] if given else None
 
 
@@ -231,7 +254,12 @@ def _resumed(slice: Slice, path: Path) -> Any:
 
 
 def _classify_family(
-    family: Family, third: Third, options: Options, output: Output, limits: ResourceLimits, resume: Path | None
+    family: Family,
+    third: Third,
+    options: Options,
+    output: Output,
+    limits: ResourceLimits,
+    resume: Path | None,
 ) -> None:
     """Classify and draw the members of a family."""
     # with what stores and draws families, which a slice does without
@@ -253,7 +281,9 @@ def _classify_family(
     single = [kind for kind in output.formats if kind not in (*PICTURES, *MESHES)]
     files = sum(len(names_of("", (kind,))) for kind in single) * len(result.values)
     if files:
-        click.echo(f"          and {files} files of the members, {result.members[0].slice.name} and so on")
+        click.echo(
+            f"          and {files} files of the members, {result.members[0].slice.name} and so on"
+        )
 
 
 @click.command("classify")
@@ -273,12 +303,18 @@ def _classify_family(
     is_flag=True,
     help="Draw NAME-3d as the surface between regions of different counts, with --changes so that it bridges none.",
 )
-@click.option("--count", type=click.Choice([c.value for c in Count]), help="What distinguishes two regions.")
+@click.option(
+    "--count", type=click.Choice([c.value for c in Count]), help="What distinguishes two regions."
+)
 @engine_option
 @out_option
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
-@click.option("--without", multiple=True, callback=reading(_names_of_savings), hidden=True)  # for the ablation study
-@click.option("--keep", multiple=True, callback=reading(_names_of_savings), hidden=True)  # the older name of --without
+@click.option(
+    "--without", multiple=True, callback=reading(_names_of_savings), hidden=True
+)  # for the ablation study
+@click.option(
+    "--keep", multiple=True, callback=reading(_names_of_savings), hidden=True
+)  # the older name of --without
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),
@@ -295,10 +331,21 @@ def _classify_family(
 )
 @file_option("--resume", ".json", "RESULT", "Go on from a stored certified map of the same slice.")
 @click.option(
-    "--area-tolerance", callback=share_of, metavar="EPS", help="Relative width of the areas' bounds (exact engine)."
+    "--area-tolerance",
+    callback=share_of,
+    metavar="EPS",
+    help="Relative width of the areas' bounds (exact engine).",
 )
-@click.option("--no-areas", is_flag=True, help="Leave the regions' areas out, often half of the work (exact engine).")
-@click.option("--no-timings", is_flag=True, help="Leave run times out of the JSON, so that it is the same every time.")
+@click.option(
+    "--no-areas",
+    is_flag=True,
+    help="Leave the regions' areas out, often half of the work (exact engine).",
+)
+@click.option(
+    "--no-timings",
+    is_flag=True,
+    help="Leave run times out of the JSON, so that it is the same every time.",
+)
 @drawing_options(FORMATS, "json,png,svg", "Files to write")
 @gathered(options=_wanted, output=Output, third=Third)
 def command(
@@ -339,7 +386,10 @@ def command(
         _classify_family(slice, third, options, output, limits, resume)
         return
     if meshes := output.among(MESHES):
-        raise ConfigError(f"{meshes[0]} is for the boundary surface of a family: add --free NAME=LO:HI", key="--format")
+        raise ConfigError(
+            f"{meshes[0]} is for the boundary surface of a family: add --free NAME=LO:HI",
+            key="--format",
+        )
     report_idle((
         *_idle(slice, options),
         ("changes", third.changes, "no parameter is free: add --free NAME=LO:HI"),
@@ -350,16 +400,23 @@ def command(
     with held(limits):
         if resume is not None:
             if "json" in output.formats:
-                send(Topic.RESUMABLE, "the map to go on from was still being checked; it is as it was")
+                send(
+                    Topic.RESUMABLE,
+                    "the map to go on from was still being checked; it is as it was",
+                )
             begun = time.monotonic()
-            earlier = _resumed(slice, resume)  # of many rectangles that takes a while, which is part of the limit
+            earlier = _resumed(
+                slice, resume
+            )  # of many rectangles that takes a while, which is part of the limit
             options, spent = replace(options, resume=earlier), time.monotonic() - begun
         if output.explain:
             click.echo(question_of(slice))
         steps = announced(slice, options) if output.explain else ()
         warn(slice, options)
         result = classify_to_files(slice, options, output, spent)
-    further = [step for step in own_steps(result.plan) if step not in steps] if output.explain else []
+    further = (
+        [step for step in own_steps(result.plan) if step not in steps] if output.explain else []
+    )
     if further:
         click.echo(f"decided on the way:\n{explanation(further)}")
     click.echo(result.table() if output.explain else f"{question_of(slice)}\n{result.table()}")

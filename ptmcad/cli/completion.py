@@ -1,8 +1,8 @@
 """Completion in bash, zsh and fish: what the shell asks the program when Tab is pressed.
 
-Guarantee: an answer is printed and nothing else: no message on standard error, no computation. The protocol is click's:
-a variable holds ``SHELL_source`` for the script that a shell reads once, or ``SHELL_complete`` for what
-could be typed next.
+Guarantee: an answer is printed and nothing else: no message on standard error, no computation. The
+protocol is click's: a variable holds ``SHELL_source`` for the script that a shell reads once, or
+``SHELL_complete`` for what could be typed next.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ class _Bash(BashComplete):
     """As click has it, but where a value goes on (NAME=, X, or a folder) no space follows."""
 
     source_template = BashComplete.source_template.replace(
-        "COMPREPLY+=($value)", "COMPREPLY+=($value)\n            [[ $value == *[=,/] ]] && compopt -o nospace"
+        "COMPREPLY+=($value)",
+        "COMPREPLY+=($value)\n            [[ $value == *[=,/] ]] && compopt -o nospace",
     )
 
 

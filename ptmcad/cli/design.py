@@ -54,7 +54,9 @@ class DesignOptions:
             For anything wrong with the record or the options.
         """
         where = {"stable": self.stable, "tension": self.tension, "conditions": self.conditions}
-        return design_from_options(self.config, self.maximise, self.along, self.over, where, self.pose)
+        return design_from_options(
+            self.config, self.maximise, self.along, self.over, where, self.pose
+        )
 
 
 @click.command("design")
@@ -71,10 +73,18 @@ class DesignOptions:
 @click.option("--tension", is_flag=True, help="All springs are to be in tension.")
 @click.option("--condition", "conditions", multiple=True, metavar="TEXT",
               help=f"An inequality of design parameters, such as '{FIRST} + {SECOND} <= 3'. Repeatable.")  # fmt: skip
-@click.option("--pose", metavar="POSE", help="Of which pose a barrier or a quantity is.  [default: stable:1]")
+@click.option(
+    "--pose", metavar="POSE", help="Of which pose a barrier or a quantity is.  [default: stable:1]"
+)
 @click.option("--tolerance", callback=share_of, metavar="EPS",
               help="How far the proved bound may lie above the value, as a share of it.  [default: 1/100]")  # fmt: skip
-@click.option("--seed", type=click.IntRange(min=0), default=SEED, show_default=True, help="Of the global search.")
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=SEED,
+    show_default=True,
+    help="Of the global search.",
+)
 @click.option("--evaluations", type=click.IntRange(min=1), metavar="N",
               help="Designs that are evaluated before the proof, at most.  [default: by the number of "
                    "parameters]")  # fmt: skip
@@ -118,7 +128,9 @@ def command(
     with held(limits):
         if wanted:
             check_writable(out, wanted)
-        with clock_stopped(limits.timeout):  # the time that the import takes is not the computation's
+        with clock_stopped(
+            limits.timeout
+        ):  # the time that the import takes is not the computation's
             from ptmcad.ask.designs import TOLERANCE, design
         with ProgressBar() as progress:
             found = design(
@@ -140,6 +152,10 @@ def command(
 def _save(found: BestDesign, wanted: tuple[str, ...], folder: Path) -> None:
     """Write the pictures and, last, the JSON."""
 
-    pictures = {name: figure(name, lambda: render.figure_of_design(found)) for name in wanted if name[-5:] != ".json"}
+    pictures = {
+        name: figure(name, lambda: render.figure_of_design(found))
+        for name in wanted
+        if name[-5:] != ".json"
+    }
     file = next((name for name in wanted if name not in pictures), "")
     write_result(folder, pictures, file, found.to_json() if file else "")

@@ -1,4 +1,5 @@
-"""What `classify` and `plot` write beside the JSON of a map: pictures, and tables of numbers for other programs.
+"""What `classify` and `plot` write beside the JSON of a map: pictures, and tables of numbers for
+other programs.
 
 Guarantee: the names of all files are known before anything is computed.
 """
@@ -42,7 +43,9 @@ def names_of(stem: str, formats: Formats) -> tuple[str, ...]:
     return tuple(
         name
         for kind in formats
-        for name in ([f"{stem}-{table}.csv" for table in TABLES] if kind == "csv" else [f"{stem}.{kind}"])
+        for name in (
+            [f"{stem}-{table}.csv" for table in TABLES] if kind == "csv" else [f"{stem}.{kind}"]
+        )
     )
 
 
@@ -85,7 +88,10 @@ class DrawingOptions(NamedTuple):
         else:
             missing = render.draw(result, path, samples=self.samples, **how)
         if missing:
-            click.echo(f"note: {name} has no room for {' and '.join(missing)}, which a larger --size has", err=True)
+            click.echo(
+                f"note: {name} has no room for {' and '.join(missing)}, which a larger --size has",
+                err=True,
+            )
 
     def _table(self, result: Any, name: str, boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show import data
@@ -127,7 +133,9 @@ def _pixels(key: str, value: str) -> tuple[int, int]:
     match = re.fullmatch(r"(\d{1,6})(?:x(\d{1,6}))?", value.strip(), re.ASCII)
     sides = (int(match[1]), int(match[2] or match[1])) if match else (0, 0)
     if not all(1 <= side <= MAX_SIDE for side in sides):
-        raise ConfigError(f"{value!r} is not a size such as 400 or 400x300, of 1 to {MAX_SIDE} each", key=key)
+        raise ConfigError(
+            f"{value!r} is not a size such as 400 or 400x300, of 1 to {MAX_SIDE} each", key=key
+        )
     return sides
 
 
@@ -135,7 +143,11 @@ pixels_of = reading(_pixels)
 
 
 def _drawing(
-    samples: bool, dpi: int, boundary_tolerance: Fraction, pixels: tuple[int, int], style: PictureStyle
+    samples: bool,
+    dpi: int,
+    boundary_tolerance: Fraction,
+    pixels: tuple[int, int],
+    style: PictureStyle,
 ) -> DrawingOptions:
     """The options together."""
     return DrawingOptions(samples, style, dpi, boundary_tolerance, pixels)
@@ -153,7 +165,9 @@ def _style(
     try:
         made = styled(style, **options)
     except ConfigError as error:
-        raise ConfigError(error.message, key=f"--{(error.key or 'style').replace('_', '-')}") from error
+        raise ConfigError(
+            error.message, key=f"--{(error.key or 'style').replace('_', '-')}"
+        ) from error
     if made.font_family:
         with blamed("--font-family"):
             render.check_families(made.font_family)
@@ -161,7 +175,9 @@ def _style(
 
 
 def style_options(command: F) -> F:
-    """Add the options that make a `PictureStyle`, which the command gets as ``style``, and ``--dpi``."""
+    """Add the options that make a `PictureStyle`, which the command gets as ``style``, and
+    ``--dpi``.
+    """
     command = gathered(style=_style)(command)
     for option in (
         click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
@@ -188,7 +204,8 @@ def style_options(command: F) -> F:
 
 
 def drawing_options(known: Formats, default: str, what: str) -> Callable[[F], F]:
-    """Add ``--format``, which the command gets as ``formats``, and the options that it gets as a `DrawingOptions`.
+    """Add ``--format``, which the command gets as ``formats``, and the options that it gets as a
+    `DrawingOptions`.
 
     Parameters
     ----------

@@ -19,11 +19,18 @@ from ptmcad.process.handover import Topic, send
 
 @click.command("explore")
 @slice_options
-@click.option("--free", metavar="NAME=LO:HI", help="A third parameter: its slider's maps share one computation.")
+@click.option(
+    "--free",
+    metavar="NAME=LO:HI",
+    help="A third parameter: its slider's maps share one computation.",
+)
 @click.option("--slider", "sliders", multiple=True, metavar="NAME=LO:HI",
               help="The ends of a parameter's slider. Repeatable.")  # fmt: skip
 @click.option(
-    "--port", type=click.IntRange(0, 65535), default=0, help="Port to listen on.  [default: any that is free]"
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=0,
+    help="Port to listen on.  [default: any that is free]",
 )
 @click.option("--open", "opened", is_flag=True, help="Open the page in the browser.")
 @out_option
@@ -70,7 +77,8 @@ def command(
 def _open(address: str, folder: Path) -> None:
     """Have the browser open a file of this user alone that leads to the address.
 
-    What a program is started with is seen by every user of the machine, and the address has the token.
+    What a program is started with is seen by every user of the machine, and the address has the
+    token.
     """
     path = folder / "explore.html"
     send(Topic.TEMPORARY, str(folder))

@@ -1,6 +1,8 @@
-"""What commands do with families: compute and write their members, read them again, and draw them together.
+"""What commands do with families: compute and write their members, read them again, and draw them
+together.
 
-Guarantee: a member's file is written as soon as its map is complete, so that an interrupted run leaves whole maps.
+Guarantee: a member's file is written as soon as its map is complete, so that an interrupted run
+leaves whole maps.
 """
 
 from __future__ import annotations
@@ -62,7 +64,9 @@ def family_to_files(
         if drawn or third.changes or third.between:
             from ptmcad.ask.changes import changes_of
 
-            changes = changes_of(common, options.tolerance or TOLERANCE, replace(options, progress=progress))
+            changes = changes_of(
+                common, options.tolerance or TOLERANCE, replace(options, progress=progress)
+            )
         if changes is not None and third.between:
             family = family._replace(values=changes.between)
             common = common._replace(family=family)
@@ -73,7 +77,9 @@ def family_to_files(
                 found = member_map(common, value, replace(options, timeout=left))
             except LimitReached as stop:
                 written = f"; the maps of {number} of {len(family.values)} members are in {shown_path(wanted.out)}"
-                raise LimitReached(f"{stop} of {family.free.name} = {text_of(value)}{written}") from stop
+                raise LimitReached(
+                    f"{stop} of {family.free.name} = {text_of(value)}{written}"
+                ) from stop
             except PtmcadError as error:
                 raise _at(error, f"{family.free.name} = {text_of(value)}") from error
             _write_member(found, wanted)
@@ -83,10 +89,19 @@ def family_to_files(
             from ptmcad.ask.boundarysurface import surface_of
 
             left = None if ends is None else max(ends - time.monotonic(), 0.01)
-            surface = surface_of(common, changes, options=replace(options, timeout=left, progress=progress))
+            surface = surface_of(
+                common, changes, options=replace(options, timeout=left, progress=progress)
+            )
     title = family.record.title
     result = FamilyMap(
-        family.name, family.free, family.values, tuple(members), common.surfaces, title, changes, family.text
+        family.name,
+        family.free,
+        family.values,
+        tuple(members),
+        common.surfaces,
+        title,
+        changes,
+        family.text,
     )
     if writers := _writers(result, surface, wanted, third.surface):
         write_files(wanted.out, writers)
@@ -116,7 +131,9 @@ def _write_member(found: RegionMap, wanted: Output) -> None:
         write_files(wanted.out, writers)
 
 
-def _writers(result: FamilyMap, surface: BoundarySurface | None, wanted: Output, solid: bool) -> dict[str, Writer]:
+def _writers(
+    result: FamilyMap, surface: BoundarySurface | None, wanted: Output, solid: bool
+) -> dict[str, Writer]:
     name = result.name
     shown = surface if solid else None
     writers = picture_writers(result, name, wanted.among(PICTURES), wanted.drawing, shown)
@@ -175,12 +192,22 @@ def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
     members = tuple(read_result(path.parent / file, whole=whole) for file in stored.files)
     for value, file, member in zip(stored.values, stored.files, members, strict=True):
         if member.slice.axes != members[0].slice.axes:
-            raise ConfigError("its members are not of one family: their axes differ", file=str(path))
+            raise ConfigError(
+                "its members are not of one family: their axes differ", file=str(path)
+            )
         if fault := fault_of_member(member.slice, stored.text, stored.free.name, value):
             place = f"{stored.free.name} = {text_of(value)}"
             raise ConfigError(
-                f"is not the member at {place} that {path.name} names: {fault}", file=str(path.parent / file)
+                f"is not the member at {place} that {path.name} names: {fault}",
+                file=str(path.parent / file),
             )
     return FamilyMap(
-        stored.name, stored.free, stored.values, members, stored.surfaces, stored.title, stored.changes, stored.text
+        stored.name,
+        stored.free,
+        stored.values,
+        members,
+        stored.surfaces,
+        stored.title,
+        stored.changes,
+        stored.text,
     )

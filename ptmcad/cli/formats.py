@@ -30,5 +30,7 @@ def _kinds(text: str, known: Formats) -> Formats:
     formats = tuple(dict.fromkeys(part.strip().lower() for part in text.split(",") if part.strip()))
     unknown = [part for part in formats if part not in known]
     if unknown or not formats:
-        raise click.BadParameter(f"{', '.join(unknown) or 'nothing'} is not among {', '.join(known)}")
+        raise click.BadParameter(
+            f"{', '.join(unknown) or 'nothing'} is not among {', '.join(known)}"
+        )
     return formats

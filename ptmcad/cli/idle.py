@@ -1,7 +1,7 @@
 """Options that were given and have no effect on what was asked for.
 
-Guarantee: one line on standard error for each such option, and none for an option that was not typed; the computation
-goes on as without it.
+Guarantee: one line on standard error for each such option, and none for an option that was not
+typed; the computation goes on as without it.
 """
 
 from __future__ import annotations
@@ -41,7 +41,9 @@ def idle_output(files: Collection[str]) -> tuple[Idle, ...]:
 
 def idle_style(formats: Iterable[str]) -> tuple[Idle, ...]:
     """The options of a picture's style where none of these formats is a picture."""
-    return tuple((name, not _has_picture(formats), "no picture is written") for name in (*STYLE, "dpi"))
+    return tuple(
+        (name, not _has_picture(formats), "no picture is written") for name in (*STYLE, "dpi")
+    )
 
 
 def idle_drawing(formats: Iterable[str]) -> tuple[Idle, ...]:
@@ -51,5 +53,9 @@ def idle_drawing(formats: Iterable[str]) -> tuple[Idle, ...]:
         *idle_style(formats),
         ("samples", not _has_picture(formats), "no picture is written"),
         ("pixels", "npz" not in chosen, "only NPZ has a grid, see --format"),
-        ("boundary_tolerance", not chosen & {"csv", "npz"}, "only CSV and NPZ have boundaries, see --format"),
+        (
+            "boundary_tolerance",
+            not chosen & {"csv", "npz"},
+            "only CSV and NPZ have boundaries, see --format",
+        ),
     )

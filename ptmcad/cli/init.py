@@ -31,7 +31,9 @@ def command(*, mechanism: str, out: Path | None) -> None:
         ptmcad init platform --out mine.yaml
     """
     record = shipped_records().get(mechanism) if mechanism not in NAMES else None
-    text = record.read_text("utf-8") if record else starter_text(known_starter(mechanism, "MECHANISM"))
+    text = (
+        record.read_text("utf-8") if record else starter_text(known_starter(mechanism, "MECHANISM"))
+    )
     if out is None:
         click.echo(text, nl=False)
         return
@@ -45,7 +47,9 @@ def command(*, mechanism: str, out: Path | None) -> None:
     try:
         descriptor = os.open(out, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
     except FileExistsError as error:
-        raise ConfigError("is there already: choose another name, or remove it", key="--out", file=str(out)) from error
+        raise ConfigError(
+            "is there already: choose another name, or remove it", key="--out", file=str(out)
+        ) from error
     except (OSError, ValueError) as error:
         raise OutputError(f"{out} cannot be written: {reason(error)}") from error
     with open(descriptor, "w", encoding="utf-8") as stream:

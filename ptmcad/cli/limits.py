@@ -1,7 +1,7 @@
 """The limits that every command has: ``--timeout`` and ``--max-memory``.
 
-Guarantee: in a watched process (`ptmcad.process.supervisor`) they hold whatever code runs; elsewhere the memory limit
-holds, and the time limit where the command itself looks at the clock.
+Guarantee: in a watched process (`ptmcad.process.supervisor`) they hold whatever code runs;
+elsewhere the memory limit holds, and the time limit where the command itself looks at the clock.
 """
 
 from __future__ import annotations
@@ -54,10 +54,15 @@ def bound_of(text: str) -> Bound:
     match = _SIZE.fullmatch(text.strip())
     shown = text if len(text) <= 30 else f"{text[:30]}..."
     if match is None:
-        raise ConfigError(f"'{shown}' is not a size: write a number and a unit, such as 500M or 2G", key="--max-memory")
+        raise ConfigError(
+            f"'{shown}' is not a size: write a number and a unit, such as 500M or 2G",
+            key="--max-memory",
+        )
     size = int(Fraction(match[1]) * _UNITS[match[2].upper()])
     if size < MIN_BOUND:
-        raise ConfigError(f"{shown} is too little to start with: at least {MIN_BOUND >> 20}M", key="--max-memory")
+        raise ConfigError(
+            f"{shown} is too little to start with: at least {MIN_BOUND >> 20}M", key="--max-memory"
+        )
     if size >= 1 << 60:
         raise ConfigError(f"{shown} is more than any machine has", key="--max-memory")
     return Bound(size, text.strip())
@@ -66,13 +71,20 @@ def bound_of(text: str) -> Bound:
 def default_bound() -> Bound:
     """Nine tenths of the memory of the machine, or of the container if that is less."""
     machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    group = Path(_GROUPS, *(line[4:] for line in kernel_lines("/proc/self/cgroup") if line.startswith("0::/")))
+    group = Path(
+        _GROUPS,
+        *(line[4:] for line in kernel_lines("/proc/self/cgroup") if line.startswith("0::/")),
+    )
     older = Path(_GROUPS, "memory", "memory.limit_in_bytes")  # of the first kind of control groups
     paths = [*(place / "memory.max" for place in (group, *group.parents)), older]
     texts = [text for path in paths for text in kernel_lines(path)]
-    least, whose = min([(machine, "machine"), *((int(text), "container") for text in texts if text.isdigit())])
+    least, whose = min(
+        [(machine, "machine"), *((int(text), "container") for text in texts if text.isdigit())]
+    )
     size = least * 9 // 10
-    return Bound(size, f"{size / (1 << 30):.3g}G, nine tenths of this {whose}'s (--max-memory sets another),")
+    return Bound(
+        size, f"{size / (1 << 30):.3g}G, nine tenths of this {whose}'s (--max-memory sets another),"
+    )
 
 
 class ResourceLimits(NamedTuple):
@@ -102,7 +114,9 @@ def report_deadline(timeout: float | None, spent: float = 0.0) -> None:
 
 @contextmanager
 def clock_stopped(timeout: float | None, spent: float = 0.0) -> Iterator[None]:
-    """The time limit does not run inside; it starts at the end, or has started so many seconds before."""
+    """The time limit does not run inside; it starts at the end, or has started so many seconds
+    before.
+    """
     if timeout is not None:
         send(Topic.DEADLINE, repr(math.inf), "")
     yield
@@ -123,7 +137,8 @@ def held(limits: ResourceLimits) -> Iterator[None]:
     """Set the limits for what is done inside."""
     report_deadline(limits.timeout)
     bound = limits.max_memory or (default_bound() if watched() else None)
-    # NumPy's linear algebra would reserve memory for every processor; the small matrices here are no faster on several
+    # NumPy's linear algebra would reserve memory for every processor; the small matrices here are
+    # no faster on several
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if bound is not None:
         send(Topic.MEMORY, str(bound.size), bound.text)

@@ -31,7 +31,9 @@ FIELDS = ("status", "region", "cell", "total", "stable", "index")
 
 
 def fields_of(result: RegionMap) -> tuple[str, ...]:
-    """What is reported of a point: also at how many stable equilibria predicates hold, where the map's cells say so."""
+    """What is reported of a point: also at how many stable equilibria predicates hold, where the
+    map's cells say so.
+    """
     exact = result.cells[0].further if result.cells else {}
     return (*FIELDS, *(exact if result.cover is None else further_names(result.slice.count)))
 
@@ -70,23 +72,24 @@ def point_of(text: str) -> dict[str, str]:
 
 
 class CsvRow(NamedTuple):
-    """A row of a CSV file: the line on which it ends, from 1, and its texts by their columns' names."""
+    """A row of a CSV file: the line on which it ends, from 1, and its texts by their columns'
+    names.
+    """
 
     line: int
     values: dict[str, str]
 
 
 def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Iterator[CsvRow]:
-    """The points of a CSV file whose first row names the two axes (other columns than the further ones are not looked
-    at).
+    """The points of a CSV file whose first row names the two axes (other columns than the further
+    ones are not looked at).
 
     The file may have any number of rows; one row at a time is held in memory.
 
     Raises
     ------
-    ConfigError
-        When the file cannot be read, an axis has no column, two columns or no value, or a row is longer than
-        `MAX_ROW`.
+    ConfigError When the file cannot be read, an axis has no column, two columns or no value, or a
+        row is longer than `MAX_ROW`.
     """
     names = result.slice.axis_names
     lines = _CsvLines(path)
@@ -96,7 +99,9 @@ def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Ite
         for name in names:
             if columns.count(name) != 1:
                 raise ConfigError(
-                    f"the first row must name the axes {names[0]} and {names[1]}, each once", file=str(path), line=1
+                    f"the first row must name the axes {names[0]} and {names[1]}, each once",
+                    file=str(path),
+                    line=1,
                 )
         reader.fieldnames = columns
         lines.row = 0
@@ -105,13 +110,19 @@ def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Ite
             point = {name: (row[name] or "").strip() for name in names}
             if "" in point.values():
                 raise ConfigError("a value is missing", file=str(path), line=reader.line_num)
-            yield CsvRow(reader.line_num, point | {name: (row.get(name) or "").strip() for name in further})
+            yield CsvRow(
+                reader.line_num, point | {name: (row.get(name) or "").strip() for name in further}
+            )
     except csv.Error as error:
-        raise ConfigError(f"is not a CSV file: {error}", file=str(path), line=lines.number) from error
+        raise ConfigError(
+            f"is not a CSV file: {error}", file=str(path), line=lines.number
+        ) from error
 
 
 class _CsvLines:
-    """The lines of a CSV file; refuses to go on when those since ``row`` was set to 0 are too long for one row."""
+    """The lines of a CSV file; refuses to go on when those since ``row`` was set to 0 are too long
+    for one row.
+    """
 
     def __init__(self, path: Path):
         self.path = path
@@ -141,18 +152,28 @@ def _table(result: RegionMap, points: Iterator[CsvRow], path: Path) -> None:
             location = result.locate(**point)
         except ConfigError as error:
             raise ConfigError(error.message, key=error.key, file=str(path), line=number) from error
-        writer.writerow([*(point[name] for name in result.slice.axis_names), *answer(location, fields)])
+        writer.writerow(
+            [*(point[name] for name in result.slice.axis_names), *answer(location, fields)]
+        )
         if reader_left(sys.stdout):
             return
 
 
-def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str], unknown: bool = False) -> Iterator[str]:
-    """What is said of a point; ``unknown`` is whether the map does not know how many solutions are stable."""
+def _lines(
+    location: Location, point: Mapping[str, str], fields: Sequence[str], unknown: bool = False
+) -> Iterator[str]:
+    """What is said of a point; ``unknown`` is whether the map does not know how many solutions are
+    stable.
+    """
     width = max(map(len, fields)) + 2
     yield f"{'point':{width}}{equalities(point)}"
     for name, value in zip(fields, answer(location, fields), strict=True):
         if value:
-            note = "" if name != "index" or location.index is None else f" ({index_words(len(location.index))})"
+            note = (
+                ""
+                if name != "index" or location.index is None
+                else f" ({index_words(len(location.index))})"
+            )
             yield f"{name:{width}}{value}{note}"
         elif name == "stable" and unknown and location.cell is not None:
             note = "not known: it may change within the cell; `ptmcad solve` tells it of a point"
@@ -196,5 +217,7 @@ def command(*, result: Path, at: str | None, table: Path | None, limits: Resourc
         elif at is not None:
             point = point_of(at)
             location = stored.locate(**point)
-            for line in _lines(location, point, fields_of(stored), bool(stability_in_words(stored))):
+            for line in _lines(
+                location, point, fields_of(stored), bool(stability_in_words(stored))
+            ):
                 click.echo(line)

@@ -1,4 +1,6 @@
-"""``ptmcad map``: a continuous quantity of one equilibrium over a slice's window, as pictures and numbers."""
+"""``ptmcad map``: a continuous quantity of one equilibrium over a slice's window, as pictures and
+numbers.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ from ptmcad.show.style import LegendPlace, PictureStyle
 PICTURES, DATA = ("png", "svg", "pdf"), ("csv", "npz")
 FORMATS = (*PICTURES, *DATA)
 MAX_DIFFERENCE = 1e-6
-"""From exact poses, as a share of the largest value: more is a fault of the continuation, which is said."""
+"""From exact poses, as a share of the largest value: more is a fault of the continuation, which is
+said.
+"""
 
 
 class DifferenceError(PtmcadError):
@@ -89,7 +93,11 @@ def command(
     """
     stored = stored_map(asked)
     slice = stored.slice if stored else asked.slice()
-    if not stored and slice.has_free_lengths and (value.strip() == "barrier" or not pose.strip().startswith("stable")):
+    if (
+        not stored
+        and slice.has_free_lengths
+        and (value.strip() == "barrier" or not pose.strip().startswith("stable"))
+    ):
         slice = asked.slice("index")  # the certified engine finds the others when they are counted
     nothing_drawn = set(formats) <= set(DATA)
     report_idle([
@@ -104,7 +112,9 @@ def command(
     with held(limits), ProgressBar() as progress:
         from ptmcad.ask.fields.field import expect_somewhere, field_of, request_of
 
-        request = request_of(slice, value, pose)  # what means nothing is refused before anything is computed
+        request = request_of(
+            slice, value, pose
+        )  # what means nothing is refused before anything is computed
         options = Options(areas=False, progress=progress, timeout=limits.timeout)
         result = stored or made_map(slice, options, tolerance)
         expect_somewhere(result, request.choice)
@@ -161,7 +171,9 @@ def _tabulate(field: Field, path: Path) -> None:
 
 
 def _expect_values(field: Field) -> None:
-    """Refuse a field of which nothing is to be seen, unless it has values that are beyond doubles or were not found."""
+    """Refuse a field of which nothing is to be seen, unless it has values that are beyond doubles
+    or were not found.
+    """
 
     if not field.known.size and not field.beyond and not field.missed:
         raise ConfigError(
@@ -178,9 +190,13 @@ def _summary(field: Field) -> str:
     if not known.size:
         return f"at no pixel was {field.pose} found"
     unit = f" {field.unit}" if field.unit else ""
-    lines = [f"{field.quantity} of {field.pose}: {known.min():.6g} to {known.max():.6g}{unit}, {field.shares}"]
+    lines = [
+        f"{field.quantity} of {field.pose}: {known.min():.6g} to {known.max():.6g}{unit}, {field.shares}"
+    ]
     if field.jumps is not None and (jumps := sum(int(jump.sum()) for jump in field.jumps)):
-        lines.append(f"its branch changes between {jumps} pairs of neighbouring pixels of one region")
+        lines.append(
+            f"its branch changes between {jumps} pairs of neighbouring pixels of one region"
+        )
     if field.missed:
         lines.append(f"{field.missed} pixels are empty because their equilibria were not found")
     if field.checked:

@@ -1,4 +1,5 @@
-"""The map that a command asks something of: a stored one where CONFIG is a result, or else that of the record.
+"""The map that a command asks something of: a stored one where CONFIG is a result, or else that of
+the record.
 
 Guarantee: a stored map is taken as it is; an option that would change its slice is refused by name.
 """
@@ -36,10 +37,17 @@ def stored_map(asked: SliceOptions) -> RegionMap | None:
     """
     if asked.config is None or not is_result(asked.config):
         return None
-    given = {"--slice": asked.axes, "--set": asked.sets, "--range": asked.ranges, "--mechanism": asked.mechanism}
+    given = {
+        "--slice": asked.axes,
+        "--set": asked.sets,
+        "--range": asked.ranges,
+        "--mechanism": asked.mechanism,
+    }
     for option, value in given.items():
         if value:
-            raise ConfigError("a result has its slice already: give the problem record to change it", key=option)
+            raise ConfigError(
+                "a result has its slice already: give the problem record to change it", key=option
+            )
     report_idle([("tolerance", True, "the map is made already")])
     return read_result(asked.config)
 
@@ -53,7 +61,9 @@ def made_map(slice: Slice, options: Options, tolerance: Fraction) -> RegionMap:
     """
     from ptmcad.ask.classification import prepare, region_map
 
-    report_idle([("tolerance", not slice.has_free_lengths, "the exact engine leaves nothing undetermined")])
+    report_idle(
+        [("tolerance", not slice.has_free_lengths, "the exact engine leaves nothing undetermined")]
+    )
     if slice.has_free_lengths:
         options = replace(options, areas=True, tolerance=tolerance)
     with clock_stopped(options.timeout):

@@ -1,4 +1,6 @@
-"""``ptmcad mechanisms``: the built-in mechanisms and the systems to start from, with parameters and a drawing."""
+"""``ptmcad mechanisms``: the built-in mechanisms and the systems to start from, with parameters and
+a drawing.
+"""
 
 from __future__ import annotations
 
@@ -44,8 +46,14 @@ def description(model: Model) -> str:
     lines = [model.name, f"  unknowns    {unknowns}"]
     for n, (name, parameter) in enumerate(model.parameters.items()):
         default = f" = {parameter.default}" if parameter.default else ""
-        window = f", usually from {parameter.window[0]} to {parameter.window[1]}" if parameter.window else ""
-        lines.append(f"  {'' if n else 'parameters':<12}{name}{default}, {parameter.kind.noun}{window}")
+        window = (
+            f", usually from {parameter.window[0]} to {parameter.window[1]}"
+            if parameter.window
+            else ""
+        )
+        lines.append(
+            f"  {'' if n else 'parameters':<12}{name}{default}, {parameter.kind.noun}{window}"
+        )
     if (mechanism := model.drawable) is not None:
         from ptmcad.model.joints import joints_of
         from ptmcad.show.linedrawing import approximate_text
@@ -60,14 +68,17 @@ def description(model: Model) -> str:
 @click.argument("names", nargs=-1, shell_complete=known_mechanisms)
 @click.option("--out", type=PATH, help="Folder for drawings, NAME.svg for each mechanism.")
 def command(*, names: tuple[str, ...], out: Path | None) -> None:
-    """List the built-in mechanisms, with parameters and a drawing, and the shipped records; or the mechanisms of NAMES.
+    """List the built-in mechanisms, with parameters and a drawing, and the shipped records; or the
+    mechanisms of NAMES.
 
     A record names one (mechanism: pendulum); `ptmcad init` writes a record of one to change.
     """
     models = [starter_model(known_starter(name, "NAMES")) for name in names or NAMES]
     click.echo("\n\n".join(description(model) for model in models))
     if not names:
-        click.echo("\nrecords that are shipped, and found by name wherever one is (ptmcad classify fig4):")
+        click.echo(
+            "\nrecords that are shipped, and found by name wherever one is (ptmcad classify fig4):"
+        )
         for name, path in shipped_records().items():
             click.echo(f"  {name:<26}{plain_data(read_file(path)).get('title', '')}".rstrip())
     if out is not None:

@@ -1,4 +1,6 @@
-"""``ptmcad paper``: the whole paper of Wenger and Chablat computed anew, with a verdict on every claim."""
+"""``ptmcad paper``: the whole paper of Wenger and Chablat computed anew, with a verdict on every
+claim.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ def command(*, out: Path, limits: ResourceLimits) -> int:
         from ptmcad.studies.paper.claim import Verdict
         from ptmcad.studies.paper.pages import reproduce, table
 
-        report_deadline(limits.timeout)  # anew: the time that the import took is not the computation's
+        report_deadline(
+            limits.timeout
+        )  # anew: the time that the import took is not the computation's
         with ProgressBar() as progress:
             claims, seconds = reproduce(out, progress)
         click.echo(table(claims, seconds))

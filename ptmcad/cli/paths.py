@@ -1,4 +1,6 @@
-"""Arguments and options that are paths: records and files that are read, the folder that files are written to."""
+"""Arguments and options that are paths: records and files that are read, the folder that files are
+written to.
+"""
 
 from __future__ import annotations
 
@@ -25,12 +27,16 @@ result_argument = click.argument("result", type=PATH, shell_complete=files(".jso
 
 def name_option(default: str) -> Callable[[F], F]:
     """Add ``--name``, with which the names of all files begin."""
-    return click.option("--name", metavar="NAME", help=f"Start of the files' names.  [default: {default}]")
+    return click.option(
+        "--name", metavar="NAME", help=f"Start of the files' names.  [default: {default}]"
+    )
 
 
 def out_option(command: F) -> F:
     """Add ``--out``, the folder for what a command writes."""
-    return click.option("--out", type=PATH, default=Path(), help="Folder for the files.  [default: .]")(command)
+    return click.option(
+        "--out", type=PATH, default=Path(), help="Folder for the files.  [default: .]"
+    )(command)
 
 
 def file_option(name: str, suffix: str, metavar: str, help: str) -> Callable[[F], F]:

@@ -1,7 +1,7 @@
 """Pictures beside the JSON of a result, and the names of what was written.
 
-Guarantee: whatever a picture fails of, its result is saved as JSON, where that is asked for; the message names the
-picture and where the result is, and the exit status is 2.
+Guarantee: whatever a picture fails of, its result is saved as JSON, where that is asked for; the
+message names the picture and where the result is, and the exit status is 2.
 """
 
 from __future__ import annotations
@@ -36,7 +36,9 @@ def picture(name: str, draw: Writer) -> Writer:
             draw(path)
         except MemoryError:
             raise
-        except Exception as error:  # a library's, of any kind: fonts, caches, the disk; raised as one kind
+        except (
+            Exception
+        ) as error:  # a library's, of any kind: fonts, caches, the disk; raised as one kind
             raise PictureError(f"{name} cannot be drawn: {_reason(error)}") from error
 
     return write
@@ -54,13 +56,21 @@ def _reason(error: Exception) -> str:
     if isinstance(error, PtmcadError):
         return str(error)
     said = (error.strerror if isinstance(error, OSError) else None) or str(error)
-    return said if isinstance(error, OSError) else f"drawing failed unexpectedly{f': {said}' if said else ''}"
+    return (
+        said
+        if isinstance(error, OSError)
+        else f"drawing failed unexpectedly{f': {said}' if said else ''}"
+    )
 
 
-def write_result(folder: Path, pictures: Mapping[str, Writer], name: str, text: str) -> tuple[Path, ...]:
-    """Write pictures and, last, the JSON, where it has a name; all of them or, when a picture fails, the JSON alone.
+def write_result(
+    folder: Path, pictures: Mapping[str, Writer], name: str, text: str
+) -> tuple[Path, ...]:
+    """Write pictures and, last, the JSON, where it has a name; all of them or, when a picture
+    fails, the JSON alone.
 
-    The JSON then goes where the result of a stopped run goes: older pictures beside it would not be its own.
+    The JSON then goes where the result of a stopped run goes: older pictures beside it would not be
+    its own.
 
     Parameters
     ----------

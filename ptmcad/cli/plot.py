@@ -39,13 +39,18 @@ class Added(NamedTuple):
 
 
 def _with_points(stored: RegionMap, drawing: DrawingOptions, added: Added) -> DrawingOptions:
-    """The drawing with measured points, and with the poses at points; both are checked before poses are computed."""
+    """The drawing with measured points, and with the poses at points; both are checked before poses
+    are computed.
+    """
     chosen = places(stored, added.at)
     if added.overlay is not None:
         found, outside = measured(stored, added.overlay)
         drawing = drawing._replace(overlay=found)
         if outside:
-            click.echo(f"{outside} of {outside + len(found)} points are outside of the window and left out", err=True)
+            click.echo(
+                f"{outside} of {outside + len(found)} points are outside of the window and left out",
+                err=True,
+            )
         for line in disagreements(stored, found):
             click.echo(line)
     return drawing._replace(poses=tuple((place, poses_at(stored, place)) for place in chosen))
@@ -66,13 +71,23 @@ def _check_compared(added: Added, formats: Formats) -> None:
     if added.compare is None:
         return
     if added.at or added.overlay is not None:
-        raise ConfigError("two maps are drawn without further points: leave out --at and --overlay", key="--compare")
+        raise ConfigError(
+            "two maps are drawn without further points: leave out --at and --overlay",
+            key="--compare",
+        )
     if any(kind not in PICTURES for kind in formats):
-        raise ConfigError(f"of a difference there are pictures only: {', '.join(PICTURES)}", key="--format")
+        raise ConfigError(
+            f"of a difference there are pictures only: {', '.join(PICTURES)}", key="--format"
+        )
 
 
 def _compared(
-    stored: RegionMap, result: Path, other: Path, stem: str, formats: Formats, drawing: DrawingOptions
+    stored: RegionMap,
+    result: Path,
+    other: Path,
+    stem: str,
+    formats: Formats,
+    drawing: DrawingOptions,
 ) -> Mapping[str, Writer]:
     """A writer for each picture of two maps, after their difference has been printed.
 
@@ -98,19 +113,32 @@ def _compared(
     for line in render.difference_words(found):
         click.echo(line)
     how = {"dpi": drawing.dpi, "style": drawing.style}
-    return {n: figure(n, lambda: render.comparison_figure(found, **how), **how) for n in names_of(stem, formats)}
+    return {
+        n: figure(n, lambda: render.comparison_figure(found, **how), **how)
+        for n in names_of(stem, formats)
+    }
 
 
-def _plot_family(result: Path, folder: Path, formats: Formats, drawing: DrawingOptions, added: Added) -> None:
+def _plot_family(
+    result: Path, folder: Path, formats: Formats, drawing: DrawingOptions, added: Added
+) -> None:
     if added._replace(surface=False) != Added(None, (), None, False):
-        raise ConfigError("points and comparisons are for one map: give a member's file", file=str(result))
+        raise ConfigError(
+            "points and comparisons are for one map: give a member's file", file=str(result)
+        )
     if any(kind in DATA for kind in formats):
         known = ", ".join((*PICTURES, *MESHES))
-        raise ConfigError(f"of a family there are pictures and meshes only: {known}", key="--format")
+        raise ConfigError(
+            f"of a family there are pictures and meshes only: {known}", key="--format"
+        )
     family = read_family_file(result)
-    meshes, pictures = (tuple(kind for kind in formats if kind in known) for known in (MESHES, PICTURES))
+    meshes, pictures = (
+        tuple(kind for kind in formats if kind in known) for known in (MESHES, PICTURES)
+    )
     surface = _surface(family, result) if meshes or added.surface else None
-    writers = picture_writers(family, result.stem, pictures, drawing, surface if added.surface else None)
+    writers = picture_writers(
+        family, result.stem, pictures, drawing, surface if added.surface else None
+    )
     if surface is not None:
         click.echo(f"boundary surface: {surface.words()}")
         writers |= mesh_writers(surface, result.stem, meshes)
@@ -179,7 +207,10 @@ def command(
             _plot_family(result, result.parent if out is None else out, formats, drawing, added)
             return
         if meshes := [kind for kind in formats if kind in MESHES]:
-            raise ConfigError(f"{meshes[0]} is for a family's boundary surface, and this is one map", key="--format")
+            raise ConfigError(
+                f"{meshes[0]} is for a family's boundary surface, and this is one map",
+                key="--format",
+            )
         stored = read_result(result)
         folder = result.parent if out is None else out
         stem = result.stem if added.compare is None else f"{result.stem}-and-{added.compare.stem}"

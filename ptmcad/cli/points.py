@@ -43,7 +43,9 @@ def places(result: RegionMap, texts: Sequence[str]) -> tuple[Place, ...]:
     for text in texts:
         point = point_of(text)
         if set(point) != set(result.slice.axis_names):
-            raise ConfigError(f"{text}: give the axes {' and '.join(result.slice.axis_names)}", key="--at")
+            raise ConfigError(
+                f"{text}: give the axes {' and '.join(result.slice.axis_names)}", key="--at"
+            )
         at = _numbers(result, point, "--at")
         if not _inside(result, at):
             raise ConfigError(f"{text} is outside of the window", key="--at")
@@ -60,11 +62,14 @@ def poses_at(result: RegionMap, at: Place) -> Poses:
     aliased = {parameter.alias_of for parameter in slice.model.parameters.values()}
     alone = [name for name in slice.parameters if name not in aliased]
     values = {name: slice.parameters[name].evaluate(*at) for name in alone}
-    return replace(solved(slice.model, point_from_mapping(values, slice.model), DIGITS), units=slice.units)
+    return replace(
+        solved(slice.model, point_from_mapping(values, slice.model), DIGITS), units=slice.units
+    )
 
 
 def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:
-    """The points of a CSV file with columns named like the axes and, if there are, ``label`` and ``count``.
+    """The points of a CSV file with columns named like the axes and, if there are, ``label`` and
+    ``count``.
 
     A count is compared with the map's.
 
@@ -74,9 +79,8 @@ def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:
 
     Raises
     ------
-    ConfigError
-        When the file is not such a table or has no points, a value is no exact number or no count, or there are more
-        than `MAX_ROWS` points.
+    ConfigError When the file is not such a table or has no points, a value is no exact number or no
+        count, or there are more than `MAX_ROWS` points.
     """
     from ptmcad.show.render.overlay import Measured
 
@@ -106,14 +110,18 @@ def disagreements(result: RegionMap, found: Sequence[Measured]) -> list[str]:
     lines = []
     for point in others[:MAX_TOLD]:
         where = equalities(dict(zip(result.slice.axis_names, point.at, strict=True)), shortest_text)
-        lines.append(f"another count than in the map: {f'{point.label}, ' if point.label else ''}at {where}")
+        lines.append(
+            f"another count than in the map: {f'{point.label}, ' if point.label else ''}at {where}"
+        )
     if len(others) > MAX_TOLD:
         lines.append(f"and at {len(others) - MAX_TOLD} more points")
     return lines
 
 
 def _count(result: RegionMap, text: str) -> str:
-    """A count as the map writes its own, such as ``2``, or ``(1, 2, 1)`` of a map by index; empty for none."""
+    """A count as the map writes its own, such as ``2``, or ``(1, 2, 1)`` of a map by index; empty
+    for none.
+    """
     if not text:
         return ""
     if result.slice.count.kind.shades is Shades.INDEX:
@@ -131,7 +139,11 @@ def _agreement(result: RegionMap, at: Place, count: str) -> Agreement:
     from ptmcad.show.render.overlay import Agreement
 
     location = result.locate(**dict(zip(result.slice.axis_names, at, strict=True)))
-    if not count or location.region is None or location.status in (Status.UNDECIDED, Status.ON_VARIETY):
+    if (
+        not count
+        or location.region is None
+        or location.status in (Status.UNDECIDED, Status.ON_VARIETY)
+    ):
         return Agreement.UNTOLD
     said = count_text(result.regions[location.region], result.slice.count)
     return Agreement.SAME if said == count else Agreement.OTHER
@@ -146,4 +158,6 @@ def _numbers(result: RegionMap, point: Mapping[str, str], key: str | None) -> Pl
 
 
 def _inside(result: RegionMap, at: Place) -> bool:
-    return all(axis.low <= value <= axis.high for axis, value in zip(result.slice.axes, at, strict=True))
+    return all(
+        axis.low <= value <= axis.high for axis, value in zip(result.slice.axes, at, strict=True)
+    )

@@ -1,7 +1,8 @@
 """A progress bar on standard error that appears only when the work lasts and someone is watching.
 
-Guarantee: nothing is written when standard error is not a terminal or the work ends within a second. The bar is one
-line, however narrow the terminal, goes on while nothing is reported, and is cleared at the end.
+Guarantee: nothing is written when standard error is not a terminal or the work ends within a
+second. The bar is one line, however narrow the terminal, goes on while nothing is reported, and is
+cleared at the end.
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ _COLUMNS = 80
 
 
 class ProgressBar:
-    """A context manager to call with (stage, done, total); a stage that ends with "%" or "..." says how far it is.
+    """A context manager to call with (stage, done, total); a stage that ends with "%" or "..." says
+    how far it is.
 
     Inside of another one it is that one, so that there is one bar.
     """
@@ -34,7 +36,9 @@ class ProgressBar:
 
     def __init__(self) -> None:
         self._stream = sys.stderr  # another one is in its place while libraries are loaded
-        self.watched = self._stream is not None and self._stream.isatty()  # None when the caller has closed it
+        self.watched = (
+            self._stream is not None and self._stream.isatty()
+        )  # None when the caller has closed it
         self.start = self.last = time.monotonic()
         self.shown = False
         self._state = ("computing ...", 0, 1)
@@ -51,7 +55,11 @@ class ProgressBar:
     def __call__(self, stage: str, done: int, total: int) -> None:
         self._state = (stage, done, total)
         now = time.monotonic()
-        if self.watched and now - self.start >= PATIENCE and (not self.shown or now - self.last >= _INTERVAL):
+        if (
+            self.watched
+            and now - self.start >= PATIENCE
+            and (not self.shown or now - self.last >= _INTERVAL)
+        ):
             self._draw(now)
 
     def _tick(self) -> None:
@@ -62,7 +70,9 @@ class ProgressBar:
         stage, done, total = self._state
         where = stage if stage.endswith(("%", "...")) else f"{stage} {done} of {total}"
         text = f"{where}, {now - self.start:.0f} s"
-        room = self._columns() - 4  # for bar and text; the last column stays free, since some terminals wrap at it
+        room = (
+            self._columns() - 4
+        )  # for bar and text; the last column stays free, since some terminals wrap at it
         width = max(min(_WIDTH, room - len(text)), 4)
         filled = width * min(done, total) // total if total > 0 else 0
         line = f"[{'#' * filled}{'.' * (width - filled)}] {text}"[: room + 3]
@@ -74,7 +84,10 @@ class ProgressBar:
             self.shown, self.last = True, now
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         if self._shown_now != [self]:  # another one goes on, or nobody is watching
             return

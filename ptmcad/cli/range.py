@@ -1,4 +1,6 @@
-"""``ptmcad range``: intervals of constant count along one axis, the operation range, and where stable poses snap."""
+"""``ptmcad range``: intervals of constant count along one axis, the operation range, and where
+stable poses snap.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,9 @@ FORMATS = ("json", "png", "svg", "pdf")
 
 @dataclass(frozen=True, slots=True)
 class AskedLine:
-    """The record, what changes it, the line in the slice, and what is asked for beside it, as they were typed."""
+    """The record, what changes it, the line in the slice, and what is asked for beside it, as they
+    were typed.
+    """
 
     config: Path | None
     along: str
@@ -53,8 +57,9 @@ class AskedLine:
 def slice_and_line(asked: AskedLine) -> tuple[Slice, dict[str, str]]:
     """The slice that holds the line, and the value of its other axis.
 
-    Every name of ``--at`` but that of the other axis fixes a parameter. The other axis is that of ``--over``, or the
-    record's when ``--along`` is an axis of it, or else the first one of ``--at``.
+    Every name of ``--at`` but that of the other axis fixes a parameter. The other axis is that of
+    ``--over``, or the record's when ``--along`` is an axis of it, or else the first one of
+    ``--at``.
 
     Raises
     ------
@@ -66,7 +71,8 @@ def slice_and_line(asked: AskedLine) -> tuple[Slice, dict[str, str]]:
     along, other = asked.along, _other_axis(asked, given, at)
     if not other:
         raise ConfigError(
-            f"give the values at which {along} varies, as in {SECOND if along == FIRST else FIRST}=3/2", key="--at"
+            f"give the values at which {along} varies, as in {SECOND if along == FIRST else FIRST}=3/2",
+            key="--at",
         )
     if along == other:
         raise ConfigError(f"{along} varies along the line: it has no fixed value", key="--at")
@@ -116,11 +122,20 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> RangeRequest:
     """
     over, start = asked.over is not None, _start(asked.start, at)
     quantities = tuple(dict.fromkeys(asked.quantities))
-    request = RangeRequest(asked.along, at, over, asked.rows, start, asked.pose, asked.digits, quantities)
+    request = RangeRequest(
+        asked.along, at, over, asked.rows, start, asked.pose, asked.digits, quantities
+    )
     if quantities and not at:
-        raise ConfigError(f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--quantity")
-    if not over and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
-        raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
+        raise ConfigError(
+            f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--quantity"
+        )
+    if (
+        not over
+        and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT
+    ):
+        raise ConfigError(
+            "is for the table over the other axis: give --over NAME too", key="--rows"
+        )
     if asked.pose is not None and asked.start is None:
         raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
     return request
@@ -128,7 +143,13 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> RangeRequest:
 
 @click.command("range")
 @record_argument()
-@click.option("--along", required=True, metavar="NAME", shell_complete=names, help="The parameter or axis that varies.")
+@click.option(
+    "--along",
+    required=True,
+    metavar="NAME",
+    shell_complete=names,
+    help="The parameter or axis that varies.",
+)
 @click.option(
     "--at",
     "at",
@@ -145,15 +166,32 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> RangeRequest:
 )
 @set_option
 @range_option
-@click.option("--digits", type=click.IntRange(1, 1000), default=10, show_default=True, help="Digits of decimals.")
+@click.option(
+    "--digits",
+    type=click.IntRange(1, 1000),
+    default=10,
+    show_default=True,
+    help="Digits of decimals.",
+)
 @out_option
 @name_option("NAME-range")
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.  [default: none]")
 @click.option(
-    "--over", metavar="NAME", shell_complete=names, help="The axis over which to tabulate the operation range's width."
+    "--over",
+    metavar="NAME",
+    shell_complete=names,
+    help="The axis over which to tabulate the operation range's width.",
 )
-@click.option("--rows", type=click.IntRange(1, 1000), default=41, show_default=True, help="Rows of that table.")
-@click.option("--path", "start", metavar="VALUE", help="Follow stable poses from this value until they snap.")
+@click.option(
+    "--rows",
+    type=click.IntRange(1, 1000),
+    default=41,
+    show_default=True,
+    help="Rows of that table.",
+)
+@click.option(
+    "--path", "start", metavar="VALUE", help="Follow stable poses from this value until they snap."
+)
 @click.option("--pose", type=click.IntRange(min=1), metavar="N",
               help="Which pose, as ptmcad solve numbers them.  [default: every stable one]")  # fmt: skip
 @click.option("--quantity", "quantities", multiple=True, metavar="NAME", shell_complete=quantity_names,
@@ -162,7 +200,9 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> RangeRequest:
                    "Repeatable.")  # fmt: skip
 @limit_options
 @gathered(asked=AskedLine)
-def command(*, asked: AskedLine, out: Path, name: str | None, formats: Formats, limits: ResourceLimits) -> None:
+def command(
+    *, asked: AskedLine, out: Path, name: str | None, formats: Formats, limits: ResourceLimits
+) -> None:
     """Find the intervals of constant count along one axis, and the operation range, where the most are stable.
 
     Of the paper's mechanism these are two equilibria; where nothing says what is stable, all solutions are counted.
@@ -212,7 +252,12 @@ def command(*, asked: AskedLine, out: Path, name: str | None, formats: Formats, 
 
 
 def _save(
-    slice: Slice, request: RangeRequest, found: RangeAnswer, out: Path, pictures: Mapping[str, str], file: str
+    slice: Slice,
+    request: RangeRequest,
+    found: RangeAnswer,
+    out: Path,
+    pictures: Mapping[str, str],
+    file: str,
 ) -> None:
     """Write the pictures, each of a part of the answer, and, last, the JSON, where it has a file."""
     text = ""
@@ -222,7 +267,12 @@ def _save(
 
         asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}
         text = document(slice.name, slice.mechanism, {**found.parts, **asked})
-    write_result(out, {name: figure(name, found.pictures[part]) for name, part in pictures.items()}, file, text)
+    write_result(
+        out,
+        {name: figure(name, found.pictures[part]) for name, part in pictures.items()},
+        file,
+        text,
+    )
 
 
 def _parts(request: RangeRequest, *, enclosed: bool) -> list[str]:
@@ -236,7 +286,9 @@ def _start(text: str | None, other: Mapping[str, str]) -> Fraction | None:
     if text is None:
         return None
     if not other:
-        raise ConfigError(f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--path")
+        raise ConfigError(
+            f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--path"
+        )
     try:
         return rational(text)
     except ExpressionError as error:

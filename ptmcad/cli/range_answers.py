@@ -1,4 +1,5 @@
-"""What ``ptmcad range`` answers: texts, JSON and pictures of lines, of bands over the other axis, paths and branches.
+"""What ``ptmcad range`` answers: texts, JSON and pictures of lines, of bands over the other axis,
+paths and branches.
 
 Guarantee: only the engine that a question needs is loaded.
 """
@@ -48,19 +49,24 @@ class RangeRequest:
 def request_codec() -> Codec[RangeRequest]:
     """A request as JSON's data, with which `answer` gives the same once more.
 
-    Earlier versions could be asked for critical free lengths instead (``critical``); now the paper's study finds them.
+    Earlier versions could be asked for critical free lengths instead (``critical``); now the
+    paper's study finds them.
     """
     from ptmcad.text.codec import TRUTH, Key, line, record_of
 
     def made(critical: bool, **asked: Any) -> RangeRequest:
         return RangeRequest(**asked)
 
-    return record_of(RangeRequest, {str: line(MAX_TEXT)}, made, critical=Key(TRUTH, lambda _: False))
+    return record_of(
+        RangeRequest, {str: line(MAX_TEXT)}, made, critical=Key(TRUTH, lambda _: False)
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class RangeAnswer:
-    """What was found, for the terminal, the JSON and the pictures, these by the ends of their names."""
+    """What was found, for the terminal, the JSON and the pictures, these by the ends of their
+    names.
+    """
 
     text: str
     parts: Mapping[str, Any]
@@ -85,7 +91,9 @@ def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
     return RangeAnswer("\n\n".join(texts), parts, pictures)
 
 
-def _answers(slice: Slice, request: RangeRequest) -> Iterator[tuple[Any, str, str, Callable[[], Any]]]:
+def _answers(
+    slice: Slice, request: RangeRequest
+) -> Iterator[tuple[Any, str, str, Callable[[], Any]]]:
     """Whatever is asked for, with its table, the end of its picture's name, and what draws that."""
     from ptmcad.show.ranges import branches, certified, table
 
@@ -94,7 +102,9 @@ def _answers(slice: Slice, request: RangeRequest) -> Iterator[tuple[Any, str, st
     if request.over and not enclosed:
         from ptmcad.exact.ranges.strips import refuse_free_lengths
 
-        refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
+        refuse_free_lengths(
+            slice
+        )  # before the line is asked for, whose refusal would not say what to leave out
     if at and enclosed:
         from ptmcad.certified.intervals import certified_intervals
 
@@ -110,15 +120,27 @@ def _answers(slice: Slice, request: RangeRequest) -> Iterator[tuple[Any, str, st
 
         with ProgressBar() as progress:
             bands = certified_widths(slice, along, request.rows, digits, progress)
-        yield bands, certified.width_table(bands, digits), "-over", lambda: render.draw_widths(slice, bands)
+        yield (
+            bands,
+            certified.width_table(bands, digits),
+            "-over",
+            lambda: render.draw_widths(slice, bands),
+        )
     elif request.over:
         from ptmcad.ask.ranges import operation_widths
 
         widths = operation_widths(slice, along, request.rows)
-        yield widths, table.width_table(widths, digits), "-over", lambda: render.draw_widths(slice, widths)
+        yield (
+            widths,
+            table.width_table(widths, digits),
+            "-over",
+            lambda: render.draw_widths(slice, widths),
+        )
 
     @cache
-    def line() -> SolutionsOnLine:  # a picture of the paths shows branches too: those of the same solutions
+    def line() -> (
+        SolutionsOnLine
+    ):  # a picture of the paths shows branches too: those of the same solutions
         from ptmcad.ask.branches import solutions_on_line
 
         return solutions_on_line(slice, along, at)
@@ -128,13 +150,23 @@ def _answers(slice: Slice, request: RangeRequest) -> Iterator[tuple[Any, str, st
 
         with ProgressBar() as progress:
             paths = pose_paths(slice, along, at, request.start, request.pose, progress)
-        yield paths, table.path_table(paths, min(digits, 10)), "-path", lambda: _paths_and_branches(slice, paths, line)
+        yield (
+            paths,
+            table.path_table(paths, min(digits, 10)),
+            "-path",
+            lambda: _paths_and_branches(slice, paths, line),
+        )
     if request.quantities:
         from ptmcad.ask.branches import branch_diagram
 
         with ProgressBar() as progress:
             diagram = branch_diagram(slice, along, at, request.quantities, progress, line())
-        yield diagram, branches.table(diagram), "-branches", lambda: render.draw_branches(slice, diagram)
+        yield (
+            diagram,
+            branches.table(diagram),
+            "-branches",
+            lambda: render.draw_branches(slice, diagram),
+        )
 
 
 def is_enclosed(slice: Slice, request: RangeRequest) -> bool:
@@ -147,7 +179,9 @@ def is_enclosed(slice: Slice, request: RangeRequest) -> bool:
 
 
 MAX_UNKNOWNS = 2
-"""Of a model of which a picture of paths shows the unstable branches unasked: of others they take minutes."""
+"""Of a model of which a picture of paths shows the unstable branches unasked: of others they take
+minutes.
+"""
 
 
 def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOnLine]) -> Any:

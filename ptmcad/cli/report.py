@@ -24,12 +24,19 @@ def _file_name(key: str, value: str) -> str:
 @result_argument
 @click.option("--out", type=PATH, help="Folder for the page.  [default: that of RESULT]")
 @click.option(
-    "--name", callback=reading(_file_name), metavar="NAME", help="Name of the page.  [default: that of RESULT]"
+    "--name",
+    callback=reading(_file_name),
+    metavar="NAME",
+    help="Name of the page.  [default: that of RESULT]",
 )
 @click.option("--bench", type=PATH, metavar="FILE",
               help="A measurement of error against time to show.  "
                    "[default: NAME.error-time.json beside RESULT, if there is one]")  # fmt: skip
-@click.option("--no-timings", is_flag=True, help="Leave run times out, so that the page is the same every time.")
+@click.option(
+    "--no-timings",
+    is_flag=True,
+    help="Leave run times out, so that the page is the same every time.",
+)
 @limit_options
 def command(
     *,

@@ -29,7 +29,9 @@ BETWEEN = "between"
 
 
 class Third(NamedTuple):
-    """What was typed of a family: its free parameter, its members, and whether its changes and surface are wanted."""
+    """What was typed of a family: its free parameter, its members, and whether its changes and
+    surface are wanted.
+    """
 
     free: str | None
     members: str | None
@@ -59,7 +61,9 @@ class SliceOptions(NamedTuple):
         ConfigError
             For anything wrong with the record or the options.
         """
-        return slice_from_options(self.config, self.axes, self.sets, self.ranges, count, self.mechanism)
+        return slice_from_options(
+            self.config, self.axes, self.sets, self.ranges, count, self.mechanism
+        )
 
     def record(self, free: str | None) -> Record:
         """The record that is meant, in which a parameter may be free.
@@ -72,7 +76,9 @@ class SliceOptions(NamedTuple):
         return record_from_options(self._typed(None)._replace(free=free))
 
     def placed(self, error: ConfigError | HypothesisError, count: str | None = None) -> PtmcadError:
-        """A fault of the question with its place, as far as the record or the options can still be read for it."""
+        """A fault of the question with its place, as far as the record or the options can still be
+        read for it.
+        """
         try:
             return with_place(error, record_from_options(self._typed(count)))
         except ConfigError:  # it is this one
@@ -105,7 +111,12 @@ def _with_places(command: F) -> F:
 
 
 range_option = click.option(
-    "--range", "ranges", multiple=True, metavar="NAME=LO:HI", shell_complete=settings, help="The range of an axis."
+    "--range",
+    "ranges",
+    multiple=True,
+    metavar="NAME=LO:HI",
+    shell_complete=settings,
+    help="The range of an axis.",
 )
 set_option = click.option(
     "--set", "sets", multiple=True, metavar="NAME=VALUE", shell_complete=settings,
@@ -119,7 +130,8 @@ engine_option = click.option(
 
 
 def slice_options(command: F) -> F:
-    """Add CONFIG, ``--mechanism``, ``--slice``, ``--set`` and ``--range``, which the command gets as ``asked``.
+    """Add CONFIG, ``--mechanism``, ``--slice``, ``--set`` and ``--range``, which the command gets
+    as ``asked``.
 
     What an engine finds wrong with the question is told with its place in the record.
     """

@@ -42,7 +42,8 @@ def file_names(name: str, formats: Formats, landscape: bool) -> tuple[str, ...]:
 
 
 def drawable(model: Model, names: tuple[str, ...], start: str, landscape: bool) -> tuple[str, ...]:
-    """The files that can be written; the landscape may be asked for beside what there is, and is refused at the end.
+    """The files that can be written; the landscape may be asked for beside what there is, and is
+    refused at the end.
 
     Raises
     ------
@@ -54,7 +55,9 @@ def drawable(model: Model, names: tuple[str, ...], start: str, landscape: bool) 
         kept = tuple(name for name in names if name.endswith(".json") or name in landscapes)
         if kept != names and not landscape:
             further = ", or --landscape" if not no_landscape(model) else ""
-            raise ConfigError(f"{no_drawing(model)}; ask for table or json{further}", key="--format")
+            raise ConfigError(
+                f"{no_drawing(model)}; ask for table or json{further}", key="--format"
+            )
         names = kept
     return tuple(name for name in names if name not in landscapes) if no_landscape(model) else names
 
@@ -93,7 +96,11 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
 @format_option(FORMATS, f"What to make, of {', '.join(FORMATS)}; the table is printed.", "table")
 @out_option
 @name_option("poses")
-@click.option("--landscape", is_flag=True, help="Draw the energy over one or two unknowns too (NAME-landscape.png).")
+@click.option(
+    "--landscape",
+    is_flag=True,
+    help="Draw the energy over one or two unknowns too (NAME-landscape.png).",
+)
 @limit_options
 def command(
     *,
@@ -131,13 +138,18 @@ def command(
         if names:
             check_writable(out, names)
         report_idle(idle_output(names))
-        with clock_stopped(limits.timeout):  # the time that the import takes is not the computation's
+        with clock_stopped(
+            limits.timeout
+        ):  # the time that the import takes is not the computation's
             from ptmcad.ask.solving import needs_intervals, poses_at
         with ProgressBar() as progress:
             if needs_intervals(model, parameters):
                 compile_certified(limits.timeout, progress)
             progress("solutions ...", 0, 1)
-            poses = replace(poses_at(model, parameters, digits), units={} if config is None else units_of(config))
+            poses = replace(
+                poses_at(model, parameters, digits),
+                units={} if config is None else units_of(config),
+            )
             if names:
                 save(poses, out, start, names)
     if "table" in formats:

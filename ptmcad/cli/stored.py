@@ -1,8 +1,8 @@
 """Reading a stored result for the commands that ask something of it.
 
-Guarantee: a file that is missing, unreadable, too large, damaged or of another kind gives one `ConfigError` with the
-file's name and what to do. Where a killed run has not put all of its files into place, that is done first, if this user
-may.
+Guarantee: a file that is missing, unreadable, too large, damaged or of another kind gives one
+`ConfigError` with the file's name and what to do. Where a killed run has not put all of its files
+into place, that is done first, if this user may.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ def read_result(path: Path, *, whole: bool = True) -> RegionMap:
 
     Parameters
     ----------
-    whole : whether its parts have to be there to which others refer; `ptmcad verify` says itself which are not.
+    whole : whether its parts have to be there to which others refer; `ptmcad verify` says itself
+        which are not.
 
     Raises
     ------
@@ -47,7 +48,9 @@ def read_result(path: Path, *, whole: bool = True) -> RegionMap:
 
 
 def kind_of(path: Path) -> str:
-    """What a JSON file is the document of, such as ``design``: its format without program and version; or nothing."""
+    """What a JSON file is the document of, such as ``design``: its format without program and
+    version; or nothing.
+    """
     if path.suffix.lower() != ".json":
         return ""
     kind, _, _ = format_named(read_text(path, MAX_BYTES, "a result's JSON file")).partition("/")
@@ -72,12 +75,15 @@ def read_other(path: Path, read: Callable[[str], Answer], kind: str) -> Answer:
     except (ValueError, PtmcadError, ZeroDivisionError, RecursionError) as error:
         reason = shown(" ".join(str(error).split()), 300)
         what = _other_kind(text) if kind == FORMAT else ""
-        raise ConfigError(what or f"is damaged or not a {kind} file: {reason}", file=str(path)) from error
+        raise ConfigError(
+            what or f"is damaged or not a {kind} file: {reason}", file=str(path)
+        ) from error
 
 
 @contextmanager
 def stored_in(path: Path | None) -> Iterator[None]:
-    """What is asked of the map in a file, if it is in one: where the map contradicts itself, that is said of the file.
+    """What is asked of the map in a file, if it is in one: where the map contradicts itself, that
+    is said of the file.
 
     Raises
     ------
@@ -91,7 +97,9 @@ def stored_in(path: Path | None) -> Iterator[None]:
             raise
         if isinstance(cause, ConfigError) and cause.key in (*PictureStyle._fields, "at"):
             # an option's fault, not the file's
-            raise ConfigError(cause.message, key=f"--{(cause.key or '').replace('_', '-')}") from error
+            raise ConfigError(
+                cause.message, key=f"--{(cause.key or '').replace('_', '-')}"
+            ) from error
         if isinstance(cause, ConfigError):
             raise ConfigError(cause.message, file=str(path)) from error
         if not isinstance(cause, (ValueError, IndexError, ArithmeticError)):
@@ -101,7 +109,8 @@ def stored_in(path: Path | None) -> Iterator[None]:
 
 
 def is_result(path: Path) -> bool:
-    """Whether a file that stands for a record or a result is meant to be a result: JSON, and no record.
+    """Whether a file that stands for a record or a result is meant to be a result: JSON, and no
+    record.
 
     Raises
     ------
@@ -115,7 +124,9 @@ def is_result(path: Path) -> bool:
 
 
 def _other_kind(text: str) -> str:
-    """What the text is if it is a file of ptmcad of another kind, as a message; empty if it is none."""
+    """What the text is if it is a file of ptmcad of another kind, as a message; empty if it is
+    none.
+    """
     kind = _format_of(text)
     if kind is None and _is_record(text):  # which may be written as JSON
         return "this is a problem record, not a result: run `ptmcad classify` on it first"

@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 FORMATS = ("table", "json", "csv", "md", "png", "svg")
 NAME = "stress"
 GRACE_SECONDS = 60.0
-"""Seconds after the time limit for the case that is being run, before the process is ended from outside."""
+"""Seconds after the time limit for the case that is being run, before the process is ended from
+outside.
+"""
 
 
 def save(found: Row, folder: Path, formats: Formats) -> tuple[str, ...]:
@@ -68,7 +70,9 @@ def _drawn(found: Row) -> Any:
               help="Timed runs of each case; slow cases have one.")  # fmt: skip
 @format_option(FORMATS, "What to make; the table is printed.", "table,json,csv,png,svg")
 @out_option
-@click.option("--list", "only_list", is_flag=True, help="Print the cases with their sources, and run none.")
+@click.option(
+    "--list", "only_list", is_flag=True, help="Print the cases with their sources, and run none."
+)
 @limit_options
 def command(
     *,
@@ -95,7 +99,10 @@ def command(
         ptmcad stress --random 100 --seed 7 --format table
         ptmcad stress all --random 100
     """
-    from ptmcad.studies.stress.case import chosen, free_lengths  # the cases' numbers need no library
+    from ptmcad.studies.stress.case import (
+        chosen,
+        free_lengths,
+    )  # the cases' numbers need no library
 
     timeout = limits.timeout
     limit = None if timeout is None else timeout + GRACE_SECONDS
@@ -116,12 +123,20 @@ def command(
                 compile_certified(limit, progress)
         deadline = perf_counter() + (inf if timeout is None else timeout)
         with ProgressBar() as progress:
-            found = campaign(cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress)
+            found = campaign(
+                cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress
+            )
         written = save(found, out, formats)
-        click.echo(table(found, len(cases)) if "table" in formats else "\n".join(summary(found, len(cases))))
+        click.echo(
+            table(found, len(cases))
+            if "table" in formats
+            else "\n".join(summary(found, len(cases)))
+        )
         report_written(out, written)
     if not found["complete"]:
-        raise LimitReached(f"the time limit was reached after {len(found['cases'])} of {len(cases)} cases")
+        raise LimitReached(
+            f"the time limit was reached after {len(found['cases'])} of {len(cases)} cases"
+        )
     return 0 if all(row["right"] for row in found["cases"]) else 1
 
 

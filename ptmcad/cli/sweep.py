@@ -1,4 +1,6 @@
-"""``ptmcad sweep``: every member of a record's sweep classified, by all processors or a cluster, into a folder."""
+"""``ptmcad sweep``: every member of a record's sweep classified, by all processors or a cluster,
+into a folder.
+"""
 
 from __future__ import annotations
 
@@ -60,13 +62,25 @@ class MemberOptions:
         from ptmcad.sweeping.run import axes_of, checked
 
         if self.no_ranges and self.along is not None:
-            raise ConfigError("ranges are not asked for, but their axis is given: leave one out", key="--no-ranges")
+            raise ConfigError(
+                "ranges are not asked for, but their axis is given: leave one out",
+                key="--no-ranges",
+            )
         if self.no_areas and self.area_tolerance is not None:
-            raise ConfigError("areas are not asked for, but a tolerance is given: leave one out", key="--no-areas")
+            raise ConfigError(
+                "areas are not asked for, but a tolerance is given: leave one out", key="--no-areas"
+            )
         along = "" if self.no_ranges else self.along or axes_of(question)[0]
         return checked(
             question,
-            Wanted(self.engine, self.tolerance, self.area_tolerance, not self.no_areas, along, self.member_timeout),
+            Wanted(
+                self.engine,
+                self.tolerance,
+                self.area_tolerance,
+                not self.no_areas,
+                along,
+                self.member_timeout,
+            ),
         )
 
 
@@ -78,7 +92,13 @@ class MemberOptions:
     "What to write of the whole sweep beside the index and the results: csv (a line for each member), "
     "html (an atlas), gif or mp4 (a film of the maps).  [default: none]",
 )
-@click.option("--fps", type=click.IntRange(1, 60), default=8, show_default=True, help="Pictures of a film in a second.")
+@click.option(
+    "--fps",
+    type=click.IntRange(1, 60),
+    default=8,
+    show_default=True,
+    help="Pictures of a film in a second.",
+)
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N",
               help="Number of worker processes on this machine.  [default: all processors]")  # fmt: skip
 @click.option("--scheduler", metavar="URL",
@@ -89,7 +109,11 @@ class MemberOptions:
 @engine_option
 @click.option("--along", metavar="NAME", shell_complete=names,
               help="The axis along which the widest operation range is found.  [default: the first]")  # fmt: skip
-@click.option("--no-ranges", is_flag=True, help="Leave the widest operation ranges out, often most of the work.")
+@click.option(
+    "--no-ranges",
+    is_flag=True,
+    help="Leave the widest operation ranges out, often most of the work.",
+)
 @click.option("--no-areas", is_flag=True, help="Leave the regions' areas out.")
 @click.option("--tolerance", callback=share_of, metavar="EPS",
               help="Stop a member when this share of the window is undetermined (certified engine).")  # fmt: skip
@@ -134,10 +158,15 @@ def command(
         send(Topic.RESUMABLE, f"what is done is in {folder}; the same command goes on")
         found = sweep(question, folder, jobs, scheduler, wanted, retries, limits.timeout, progress)
         if wanted_files:
-            making: dict[str, Writer] = {"csv": partial(_table, found), "html": partial(_atlas, found, jobs, progress)}
+            making: dict[str, Writer] = {
+                "csv": partial(_table, found),
+                "html": partial(_atlas, found, jobs, progress),
+            }
             film = partial(_film, found, fps, progress)
             files = zip(wanted_files, formats, strict=True)
-            write_files(folder, {name: picture(name, making.get(kind, film)) for name, kind in files})
+            write_files(
+                folder, {name: picture(name, making.get(kind, film)) for name, kind in files}
+            )
     click.echo(f"{question_in(question.record, question.name)}\n{found.table()}")
     report_written(folder, wanted_files)
     return _status(found)
@@ -195,5 +224,7 @@ def _status(found: Sweep) -> int:
     said = ", ".join(f"{number} {state.value}" for state, number in missing.items())
     first = next((member for member in found if member.state is not State.DONE), None)
     why = "" if first is None else f"; the first is member {first.number}: {first.error}"
-    click.echo(f"stopped: {said} of {len(found)} members, see {shown_path(found.folder)}{why}", err=True)
+    click.echo(
+        f"stopped: {said} of {len(found)} members, see {shown_path(found.folder)}{why}", err=True
+    )
     return 3

@@ -53,7 +53,9 @@ _MORE_DIGITS = 10
               help="How much of a certified map's free area is to be proved free of critical curves: 0 nothing, each "
                    "number more four times the work, 10 all of it.  [default: 2]")  # fmt: skip
 @limit_options
-def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | None, limits: ResourceLimits) -> int:
+def command(
+    *, result: Path, seed: int | None, boxes: int | None, effort: int | None, limits: ResourceLimits
+) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, `solve`, `range` or `design`, or the folder of a sweep.
 
     What is checked is proved by code that shares no mathematics with what made it, as far as a row says how; other
@@ -90,7 +92,9 @@ def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | 
                 with ProgressBar() as progress:
                     report = check(progress)
             except LimitReached as limit:
-                report = VerifyReport((*shown, Check("all others", "", None, f"not reached: {limit}")))
+                report = VerifyReport(
+                    (*shown, Check("all others", "", None, f"not reached: {limit}"))
+                )
             finally:
                 FINISHED.reset(token)
             checks += report.checks
@@ -111,7 +115,9 @@ def command(*, result: Path, seed: int | None, boxes: int | None, effort: int | 
 
 @contextmanager
 def _clock(seconds: float | None) -> Iterator[Callable[[], bool]]:
-    """Raise `LimitReached` in what runs inside when the time is over, once; gives whether it has been."""
+    """Raise `LimitReached` in what runs inside when the time is over, once; gives whether it has
+    been.
+    """
     over: list[int] = []
     if seconds is None:
         yield lambda: False
@@ -134,13 +140,17 @@ def _clock(seconds: float | None) -> Iterator[Callable[[], bool]]:
 
 
 def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]:
-    """What there is to check in a file, each with a heading where there are several; ``how`` are `verify`'s options."""
+    """What there is to check in a file, each with a heading where there are several; ``how`` are
+    `verify`'s options.
+    """
 
     from ptmcad.verification import verify
 
     def of_map(stored: RegionMap) -> Verify:
         exact = stored.cover is None
-        report_idle([(name, exact, "an exact map is checked whole") for name in ("boxes", "effort")])
+        report_idle(
+            [(name, exact, "an exact map is checked whole") for name in ("boxes", "effort")]
+        )
         return lambda progress: verify(stored, progress=progress, **how)
 
     if path.is_dir():
@@ -148,7 +158,12 @@ def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]
         return
     kind = kind_of(path)
     if kind in ("design", "poses", "range"):
-        report_idle([(name, how[name] is not None, "all that is stored is checked") for name in ("boxes", "effort")])
+        report_idle(
+            [
+                (name, how[name] is not None, "all that is stored is checked")
+                for name in ("boxes", "effort")
+            ]
+        )
     if kind == "design":
         design = read_other(path, BestDesign.from_json, "ptmcad-design/1")
         versions = json.loads(path.read_text(encoding="utf-8")).get("versions")
@@ -163,13 +178,19 @@ def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]
         family = read_family_file(path, whole=False)
         for value, member in family:
             yield f"{family.free.name} = {text_of(value)}", of_map(member)
-        yield f"what the members have in common over {family.free.name}", partial(_verified_family, family, how["seed"])
+        yield (
+            f"what the members have in common over {family.free.name}",
+            partial(_verified_family, family, how["seed"]),
+        )
     else:
         yield "", of_map(read_result(path, whole=False))
 
 
 def _range_in(text: str) -> dict[str, Any]:
-    return {"format": "ptmcad-range/1", **opened(text, "ptmcad-range/1", MAX_BYTES, "ptmcad range").value}
+    return {
+        "format": "ptmcad-range/1",
+        **opened(text, "ptmcad-range/1", MAX_BYTES, "ptmcad range").value,
+    }
 
 
 def _meet(one: Bounds | None, other: Bounds | None) -> bool:
@@ -189,7 +210,14 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
 
     sweep = read_sweep(folder)
     found = list(members(sweep))
-    along = next((m.summary.widest.along for m in found if m.summary is not None and m.summary.widest is not None), "")
+    along = next(
+        (
+            m.summary.widest.along
+            for m in found
+            if m.summary is not None and m.summary.widest is not None
+        ),
+        "",
+    )
 
     def check(member: Member) -> str:
         summary = member.summary
@@ -198,7 +226,9 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
         stored = member_map(sweep, member)
         for name, text in member.parameters.items():
             known = stored.slice.parameters.get(name)
-            if known is not None and not (known.is_constant and known.constant() == fraction_of(text)):
+            if known is not None and not (
+                known.is_constant and known.constant() == fraction_of(text)
+            ):
                 raise Violation(f"the map is not that of {name} = {text}")
         unknown = ", ".join(member.parameters.keys() - stored.slice.parameters.keys())
         if member.same_as is not None:
@@ -212,8 +242,12 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
         if widest is not None and widest.proof == Attainment.UNDECIDED.value:
             untold = "; where a width is attained"
             if true.widest is not None and _meet(widest.width, true.widest.width):
-                true = replace(true, widest=widest)  # an earlier version found it, with bounds of its own
-        wrong = [part for part in Summary.__match_args__ if getattr(true, part) != getattr(summary, part)]
+                true = replace(
+                    true, widest=widest
+                )  # an earlier version found it, with bounds of its own
+        wrong = [
+            part for part in Summary.__match_args__ if getattr(true, part) != getattr(summary, part)
+        ]
         if wrong:
             raise Violation(f"the index has another value than its map: {', '.join(wrong)}")
         report = verify(stored, **how)
@@ -230,11 +264,16 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
         return f"{len(found)} members"
 
     steps = [("index", "comparison", numbers)]
-    steps += [(f"member {m.number}", "its map, and the index", partial(lambda m, _: check(m), m)) for m in found]
+    steps += [
+        (f"member {m.number}", "its map, and the index", partial(lambda m, _: check(m), m))
+        for m in found
+    ]
     return VerifyReport(tuple(checked(None, steps, (), CheckProgress(progress))))
 
 
-def _verified_design(found: BestDesign, versions: Any, seed: int | None, progress: Progress) -> VerifyReport:
+def _verified_design(
+    found: BestDesign, versions: Any, seed: int | None, progress: Progress
+) -> VerifyReport:
     """The best design, and where ranges are longest by exact critical values."""
     from ptmcad.ask.designing.proof import exact_maximum
     from ptmcad.question.config.designs import design_from
@@ -266,7 +305,9 @@ def _verified_poses(stored: Poses, progress: Progress) -> VerifyReport:
     if not report.ok:
         return report
     anew = replace(poses_at(stored.model, stored.parameters, stored.digits), units=stored.units)
-    return VerifyReport((*report.checks, check_anew(json.loads(stored.to_json()), json.loads(anew.to_json()))))
+    return VerifyReport(
+        (*report.checks, check_anew(json.loads(stored.to_json()), json.loads(anew.to_json())))
+    )
 
 
 def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> VerifyReport:
@@ -281,18 +322,24 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
     from ptmcad.verification import Check, VerifyReport, check_anew, verify_range
 
     if "slice" not in data or "request" not in data:
-        return VerifyReport((Check("range", "", None, "an earlier version made it: of what is not said"),))
+        return VerifyReport(
+            (Check("range", "", None, "an earlier version made it: of what is not said"),)
+        )
     try:
         slice = SLICE.read(Node(data["slice"], "slice"))
         request = request_codec().read(Node(data["request"], "request"))
         over = Node(data.get("over", {"maxima": []}), "over")
-        maxima = over.entry("maxima").each(lambda node: maximum(over.value["over"]["name"], request.digits).read(node))
+        maxima = over.entry("maxima").each(
+            lambda node: maximum(over.value["over"]["name"], request.digits).read(node)
+        )
         for key, codec in (("enclosed", enclosed_codec), ("bands", bands_codec)):
             if key in data:
                 codec(request.digits).read(Node(data[key], key))
         report = verify_range(data, slice, progress, maxima)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
-        raise ConfigError(f"is damaged or not a ptmcad-range/1 file: {error}", file=str(path)) from error
+        raise ConfigError(
+            f"is damaged or not a ptmcad-range/1 file: {error}", file=str(path)
+        ) from error
     if not report.ok or "critical" in data:  # which an earlier version answered
         return report
     if is_enclosed(slice, request):

@@ -1,10 +1,11 @@
-"""A cover: closed rectangles on a lattice of the window that contain everything a certified map leaves open.
+"""A cover: closed rectangles on a lattice of the window that contain everything a certified map
+leaves open.
 
-Guarantee: all its numbers are integers, so what lies in a rectangle, and what is connected outside all of them, is
-decided exactly.
+Guarantee: all its numbers are integers, so what lies in a rectangle, and what is connected outside
+all of them, is decided exactly.
 
-The geometry is in the modules of this package, which need numpy; the functions here load it when they are called, so
-that a map without a cover is read and written without.
+The geometry is in the modules of this package, which need numpy; the functions here load it when
+they are called, so that a map without a cover is read and written without.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ def components(cover: Cover) -> Components:
 
     Raises
     ------
-    ValueError
-        When a rectangle or a slanted piece is not one, frames meet others inside, or the lattice is too fine.
+    ValueError When a rectangle or a slanted piece is not one, frames meet others inside, or the
+        lattice is too fine.
     """
     from ptmcad.cover import slanted
 
@@ -31,7 +32,9 @@ def components(cover: Cover) -> Components:
 
 
 def union_area(cover: Cover) -> int:
-    """The area of the rectangles' union, in squares of a lattice step; with slanted pieces what it is at most."""
+    """The area of the rectangles' union, in squares of a lattice step; with slanted pieces what it
+    is at most.
+    """
     from ptmcad.cover import complement
 
     if cover.patches:
@@ -40,11 +43,13 @@ def union_area(cover: Cover) -> int:
 
 
 def from_boxes(window: Window, low: Any, high: Any, steps: int) -> Cover:
-    """The cover of boxes that floats bound: each is rounded outward to the lattice and clipped to the window.
+    """The cover of boxes that floats bound: each is rounded outward to the lattice and clipped to
+    the window.
 
     Parameters
     ----------
-    low, high : arrays of shape (k, 2), the ends along the two axes, in the axes' own units; infinite ends are allowed.
+    low, high : arrays of shape (k, 2), the ends along the two axes, in the axes' own units;
+        infinite ends are allowed.
 
     Raises
     ------

@@ -11,10 +11,12 @@ from ptmcad.cover.complement import Components
 
 
 def area_bounds(components: Components, number: int, known: Container[int]) -> tuple[int, int]:
-    """A component's area; and with all that can be reached from it without entering another known component.
+    """A component's area; and with all that can be reached from it without entering another known
+    component.
 
-    In squares of a lattice step. What is reached are clusters, each of them once, and components that are not known.
-    The connected set of points with the component's count is no larger, unless it reaches another known component.
+    In squares of a lattice step. What is reached are clusters, each of them once, and components
+    that are not known. The connected set of points with the component's count is no larger, unless
+    it reaches another known component.
     """
     around: dict[int, list[int]] = {}
     for component, cluster in components.touching:
@@ -27,5 +29,7 @@ def area_bounds(components: Components, number: int, known: Container[int]) -> t
                 more = {m for m in around[cluster] if m not in known} - reached
                 reached |= more
                 waiting += more
-    high = sum(components.areas[m] for m in reached) + sum(components.cluster_areas[cluster] for cluster in clusters)
+    high = sum(components.areas[m] for m in reached) + sum(
+        components.cluster_areas[cluster] for cluster in clusters
+    )
     return components.areas[number], high

@@ -1,11 +1,13 @@
-"""What a cover leaves of the window: connected components with exact areas, and the clusters of rectangles between.
+"""What a cover leaves of the window: connected components with exact areas, and the clusters of
+rectangles between.
 
-Guarantee: exact. Two points of the open window are in one component if and only if a path joins them that meets no
-closed rectangle; two rectangles are in one cluster if and only if a chain of rectangles with common points joins them.
+Guarantee: exact. Two points of the open window are in one component if and only if a path joins
+them that meets no closed rectangle; two rectangles are in one cluster if and only if a chain of
+rectangles with common points joins them.
 
-As rectangles have interiors, an edge between two parts of the window that meet the interior of no rectangle is in no
-rectangle, while a corner at which only two such parts meet, diagonally, is in one. So components are joined across
-edges, and clusters across edges and corners.
+As rectangles have interiors, an edge between two parts of the window that meet the interior of no
+rectangle is in no rectangle, while a corner at which only two such parts meet, diagonally, is in
+one. So components are joined across edges, and clusters across edges and corners.
 """
 
 from __future__ import annotations
@@ -22,12 +24,16 @@ from ptmcad.cover.subdivision import COVERED, Subdivision, rectangle_array, subd
 
 Integers = NDArray[np.int64]
 _LIMB = 20
-"""Bits of a half coordinate: products of halves are summed without overflow, and put together as Python's integers."""
+"""Bits of a half coordinate: products of halves are summed without overflow, and put together as
+Python's integers.
+"""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frames:
-    """Of a cover with slanted pieces: the frame of each part of the subdivision, or -1; the owners of frames' parts."""
+    """Of a cover with slanted pieces: the frame of each part of the subdivision, or -1; the owners
+    of frames' parts.
+    """
 
     frame_of: Integers
     owners: tuple[tuple[int, ...], ...]
@@ -35,19 +41,21 @@ class Frames:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Components:
-    """The components, by descending area, then from the left, then from below; and the clusters in the same order.
+    """The components, by descending area, then from the left, then from below; and the clusters in
+    the same order.
 
     Attributes
     ----------
     areas : of the components, in squares of a lattice step.
-    rectangles : for each component an open rectangle inside of it that cannot be made longer on any side: the part
-        of the subdivision with the longest smaller side, grown.
+    rectangles : for each component an open rectangle inside of it that cannot be made longer on any
+        side: the part of the subdivision with the longest smaller side, grown.
     cluster_areas : areas of the unions of the clusters' rectangles.
     cluster_of : for each rectangle of the cover the number of its cluster.
-    clusters_at : for each component the clusters that it touches along a segment or in a point, ascending.
+    clusters_at : for each component the clusters that it touches along a segment or in a point,
+        ascending.
     subdivision : of the window.
-    owner : for each part of the subdivision the number of its component or, for a covered one, of its cluster; -1 in
-        a frame.
+    owner : for each part of the subdivision the number of its component or, for a covered one, of
+        its cluster; -1 in a frame.
     frames : of the slanted pieces; None when there are none.
     """
 
@@ -62,7 +70,8 @@ class Components:
     frames: Frames | None = None
 
     def locate(self, u: Fraction, v: Fraction) -> int | None:
-        """The component of a point in lattice coordinates; None when the point is in a closed rectangle.
+        """The component of a point in lattice coordinates; None when the point is in a closed
+        rectangle.
 
         Raises
         ------
@@ -90,7 +99,9 @@ class Components:
     @property
     def touching(self) -> tuple[tuple[int, int], ...]:
         """All pairs of a component and a cluster that touch."""
-        return tuple((n, cluster) for n, clusters in enumerate(self.clusters_at) for cluster in clusters)
+        return tuple(
+            (n, cluster) for n, clusters in enumerate(self.clusters_at) for cluster in clusters
+        )
 
 
 def bounding_boxes(leaves: Integers, group: Integers, groups: int) -> Integers:
@@ -103,7 +114,9 @@ def bounding_boxes(leaves: Integers, group: Integers, groups: int) -> Integers:
 
 
 def grown(tree: Subdivision, boxes: Integers, around: Integers) -> Integers:
-    """Free rectangles made as long as they can be, first along their shorter sides; each stays in what is around it."""
+    """Free rectangles made as long as they can be, first along their shorter sides; each stays in
+    what is around it.
+    """
     boxes = boxes.copy()
     upright = boxes[:, 1] - boxes[:, 0] > boxes[:, 3] - boxes[:, 2]
     for flipped in (False, True):
@@ -136,7 +149,11 @@ def sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:
         for j in (0, 1):
             part = np.zeros(groups, dtype=np.int64)
             # at most 2^40 each: room for 2^22 leaves
-            np.add.at(part, group, ((width >> _LIMB) if i else width & mask) * ((tall >> _LIMB) if j else tall & mask))
+            np.add.at(
+                part,
+                group,
+                ((width >> _LIMB) if i else width & mask) * ((tall >> _LIMB) if j else tall & mask),
+            )
             shift = _LIMB * (i + j)
             sums = [s + (p << shift) for s, p in zip(sums, part.tolist(), strict=True)]
     return sums

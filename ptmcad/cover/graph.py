@@ -35,26 +35,36 @@ def touching(leaves: Integers) -> Touching:
     ----------
     leaves : shape (n, 4): left, right, bottom, top of rectangles that tile the window.
     """
-    across, up = (np.unique(leaves[:, k : k + 2], return_inverse=True)[1].reshape(-1, 2) for k in (0, 2))
+    across, up = (
+        np.unique(leaves[:, k : k + 2], return_inverse=True)[1].reshape(-1, 2) for k in (0, 2)
+    )
     a, b, along = _across(across, up, corners=True)
-    # a corner that two leaves share is the end of an upright line between them: the pass above has it
+    # a corner that two leaves share is the end of an upright line between them: the pass above has
+    # it
     c, d, _ = _across(up, across, corners=False)
     return Touching(
-        np.concatenate([a, c]), np.concatenate([b, d]), np.concatenate([along, np.ones(len(c), dtype=np.bool_)])
+        np.concatenate([a, c]),
+        np.concatenate([b, d]),
+        np.concatenate([along, np.ones(len(c), dtype=np.bool_)]),
     )
 
 
-def _across(across: Integers, up: Integers, *, corners: bool) -> tuple[Integers, Integers, NDArray[np.bool_]]:
-    """Pairs of leaves at the two sides of an upright line, with an edge or, if asked, a corner in common.
+def _across(
+    across: Integers, up: Integers, *, corners: bool
+) -> tuple[Integers, Integers, NDArray[np.bool_]]:
+    """Pairs of leaves at the two sides of an upright line, with an edge or, if asked, a corner in
+    common.
 
     Parameters
     ----------
-    across, up : ranks of left and right, and of bottom and top, in shape (n, 2); those of the window's left are 0.
+    across, up : ranks of left and right, and of bottom and top, in shape (n, 2); those of the
+        window's left are 0.
     """
     (left, right), (low, high) = across.T, up.T
     span = int(high.max()) + 2
     inner = np.flatnonzero(left > 0)
-    # the leaves at the right of one line do not overlap, so that bottoms and tops have the same order
+    # the leaves at the right of one line do not overlap, so that bottoms and tops have the same
+    # order
     order = inner[np.argsort(left[inner] * span + low[inner])]
     bottoms, tops = left[order] * span + low[order], left[order] * span + high[order]
     line = right * span
@@ -63,7 +73,11 @@ def _across(across: Integers, up: Integers, *, corners: bool) -> tuple[Integers,
     number = np.maximum(end - begin, 0)
     first, within = repeated(number)
     second = order[np.repeat(begin, number) + within]
-    return first, second, np.minimum(high[first], high[second]) > np.maximum(low[first], low[second])
+    return (
+        first,
+        second,
+        np.minimum(high[first], high[second]) > np.maximum(low[first], low[second]),
+    )
 
 
 def repeated(number: Integers) -> tuple[Integers, Integers]:
@@ -79,7 +93,8 @@ def connected(number: int, first: Integers, second: Integers) -> Integers:
         a, b = label[first], label[second]
         separate = a != b
         first, second, a, b = first[separate], second[separate], a[separate], b[separate]
-        # labels are roots here: every root takes the smallest of its neighbours' roots, if that is smaller
+        # labels are roots here: every root takes the smallest of its neighbours' roots, if that is
+        # smaller
         np.minimum.at(label, np.maximum(a, b), np.minimum(a, b))
         while True:
             shorter = label[label]

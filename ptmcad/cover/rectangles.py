@@ -1,4 +1,5 @@
-"""The data of a cover: closed rectangles on a lattice of the window, and slanted pieces in frames on it.
+"""The data of a cover: closed rectangles on a lattice of the window, and slanted pieces in frames
+on it.
 
 Guarantee: all its numbers are integers.
 """
@@ -9,7 +10,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 Rectangle = tuple[int, int, int, int]
-"""left, right, bottom, top in lattice steps from the window's lower left corner; closed; 0 <= left < right <= steps."""
+"""left, right, bottom, top in lattice steps from the window's lower left corner; closed;
+0 <= left < right <= steps.
+"""
 Window = tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
 """Low and high end of both axes."""
 MAX_STEPS = 2**40
@@ -22,7 +25,8 @@ class Tube:
     Attributes
     ----------
     half : lattice steps, positive.
-    controls : the polynomial's coefficients in Bernstein's basis of the frame's interval, in lattice steps.
+    controls : the polynomial's coefficients in Bernstein's basis of the frame's interval, in
+        lattice steps.
     """
 
     half: int
@@ -35,10 +39,12 @@ class Patch:
 
     Attributes
     ----------
-    along : the axis (0 or 1) along which the tubes go, from one side of the frame to the opposite one; where a tube
-        passes the frame's other sides, what is outside of the frame is no part of it.
-    tubes : ascending and disjoint: control by control the next one is higher by more than both half widths. The
-        controls of each ascend, or descend, or all tubes' hulls are inside of the frame.
+    along : the axis (0 or 1) along which the tubes go, from one side of the frame to the opposite
+        one; where a tube passes the frame's other sides, what is outside of the frame is no part of
+        it.
+    tubes : ascending and disjoint: control by control the next one is higher by more than both half
+        widths. The controls of each ascend, or descend, or all tubes' hulls are inside of the
+        frame.
     """
 
     frame: Rectangle
@@ -62,7 +68,8 @@ class Cover:
 
     Attributes
     ----------
-    steps : number of equal lattice steps along each axis of the window, a power of two, at most `MAX_STEPS`.
+    steps : number of equal lattice steps along each axis of the window, a power of two, at most
+        `MAX_STEPS`.
     patches : sorted; no interior of a frame meets that of another frame or of a rectangle.
     """
 

@@ -1,7 +1,8 @@
 """Boxes of floats rounded outward to a cover's lattice.
 
-Guarantee: a rectangle holds its box and is less than two lattice steps longer on each side. A float estimate with a
-bound on its error finds the step; only where floats overflow does rational arithmetic.
+Guarantee: a rectangle holds its box and is less than two lattice steps longer on each side. A float
+estimate with a bound on its error finds the step; only where floats overflow does rational
+arithmetic.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from ptmcad.cover.rectangles import MAX_STEPS, Cover, Window
 Integers = NDArray[np.int64]
 Floats = NDArray[np.float64]
 _ERROR = 2.0**-50
-"""Eight units of rounding: bound of the estimate's error, relative to the sizes of what is subtracted ..."""
+"""Eight units of rounding: bound of the estimate's error, relative to the sizes of what is
+subtracted ...
+"""
 _MIN_ERROR = 2.0**-60
 """... and where the window's end is subnormal."""
 _USUAL = 10**250
@@ -25,11 +28,13 @@ _USUAL = 10**250
 
 
 def from_boxes(window: Window, low: Floats, high: Floats, steps: int) -> Cover:
-    """The cover of boxes that floats bound: each is rounded outward to the lattice and clipped to the window.
+    """The cover of boxes that floats bound: each is rounded outward to the lattice and clipped to
+    the window.
 
     Parameters
     ----------
-    low, high : shape (k, 2), the ends along the two axes, in the axes' own units; infinite ends are allowed.
+    low, high : shape (k, 2), the ends along the two axes, in the axes' own units; infinite ends are
+        allowed.
 
     Raises
     ------
@@ -42,7 +47,10 @@ def from_boxes(window: Window, low: Floats, high: Floats, steps: int) -> Cover:
     """
     if not 0 < steps <= MAX_STEPS:
         raise ValueError(f"a cover's lattice has 1 to {MAX_STEPS} steps, not {steps}")
-    low, high = np.asarray(low, dtype=np.float64).reshape(-1, 2), np.asarray(high, dtype=np.float64).reshape(-1, 2)
+    low, high = (
+        np.asarray(low, dtype=np.float64).reshape(-1, 2),
+        np.asarray(high, dtype=np.float64).reshape(-1, 2),
+    )
     if not (low <= high).all():
         raise ValueError("a box has a low end that is not at most its high end")
     sides = []
@@ -51,7 +59,8 @@ def from_boxes(window: Window, low: Floats, high: Floats, steps: int) -> Cover:
         first = rounded_down(low[:, axis], *window[axis], steps)
         last = -rounded_down(-high[:, axis], -window[axis][1], -window[axis][0], steps) + steps
         kept &= (first < steps) & (last > 0)
-        # a box without width on a line of the lattice: the step after the line, which is in the window, holds it
+        # a box without width on a line of the lattice: the step after the line, which is in the
+        # window, holds it
         last = np.where(first == last, last + 1, last)
         sides += [np.clip(first, 0, steps), np.clip(last, 0, steps)]
     array = np.stack(sides, axis=1)[kept]
@@ -69,11 +78,14 @@ def cover_of(array: Integers, steps: int) -> Cover:
 def rounded_down(values: Floats, low: Fraction, high: Fraction, steps: int) -> Integers:
     """floor((value - low) steps / (high - low)), but -1 and steps stand for all that is outside.
 
-    A value that is so near above a line of the lattice that floats cannot tell gets the step below that line.
+    A value that is so near above a line of the lattice that floats cannot tell gets the step below
+    that line.
     """
     width = high - low
     if max(abs(low), 1 / width, width) > _USUAL:
-        return np.array([_exactly(value, low, width, steps) for value in values.tolist()], dtype=np.int64)
+        return np.array(
+            [_exactly(value, low, width, steps) for value in values.tolist()], dtype=np.int64
+        )
     start, scale = float(low), float(steps / width)
     with np.errstate(over="ignore", invalid="ignore"):
         estimate = (values - start) * scale

@@ -15,7 +15,9 @@ from ptmcad.cover.subdivision import Integers, rectangle_array
 def framed(cover: Cover) -> Cover:
     """A cover of more, in which slanted pieces are the whole of their frames."""
     frames = (patch.frame for patch in cover.patches)
-    return Cover(cover.steps, tuple(sorted({*cover.rectangles, *frames}))) if cover.patches else cover
+    return (
+        Cover(cover.steps, tuple(sorted({*cover.rectangles, *frames}))) if cover.patches else cover
+    )
 
 
 def combined(cover: Cover) -> Cover:
@@ -24,10 +26,11 @@ def combined(cover: Cover) -> Cover:
 
 
 def gathered(cover: Cover, most: int) -> Cover:
-    """A cover of more, by at most so many rectangles: boxes around what the cover has in each square of a grid.
+    """A cover of more, by at most so many rectangles: boxes around what the cover has in each
+    square of a grid.
 
-    The grid is the finest that needs no more of them; a cover of no more rectangles stays as it is, but for frames of
-    slanted pieces, which become rectangles.
+    The grid is the finest that needs no more of them; a cover of no more rectangles stays as it is,
+    but for frames of slanted pieces, which become rectangles.
     """
     array = rectangle_array(framed(cover))
     if len(array) <= most:
@@ -42,7 +45,9 @@ def gathered(cover: Cover, most: int) -> Cover:
 
 
 def _in_squares(array: Integers, shift: int, most: int) -> Integers | None:
-    """Boxes around the parts of rectangles in squares of 2^shift steps; None if they are more than ``most``."""
+    """Boxes around the parts of rectangles in squares of 2^shift steps; None if they are more than
+    ``most``.
+    """
     first, last = array[:, (0, 2)] >> shift, (array[:, (1, 3)] - 1) >> shift
     spans = last - first + 1
     if int(spans.prod(axis=1).max()) > most:
@@ -60,7 +65,10 @@ def _in_squares(array: Integers, shift: int, most: int) -> Integers | None:
     starts = np.flatnonzero(np.concatenate([[True], (parts[1:, :2] != parts[:-1, :2]).any(axis=1)]))
     if len(starts) > most:
         return None
-    low, high = np.minimum.reduceat(parts[:, 2:4], starts), np.maximum.reduceat(parts[:, 4:6], starts)
+    low, high = (
+        np.minimum.reduceat(parts[:, 2:4], starts),
+        np.maximum.reduceat(parts[:, 4:6], starts),
+    )
     return np.stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]], axis=1)
 
 
@@ -71,8 +79,9 @@ def _fewer(array: Integers) -> Integers:
 def _outermost(array: Integers) -> Integers:
     """Rectangles without most of those that lie in a single other one; the union stays.
 
-    For each size there is a grid with squares of that size, and rectangles of the size meet four of its squares at
-    most. In each square the largest of them is compared with all smaller ones that have their lower left corner there.
+    For each size there is a grid with squares of that size, and rectangles of the size meet four of
+    its squares at most. In each square the largest of them is compared with all smaller ones that
+    have their lower left corner there.
     """
     sides = array[:, (1, 3)] - array[:, (0, 2)]
     sizes = np.array([int(side).bit_length() for side in sides.max(axis=1, initial=0)])
@@ -82,8 +91,12 @@ def _outermost(array: Integers) -> Integers:
         if not len(own):  # all of them were in larger ones
             continue
         first, last = array[own][:, (0, 2)] >> size, (array[own][:, (1, 3)] - 1) >> size
-        corners = [np.where(end, last, first) for end in ((False, False), (False, True), (True, False), (True, True))]
-        # squares in the order in which complex numbers are sorted, the largest rectangle of each first
+        corners = [
+            np.where(end, last, first)
+            for end in ((False, False), (False, True), (True, False), (True, True))
+        ]
+        # squares in the order in which complex numbers are sorted, the largest rectangle of each
+        # first
         square = np.concatenate([corner[:, 0] + 1j * corner[:, 1] for corner in corners])
         holder = np.tile(own, 4)
         order = np.lexsort((-areas[holder], square.imag, square.real))
@@ -93,7 +106,9 @@ def _outermost(array: Integers) -> Integers:
         corner = (array[smaller, 0] >> size) + 1j * (array[smaller, 2] >> size)
         place = np.minimum(np.searchsorted(square, corner), len(square) - 1)
         there = array[holder[place]]
-        inside = (there[:, (0, 2)] <= array[smaller][:, (0, 2)]) & (there[:, (1, 3)] >= array[smaller][:, (1, 3)])
+        inside = (there[:, (0, 2)] <= array[smaller][:, (0, 2)]) & (
+            there[:, (1, 3)] >= array[smaller][:, (1, 3)]
+        )
         lost = (square[place] == corner) & inside.all(axis=1) & (holder[place] != smaller)
         kept = np.ones(len(array), dtype=np.bool_)
         kept[smaller[lost]] = False
@@ -102,7 +117,9 @@ def _outermost(array: Integers) -> Integers:
 
 
 def _merged(array: Integers) -> Integers:
-    """Rectangles of which none share two ends along one axis and meet along the other; the union stays."""
+    """Rectangles of which none share two ends along one axis and meet along the other; the union
+    stays.
+    """
     while True:
         before = len(array)
         for fixed, moving in (((2, 3), (0, 1)), ((0, 1), (2, 3))):
@@ -112,13 +129,22 @@ def _merged(array: Integers) -> Integers:
 
 
 def _merged_along(array: Integers, fixed: tuple[int, int], moving: tuple[int, int]) -> Integers:
-    """Rectangles with equal ends in the fixed columns joined where they overlap or touch in the moving ones."""
+    """Rectangles with equal ends in the fixed columns joined where they overlap or touch in the
+    moving ones.
+    """
     if not len(array):
         return array
-    array = array[np.lexsort((array[:, moving[1]], array[:, moving[0]], array[:, fixed[1]], array[:, fixed[0]]))]
-    rows = (array[1:, fixed[0]] != array[:-1, fixed[0]]) | (array[1:, fixed[1]] != array[:-1, fixed[1]])
+    array = array[
+        np.lexsort(
+            (array[:, moving[1]], array[:, moving[0]], array[:, fixed[1]], array[:, fixed[0]])
+        )
+    ]
+    rows = (array[1:, fixed[0]] != array[:-1, fixed[0]]) | (
+        array[1:, fixed[1]] != array[:-1, fixed[1]]
+    )
     group = np.concatenate([[0], np.cumsum(rows)])
-    # the farthest end so far within the group: groups are lifted above each other, so that one running maximum does
+    # the farthest end so far within the group: groups are lifted above each other, so that one
+    # running maximum does
     ends, ranks = np.unique(array[:, moving[1]], return_inverse=True)
     farthest = ends[np.maximum.accumulate(ranks + group * len(ends)) - group * len(ends)]
     fresh = np.concatenate([[True], rows | (array[1:, moving[0]] > farthest[:-1])])

@@ -1,13 +1,15 @@
 """Components and clusters of a cover, which may have slanted pieces.
 
-Guarantee: of rectangles alone exact. With slanted pieces, two points of the open window that are outside of the
-rectangles and the tubes, and not on a frame's side within a lattice step of a tube, are in one component only if a path
-joins them that meets neither; and if one does that stays more than a lattice step away from where tubes pass the sides
-of their frames. Areas of components are rounded down, those of clusters up. (Lemma 30 of docs/soundness.md.)
+Guarantee: of rectangles alone exact. With slanted pieces, two points of the open window that are
+outside of the rectangles and the tubes, and not on a frame's side within a lattice step of a tube,
+are in one component only if a path joins them that meets neither; and if one does that stays more
+than a lattice step away from where tubes pass the sides of their frames. Areas of components are
+rounded down, those of clusters up. (Lemma 30 of docs/soundness.md.)
 
-The window is cut as if the frames were rectangles. A frame's open parts and its tubes take the place of its leaves:
-each of the parts is connected, because a tube that passes a frame's long side ascends or descends. Parts join what is
-beside them along the pieces of the frame's sides that no tube has.
+The window is cut as if the frames were rectangles. A frame's open parts and its tubes take the
+place of its leaves: each of the parts is connected, because a tube that passes a frame's long side
+ascends or descends. Parts join what is beside them along the pieces of the frame's sides that no
+tube has.
 """
 
 from __future__ import annotations
@@ -20,7 +22,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.cover import tubes
-from ptmcad.cover.complement import Components, Frames, as_rectangles, bounding_boxes, grown, sums_of_areas
+from ptmcad.cover.complement import (
+    Components,
+    Frames,
+    as_rectangles,
+    bounding_boxes,
+    grown,
+    sums_of_areas,
+)
 from ptmcad.cover.graph import connected, touching
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
@@ -29,8 +38,8 @@ Integers = NDArray[np.int64]
 HALVINGS = 5
 """Of a tube's interval: there are so many rectangles in its place, as a power of two."""
 _DRAWN = 2**13
-"""Where it is drawn there are more, until they are narrower than this part of the window, so that long tubes look
-smooth in a zoomed view too."""
+"""Where it is drawn there are more, until they are narrower than this part of the window, so that
+long tubes look smooth in a zoomed view too."""
 _MAX_HALVINGS = 10
 _WIDTHS = (Fraction(1, 2), Fraction(1, 8), Fraction(1, 64), Fraction(1, 1024))
 """Of rectangles that are tried within a part of a frame, as parts of the frame's length."""
@@ -63,9 +72,8 @@ def components(cover: Cover, tree: Subdivision | None = None) -> Components:
 
     Raises
     ------
-    ValueError
-        When a rectangle or a patch is not one, a frame meets the inside of another one or of a rectangle, or the
-        lattice is too fine.
+    ValueError When a rectangle or a patch is not one, a frame meets the inside of another one or of
+        a rectangle, or the lattice is too fine.
     """
     for patch in cover.patches:
         wrong = tubes.flaw(patch, cover.steps)
@@ -102,7 +110,9 @@ def _frames_of(tree: Subdivision, frames: Integers, rectangles: Integers) -> Int
     return result
 
 
-def _nodes(tree: Subdivision, parts: Integers, frame_of: Integers, patches: tuple[Patch, ...]) -> _Nodes:
+def _nodes(
+    tree: Subdivision, parts: Integers, frame_of: Integers, patches: tuple[Patch, ...]
+) -> _Nodes:
     number = len(parts)
     free = [tree.state[parts] == FREE]
     part, tube = [], []
@@ -110,14 +120,26 @@ def _nodes(tree: Subdivision, parts: Integers, frame_of: Integers, patches: tupl
         part.append(number)
         tube.append(number + len(patch.tubes) + 1)
         number += 2 * len(patch.tubes) + 1
-        free += [np.ones(len(patch.tubes) + 1, dtype=np.bool_), np.zeros(len(patch.tubes), dtype=np.bool_)]
+        free += [
+            np.ones(len(patch.tubes) + 1, dtype=np.bool_),
+            np.zeros(len(patch.tubes), dtype=np.bool_),
+        ]
     return _Nodes(
-        tree.bounds[parts], frame_of, tree.state[parts] == COVERED, part, tube, np.concatenate(free).astype(np.bool_)
+        tree.bounds[parts],
+        frame_of,
+        tree.state[parts] == COVERED,
+        part,
+        tube,
+        np.concatenate(free).astype(np.bool_),
     )
 
 
 def _edges(
-    nodes: _Nodes, first: Integers, second: Integers, along: NDArray[np.bool_], patches: tuple[Patch, ...]
+    nodes: _Nodes,
+    first: Integers,
+    second: Integers,
+    along: NDArray[np.bool_],
+    patches: tuple[Patch, ...],
 ) -> tuple[Integers, Integers]:
     """Pairs of nodes that touch: open ones along an edge, others in a point at least."""
     a_frame, b_frame = nodes.frame_of[first], nodes.frame_of[second]
@@ -157,9 +179,11 @@ def _edges(
 
 
 def _edges_between(a: Integers, b: Integers) -> Iterator[tuple[int, int, int, int, int]]:
-    """The axis across each common edge of two leaves, its ends, and which of the leaves is below it and above.
+    """The axis across each common edge of two leaves, its ends, and which of the leaves is below it
+    and above.
 
-    A corner that is all that they share counts as an edge across both axes, since what a tube has of it is rounded.
+    A corner that is all that they share counts as an edge across both axes, since what a tube has
+    of it is rounded.
     """
     for axis in (0, 1):
         low = max(int(a[2 - 2 * axis]), int(b[2 - 2 * axis]))
@@ -176,7 +200,9 @@ Part = tuple[int, int, int]
 def _meeting(
     below: list[Part], above: list[Part], low: int, high: int, free: NDArray[np.bool_]
 ) -> Iterator[tuple[int, int]]:
-    """Pairs of nodes of two lists of pieces that touch between two ends; open ones where intervals overlap."""
+    """Pairs of nodes of two lists of pieces that touch between two ends; open ones where intervals
+    overlap.
+    """
     for a, b, one in below:
         for c, d, two in above:
             start, end = max(a, c, low), min(b, d, high)
@@ -185,7 +211,12 @@ def _meeting(
 
 
 def _assembled(
-    cover: Cover, tree: Subdivision, parts: Integers, nodes: _Nodes, label: Integers, border: tuple[Integers, Integers]
+    cover: Cover,
+    tree: Subdivision,
+    parts: Integers,
+    nodes: _Nodes,
+    label: Integers,
+    border: tuple[Integers, Integers],
 ) -> Components:
     """Number what is connected: components by descending area, clusters as well."""
     free, patches = nodes.free, cover.patches
@@ -215,13 +246,16 @@ def _assembled(
             present[cluster] = True
     kind = np.zeros(len(roots), dtype=np.bool_)
     kind[inverse] = free
-    # the first from the left and below is the last one that is written; what is in frames alone comes after all others
+    # the first from the left and below is the last one that is written; what is in frames alone
+    # comes after all others
     first = np.tile([cover.steps, cover.steps], (len(roots), 1))
     corner = np.lexsort((leaves[:, 2], leaves[:, 0]))[::-1]
     first[group[corner]] = leaves[corner][:, (0, 2)]
     places = first.tolist()
     shown = {
-        kept: sorted(np.flatnonzero((kind == kept) & present).tolist(), key=lambda k: (-sums[k], places[k]))
+        kept: sorted(
+            np.flatnonzero((kind == kept) & present).tolist(), key=lambda k: (-sums[k], places[k])
+        )
         for kept in (True, False)
     }
     rank = np.full(len(roots), -1, dtype=np.int64)
@@ -236,9 +270,12 @@ def _assembled(
         at[n].append(cluster)
     owner = tree.labels(parts[outside], own[:count][outside])
     array = rectangle_array(cover)
-    cluster_of = owner[tree.leaves_right_above(array[:, 0], array[:, 2])] if len(array) else array[:, 0]
+    cluster_of = (
+        owner[tree.leaves_right_above(array[:, 0], array[:, 2])] if len(array) else array[:, 0]
+    )
     owners = tuple(
-        tuple(own[nodes.part[f] : nodes.part[f] + len(patch.tubes) + 1].tolist()) for f, patch in enumerate(patches)
+        tuple(own[nodes.part[f] : nodes.part[f] + len(patch.tubes) + 1].tolist())
+        for f, patch in enumerate(patches)
     )
     return Components(
         cover,
@@ -331,7 +368,8 @@ def stepped(cover: Cover, narrower: int = 1) -> Cover:
 
     Parameters
     ----------
-    narrower : there are more until the steps are narrower than this part of the window, up to a limit.
+    narrower : there are more until the steps are narrower than this part of the window, up to a
+        limit.
     """
 
     def enough(patch: Patch) -> int:
@@ -346,7 +384,8 @@ def stepped(cover: Cover, narrower: int = 1) -> Cover:
 def shown(complement: Components, narrower: int = _DRAWN) -> Components:
     """The same components with a subdivision in which rectangles cover the tubes, to draw them by.
 
-    What these rectangles have of a component is in none of its leaves; a leaf's owner is still its component.
+    What these rectangles have of a component is in none of its leaves; a leaf's owner is still its
+    component.
 
     Parameters
     ----------

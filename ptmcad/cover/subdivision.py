@@ -1,11 +1,13 @@
-"""A subdivision of the window into cells that are each covered by one rectangle or meet the interior of none.
+"""A subdivision of the window into cells that are each covered by one rectangle or meet the
+interior of none.
 
-Guarantee: the leaves tile the window, and every leaf is of one of the two kinds, exactly. All coordinates are 64 bit
-integers of at most `ptmcad.cover.rectangles.MAX_STEPS`, whose sums and doubles do not overflow.
+Guarantee: the leaves tile the window, and every leaf is of one of the two kinds, exactly. All
+coordinates are 64 bit integers of at most `ptmcad.cover.rectangles.MAX_STEPS`, whose sums and
+doubles do not overflow.
 
-The window is cut in two at an edge of a rectangle, and so are the parts, as long as a rectangle meets a part without
-covering it. The edge next to the middle is taken, so that the depth is near the logarithm of the number of rectangles.
-All parts of one depth are cut at once.
+The window is cut in two at an edge of a rectangle, and so are the parts, as long as a rectangle
+meets a part without covering it. The edge next to the middle is taken, so that the depth is near
+the logarithm of the number of rectangles. All parts of one depth are cut at once.
 """
 
 from __future__ import annotations
@@ -68,7 +70,9 @@ class Subdivision:
         return found
 
     def leaves_right_above(self, x: Integers, y: Integers) -> Integers:
-        """For lattice points, the leaf that holds what is just right of and above each; x, y < steps."""
+        """For lattice points, the leaf that holds what is just right of and above each; x,
+        y < steps.
+        """
         part = np.zeros(len(x), dtype=np.int64)
         active = np.flatnonzero(self.state[part] == CUT)
         while len(active):
@@ -79,7 +83,8 @@ class Subdivision:
         return part
 
     def meeting(self, boxes: Integers, *, closed: bool) -> tuple[Integers, Integers]:
-        """All pairs of a box (its position) and a leaf that have points in common; unless closed, inner points.
+        """All pairs of a box (its position) and a leaf that have points in common; unless closed,
+        inner points.
 
         Parameters
         ----------
@@ -113,11 +118,22 @@ def rectangle_array(cover: Cover) -> Integers:
     try:
         array = np.array(cover.rectangles, dtype=np.int64).reshape(-1, 4)
     except (OverflowError, ValueError) as error:
-        raise ValueError("a rectangle of the cover is not four integers within the window") from error
+        raise ValueError(
+            "a rectangle of the cover is not four integers within the window"
+        ) from error
     left, right, bottom, top = array.T
-    bad = (left < 0) | (left >= right) | (right > steps) | (bottom < 0) | (bottom >= top) | (top > steps)
+    bad = (
+        (left < 0)
+        | (left >= right)
+        | (right > steps)
+        | (bottom < 0)
+        | (bottom >= top)
+        | (top > steps)
+    )
     if bad.any():
-        raise ValueError(f"not a rectangle of the cover's window: {cover.rectangles[int(np.argmax(bad))]}")
+        raise ValueError(
+            f"not a rectangle of the cover's window: {cover.rectangles[int(np.argmax(bad))]}"
+        )
     return array
 
 
@@ -176,9 +192,16 @@ def subdivide(rectangles: Integers, steps: int) -> Subdivision:
 
 
 def _next_to_the_middle(
-    low: Integers, high: Integers, first: Integers, last: Integers, owner: Integers, starts: Integers
+    low: Integers,
+    high: Integers,
+    first: Integers,
+    last: Integers,
+    owner: Integers,
+    starts: Integers,
 ) -> tuple[Integers, NDArray[np.bool_]]:
-    """For each part, the edge of a rectangle strictly inside of it that is nearest to its middle, if there is one."""
+    """For each part, the edge of a rectangle strictly inside of it that is nearest to its middle,
+    if there is one.
+    """
     double = first + last
     a, b, d = first[owner], last[owner], double[owner]
     low_below, high_below = 2 * low <= d, 2 * high <= d
@@ -207,8 +230,17 @@ class _Growing:
         self.parts += 2 * len(parts)
         while self.parts > len(self.state):
             self.state, self.axis = _doubled(self.state), _doubled(self.axis)
-            self.bounds, self.cut, self.child = _doubled(self.bounds), _doubled(self.cut), _doubled(self.child)
-        self.state[parts], self.axis[parts], self.cut[parts], self.child[parts] = CUT, axis, cut, child
+            self.bounds, self.cut, self.child = (
+                _doubled(self.bounds),
+                _doubled(self.cut),
+                _doubled(self.child),
+            )
+        self.state[parts], self.axis[parts], self.cut[parts], self.child[parts] = (
+            CUT,
+            axis,
+            cut,
+            child,
+        )
         for side in (0, 1):
             self.bounds[child + side] = self.bounds[parts]
             self.bounds[child + side, 2 * axis + 1 - side] = cut

@@ -1,10 +1,12 @@
-"""Tubes in their frames, exactly: on which side of them a point is, where they meet the frame's sides, and areas.
+"""Tubes in their frames, exactly: on which side of them a point is, where they meet the frame's
+sides, and areas.
 
 Guarantee: exact, or rounded to the side that is said. All numbers are integers or rationals.
 
-The polynomial with controls c_0, ..., c_n over [a, b] is the sum of binomial(n, k) t^k (1 - t)^(n - k) c_k with
-t = (u - a)/(b - a). It lies between the least and the largest control, ascends strictly if they ascend and are not all
-equal, and its integral over the interval is the mean of the controls times b - a.
+The polynomial with controls c_0, ..., c_n over [a, b] is the sum of binomial(n, k) t^k
+(1 - t)^(n - k) c_k with t = (u - a)/(b - a). It lies between the least and the largest control,
+ascends strictly if they ascend and are not all equal, and its integral over the interval is the
+mean of the controls times b - a.
 """
 
 from __future__ import annotations
@@ -21,7 +23,8 @@ Controls = tuple[int, ...]
 
 
 class Piece(NamedTuple):
-    """A part of a frame's side: from low to high along it; ``tube`` says whether a tube has it, closed, or none.
+    """A part of a frame's side: from low to high along it; ``tube`` says whether a tube has it,
+    closed, or none.
 
     ``number`` is that of the tube, or of the open part of the frame: the number of tubes below it.
     """
@@ -53,7 +56,8 @@ def side_of(patch: Patch, tube: Tube, u: Fraction, v: Fraction) -> int:
 
 
 def place(patch: Patch, u: Fraction, v: Fraction) -> int | None:
-    """In which open part of a frame a point inside of it is, by the number of tubes below; None in a tube.
+    """In which open part of a frame a point inside of it is, by the number of tubes below; None in
+    a tube.
 
     Parameters
     ----------
@@ -82,7 +86,9 @@ def flaw(patch: Patch, steps: int) -> str:
         if not within and not slope(c):
             return "a tube neither stays inside of its frame nor ascends or descends"
     for one, two in pairwise(patch.tubes):
-        if not all(b - a > one.half + two.half for a, b in zip(one.controls, two.controls, strict=True)):
+        if not all(
+            b - a > one.half + two.half for a, b in zip(one.controls, two.controls, strict=True)
+        ):
             return "its tubes are not ascending and disjoint"
     return ""
 
@@ -96,13 +102,17 @@ def slope(controls: Controls) -> int:
 
 
 def side(patch: Patch, axis: int, end: int) -> list[Piece]:
-    """The pieces of a side of the frame: of the lower (0) or the upper (1) one across an axis; in order.
+    """The pieces of a side of the frame: of the lower (0) or the upper (1) one across an axis; in
+    order.
 
     A tube's piece is rounded outward to the lattice, and so are parts in between inward.
     """
     if axis == patch.along:
         low, high = patch.heights
-        reaches = [(tube.controls[-end] - tube.half, tube.controls[-end] + tube.half) for tube in patch.tubes]
+        reaches = [
+            (tube.controls[-end] - tube.half, tube.controls[-end] + tube.half)
+            for tube in patch.tubes
+        ]
         blocks = [
             (max(least, low), min(most, high), number)
             for number, (least, most) in enumerate(reaches)
@@ -127,7 +137,9 @@ def side(patch: Patch, axis: int, end: int) -> list[Piece]:
     return _between(low, high, blocks, numbers)
 
 
-def _between(low: int, high: int, blocks: Sequence[tuple[int, int, int]], numbers: Sequence[int]) -> list[Piece]:
+def _between(
+    low: int, high: int, blocks: Sequence[tuple[int, int, int]], numbers: Sequence[int]
+) -> list[Piece]:
     found, at = [], low
     for (first, last, tube), part in zip(blocks, numbers, strict=False):
         if first > at:
@@ -140,7 +152,8 @@ def _between(low: int, high: int, blocks: Sequence[tuple[int, int, int]], number
 
 
 def crossing(patch: Patch, tube: Tube, height: int) -> tuple[int, int]:
-    """The least lattice interval along the tube with all points at which it has this height; (1, 0) if there is none.
+    """The least lattice interval along the tube with all points at which it has this height; (1, 0)
+    if there is none.
 
     Where the tube is at this height its controls ascend or descend.
     """
@@ -157,8 +170,8 @@ def crossing(patch: Patch, tube: Tube, height: int) -> tuple[int, int]:
 
 
 def _first(controls: Controls, low: int, high: int, level: int, beyond: bool = False) -> int:
-    """The first lattice point from low to high at which an ascending polynomial is at least level, or above it; else
-    high + 1."""
+    """The first lattice point from low to high at which an ascending polynomial is at least level,
+    or above it; else high + 1."""
     width = high - low
     if controls[-1] < level + beyond:
         return high + 1
@@ -231,7 +244,8 @@ def _clamped(patch: Patch, controls: Controls) -> tuple[Fraction, Fraction]:
     before, after = max(start - a - 1, 0), max(b - end - 1, 0)
     edges = (start > a) + (end < b)
     rest = Fraction(before * low + after * high) + inner
-    # within each of the one or two steps that are left it is between the cut-off values at the step's ends
+    # within each of the one or two steps that are left it is between the cut-off values at the
+    # step's ends
     least, most = Fraction(0), Fraction(0)
     for here in ([start - 1] if start > a else []) + ([end] if end < b else []):
         one, two = (_cut(Fraction(scaled_value(controls, x - a, width), width ** (len(controls) - 1)), low, high)
@@ -253,8 +267,14 @@ def _integral(controls: Controls, a: int, b: int, end: int) -> Fraction:
 
 
 def bounds_between(controls: Controls, start: Fraction, end: Fraction) -> tuple[Fraction, Fraction]:
-    """The least and the largest control of the polynomial over a part of its interval, from t = start to t = end."""
-    part = _split(_split([Fraction(c) for c in controls], end)[0], start / end)[1] if end else [Fraction(controls[0])]
+    """The least and the largest control of the polynomial over a part of its interval, from
+    t = start to t = end.
+    """
+    part = (
+        _split(_split([Fraction(c) for c in controls], end)[0], start / end)[1]
+        if end
+        else [Fraction(controls[0])]
+    )
     return min(part), max(part)
 
 
@@ -270,7 +290,9 @@ def halved(row: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
 
 
 def bounds_by_halving(controls: Controls, halvings: int) -> list[tuple[int, int]]:
-    """Bounds of the polynomial over 2^halvings equal parts of its interval: their controls, rounded outward."""
+    """Bounds of the polynomial over 2^halvings equal parts of its interval: their controls, rounded
+    outward.
+    """
     n, parts = len(controls) - 1, [tuple(controls)]
     for _ in range(halvings):
         parts = [half for row in parts for half in halved(row)]

@@ -1,7 +1,9 @@
-"""Areas of a map's regions; where an involution maps the window to itself, those of one half and of its images.
+"""Areas of a map's regions; where an involution maps the window to itself, those of one half and of
+its images.
 
-Guarantee: each area lies in its bounds. A region's part in the other half is the image of its image's part in this one:
-an involution keeps areas, and takes regions to regions, as these do not depend on how they were cut into cells.
+Guarantee: each area lies in its bounds. A region's part in the other half is the image of its
+image's part in this one: an involution keeps areas, and takes regions to regions, as these do not
+depend on how they were cut into cells.
 """
 
 from __future__ import annotations
@@ -21,7 +23,9 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import decimal, fraction_of
 
 
-def areas_of(problem: SliceProblem, known: Cells, tolerance: Fraction, without: frozenset[str], check: Check) -> Areas:
+def areas_of(
+    problem: SliceProblem, known: Cells, tolerance: Fraction, without: frozenset[str], check: Check
+) -> Areas:
     """Bounds of the regions' areas.
 
     Parameters
@@ -32,7 +36,9 @@ def areas_of(problem: SliceProblem, known: Cells, tolerance: Fraction, without: 
     alone = "equal-counts" in without
     parts = region_stacks(known.cut, range(len(region_of)) if alone else region_of)
     # the halves before and behind an abscissa need no cuts, and are the cheapest
-    reflections = sorted(problem.reflections, key=lambda change: (change.axes, change.axis_signs[base]))
+    reflections = sorted(
+        problem.reflections, key=lambda change: (change.axes, change.axis_signs[base])
+    )
     used = None
     for change in () if alone else reflections[:1]:
         images = _images(known, change)
@@ -40,8 +46,13 @@ def areas_of(problem: SliceProblem, known: Cells, tolerance: Fraction, without: 
             parts, used = _half(parts._replace(images=images), change, base), change
     bounds, bits = region_areas(parts, tolerance, check)
     if alone:
-        bounds = tuple(_sum_of([bounds[n] for n in cells], problem.slice.area) for cells in members(region_of))
-    rounded = ((fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True))) for low, high in bounds)
+        bounds = tuple(
+            _sum_of([bounds[n] for n in cells], problem.slice.area) for cells in members(region_of)
+        )
+    rounded = (
+        (fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True)))
+        for low, high in bounds
+    )
     return Areas(tuple(rounded), bits, used)
 
 
@@ -50,8 +61,12 @@ def region_stacks(cut: Decomposition, regions: Iterable[int]) -> RegionStacks:
     return RegionStacks(cut.stacks, cut.rows(regions), cut.variety.curves, cut.base, cut.fibre)
 
 
-def _sum_of(areas: Sequence[tuple[Fraction, Fraction]], most: Fraction) -> tuple[Fraction, Fraction]:
-    return sum((low for low, _ in areas), Fraction(0)), min(sum((high for _, high in areas), Fraction(0)), most)
+def _sum_of(
+    areas: Sequence[tuple[Fraction, Fraction]], most: Fraction
+) -> tuple[Fraction, Fraction]:
+    return sum((low for low, _ in areas), Fraction(0)), min(
+        sum((high for _, high in areas), Fraction(0)), most
+    )
 
 
 def _half(parts: RegionStacks, change: Involution, base: int) -> RegionStacks:
@@ -66,7 +81,8 @@ def _half(parts: RegionStacks, change: Involution, base: int) -> RegionStacks:
 
 
 def _images(known: Cells, change: Involution) -> tuple[int, ...] | None:
-    """The image of each region; None where all samples of one have their images on lines over critical abscissae.
+    """The image of each region; None where all samples of one have their images on lines over
+    critical abscissae.
 
     Raises
     ------
@@ -76,7 +92,10 @@ def _images(known: Cells, change: Involution) -> tuple[int, ...] | None:
     region_of, keys = known.neighbours.region_of, known.counts.keys
     images = []
     for cells in members(region_of):
-        points = (change.at((to_fraction(x), to_fraction(y))) for x, y in (known.cut.points[n] for n in cells))
+        points = (
+            change.at((to_fraction(x), to_fraction(y)))
+            for x, y in (known.cut.points[n] for n in cells)
+        )
         places = (known.cut.cell_at((from_fraction(x), from_fraction(y))) for x, y in points)
         image = next((n for n in places if n is not None), None)
         if image is None:

@@ -1,4 +1,5 @@
-"""The arrangement of the regions of a slice, with one count for each part that the curves cut out, and no areas.
+"""The arrangement of the regions of a slice, with one count for each part that the curves cut out,
+and no areas.
 
 Guarantee: exact, and that of the slice's region map.
 """
@@ -18,7 +19,14 @@ from ptmcad.answer.arrangement import Arrangement
 from ptmcad.answer.regionmap import Merge, Wall
 from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.exact.cad.stacks import StackData, heights_between, level_at
-from ptmcad.exact.decomposition import Decomposition, Neighbours, Sample, crossings_of, joined_cells, neighbours_of
+from ptmcad.exact.decomposition import (
+    Decomposition,
+    Neighbours,
+    Sample,
+    crossings_of,
+    joined_cells,
+    neighbours_of,
+)
 from ptmcad.exact.regions import members
 from ptmcad.exact.sparing import counts_by_component
 from ptmcad.exact.stages import SliceProblem, decomposition_of, problem_of
@@ -39,33 +47,39 @@ class Picture(NamedTuple):
     neighbours: Neighbours
 
     def region_at(self, at: Sample) -> int | None:
-        """The region of a point of the window; None on the curves, and on lines over critical abscissae."""
+        """The region of a point of the window; None on the curves, and on lines over critical
+        abscissae.
+        """
         cell = self.cut.cell_at(at)
         return None if cell is None else self.neighbours.region_of[cell]
 
 
-def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing, base: int | None = None) -> Picture:
+def picture_of(
+    slice: Slice, known: Known | None = None, check: Check = nothing, base: int | None = None
+) -> Picture:
     """The arrangement of a slice without free lengths.
 
     Parameters
     ----------
     known : what is known of the equations from a family that the slice is of.
     check : called now and then; may raise to stop.
-    base : 0 or 1, the axis over which the window is cut, on which the arrangement does not depend; the cheaper one when
-        None.
+    base : 0 or 1, the axis over which the window is cut, on which the arrangement does not depend;
+        the cheaper one when None.
 
     Raises
     ------
     ConfigError
         When springs have a free length.
-    HypothesisError
-        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
+    HypothesisError When the slice is degenerate, has infinitely many equilibria, or leaves the
+        domain of the geometry.
     """
     without_free_lengths(slice.model, slice.parameters, "an arrangement is")
     problem = problem_of(proved(slice))._replace(known=known)
     cut = decomposition_of(problem, base, check)
     crossings = crossings_of(cut, check=check)
-    counts = counts_by_component(problem, cut, joined_cells(cut, crossings), lambda _done, _total: check())
+    counts = counts_by_component(
+        problem, cut, joined_cells(cut, crossings), lambda _done, _total: check()
+    )
     neighbours = neighbours_of(cut, counts.keys, crossings)
     region_of = neighbours.region_of
     keys = tuple(counts.keys[cells[0]] for cells in members(region_of))
@@ -82,15 +96,22 @@ def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing,
 def _sides(cut: Decomposition, region_of: Sequence[int]) -> tuple[tuple[int, ...], ...]:
     """The regions along low x, high x, low y, high y."""
     rows = cut.rows(region_of)
-    along = [_without_repetition([row[0] for row in rows]), _without_repetition([row[-1] for row in rows])]
+    along = [
+        _without_repetition([row[0] for row in rows]),
+        _without_repetition([row[-1] for row in rows]),
+    ]
     across = [
-        _without_repetition([rows[end][level] for level in _levels_at(cut.variety.curves, edge, stack, cut.fibre)])
+        _without_repetition(
+            [rows[end][level] for level in _levels_at(cut.variety.curves, edge, stack, cut.fibre)]
+        )
         for end, edge, stack in ((0, cut.base[0], cut.stacks[0]), (-1, cut.base[1], cut.stacks[-1]))
     ]
     return (*across, *along) if cut.variety.base == 0 else (*along, *across)
 
 
-def _levels_at(curves: Sequence[FibredCurve], edge: fmpq, stack: StackData, fibre: Interval) -> list[int]:
+def _levels_at(
+    curves: Sequence[FibredCurve], edge: fmpq, stack: StackData, fibre: Interval
+) -> list[int]:
     """The levels of a stack's cells along the window's edge at the end of its base, from below.
 
     Not all cells reach the edge along an arc: two walls may end in one point of it.
@@ -103,7 +124,9 @@ def _levels_at(curves: Sequence[FibredCurve], edge: fmpq, stack: StackData, fibr
         u = stack.sample
         while any(has_root_between(p, min(u, edge), max(u, edge)) for p in traces):
             u = (u + edge) / 2
-        levels.append(level_at(curves, u, height, fibre))  # the segment from the edge to this point meets no curve
+        levels.append(
+            level_at(curves, u, height, fibre)
+        )  # the segment from the edge to this point meets no curve
     return levels
 
 

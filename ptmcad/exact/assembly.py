@@ -1,4 +1,5 @@
-"""From what the engine's stages have found to the engine-neutral `RegionMap`, made once, of as much as there is.
+"""From what the engine's stages have found to the engine-neutral `RegionMap`, made once, of as much
+as there is.
 
 Guarantee: nothing is decided here; numbers are copied exactly.
 """
@@ -79,10 +80,19 @@ def assemble(
         stacks=() if cells is None else stacks_of_cells(cells.cut.stacks),
         cells=() if cells is None else tuple(_cells(problem, cells, samples)),
         adjacencies=adjacencies,
-        non_adjacencies=() if cells is None else _non_adjacencies(cells.cut.stacks, cells.neighbours.crossings),
+        non_adjacencies=()
+        if cells is None
+        else _non_adjacencies(cells.cut.stacks, cells.neighbours.crossings),
         regions=() if cells is None else _regions(problem, cells, samples, areas),
         plan=(
-            *plan_of(problem.slice, variety.components, variety.base, variety.costs, options.without, options.areas),
+            *plan_of(
+                problem.slice,
+                variety.components,
+                variety.base,
+                variety.costs,
+                options.without,
+                options.areas,
+            ),
             *half_step("areas on", None if areas is None else areas.change, problem.slice),
         ),
         undetermined=Fraction(1 if cells is None else 0),
@@ -115,21 +125,40 @@ def critical_values_of(projection: Projection) -> tuple[CriticalValue, ...]:
 
 
 def _further(problem: SliceProblem, key: tuple[int, ...]) -> dict[str, int]:
-    """Where a count is by a predicate, how many solutions this holds at, from what tells regions apart."""
+    """Where a count is by a predicate, how many solutions this holds at, from what tells regions
+    apart.
+    """
     count = problem.slice.count
     return {} if count.kind.predicate is None else {count.value: key[0]}
 
 
 def _cells(problem: SliceProblem, cells: Cells, samples: Sequence[Point]) -> Iterator[Cell]:
     for (s, level), sample, region, found, key in zip(
-        cells.cut.places, samples, cells.neighbours.region_of, cells.counts.found, cells.counts.keys, strict=True
+        cells.cut.places,
+        samples,
+        cells.neighbours.region_of,
+        cells.counts.found,
+        cells.counts.keys,
+        strict=True,
     ):
         counts = found.counts
         further = _further(problem, key)
-        yield Cell(s, level, sample, region, counts.total, counts.stable, counts.index, _solutions(found), further)
+        yield Cell(
+            s,
+            level,
+            sample,
+            region,
+            counts.total,
+            counts.stable,
+            counts.index,
+            _solutions(found),
+            further,
+        )
 
 
-def _non_adjacencies(stacks: Sequence[StackData], crossings: Sequence[Crossing]) -> tuple[NonAdjacency, ...]:
+def _non_adjacencies(
+    stacks: Sequence[StackData], crossings: Sequence[Crossing]
+) -> tuple[NonAdjacency, ...]:
     found, first = [], 0
     for s, crossing in enumerate(crossings):
         following = first + len(stacks[s].heights)
@@ -150,7 +179,8 @@ def _non_adjacencies(stacks: Sequence[StackData], crossings: Sequence[Crossing])
 
 def _solutions(found: Equilibria) -> tuple[Solution, ...]:
     return tuple(
-        Solution(tuple(to_fraction(x) for x in s.center), to_fraction(s.radius), s.signs) for s in found.solutions
+        Solution(tuple(to_fraction(x) for x in s.center), to_fraction(s.radius), s.signs)
+        for s in found.solutions
     )
 
 
@@ -158,12 +188,22 @@ def stacks_of_cells(stacks: Sequence[StackData]) -> tuple[Stack, ...]:
     result, first = [], 0
     for stack in stacks:
         cells = tuple(range(first, first + len(stack.heights)))
-        result.append(Stack(stack.left.critical, stack.right.critical, to_fraction(stack.sample), stack.walls, cells))
+        result.append(
+            Stack(
+                stack.left.critical,
+                stack.right.critical,
+                to_fraction(stack.sample),
+                stack.walls,
+                cells,
+            )
+        )
         first += len(cells)
     return tuple(result)
 
 
-def _regions(problem: SliceProblem, cells: Cells, samples: Sequence[Point], areas: Areas | None) -> tuple[Region, ...]:
+def _regions(
+    problem: SliceProblem, cells: Cells, samples: Sequence[Point], areas: Areas | None
+) -> tuple[Region, ...]:
     """The cells merged, in the order of the regions' numbers."""
     merged = members(cells.neighbours.region_of)
     bounds = ((Fraction(0), problem.slice.area),) * len(merged) if areas is None else areas.bounds
@@ -177,7 +217,10 @@ def _regions(problem: SliceProblem, cells: Cells, samples: Sequence[Point], area
 
 
 def _region(
-    cells: tuple[int, ...], counts: Sequence[Counts], samples: Sequence[Point], area: tuple[Fraction, Fraction]
+    cells: tuple[int, ...],
+    counts: Sequence[Counts],
+    samples: Sequence[Point],
+    area: tuple[Fraction, Fraction],
 ) -> Region:
     def common(values: list[Any]) -> Any:
         return values[0] if all(v == values[0] for v in values) else None
@@ -194,4 +237,8 @@ def _region(
 
 def _height(point: Point) -> tuple[int, ...]:
     x, y = point[0], point[1]
-    return (max(abs(x.numerator), x.denominator, abs(y.numerator), y.denominator), x.denominator, y.denominator)
+    return (
+        max(abs(x.numerator), x.denominator, abs(y.numerator), y.denominator),
+        x.denominator,
+        y.denominator,
+    )

@@ -1,12 +1,14 @@
 """Solutions of a system at a rational point of a slice, isolated and counted.
 
-Guarantee: exact for any number of unknowns; `DegeneratePoint` is raised when a solution there has a singular Jacobian,
-so no count is ever given on the discriminant variety.
+Guarantee: exact for any number of unknowns; `DegeneratePoint` is raised when a solution there has a
+singular Jacobian, so no count is ever given on the discriminant variety.
 
-The real roots of a univariate representation are isolated, then the Hessian's inertia there is found by ball
-arithmetic, with precision doubled until every sign is certain (the Hessian is nonsingular, so this ends).
+The real roots of a univariate representation are isolated, then the Hessian's inertia there is
+found by ball arithmetic, with precision doubled until every sign is certain (the Hessian is
+nonsingular, so this ends).
 
-A condition that is zero at a solution is not positive there; it is found to be zero by a greatest common divisor.
+A condition that is zero at a solution is not positive there; it is found to be zero by a greatest
+common divisor.
 """
 
 from __future__ import annotations
@@ -32,18 +34,22 @@ from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_poi
 _FIRST_BITS = 128
 """Two machine words: nearly always enough, and in balls hardly more work than one."""
 _ROOM = 2**10
-"""A solution is alone in so many times its box, so that Newton's method finds it from the box's middle."""
+"""A solution is alone in so many times its box, so that Newton's method finds it from the box's
+middle.
+"""
 
 
 class Equilibrium(NamedTuple):
-    """A real solution: the only one within ``radius`` of ``center`` in every coordinate, and what is stable about it.
+    """A real solution: the only one within ``radius`` of ``center`` in every coordinate, and what
+    is stable about it.
 
     Attributes
     ----------
     center, radius : decimals.
-    signs : of the Hessian's eigenvalues, positive ones first; without a potential, of the stability conditions in their
-        order, 0 where one is zero.
-    is_held : whether all conditions for stability are positive; of a potential those that a count asks for besides.
+    signs : of the Hessian's eigenvalues, positive ones first; without a potential, of the stability
+        conditions in their order, 0 where one is zero.
+    is_held : whether all conditions for stability are positive; of a potential those that a count
+        asks for besides.
     """
 
     center: tuple[fmpq, ...]
@@ -67,7 +73,9 @@ class Equilibria(NamedTuple):
     held: int = 0
 
 
-def equilibria(system: ParametricSystem, values: Values, most: WorkLimit | None = None) -> Equilibria:
+def equilibria(
+    system: ParametricSystem, values: Values, most: WorkLimit | None = None
+) -> Equilibria:
     """All real solutions that count at rational values of all parameters, by real-root isolation.
 
     Raises
@@ -81,8 +89,13 @@ def equilibria(system: ParametricSystem, values: Values, most: WorkLimit | None 
     bits = _FIRST_BITS
     if representation is None:
         return Equilibria(_counts(system, ()), (), bits)
-    # where coordinates are at most 1, real values of the form come from real solutions only, and so they do elsewhere
-    bound = fmpq(sum(representation.form) + 1) if point.is_bounded else root_bound(representation.minimal)
+    # where coordinates are at most 1, real values of the form come from real solutions only, and so
+    # they do elsewhere
+    bound = (
+        fmpq(sum(representation.form) + 1)
+        if point.is_bounded
+        else root_bound(representation.minimal)
+    )
     roots = isolate(representation.minimal, -bound, bound)
     zeros = [vanishing_divisor(point.algebra, representation, p) for p in point.conditions]
     while (found := _enclosed(system, point, representation, roots, zeros, bits)) is None:
@@ -105,14 +118,18 @@ def _enclosed(
     zeros: Sequence[Divisor | None],
     bits: int,
 ) -> tuple[Equilibrium, ...] | None:
-    """The solutions at these roots that count, in disjoint boxes; None when the precision does not decide all signs."""
+    """The solutions at these roots that count, in disjoint boxes; None when the precision does not
+    decide all signs.
+    """
     found: list[Equilibrium] = []
     with ctx.workprec(bits):
         newton = Newton.of(representation.minimal)
         coordinates = CoordinatesInBalls.of(representation)
         conditions = tuple(map(_in_balls, point.conditions))
         size = system.criterion.order
-        hessian = [(i, j, _in_balls(point.jacobian[i][j])) for i in range(size) for j in range(i, size)]
+        hessian = [
+            (i, j, _in_balls(point.jacobian[i][j])) for i in range(size) for j in range(i, size)
+        ]
         for root in roots:
             at = coordinates.at(newton.ball(root))
             if at is None:
@@ -141,19 +158,27 @@ def _enclosed(
                 return None
             found.append(Equilibrium(center, radius, signs, is_held))
     disjoint = all(
-        any(abs(x - y) > _ROOM * (a.radius + b.radius) for x, y in zip(a.center, b.center, strict=True))
+        any(
+            abs(x - y) > _ROOM * (a.radius + b.radius)
+            for x, y in zip(a.center, b.center, strict=True)
+        )
         for a, b in combinations(found, 2)
     )
     return tuple(found) if disjoint else None
 
 
 _Balls = list[tuple[arb, tuple[int, ...]]]
-"""A polynomial in the unknowns: coefficients, each with the numbers of the unknowns that it is multiplied by."""
+"""A polynomial in the unknowns: coefficients, each with the numbers of the unknowns that it is
+multiplied by.
+"""
 
 
 def _in_balls(p: RationalPolynomial) -> _Balls:
     # repeated factors: python-flint's ball ** int is not a number when the ball's middle is zero
-    return [(arb(c), tuple(k for k, e in enumerate(monomial) for _ in range(e))) for monomial, c in p.items()]
+    return [
+        (arb(c), tuple(k for k, e in enumerate(monomial) for _ in range(e)))
+        for monomial, c in p.items()
+    ]
 
 
 def _value(p: _Balls, unknowns: Sequence[arb]) -> arb:
@@ -167,9 +192,14 @@ def _value(p: _Balls, unknowns: Sequence[arb]) -> arb:
 
 
 def _condition_signs(
-    conditions: Sequence[_Balls], root: RealRoot, unknowns: Sequence[arb], zeros: Sequence[Divisor | None]
+    conditions: Sequence[_Balls],
+    root: RealRoot,
+    unknowns: Sequence[arb],
+    zeros: Sequence[Divisor | None],
 ) -> str | None:
-    """The signs of inequalities and stability conditions at a solution; None when one is not certain."""
+    """The signs of inequalities and stability conditions at a solution; None when one is not
+    certain.
+    """
     signs = ""
     for p, divisor in zip(conditions, zeros, strict=True):
         if divisor is not None and is_root_of(divisor, root):
@@ -182,8 +212,11 @@ def _condition_signs(
     return signs
 
 
-def _negative_eigenvalues(upper: Sequence[tuple[int, int, _Balls]], size: int, unknowns: Sequence[arb]) -> int | None:
-    """The number of negative eigenvalues of the Hessian in a box; None when its signs are not certain.
+def _negative_eigenvalues(
+    upper: Sequence[tuple[int, int, _Balls]], size: int, unknowns: Sequence[arb]
+) -> int | None:
+    """The number of negative eigenvalues of the Hessian in a box; None when its signs are not
+    certain.
 
     Parameters
     ----------
@@ -197,14 +230,18 @@ def _negative_eigenvalues(upper: Sequence[tuple[int, int, _Balls]], size: int, u
 
 
 def _decimal_box(unknowns: Sequence[arb]) -> tuple[tuple[fmpq, ...], fmpq] | None:
-    """Center and radius, in decimals, of a box around the balls; None when these are wider than the coarsest box.
+    """Center and radius, in decimals, of a box around the balls; None when these are wider than the
+    coarsest box.
 
-    The finest box has 12 digits after the point, and more as the precision grows, so that all boxes come apart.
+    The finest box has 12 digits after the point, and more as the precision grows, so that all boxes
+    come apart.
     """
     widest = max((x.rad() for x in unknowns), default=arb(0))
     for digits in range(max(12, ctx.prec // 10), 5, -1):
         scale = 10**digits
-        if widest * (2 * scale) < 1:  # and the nearest decimal is at most half a unit from the middle
+        if (
+            widest * (2 * scale) < 1
+        ):  # and the nearest decimal is at most half a unit from the middle
             return tuple(fmpq(_nearest(x, scale), scale) for x in unknowns), fmpq(1, scale)
     return None
 

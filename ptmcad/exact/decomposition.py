@@ -1,4 +1,5 @@
-"""A window cut along curves: stacks of cells over a base axis, and which of the cells are neighbours.
+"""A window cut along curves: stacks of cells over a base axis, and which of the cells are
+neighbours.
 
 Guarantee: no step decides anything by rounding without an error bound.
 """
@@ -39,7 +40,8 @@ class Variety(NamedTuple):
     curves : the components that are used, but for lines across the base.
     lines : these, by the components' numbers.
     costs : predicted for each of the two base axes.
-    excludes : whether solutions at which an inequality's polynomial is zero were left out, as they are in the way.
+    excludes : whether solutions at which an inequality's polynomial is zero were left out, as they
+        are in the way.
     """
 
     components: tuple[Component, ...]
@@ -52,7 +54,10 @@ class Variety(NamedTuple):
 
 
 def seen_from(
-    components: Sequence[Component], base: int | None = None, complex_solutions: int = 0, excludes: bool = False
+    components: Sequence[Component],
+    base: int | None = None,
+    complex_solutions: int = 0,
+    excludes: bool = False,
 ) -> Variety:
     """Components over a base axis; over that of the cheaper decomposition when None."""
     views = [curves_of(components, axis) for axis in (0, 1)]
@@ -85,7 +90,9 @@ class Decomposition(NamedTuple):
     @property
     def places(self) -> list[tuple[int, int]]:
         """The stack of every cell, and its level there."""
-        return [(s, level) for s, stack in enumerate(self.stacks) for level in range(len(stack.heights))]
+        return [
+            (s, level) for s, stack in enumerate(self.stacks) for level in range(len(stack.heights))
+        ]
 
     def samples(self, names: tuple[str, str]) -> tuple[Point, ...]:
         """The points as answers have them, by the axes' names."""
@@ -103,7 +110,9 @@ class Decomposition(NamedTuple):
         return [lines.get(_coefficients(r.polynomial)) for r in self.projection.abscissae]
 
     def cell_at(self, at: Sample) -> int | None:
-        """The cell in which a point of the window lies; None on the curves, and on lines over critical abscissae."""
+        """The cell in which a point of the window lies; None on the curves, and on lines over
+        critical abscissae.
+        """
         u, v = at[self.variety.base], at[1 - self.variety.base]
         sides = [order(u, r) for r in self.projection.abscissae]
         if 0 in sides or any(sign_at(c.fibre(u), v) == 0 for c in self.variety.curves):
@@ -132,7 +141,9 @@ def projection_of(
 ) -> Projection:
     """The abscissae over which the order of the curves can change."""
     base = variety.base
-    return project(variety.curves, list(variety.lines.values()), window[base], window[1 - base], check, without)
+    return project(
+        variety.curves, list(variety.lines.values()), window[base], window[1 - base], check, without
+    )
 
 
 def stacks_of(window: Window, variety: Variety, projection: Projection) -> Decomposition:
@@ -142,7 +153,11 @@ def stacks_of(window: Window, variety: Variety, projection: Projection) -> Decom
     lines = lines_of(variety.components, base, HARMLESS)
     avoided = Avoided(curves_of(variety.components, base, HARMLESS), list(lines.values()))
     stacks = lift(variety.curves, projection.abscissae, window[base], window[1 - base], avoided)
-    points = (((s.sample, height) if base == 0 else (height, s.sample)) for s in stacks for height in s.heights)
+    points = (
+        ((s.sample, height) if base == 0 else (height, s.sample))
+        for s in stacks
+        for height in s.heights
+    )
     return Decomposition(window, variety, projection, stacks, tuple(points))
 
 
@@ -151,7 +166,9 @@ def cut_along(window: Window, variety: Variety, check: Check = nothing) -> Decom
     return stacks_of(window, variety, projection_of(window, variety, check=check))
 
 
-def crossings_of(cut: Decomposition, report: Report = unreported, check: Check = nothing) -> tuple[Crossing, ...]:
+def crossings_of(
+    cut: Decomposition, report: Report = unreported, check: Check = nothing
+) -> tuple[Crossing, ...]:
     """What is adjacent across each abscissa, with proof."""
     crossings = []
     for k, (left, right) in enumerate(pairwise(cut.stacks)):
@@ -160,7 +177,9 @@ def crossings_of(cut: Decomposition, report: Report = unreported, check: Check =
     return tuple(crossings)
 
 
-def neighbours_of(cut: Decomposition, keys: Sequence[tuple[int, ...]], crossings: tuple[Crossing, ...]) -> Neighbours:
+def neighbours_of(
+    cut: Decomposition, keys: Sequence[tuple[int, ...]], crossings: tuple[Crossing, ...]
+) -> Neighbours:
     """The adjacencies, and the cells merged into regions.
 
     Parameters
@@ -178,10 +197,12 @@ def neighbours_of(cut: Decomposition, keys: Sequence[tuple[int, ...]], crossings
 
 
 def joined_cells(cut: Decomposition, crossings: Sequence[Crossing]) -> tuple[int, ...]:
-    """The component of the variety's complement in which each cell lies, as far as it is proved that cells are joined.
+    """The component of the variety's complement in which each cell lies, as far as it is proved
+    that cells are joined.
 
-    Components are numbered in the order of their first cells. Within one there is a path that meets the variety
-    nowhere, on which no solution comes, goes, or changes its signs: counts are equal in all its cells.
+    Components are numbered in the order of their first cells. Within one there is a path that meets
+    the variety nowhere, on which no solution comes, goes, or changes its signs: counts are equal in
+    all its cells.
     """
     keys = [()] * len(cut.points)
     links = adjacencies_of(cut, crossings, keys)

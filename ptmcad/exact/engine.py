@@ -1,6 +1,8 @@
-"""The exact engine: from a slice without free lengths to its region map, the stages in order, each timed.
+"""The exact engine: from a slice without free lengths to its region map, the stages in order, each
+timed.
 
-Guarantee: the map is exact (`Status.EXACT`): no step decides anything by rounding without an error bound.
+Guarantee: the map is exact (`Status.EXACT`): no step decides anything by rounding without an error
+bound.
 """
 
 from __future__ import annotations
@@ -66,14 +68,15 @@ def exact_map(slice: Slice, options: Options = DEFAULTS, known: Known | None = N
     Parameters
     ----------
     options : of which ``deadline`` counts, not ``timeout``.
-    known : what is known of the equations from a family that the slice is of; the map does not depend on it.
+    known : what is known of the equations from a family that the slice is of; the map does not
+        depend on it.
 
     Raises
     ------
     ConfigError
         When springs have a free length.
-    HypothesisError
-        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
+    HypothesisError When the slice is degenerate, has infinitely many equilibria, or leaves the
+        domain of the geometry.
     LimitReached
         At the deadline, with what there is of the map as ``partial``.
     """
@@ -112,7 +115,9 @@ def _stages(problem: SliceProblem, options: Options, clock: _Clock) -> Iterator[
     yield from _counted(problem, options, clock, cut)
 
 
-def _counted(problem: SliceProblem, options: Options, clock: _Clock, cut: Decomposition) -> Iterator[PartialMap]:
+def _counted(
+    problem: SliceProblem, options: Options, clock: _Clock, cut: Decomposition
+) -> Iterator[PartialMap]:
     """Counts and adjacency, in either order, then areas."""
     crossings: tuple[Crossing, ...] = ()
     for stage in ("adjacency", "counts") if options.sparing else ("counts", "adjacency"):

@@ -1,20 +1,26 @@
-"""The discriminant variety of a family of slices, over Q(x, y, z): what its members have in common, computed once.
+"""The discriminant variety of a family of slices, over Q(x, y, z): what its members have in common,
+computed once.
 
-Guarantee: what `FamilyVariety.at` gives for a member is what `variety.nondegenerate` computes for it alone, up to
-constant factors; where the computation over Q(x, y, z) does not specialise, it gives None.
+Guarantee: what `FamilyVariety.at` gives for a member is what `variety.nondegenerate` computes for
+it alone, up to constant factors; where the computation over Q(x, y, z) does not specialise, it
+gives None.
 
-Why. Let A = Z[x, y, z] and G the basis of the ideal I that the equations span, made by fraction-free arithmetic: sums
-of multiples of generators with coefficients in A, divided now and then by a common factor r of all coefficients. At a
-rational z0 at which neither a leading coefficient of G nor such a factor vanishes identically in x and y,
+Why. Let A = Z[x, y, z] and G the basis of the ideal I that the equations span, made by
+fraction-free arithmetic: sums of multiples of generators with coefficients in A, divided now and
+then by a common factor r of all coefficients. At a rational z0 at which neither a leading
+coefficient of G nor such a factor vanishes identically in x and y,
 
-* G(z0) lies in the ideal of the equations at z0, as all divisions were by elements that remain units over Q(x, y);
-* the equations at z0 lie in the ideal of G(z0), and the S-polynomials of G(z0) reduce to zero by it: pseudo-division
-  multiplies by leading coefficients only, and what it leaves is zero.
+* G(z0) lies in the ideal of the equations at z0, as all divisions were by elements that remain
+  units over Q(x, y);
+* the equations at z0 lie in the ideal of G(z0), and the S-polynomials of G(z0) reduce to zero by
+  it: pseudo-division multiplies by leading coefficients only, and what it leaves is zero.
 
-So G(z0) is a Groebner basis of the ideal at z0, with the same leading monomials (Buchberger's criterion), and it is
-reduced as G is. The norm is a polynomial in the entries of the multiplication matrices, and specialises with them.
+So G(z0) is a Groebner basis of the ideal at z0, with the same leading monomials (Buchberger's
+criterion), and it is reduced as G is. The norm is a polynomial in the entries of the multiplication
+matrices, and specialises with them.
 
-Reference: Kalkbrener, J. Symb. Comp. 24 (1997), On the stability of Groebner bases under specializations.
+Reference: Kalkbrener, J. Symb. Comp. 24 (1997), On the stability of Groebner bases under
+specializations.
 """
 
 from __future__ import annotations
@@ -24,7 +30,14 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.groebner import GroebnerBasis
-from ptmcad.algebra.polynomials import Coefficient, Ratio, UnknownPolynomial, at_third, irreducible_factors, ratio
+from ptmcad.algebra.polynomials import (
+    Coefficient,
+    Ratio,
+    UnknownPolynomial,
+    at_third,
+    irreducible_factors,
+    ratio,
+)
 from ptmcad.algebra.quotient import multiples, norm, quotient_algebra
 from ptmcad.exact.models.system import SliceSystem, SystemOnAxes
 from ptmcad.exact.variety import Nondegenerate, basis_of, nondegenerate
@@ -50,11 +63,14 @@ class FamilyVariety(NamedTuple):
 
     @property
     def critical(self) -> tuple[Coefficient, ...]:
-        """The irreducible factors of the norm of the Jacobian: the surfaces on which solutions meet."""
+        """The irreducible factors of the norm of the Jacobian: the surfaces on which solutions
+        meet.
+        """
         return tuple(irreducible_factors(self.jacobian_norm[0]))
 
     def at(self, value: fmpq, equations: SliceSystem) -> Nondegenerate | None:
-        """What is known of a member's equations; None where that has to be computed for the member alone.
+        """What is known of a member's equations; None where that has to be computed for the member
+        alone.
 
         Parameters
         ----------
@@ -78,7 +94,8 @@ class FamilyVariety(NamedTuple):
 
 
 def family_variety(on: SystemOnAxes) -> FamilyVariety | None:
-    """The variety over Q(x, y, z); None where solutions have to be left out that an inequality excludes everywhere.
+    """The variety over Q(x, y, z); None where solutions have to be left out that an inequality
+    excludes everywhere.
 
     Parameters
     ----------
@@ -106,7 +123,9 @@ def family_variety(on: SystemOnAxes) -> FamilyVariety | None:
 
 
 def _specialised(p: UnknownPolynomial, value: fmpq) -> UnknownPolynomial:
-    """A polynomial in the unknowns at a value of the third parameter, up to a positive constant factor."""
+    """A polynomial in the unknowns at a value of the third parameter, up to a positive constant
+    factor.
+    """
     degree = max((int(c.degrees()[2]) for c in p.values()), default=0)
     found = {m: at_third(c, value, degree) for m, c in p.items()}
     return {m: c for m, c in found.items() if not c.is_zero()}

@@ -1,19 +1,23 @@
-"""The values of a family's free parameter at which the arrangement of its members' regions can change.
+"""The values of a family's free parameter at which the arrangement of its members' regions can
+change.
 
-Guarantee: between neighbouring values of a complete list the members' maps are the same up to a continuous motion that
-keeps the window's sides: cells, counts, what is adjacent, and in which order regions lie along the sides.
+Guarantee: between neighbouring values of a complete list the members' maps are the same up to a
+continuous motion that keeps the window's sides: cells, counts, what is adjacent, and in which order
+regions lie along the sides.
 
-Why. Let the surfaces p be irreducible in Z[x, y, z], and let them be projected along v, one of x and y, the other one
-being w. Let E be the curves in the plane of (z, w) that are given by the irreducible factors of disc_v p, of
-res_v(p, q), of p on the window's two edges v = const, and of p itself where v is not in it; and D the values of z that
-the projection of E along w gives in the same way, together with those of points (z, w) over which a p vanishes for all
-v. Between values of D, discriminants and resultants have a constant order on each graph of E, and no p vanishes
-identically over a point: the known exception of McCallum's projection in three dimensions does not occur. So the
-surfaces are delineable over the graphs of E and over the parts between them, and all pieces are products with the
-interval of z. docs/method.md has the proof, also of why leading coefficients are not needed.
+Why. Let the surfaces p be irreducible in Z[x, y, z], and let them be projected along v, one of x
+and y, the other one being w. Let E be the curves in the plane of (z, w) that are given by the
+irreducible factors of disc_v p, of res_v(p, q), of p on the window's two edges v = const, and of p
+itself where v is not in it; and D the values of z that the projection of E along w gives in the
+same way, together with those of points (z, w) over which a p vanishes for all v. Between values of
+D, discriminants and resultants have a constant order on each graph of E, and no p vanishes
+identically over a point: the known exception of McCallum's projection in three dimensions does not
+occur. So the surfaces are delineable over the graphs of E and over the parts between them, and all
+pieces are products with the interval of z. docs/method.md has the proof, also of why leading
+coefficients are not needed.
 
-References: McCallum, An improved projection operation for cylindrical algebraic decomposition of three-dimensional
-space, J. Symb. Comp. 5 (1988); Strzebonski, J. Symb. Comp. 29 (2000).
+References: McCallum, An improved projection operation for cylindrical algebraic decomposition of
+three-dimensional space, J. Symb. Comp. 5 (1988); Strzebonski, J. Symb. Comp. 29 (2000).
 """
 
 from __future__ import annotations
@@ -22,15 +26,30 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from math import gcd
 
-from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, irreducible_factors
+from ptmcad.algebra.polynomials import (
+    Coefficient,
+    UnivariatePolynomial,
+    coefficients_in,
+    irreducible_factors,
+)
 from ptmcad.algebra.real_roots import Interval, RealRoot
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.algebra.space import Rows, at_value, common_zeros, discriminant, predicted_work, resultant, rows_in
+from ptmcad.algebra.space import (
+    Rows,
+    at_value,
+    common_zeros,
+    discriminant,
+    predicted_work,
+    resultant,
+    rows_in,
+)
 from ptmcad.exact.cad.curves import curve, deflation
 from ptmcad.exact.cad.projection import predicted_cost, project
 
 MAX_WORK = 5 * 10**10
-"""Of all discriminants and resultants in three variables together, by `space.predicted_work`; a minute or two."""
+"""Of all discriminants and resultants in three variables together, by `space.predicted_work`; a
+minute or two.
+"""
 MAX_COST = 5 * 10**9
 """Of the second projection, by `projection.predicted_cost`; some minutes."""
 
@@ -66,13 +85,17 @@ def critical_values(
 def _work(surfaces: Sequence[Coefficient], axis: int) -> int:
     rows = [_deflated(rows_in(p, axis))[0] for p in surfaces]
     varying = [r for r in rows if len(r) > 1]
-    return sum(predicted_work([r]) for r in varying) + sum(predicted_work(pair) for pair in combinations(varying, 2))
+    return sum(predicted_work([r]) for r in varying) + sum(
+        predicted_work(pair) for pair in combinations(varying, 2)
+    )
 
 
 def _projected(
     surfaces: Sequence[Coefficient], axis: int, fibre: Interval, check: Check
 ) -> tuple[list[Coefficient], list[UnivariatePolynomial]]:
-    """The curves of the first projection, and polynomials of the values of z over which a surface has a whole line."""
+    """The curves of the first projection, and polynomials of the values of z over which a surface
+    has a whole line.
+    """
     points: list[UnivariatePolynomial] = []
     curves = irreducible_factors(*_images(surfaces, axis, fibre, check))
     for p in surfaces:
@@ -82,7 +105,9 @@ def _projected(
     return curves, points
 
 
-def _images(surfaces: Sequence[Coefficient], axis: int, fibre: Interval, check: Check) -> Iterator[Coefficient]:
+def _images(
+    surfaces: Sequence[Coefficient], axis: int, fibre: Interval, check: Check
+) -> Iterator[Coefficient]:
     varying = []
     for p in surfaces:
         rows = rows_in(p, axis)
@@ -107,6 +132,8 @@ def _not_zero(p: Coefficient) -> list[Coefficient]:
 
 
 def _deflated(rows: Rows) -> tuple[Rows, int]:
-    """The polynomial in the largest power of v of which only powers occur, and that power's exponent."""
+    """The polynomial in the largest power of v of which only powers occur, and that power's
+    exponent.
+    """
     power = deflation(rows)
     return rows[::power], power

@@ -1,8 +1,11 @@
-"""Loops that fold flat at every point of a slice, as a parallelogram's and a kite's do: told apart from other faults.
+"""Loops that fold flat at every point of a slice, as a parallelogram's and a kite's do: told apart
+from other faults.
 
-The poses of such a loop are several branches, which meet where it is flat; of a loop of four bars they are named.
+The poses of such a loop are several branches, which meet where it is flat; of a loop of four bars
+they are named.
 
-Guarantee: exact. Where a loop folds flat at a point is decided by the ideal of its equations and the tangent.
+Guarantee: exact. Where a loop folds flat at a point is decided by the ideal of its equations and
+the tangent.
 """
 
 from __future__ import annotations
@@ -48,12 +51,17 @@ def with_folds(
         return error
     why = _branches(mechanism, on, tuple(seen))
     return DegenerateSliceError(
-        f"at every point of the slice the loop that {closed_by(mechanism)} closes can fold flat{why}", part=error.part
+        f"at every point of the slice the loop that {closed_by(mechanism)} closes can fold flat{why}",
+        part=error.part,
     )
 
 
-def _folds_at(tangent: Sequence[TrigonometricPolynomial], on: SystemOnAxes, at: Point) -> bool | None:
-    """Whether some pose, real or complex, has a tangent that is zero; None where a parameter has no value."""
+def _folds_at(
+    tangent: Sequence[TrigonometricPolynomial], on: SystemOnAxes, at: Point
+) -> bool | None:
+    """Whether some pose, real or complex, has a tangent that is zero; None where a parameter has no
+    value.
+    """
     try:
         values = on.values(at)
     except ZeroDivisionError:
@@ -61,12 +69,16 @@ def _folds_at(tangent: Sequence[TrigonometricPolynomial], on: SystemOnAxes, at: 
     system = on.system
     flat = [polynomial_at(system, p, values) for p in tangent]
     circles = [{m: fmpq(c) for m, c in circle.items()} for circle in system.ring.circles]
-    found = quotient([e for e in (*at_point(system, values)[0], *flat) if e] + circles, system.ring.width)
+    found = quotient(
+        [e for e in (*at_point(system, values)[0], *flat) if e] + circles, system.ring.width
+    )
     return found is None or found.dimension > 0
 
 
 def _branches(mechanism: Mechanism, on: SystemOnAxes, at: Sequence[Point]) -> str:
-    """What the branches are that meet in flat poses, where they can be named, and how to describe each by itself."""
+    """What the branches are that meet in flat poses, where they can be named, and how to describe
+    each by itself.
+    """
     for loop in four_bars(mechanism) if len(mechanism.closing) == 1 else ():
         folds = [loop.fold(_expressions(on, p)) for p in at]
         if folds and folds[0] and len(set(folds)) == 1:

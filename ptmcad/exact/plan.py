@@ -1,7 +1,7 @@
 """The plan of the exact engine: what a slice needs, what is left out, and the reason for each.
 
-Guarantee: each saving that is named here was really made in the computation that it accompanies, or is said to have
-been switched off.
+Guarantee: each saving that is named here was really made in the computation that it accompanies, or
+is said to have been switched off.
 """
 
 from __future__ import annotations
@@ -32,7 +32,9 @@ def beforehand(slice: Slice, without: frozenset[str], areas: bool = True) -> tup
         *zero_terms(zero_parameters(slice)),
         *_sign_curve(slice.model, without),
         saving_step("hermite-matrix", without, why=_of_jacobian(slice.model, "hermite-matrix")),
-        saving_step("equal-counts", without) if areas else PlanStep("areas of the regions", False, "not asked for"),
+        saving_step("equal-counts", without)
+        if areas
+        else PlanStep("areas of the regions", False, "not asked for"),
     )
 
 
@@ -54,18 +56,29 @@ def plan_of(
     areas : whether they are asked for.
     """
     steps = list(beforehand(slice, without, areas))
-    # on the line real solutions may leave every bounded set, and conditions change signs: all such curves are used
+    # on the line real solutions may leave every bounded set, and conditions change signs: all such
+    # curves are used
     if not slice.model.reals and not _has_conditions(slice):
         steps.append(saving_step("infinity", without, why=_of_jacobian(slice.model, "infinity")))
     if "no-real-points" in without:
         steps.append(saving_step("no-real-points", without))
     for c in components:
         what = f"{c.kind.value} component {_short(c, slice.axis_names)}"
-        steps.append(PlanStep(what, not c.left_out, c.left_out or f"degrees {c.polynomial.degrees}", _saving_of(c)))
+        steps.append(
+            PlanStep(
+                what, not c.left_out, c.left_out or f"degrees {c.polynomial.degrees}", _saving_of(c)
+            )
+        )
     steps += _axis_order(slice.axis_names, base, costs, without)
     powers = ", ".join(_even_powers(components, slice.axis_names))
     if powers:
-        steps.append(saving_step("even-powers", without, why=f"computed in the power, where only such occur: {powers}"))
+        steps.append(
+            saving_step(
+                "even-powers",
+                without,
+                why=f"computed in the power, where only such occur: {powers}",
+            )
+        )
     return tuple(steps)
 
 
@@ -75,7 +88,9 @@ def _has_conditions(slice: Slice) -> bool:
 
 
 def _sign_curve(model: Model, without: frozenset[str]) -> Iterator[PlanStep]:
-    """What could tell indices apart besides det H: nothing of one unknown, and equations have no index."""
+    """What could tell indices apart besides det H: nothing of one unknown, and equations have no
+    index.
+    """
     order = model.criterion.order
     if order == 2:
         yield saving_step("sign-curve", without)
@@ -99,7 +114,9 @@ def _axis_order(
     names: tuple[str, str], base: int, costs: tuple[int, int], without: frozenset[str]
 ) -> Iterator[PlanStep]:
     if "axis-order" in without:
-        yield PlanStep(f"decomposition over {names[base]}", True, "the first axis, as asked for", "axis-order")
+        yield PlanStep(
+            f"decomposition over {names[base]}", True, "the first axis, as asked for", "axis-order"
+        )
         return
     if costs[0] == costs[1]:
         reason = "both orders are predicted to cost the same"

@@ -1,4 +1,5 @@
-"""A system at one rational point of a slice: its polynomials there and the quotient algebra of its solutions.
+"""A system at one rational point of a slice: its polynomials there and the quotient algebra of its
+solutions.
 
 Guarantee: exact.
 """
@@ -39,8 +40,9 @@ class PointSystem(NamedTuple):
 
     Attributes
     ----------
-    algebra : of all solutions, or of those at which no inequality's polynomial vanishes (`saturated`); then it has one
-        coordinate more, and where equations are simpler in other angles it has those of these angles too.
+    algebra : of all solutions, or of those at which no inequality's polynomial vanishes
+        (`saturated`); then it has one coordinate more, and where equations are simpler in other
+        angles it has those of these angles too.
     """
 
     jacobian: tuple[tuple[RationalPolynomial, ...], ...]
@@ -80,7 +82,9 @@ def point_system(
     turns = None if saturated else system.turns
     if turns is not None:
         equations, _ = at_point(turns.system, values)
-    generators = [e for e in equations if e] + [{m: fmpq(c) for m, c in circle.items()} for circle in ring.circles]
+    generators = [e for e in equations if e] + [
+        {m: fmpq(c) for m, c in circle.items()} for circle in ring.circles
+    ]
     width = ring.width
     if saturated:
         generators = [{(*m, 0): c for m, c in g.items()} for g in generators]
@@ -92,7 +96,9 @@ def point_system(
         raise DegeneratePoint(f"infinitely many solutions at {text_of_point(values)}")
     if turns is not None:
         algebra = in_old_angles(system, algebra, turns)
-    return PointSystem(jacobian, inequalities, stability, algebra, not (ring.reals or saturated), saturated)
+    return PointSystem(
+        jacobian, inequalities, stability, algebra, not (ring.reals or saturated), saturated
+    )
 
 
 def _product(factors: Sequence[RationalPolynomial]) -> RationalPolynomial:
@@ -112,7 +118,9 @@ def text_of_point(values: Values) -> str:
     return ", ".join(f"{name}={value}" for name, value in values.items())
 
 
-def point_systems(system: ParametricSystem, values: Values, most: WorkLimit | None = None) -> Iterator[PointSystem]:
+def point_systems(
+    system: ParametricSystem, values: Values, most: WorkLimit | None = None
+) -> Iterator[PointSystem]:
     """The system of all solutions, and then of those at which no inequality's polynomial vanishes.
 
     One of infinitely many solutions is left out.
@@ -137,9 +145,11 @@ def point_systems(system: ParametricSystem, values: Values, most: WorkLimit | No
 def simple_solutions(
     system: ParametricSystem, values: Values, most: WorkLimit | None = None
 ) -> tuple[PointSystem, UnivariateRepresentation | None]:
-    """The point's system when its solutions are simple, and their representation; None when there are none.
+    """The point's system when its solutions are simple, and their representation; None when there
+    are none.
 
-    Solutions at which an inequality's polynomial vanishes, which do not count, are left out where they are not simple.
+    Solutions at which an inequality's polynomial vanishes, which do not count, are left out where
+    they are not simple.
 
     Raises
     ------
@@ -158,7 +168,9 @@ def simple_solutions(
 
 
 def degree_bound(system: ParametricSystem, values: Values) -> tuple[int, int]:
-    """The greatest degree of an equation, and Bezout's bound for the number of complex solutions, were it finite."""
+    """The greatest degree of an equation, and Bezout's bound for the number of complex solutions,
+    were it finite.
+    """
     equations, _ = at_point(system.simplest, values)
     degrees = [max(map(sum, e), default=0) for e in equations]
     return max(degrees), prod(degrees) * 2 ** len(system.ring.angles)
@@ -167,7 +179,8 @@ def degree_bound(system: ParametricSystem, values: Values) -> tuple[int, int]:
 def solutions_at(
     system: ParametricSystem, values: Values, saturated: bool = False, most: WorkLimit | None = None
 ) -> tuple[int | None, int]:
-    """Number of different complex solutions, and their number with multiplicity; (None, 0) for infinitely many.
+    """Number of different complex solutions, and their number with multiplicity; (None, 0) for
+    infinitely many.
 
     Parameters
     ----------
@@ -179,7 +192,11 @@ def solutions_at(
         When it is more work than `most`.
     """
     try:
-        point = next(point_systems(system, values, most)) if saturated else point_system(system, values, most=most)
+        point = (
+            next(point_systems(system, values, most))
+            if saturated
+            else point_system(system, values, most=most)
+        )
     except DegeneratePoint:
         return None, 0
     # of an algebra with an inverse they are left out already
@@ -187,7 +204,8 @@ def solutions_at(
 
 
 def none_is_stable(system: ParametricSystem, values: Values, most: WorkLimit | None = None) -> bool:
-    """Whether at a point some condition for stability is zero at each of finitely many solutions, of which there are.
+    """Whether at a point some condition for stability is zero at each of finitely many solutions,
+    of which there are.
 
     Raises
     ------
@@ -204,10 +222,12 @@ def none_is_stable(system: ParametricSystem, values: Values, most: WorkLimit | N
 
 
 def _off(point: PointSystem, conditions: Sequence[RationalPolynomial]) -> tuple[int, int]:
-    """Number of different solutions at which no condition vanishes, and their number with multiplicity.
+    """Number of different solutions at which no condition vanishes, and their number with
+    multiplicity.
 
-    Of the conditions' product p they are the ranks of Hermite's form with the weight p, and of multiplication by a high
-    power of p. A basis of the ideal with one more unknown, p's inverse, would say the same, and can take hours.
+    Of the conditions' product p they are the ranks of Hermite's form with the weight p, and of
+    multiplication by a high power of p. A basis of the ideal with one more unknown, p's inverse,
+    would say the same, and can take hours.
     """
     algebra = point.algebra
     weight = scalar_matrix(algebra.dimension, fmpq(1))

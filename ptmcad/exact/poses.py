@@ -1,8 +1,9 @@
-"""All equilibria at a rational point: from the quotient algebra to poses, in an order that does not depend on rounding.
+"""All equilibria at a rational point: from the quotient algebra to poses, in an order that does not
+depend on rounding.
 
-Guarantee: all real equilibria are there, each once, with its multiplicity; when none is degenerate, minima - saddles +
-maxima is zero. Which of two energies is smaller, or that they are equal, is decided by the characteristic polynomial of
-the energy in the quotient algebra.
+Guarantee: all real equilibria are there, each once, with its multiplicity; when none is degenerate,
+minima - saddles + maxima is zero. Which of two energies is smaller, or that they are equal, is
+decided by the characteristic polynomial of the energy in the quotient algebra.
 """
 
 from __future__ import annotations
@@ -34,7 +35,9 @@ from ptmcad.text.flint_numbers import from_fraction
 BY_MSOLVE = "the Groebner basis was computed by msolve and proved to be one of the equations"
 
 
-def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, most: WorkLimit | None = None) -> Poses:
+def exact_poses(
+    given: Model, parameters: Mapping[str, Fraction], digits: int, most: WorkLimit | None = None
+) -> Poses:
     """All solutions of a mechanism without free lengths, or of another system.
 
     Parameters
@@ -55,12 +58,17 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, m
         point, found = _solutions(system, values, most)
     except DegeneratePoint:
         what = noun(given) if known.points else known.criterion.solutions
-        remark = f"infinitely many {what}{'' if is_free(system, values) else ', complex ones included'}"
+        remark = (
+            f"infinitely many {what}{'' if is_free(system, values) else ', complex ones included'}"
+        )
         return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, remark)
-    # where equations are simpler in other angles there are more coordinates than those of the unknowns
+    # where equations are simpler in other angles there are more coordinates than those of the
+    # unknowns
     real = [replace(p, unknowns=p.unknowns[: system.ring.width]) for p in found.real]
     relaxed = dict.fromkeys(given.free_lengths, fmpq(0)) | values
-    solutions = [s for s in _exact_solutions(known, point, relaxed, real) if s.all_positive(s.inequalities)]
+    solutions = [
+        s for s in _exact_solutions(known, point, relaxed, real) if s.all_positive(s.inequalities)
+    ]
     results = [pose_of(solution, digits) for solution in solutions]
     poses = [pose for pose, _ in results]
     degenerate = any(pose.multiplicity > 1 for pose in poses)
@@ -69,7 +77,8 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, m
     energies = _energy_ranks(given, poses)
     if energies is None:
         energies = _exact_energy_ranks(given, values, point, solutions)
-    # of equal energies the larger value of the separating form comes first, in which ``found.real`` increases
+    # of equal energies the larger value of the separating form comes first, in which ``found.real``
+    # increases
     order = sorted(range(len(poses)), key=lambda k: (poses[k].stable is not True, energies[k], -k))
     return Poses(
         given,
@@ -80,14 +89,22 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, m
         max((bits for _, bits in results), default=0),
         "; ".join(
             [
-                *filter(None, ["" if degenerate else _remark(found), BY_MSOLVE if point.algebra.by_msolve else ""]),
+                *filter(
+                    None,
+                    [
+                        "" if degenerate else _remark(found),
+                        BY_MSOLVE if point.algebra.by_msolve else "",
+                    ],
+                ),
                 *_vanishing(given, known, [solutions[k] for k in order]),
             ]
         ),
     )
 
 
-def _vanishing(given: Model, known: CompiledSystem, solutions: Sequence[ExactSolution]) -> Iterator[str]:
+def _vanishing(
+    given: Model, known: CompiledSystem, solutions: Sequence[ExactSolution]
+) -> Iterator[str]:
     """The conditions for stability that are zero at a solution, which counts as unstable, in words."""
     conditions = given.stability or (None,) * len(known.stability)
     for k in range(len(known.stability)):
@@ -105,8 +122,11 @@ def _remark(found: FibrePoints) -> str:
     return "two solutions that an inequality excludes coincide"
 
 
-def _solutions(system: ParametricSystem, values: Values, most: WorkLimit | None) -> tuple[PointSystem, FibrePoints]:
-    """All solutions, or those at which no inequality's polynomial is zero, where others are in the way.
+def _solutions(
+    system: ParametricSystem, values: Values, most: WorkLimit | None
+) -> tuple[PointSystem, FibrePoints]:
+    """All solutions, or those at which no inequality's polynomial is zero, where others are in the
+    way.
 
     Raises
     ------
@@ -143,7 +163,8 @@ def _check_euler_sum(poses: Sequence[Pose]) -> None:
 
 
 def _energy_ranks(given: Model, poses: Sequence[Pose]) -> list[int] | None:
-    """A number for each pose, ordered as their energies are and equal where these are, as all are without energies.
+    """A number for each pose, ordered as their energies are and equal where these are, as all are
+    without energies.
 
     None where that takes more than their enclosures.
     """

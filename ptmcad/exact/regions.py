@@ -1,8 +1,9 @@
-"""Regions: cells merged across artefacts of the decomposition and across walls that separate equal counts.
+"""Regions: cells merged across artefacts of the decomposition and across walls that separate equal
+counts.
 
-Guarantee: two cells are in one region exactly when a chain of neighbours with equal counts joins them. *Open* links are
-proved free of the variety, so counts must agree there; *wall* links cross a component of the variety. The regions do
-not depend on which axis was the base.
+Guarantee: two cells are in one region exactly when a chain of neighbours with equal counts joins
+them. *Open* links are proved free of the variety, so counts must agree there; *wall* links cross a
+component of the variety. The regions do not depend on which axis was the base.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ from typing import NamedTuple
 
 
 class Link(NamedTuple):
-    """Cells ``first`` and ``second`` share an open arc; ``component`` is the variety's component on it, or None."""
+    """Cells ``first`` and ``second`` share an open arc; ``component`` is the variety's component on
+    it, or None.
+    """
 
     first: int
     second: int

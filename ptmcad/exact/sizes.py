@@ -1,12 +1,15 @@
-"""The size of a slice's critical curve before it is computed: its degrees, from solutions at points of three lines.
+"""The size of a slice's critical curve before it is computed: its degrees, from solutions at points
+of three lines.
 
-Not guaranteed: the degrees are those of the norm of the Jacobian's determinant on the lines x = c, y = c and y = 3 x +
-c modulo one prime, without multiplicities and without what bounds the slice's domain; an unlucky line or prime makes
-them smaller, and other factors of the norm are counted along. This is for forecasts.
+Not guaranteed: the degrees are those of the norm of the Jacobian's determinant on the lines x = c,
+y = c and y = 3 x + c modulo one prime, without multiplicities and without what bounds the slice's
+domain; an unlucky line or prime makes them smaller, and other factors of the norm are counted
+along. This is for forecasts.
 
-On a line the norm is a rational function of one variable; it is known once the fraction of least degree through the
-first values (by Euclid's algorithm) has a degree that leaves some values over. So is a sum of all entries of the
-multiplication tables with random weights, whose degrees are those of the tables.
+On a line the norm is a rational function of one variable; it is known once the fraction of least
+degree through the first values (by Euclid's algorithm) has a degree that leaves some values over.
+So is a sum of all entries of the multiplication tables with random weights, whose degrees are those
+of the tables.
 """
 
 from __future__ import annotations
@@ -38,20 +41,23 @@ _GENERIC = fmpq(10_007), fmpq(20_011)
 """Where the monomial basis is the usual one."""
 _LINES = (1, 1), (1, 0), (0, 1)
 _ACROSS, _UP, _SLOPE, _APART = 29, 37, 3, 43
-"""The lines are y = _UP, x = _ACROSS and y = _SLOPE x + _APART: parallel to the last one no asymptote is likely, as to
-y = x, along which degrees are lost where equations have a difference of the axes."""
+"""The lines are y = _UP, x = _ACROSS and y = _SLOPE x + _APART: parallel to the last one no
+asymptote is likely, as to y = x, along which degrees are lost where equations have a difference of
+the axes."""
 
 
 class CurveSizes(NamedTuple):
-    """Of the critical curve, its components taken together but for the lines on which an axis' value is zero.
+    """Of the critical curve, its components taken together but for the lines on which an axis'
+    value is zero.
 
     Attributes
     ----------
     degrees, total : in the axes, and in both together.
     steps : the powers of each axis that occur are multiples of these numbers.
-    tables : of the multiplication tables of the unknowns, the degrees in the axes and in both together.
-    lines : for each axis, whether the line on which its value is zero is a component. It takes hardly any time, and
-        powers of the axis' value are told without it.
+    tables : of the multiplication tables of the unknowns, the degrees in the axes and in both
+        together.
+    lines : for each axis, whether the line on which its value is zero is a component. It takes
+        hardly any time, and powers of the axis' value are told without it.
     """
 
     degrees: tuple[int, int]
@@ -74,10 +80,15 @@ class CurveSizes(NamedTuple):
 
 def _terms(degrees: tuple[int, int], total: int, steps: tuple[int, int]) -> int:
     (dx, dy), (sx, sy) = degrees, steps
-    return sum(len(range(0, n, sy)) for n in (min(dy, total - i) + 1 for i in range(0, min(dx, total) + 1, sx)))
+    return sum(
+        len(range(0, n, sy))
+        for n in (min(dy, total - i) + 1 for i in range(0, min(dx, total) + 1, sx))
+    )
 
 
-def sizes(problem: SliceProblem, solutions: int, seconds: float, most: WorkLimit | None = None) -> CurveSizes | None:
+def sizes(
+    problem: SliceProblem, solutions: int, seconds: float, most: WorkLimit | None = None
+) -> CurveSizes | None:
     """The curve's sizes; None where they are larger than `MAX_POINTS` tell, or take longer.
 
     Parameters
@@ -106,10 +117,13 @@ def sizes(problem: SliceProblem, solutions: int, seconds: float, most: WorkLimit
     degrees = x.degree, y.degree
     # where solutions are lost on such a line they go to infinity there: no critical component
     lines = [
-        n.has_zero and probe.at(at) is not None for n, at in ((x, (fmpq(0), _GENERIC[1])), (y, (_GENERIC[0], fmpq(0))))
+        n.has_zero and probe.at(at) is not None
+        for n, at in ((x, (fmpq(0), _GENERIC[1])), (y, (_GENERIC[0], fmpq(0))))
     ]
     of_tables = tables[1], tables[2], max(tables)
-    return CurveSizes(degrees, max(total, *degrees), (x.step, y.step), of_tables, (lines[0], lines[1]))
+    return CurveSizes(
+        degrees, max(total, *degrees), (x.step, y.step), of_tables, (lines[0], lines[1])
+    )
 
 
 def _place(s: int, line: tuple[int, int]) -> tuple[int, int]:
@@ -118,7 +132,9 @@ def _place(s: int, line: tuple[int, int]) -> tuple[int, int]:
 
 
 _Value = tuple[int, int, int | None]
-"""At a point of a line: the parameter, its norm, and the sum of the tables' entries where the basis is the usual."""
+"""At a point of a line: the parameter, its norm, and the sum of the tables' entries where the basis
+is the usual.
+"""
 
 
 class _Probe(NamedTuple):
@@ -148,7 +164,11 @@ class _Probe(NamedTuple):
                 continue
             entries = [int(c) for table in tables for c in table.entries()]
             usual_here = point.algebra.basis == basis
-            yield s, _norm(tables, point.jacobian, prime), weighted(entries, prime) if usual_here else None
+            yield (
+                s,
+                _norm(tables, point.jacobian, prime),
+                weighted(entries, prime) if usual_here else None,
+            )
 
 
 def _residues(algebra: FibreAlgebra, prime: int) -> list[nmod_mat] | None:
@@ -162,7 +182,9 @@ def _residues(algebra: FibreAlgebra, prime: int) -> list[nmod_mat] | None:
     return found
 
 
-def _norm(unknowns: Sequence[nmod_mat], jacobian: Sequence[Sequence[RationalPolynomial]], prime: int) -> int:
+def _norm(
+    unknowns: Sequence[nmod_mat], jacobian: Sequence[Sequence[RationalPolynomial]], prime: int
+) -> int:
     """The norm of a determinant modulo a prime."""
     size = unknowns[0].nrows()
     one = nmod_mat(size, size, [int(i == j) for i in range(size) for j in range(size)], prime)
@@ -177,8 +199,11 @@ def _norm(unknowns: Sequence[nmod_mat], jacobian: Sequence[Sequence[RationalPoly
     return int(laplace([[matrix_of(p) for p in row] for row in jacobian]).det())
 
 
-def _sizes_on(values: Iterator[_Value], known: Sequence[LinePolynomial], end: float) -> tuple[Numerator, int] | None:
-    """On a line the norm's numerator and the tables' degree, of which values that do not suffice tell a lower bound.
+def _sizes_on(
+    values: Iterator[_Value], known: Sequence[LinePolynomial], end: float
+) -> tuple[Numerator, int] | None:
+    """On a line the norm's numerator and the tables' degree, of which values that do not suffice
+    tell a lower bound.
 
     Parameters
     ----------
@@ -195,7 +220,9 @@ def _sizes_on(values: Iterator[_Value], known: Sequence[LinePolynomial], end: fl
         found = numerator([(s, norm) for s, norm, _ in seen], prime, known)
         entries = [(s, sums) for s, _, sums in seen if sums is not None]
         tables = degree(entries, prime)
-        if found is not None and (tables is not None or len(seen) < asked or 2 * len(entries) < len(seen)):
+        if found is not None and (
+            tables is not None or len(seen) < asked or 2 * len(entries) < len(seen)
+        ):
             return found, len(entries) // 2 if tables is None else tables
         if len(seen) < asked:
             return None

@@ -1,7 +1,9 @@
-"""Counts made once for all cells that are proved to be joined off the variety: a quarter of the work of one for each.
+"""Counts made once for all cells that are proved to be joined off the variety: a quarter of the
+work of one for each.
 
-Guarantee: the counts are those of `ptmcad.exact.stages.counts_of`. What is lost is the check of the decomposition that
-counting everywhere is, and the solutions at the other cells' samples; so a map that is made in this way proves less.
+Guarantee: the counts are those of `ptmcad.exact.stages.counts_of`. What is lost is the check of the
+decomposition that counting everywhere is, and the solutions at the other cells' samples; so a map
+that is made in this way proves less.
 """
 
 from __future__ import annotations
@@ -15,9 +17,14 @@ from ptmcad.exact.stages import SampleCounts, SliceProblem, with_keys
 
 
 def counts_by_component(
-    problem: SliceProblem, cut: Decomposition, component_of: Sequence[int], report: Report = unreported
+    problem: SliceProblem,
+    cut: Decomposition,
+    component_of: Sequence[int],
+    report: Report = unreported,
 ) -> SampleCounts:
-    """The counts of every cell, and the equilibria at one sample of each component, that of least height."""
+    """The counts of every cell, and the equilibria at one sample of each component, that of least
+    height.
+    """
     found: list[Equilibria | None] = [None] * len(cut.points)
     components = members(component_of)
     for k, cells in enumerate(components):

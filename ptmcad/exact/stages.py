@@ -1,6 +1,7 @@
 """The stages of the exact engine, each a function of what it needs to a result with a name.
 
-Guarantee: no stage decides anything by rounding without an error bound, and none looks at a later one.
+Guarantee: no stage decides anything by rounding without an error bound, and none looks at a later
+one.
 
     SliceProblem -> Variety -> Projection -> Stacks -> SampleCounts -> Neighbours -> Areas
 """
@@ -62,12 +63,17 @@ class SliceProblem(NamedTuple):
         """The involutions that map the window to itself and move some of its points."""
         slice = self.slice
         first, second = ((axis.low, axis.high) for axis in slice.axes)
-        return [c for c in involutions(slice.model, slice.parameters, (first, second)) if not c.keeps_points]
+        return [
+            c
+            for c in involutions(slice.model, slice.parameters, (first, second))
+            if not c.keeps_points
+        ]
 
     def place(self, at: Sample) -> str:
         """A point in words, for messages."""
         return ", ".join(
-            f"{name} = {short_text(to_fraction(value))}" for name, value in zip(self.slice.axis_names, at, strict=True)
+            f"{name} = {short_text(to_fraction(value))}"
+            for name, value in zip(self.slice.axis_names, at, strict=True)
         )
 
     def solved_at(self, at: Sample) -> Equilibria:
@@ -83,11 +89,13 @@ class SampleCounts(NamedTuple):
 
 
 class Areas(NamedTuple):
-    """Bounds of each region's area, written outwards in decimals, and the bits of precision that they needed.
+    """Bounds of each region's area, written outwards in decimals, and the bits of precision that
+    they needed.
 
     Attributes
     ----------
-    change : the involution of which one half of the window was enough; None where the whole window was looked at.
+    change : the involution of which one half of the window was enough; None where the whole window
+        was looked at.
     """
 
     bounds: tuple[tuple[Fraction, Fraction], ...]
@@ -106,10 +114,14 @@ class Cells(NamedTuple):
 def problem_of(slice: Slice) -> SliceProblem:
     """The slice in the ring of the engine."""
     first, second = map(interval_of, slice.axes)
-    return SliceProblem(slice, on_axes(system_counted(slice.model, slice.count), slice.parameters), (first, second))
+    return SliceProblem(
+        slice, on_axes(system_counted(slice.model, slice.count), slice.parameters), (first, second)
+    )
 
 
-def variety_of(problem: SliceProblem, without: frozenset[str] = frozenset(), base: int | None = None) -> Variety:
+def variety_of(
+    problem: SliceProblem, without: frozenset[str] = frozenset(), base: int | None = None
+) -> Variety:
     """The variety, over a base axis.
 
     Parameters
@@ -131,7 +143,9 @@ def variety_of(problem: SliceProblem, without: frozenset[str] = frozenset(), bas
     return seen_from(found.components, base, found.complex_solutions, found.excludes)
 
 
-def decomposition_of(problem: SliceProblem, base: int | None = None, check: Check = nothing) -> Decomposition:
+def decomposition_of(
+    problem: SliceProblem, base: int | None = None, check: Check = nothing
+) -> Decomposition:
     """The window cut along the variety, over a base axis: the first stages in one."""
     return cut_along(problem.window, variety_of(problem, base=base), check)
 
@@ -162,7 +176,9 @@ def _explained(
     return with_witness(error, problem.on, problem.window, problem.place) if told is error else told
 
 
-def counts_of(problem: SliceProblem, cut: Decomposition, report: Report = unreported) -> SampleCounts:
+def counts_of(
+    problem: SliceProblem, cut: Decomposition, report: Report = unreported
+) -> SampleCounts:
     """The equilibria at every sample."""
     found = []
     for k, at in enumerate(cut.points):

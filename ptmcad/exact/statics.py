@@ -1,10 +1,12 @@
-"""The statics of one equilibrium: its geometry, spring forces, energy and stiffness as exact numbers, then as a pose.
+"""The statics of one equilibrium: its geometry, spring forces, energy and stiffness as exact
+numbers, then as a pose.
 
-Guarantee: a number that is rational is given exactly (so what is zero is known to be zero), and every other one is
-enclosed so narrowly that the digits asked for are settled. A number is found to be rational by algebra, never by its
-enclosure: cosines, sines, coordinates, squared lengths and the energy are elements of the real field of the solution;
-an eigenvalue is a root of a polynomial over it; and an angle is a rational number of radians only when it is zero
-(Lindemann), of degrees only when its cosine is that of a root of unity.
+Guarantee: a number that is rational is given exactly (so what is zero is known to be zero), and
+every other one is enclosed so narrowly that the digits asked for are settled. A number is found to
+be rational by algebra, never by its enclosure: cosines, sines, coordinates, squared lengths and the
+energy are elements of the real field of the solution; an eigenvalue is a root of a polynomial over
+it; and an angle is a rational number of radians only when it is zero (Lindemann), of degrees only
+when its cosine is that of a root of unity.
 """
 
 from __future__ import annotations
@@ -31,15 +33,20 @@ from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction
 
 MAX_BITS = 2**22
-"""Parameters of a thousand digits need a hundredth of them: a number that is still open is rational unnoticed."""
+"""Parameters of a thousand digits need a hundredth of them: a number that is still open is rational
+unnoticed.
+"""
 _OPEN = Enclosure(Fraction(0), Fraction(0))
 """Stands for the enclosure of a number that is not settled, in a pose that nobody is given."""
 _MIN_ORDER = 42
-"""Orders of roots of unity that are tried at least: up to degree 6 a field has cosines of no others."""
+"""Orders of roots of unity that are tried at least: up to degree 6 a field has cosines of no
+others.
+"""
 
 
 class Quantities(NamedTuple):
-    """What a pose lists, as formulas of a compiled model, or as elements of a solution's field in their place.
+    """What a pose lists, as formulas of a compiled model, or as elements of a solution's field in
+    their place.
 
     Attributes
     ----------
@@ -56,9 +63,13 @@ class Quantities(NamedTuple):
     @classmethod
     def of(cls, known: CompiledSystem) -> Quantities:
         """As formulas."""
-        angles, reals = (tuple(map(known.graph.variable, numbers)) for numbers in (known.angles, known.reals))
+        angles, reals = (
+            tuple(map(known.graph.variable, numbers)) for numbers in (known.angles, known.reals)
+        )
         energy = known.smooth if known.has_energy else None
-        return cls(tuple((a.cos(), a.sin()) for a in angles), reals, known.points, known.elastic, energy)
+        return cls(
+            tuple((a.cos(), a.sin()) for a in angles), reals, known.points, known.elastic, energy
+        )
 
 
 class _AtSolution:
@@ -91,7 +102,8 @@ class _AtSolution:
 
 @dataclass(frozen=True, slots=True)
 class ExactSolution:
-    """One solution in exact numbers: elements of one real field, which those at other roots of its polynomial share.
+    """One solution in exact numbers: elements of one real field, which those at other roots of its
+    polynomial share.
 
     Attributes
     ----------
@@ -106,11 +118,15 @@ class ExactSolution:
     criterion: Criterion
 
     def all_positive(self, conditions: Iterable[FieldElement]) -> bool:
-        """Whether all of these numbers of the field are greater than zero at this solution, decided exactly."""
+        """Whether all of these numbers of the field are greater than zero at this solution, decided
+        exactly.
+        """
         return all(is_positive(condition.conjugate(self.point.field)) for condition in conditions)
 
 
-def solution_at(known: CompiledSystem, system: PointSystem, parameters: Values, point: RealPoint) -> ExactSolution:
+def solution_at(
+    known: CompiledSystem, system: PointSystem, parameters: Values, point: RealPoint
+) -> ExactSolution:
     """The solution at a real point of the fibre.
 
     Parameters
@@ -129,9 +145,13 @@ def solution_at(known: CompiledSystem, system: PointSystem, parameters: Values, 
     jacobian = tuple(tuple(map(at, row)) for row in system.jacobian)
     stiffness = stiffness_of(jacobian, jacobian[: known.criterion.order])
     if bool(stiffness.nullity) != (point.multiplicity > 1):
-        raise ArithmeticError(f"a point of multiplicity {point.multiplicity} contradicts its Jacobian")
+        raise ArithmeticError(
+            f"a point of multiplicity {point.multiplicity} contradicts its Jacobian"
+        )
     quantities = evaluated(Quantities.of(known), _AtSolution(known, parameters, point))
-    inequalities, stability = (tuple(map(at, some)) for some in (system.inequalities, system.stability))
+    inequalities, stability = (
+        tuple(map(at, some)) for some in (system.inequalities, system.stability)
+    )
     return ExactSolution(point, quantities, stiffness, inequalities, stability, known.criterion)
 
 
@@ -189,7 +209,9 @@ def pose_of(solution: ExactSolution, digits: int) -> tuple[Pose, int]:
             return pose, bits
         bits *= 2
         if bits > MAX_BITS:
-            raise ArithmeticError(f"{still_open} numbers of a pose are not settled by {bits // 2} bits")
+            raise ArithmeticError(
+                f"{still_open} numbers of a pose are not settled by {bits // 2} bits"
+            )
 
 
 def _pose(solution: ExactSolution, settled: _Settled) -> Pose:
@@ -213,7 +235,9 @@ def _pose(solution: ExactSolution, settled: _Settled) -> Pose:
         return element.rational
 
     def stretch(spring: Any) -> tuple[Enclosure, Enclosure]:
-        force = square_root(number(spring.square * spring.density * spring.density))  # without a free length
+        force = square_root(
+            number(spring.square * spring.density * spring.density)
+        )  # without a free length
         return settled(square_root(number(spring.square))), settled(force)
 
     def turn(spring: Any) -> tuple[Enclosure, ...]:
@@ -248,20 +272,30 @@ def _angle(cosine: RealNumber, sine: RealNumber) -> RealNumber:
 
 
 def _degrees(angle: RealNumber, cosine: FieldElement) -> RealNumber:
-    """The angle in degrees; it is exact when it is rational, that is when cos + i sin is a root of unity."""
+    """The angle in degrees; it is exact when it is rational, that is when cos + i sin is a root of
+    unity.
+    """
     if angle.exact is not None:
         return angle
     if cosine.rational == -1:
         return RealNumber(Fraction(180), arb(180))
     turns = angle.ball / (2 * arb.pi())
     if turns.rel_accuracy_bits() < ctx.prec // 2:
-        return RealNumber(None, arb.nan())  # a wide ball holds many fractions, and each is tried by algebra
-    # a field of degree d has cosines of those of totient at most 2d, and n is at most twice its totient's square
+        return RealNumber(
+            None, arb.nan()
+        )  # a wide ball holds many fractions, and each is tried by algebra
+    # a field of degree d has cosines of those of totient at most 2d, and n is at most twice its
+    # totient's square
     degree = cosine.field.modulus.degree
     for order in range(3, (_MIN_ORDER if degree <= 6 else 8 * degree**2) + 1):
         number = (turns * order).unique_fmpz()
-        # other fractions are in lowest terms with a smaller order, and 0 and 1/2 are where the sine is zero
-        if number is not None and gcd(int(number), order) == 1 and _chebyshev(order, cosine).rational == 1:
+        # other fractions are in lowest terms with a smaller order, and 0 and 1/2 are where the sine
+        # is zero
+        if (
+            number is not None
+            and gcd(int(number), order) == 1
+            and _chebyshev(order, cosine).rational == 1
+        ):
             return RealNumber(Fraction(360 * int(number), order), turns * 360)
     return RealNumber(None, turns * 360)
 

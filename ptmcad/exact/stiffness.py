@@ -1,7 +1,7 @@
 """The eigenvalues of a Hessian whose entries are numbers of one real field.
 
-Guarantee: how many of them are zero is known by algebra, and rational ones are given exactly, by the characteristic
-polynomial. Others are enclosed, as certified eigenvalues of a matrix of balls.
+Guarantee: how many of them are zero is known by algebra, and rational ones are given exactly, by
+the characteristic polynomial. Others are enclosed, as certified eigenvalues of a matrix of balls.
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ class Stiffness(NamedTuple):
     Attributes
     ----------
     hessian : its rows; none of another Jacobian.
-    nullity : the number of eigenvalues that are zero; of a Jacobian that is no Hessian only whether it is singular.
+    nullity : the number of eigenvalues that are zero; of a Jacobian that is no Hessian only whether
+        it is singular.
     rationals : of a Hessian the other rational eigenvalues, each with its multiplicity.
     """
 
@@ -61,11 +62,13 @@ def stiffness_of(jacobian: Matrix, matrix: Matrix) -> Stiffness:
     size = len(matrix)
     if not matrix:
         return Stiffness((), int(laplace(jacobian).is_zero))
-    # the characteristic polynomial's coefficients from the constant one on are sums of principal minors, but for signs
+    # the characteristic polynomial's coefficients from the constant one on are sums of principal
+    # minors, but for signs
     sums = []
     for order in range(size, 0, -1):
         minors = (
-            laplace([[matrix[i][j] for j in chosen] for i in chosen]) for chosen in combinations(range(size), order)
+            laplace([[matrix[i][j] for j in chosen] for i in chosen])
+            for chosen in combinations(range(size), order)
         )
         total = next(minors)
         for minor in minors:
@@ -75,8 +78,11 @@ def stiffness_of(jacobian: Matrix, matrix: Matrix) -> Stiffness:
     return Stiffness(matrix, nullity, rationals=tuple(rational_roots(sums[nullity:])))
 
 
-def eigenvalues(stiffness: Stiffness, number: Callable[[FieldElement], RealNumber]) -> tuple[RealNumber, ...]:
-    """The Hessian's eigenvalues, the smallest first; a ball that is not finite stands for one not yet known.
+def eigenvalues(
+    stiffness: Stiffness, number: Callable[[FieldElement], RealNumber]
+) -> tuple[RealNumber, ...]:
+    """The Hessian's eigenvalues, the smallest first; a ball that is not finite stands for one not
+    yet known.
 
     Parameters
     ----------
@@ -89,13 +95,18 @@ def eigenvalues(stiffness: Stiffness, number: Callable[[FieldElement], RealNumbe
     entries = [[number(entry).ball for entry in row] for row in stiffness.hessian]
     try:
         found = acb_mat(size, size, [x for row in entries for x in row]).eig(multiple=True)
-    except ValueError:  # the balls are too wide for the eigenvalues to be told from each other's clusters
+    except (
+        ValueError
+    ):  # the balls are too wide for the eigenvalues to be told from each other's clusters
         return unknown
     balls = sorted((value.real for value in found), key=lambda ball: float(ball.mid()))
     near_zero = [ball for ball in balls if ball.contains(0)]
     if len(near_zero) != stiffness.nullity:
         return unknown
-    values = [RealNumber(Fraction(0), arb(0)) if ball.contains(0) else RealNumber(None, ball) for ball in balls]
+    values = [
+        RealNumber(Fraction(0), arb(0)) if ball.contains(0) else RealNumber(None, ball)
+        for ball in balls
+    ]
     for root, multiplicity in stiffness.rationals:
         near = [k for k, ball in enumerate(balls) if ball.overlaps(ball_of(root))]
         if len(near) != multiplicity:

@@ -1,12 +1,13 @@
-"""The boundary between a slice's regions over strips of the base: in each the same walls part the same regions.
+"""The boundary between a slice's regions over strips of the base: in each the same walls part the
+same regions.
 
-Guarantee: every point that is given lies on a curve of the variety that parts two regions, to within `ACCURACY` of the
-window's height; at the ends of strips it is one just inside of them.
+Guarantee: every point that is given lies on a curve of the variety that parts two regions, to
+within `ACCURACY` of the window's height; at the ends of strips it is one just inside of them.
 
-A strip is made of neighbouring stacks of the decomposition, joined where nothing but curves begins or ends at which no
-count changes, and no wall has a corner. So two slices whose strips are the same have boundaries of the same shape, with
-the same corners, whatever other curves they have. Corners are found in floating point: what rests on them is where
-strips are cut, not what their walls part.
+A strip is made of neighbouring stacks of the decomposition, joined where nothing but curves begins
+or ends at which no count changes, and no wall has a corner. So two slices whose strips are the same
+have boundaries of the same shape, with the same corners, whatever other curves they have. Corners
+are found in floating point: what rests on them is where strips are cut, not what their walls part.
 """
 
 from __future__ import annotations
@@ -28,23 +29,31 @@ from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 JUMP = Fraction(1, 2**12)
-"""Of the window's height: walls on both sides of a critical abscissa that end no further apart are one wall, and
-openings that are no higher are none."""
+"""Of the window's height: walls on both sides of a critical abscissa that end no further apart are
+one wall, and openings that are no higher are none."""
 CORNER = 0.2
-"""In radians, seen in a square window: walls that turn by more in a point have a corner there, at which strips end."""
+"""In radians, seen in a square window: walls that turn by more in a point have a corner there, at
+which strips end.
+"""
 _BESIDE = fmpq(1, 2**10)
-"""Of the narrower stack's width: how far from a point the directions in which walls leave it are taken."""
+"""Of the narrower stack's width: how far from a point the directions in which walls leave it are
+taken.
+"""
 _FINE = Fraction(1, 2**44)
 """Of the window's height: how well points are known where directions are taken."""
 _NEAR = fmpq(1, 2**48)
-"""Of a stack's width: how near to its ends heights are taken; a square root's error is then 2^-24 of its size."""
+"""Of a stack's width: how near to its ends heights are taken; a square root's error is then 2^-24
+of its size.
+"""
 
 Key = tuple[int, ...]
 """The count by which regions are told apart."""
 
 
 class _StackPart(NamedTuple):
-    """A stack between rational abscissae just inside of it, with the walls that part regions, from below."""
+    """A stack between rational abscissae just inside of it, with the walls that part regions, from
+    below.
+    """
 
     low: fmpq
     high: fmpq
@@ -74,7 +83,8 @@ class BoundaryStrip(NamedTuple):
 
 
 class BoundaryOpening(NamedTuple):
-    """A piece of a line across the base that parts two regions, between the walls of the strips beside it.
+    """A piece of a line across the base that parts two regions, between the walls of the strips
+    beside it.
 
     Attributes
     ----------
@@ -92,11 +102,14 @@ class BoundaryOpening(NamedTuple):
 
 
 Column = tuple[Fraction, ...]
-"""The points of the boundary over an abscissa: that, and then the heights of the walls, from below."""
+"""The points of the boundary over an abscissa: that, and then the heights of the walls, from below.
+"""
 
 
 Shape = tuple[int, tuple[tuple[Key, ...], ...]]
-"""The base axis, and the counts over each strip from below: what two slices with the same boundary have in common."""
+"""The base axis, and the counts over each strip from below: what two slices with the same boundary
+have in common.
+"""
 
 
 class BoundaryStrips:
@@ -132,10 +145,16 @@ class BoundaryStrips:
             self._known[number, share] = (to_fraction(u), *self._heights(part, u))
         return self._known[number, share]
 
-    def _heights(self, part: _StackPart, u: fmpq, accuracy: Fraction = ACCURACY) -> tuple[Fraction, ...]:
+    def _heights(
+        self, part: _StackPart, u: fmpq, accuracy: Fraction = ACCURACY
+    ) -> tuple[Fraction, ...]:
         width = (self._fibre[1] - self._fibre[0]) * from_fraction(accuracy)
-        roots = {c: self._curves[c].roots_over(u, self._fibre) for c in {w.component for w in part.walls}}
-        return tuple(to_fraction(refine(roots[w.component][w.root], width).middle) for w in part.walls)
+        roots = {
+            c: self._curves[c].roots_over(u, self._fibre) for c in {w.component for w in part.walls}
+        }
+        return tuple(
+            to_fraction(refine(roots[w.component][w.root], width).middle) for w in part.walls
+        )
 
     def _parts(self, picture: Picture) -> list[_StackPart]:
         found = []
@@ -154,23 +173,37 @@ class BoundaryStrips:
                 groups[-1].append(part)
             else:
                 groups.append([part])
-        return tuple(BoundaryStrip(tuple(g), tuple(self._keys[r] for r in g[0].regions)) for g in groups)
+        return tuple(
+            BoundaryStrip(tuple(g), tuple(self._keys[r] for r in g[0].regions)) for g in groups
+        )
 
     def _goes_on(self, left: _StackPart, right: _StackPart) -> bool:
         if left.regions != right.regions:
             return False
-        ends = list(zip(self._heights(left, left.high), self._heights(right, right.low), strict=True))
+        ends = list(
+            zip(self._heights(left, left.high), self._heights(right, right.low), strict=True)
+        )
         return all(abs(a - b) <= self._jump for a, b in ends) and not self._has_corner(left, right)
 
     def _has_corner(self, left: _StackPart, right: _StackPart) -> bool:
-        """Whether a wall turns by more than `CORNER` where two parts meet; seen in the window's unit square."""
+        """Whether a wall turns by more than `CORNER` where two parts meet; seen in the window's
+        unit square.
+        """
         near = min(left.high - left.low, right.high - right.low) * _BESIDE
         scale = [float(to_fraction(b - a)) for a, b in (self._window, self._fibre)]
-        places = ((left, left.high - near), (left, left.high), (right, right.low), (right, right.low + near))
-        columns = ([float(v) / scale[1] for v in self._heights(part, u, _FINE)] for part, u in places)
+        places = (
+            (left, left.high - near),
+            (left, left.high),
+            (right, right.low),
+            (right, right.low + near),
+        )
+        columns = (
+            [float(v) / scale[1] for v in self._heights(part, u, _FINE)] for part, u in places
+        )
         across = float(to_fraction(near)) / scale[0]
         return any(
-            abs(atan2(d - c, across) - atan2(b - a, across)) > CORNER for a, b, c, d in zip(*columns, strict=True)
+            abs(atan2(d - c, across) - atan2(b - a, across)) > CORNER
+            for a, b, c, d in zip(*columns, strict=True)
         )
 
     @property
@@ -182,11 +215,16 @@ class BoundaryStrips:
         found = []
         for k, (left, right) in enumerate(pairwise(self.strips)):
             a, b = left.parts[-1], right.parts[0]
-            levels = [(bottom, *self._heights(part, u), top) for part, u in ((a, a.high), (b, b.low))]
+            levels = [
+                (bottom, *self._heights(part, u), top) for part, u in ((a, a.high), (b, b.low))
+            ]
             at = to_fraction((a.high + b.low) / 2)
             for i, first in enumerate(a.regions):
                 for j, second in enumerate(b.regions):
-                    low, high = max(levels[0][i], levels[1][j]), min(levels[0][i + 1], levels[1][j + 1])
+                    low, high = (
+                        max(levels[0][i], levels[1][j]),
+                        min(levels[0][i + 1], levels[1][j + 1]),
+                    )
                     if first != second and high - low > self._jump:
                         keys = self._keys[first], self._keys[second]
                         found.append(BoundaryOpening((k, i, j), keys, at, low, high))

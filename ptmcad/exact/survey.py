@@ -1,6 +1,7 @@
 """How much of a slice's curves is real and in the window: the exact engine's first stages, counted.
 
-Guarantee: exact; these are the numbers of the cells that the map will have, and of the walls between them.
+Guarantee: exact; these are the numbers of the cells that the map will have, and of the walls
+between them.
 """
 
 from __future__ import annotations
@@ -39,4 +40,8 @@ def survey(problem: SliceProblem, check: Check = nothing) -> Survey:
     """
     cut = decomposition_of(problem, check=check)
     cells = len(cut.points)
-    return Survey(cells, cells - len(cut.stacks), max((len(c.in_v) - 1 for c in cut.variety.curves), default=0))
+    return Survey(
+        cells,
+        cells - len(cut.stacks),
+        max((len(c.in_v) - 1 for c in cut.variety.curves), default=0),
+    )

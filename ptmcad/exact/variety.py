@@ -1,21 +1,25 @@
-"""The discriminant variety of a slice: the curves off which the number of solutions of each kind is locally constant.
+"""The discriminant variety of a slice: the curves off which the number of solutions of each kind is
+locally constant.
 
-Guarantee: on every connected component of the window minus these curves, and minus a nowhere dense set that no count
-feels, the solutions are nondegenerate, and their number, indices and the signs of all conditions are constant.
+Guarantee: on every connected component of the window minus these curves, and minus a nowhere dense
+set that no count feels, the solutions are nondegenerate, and their number, indices and the signs of
+all conditions are constant.
 
-Why. Over Q(x, y) the equations have finitely many solutions; let N be the norm of the Jacobian's determinant J, that is
-the product of J over them, and let P collect the poles of the characteristic polynomials of the unknowns. At a point
-with P != 0 the solutions at nearby generic points stay bounded, and with N != 0 none of them has J -> 0, so they are
-smooth functions there: real ones stay real and apart, and a condition changes its sign only where its norm vanishes.
-The components are tagged CRITICAL (factors of N), INFINITY (factors of P, where a complex solution leaves every bounded
-set; those of them that divide N too are critical on a torus, and at infinity where there are real unknowns) and
-BOUNDARY (there the slice's equations lose their meaning, or a condition's norm vanishes).
+Why. Over Q(x, y) the equations have finitely many solutions; let N be the norm of the Jacobian's
+determinant J, that is the product of J over them, and let P collect the poles of the characteristic
+polynomials of the unknowns. At a point with P != 0 the solutions at nearby generic points stay
+bounded, and with N != 0 none of them has J -> 0, so they are smooth functions there: real ones stay
+real and apart, and a condition changes its sign only where its norm vanishes. The components are
+tagged CRITICAL (factors of N), INFINITY (factors of P, where a complex solution leaves every
+bounded set; those of them that divide N too are critical on a torus, and at infinity where there
+are real unknowns) and BOUNDARY (there the slice's equations lose their meaning, or a condition's
+norm vanishes).
 
-Solutions at which an inequality's polynomial vanishes all over the slice never count. They are left out, by one more
-unknown, that polynomial's inverse; where the inverse has a pole the norm vanishes.
+Solutions at which an inequality's polynomial vanishes all over the slice never count. They are left
+out, by one more unknown, that polynomial's inverse; where the inverse has a pole the norm vanishes.
 
-Reference: Lazard & Rouillier, J. Symb. Comp. 42 (2007). N is used in place of the Hermite matrix's determinant because
-the latter also vanishes where the monomial basis degenerates.
+Reference: Lazard & Rouillier, J. Symb. Comp. 42 (2007). N is used in place of the Hermite matrix's
+determinant because the latter also vanishes where the monomial basis degenerates.
 """
 
 from __future__ import annotations
@@ -66,7 +70,8 @@ class DiscriminantVariety(NamedTuple):
 
     Attributes
     ----------
-    excludes : whether solutions at which an inequality's polynomial is zero were left out, as they are in the way.
+    excludes : whether solutions at which an inequality's polynomial is zero were left out, as they
+        are in the way.
     """
 
     components: tuple[Component, ...]
@@ -87,7 +92,8 @@ def discriminant_variety(
     on : the system on the axes x and y.
     window : their ranges.
     without : names of savings to switch off, of `ptmcad.question.savings`.
-    known : gives for the equations what is known of them from a family that the slice is of, or None.
+    known : gives for the equations what is known of them from a family that the slice is of, or
+        None.
 
     Raises
     ------
@@ -106,7 +112,11 @@ def discriminant_variety(
     seen.adopt(escaping, Kind.INFINITY)
     for polynomial in sign_changes(equations, algebra):
         seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
-    suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in seen.found]
+    suspects = [
+        f
+        for f in irreducible_factors(multiplication_denominator(algebra))
+        if to_plane(f) not in seen.found
+    ]
     hidden = [f for f in suspects if seen.outside(f)]
     visible = [f for f in suspects if f not in hidden]
     tried = visible if settles(equations) and "infinity" not in without else []
@@ -119,12 +129,17 @@ def discriminant_variety(
         simplest = on.system.simplest
         for order in range(1, on.system.criterion.order):
             minor = element_on_slice(simplest, leading_minor(simplest, order), on.parameters)
-            seen.adopt(irreducible_factors(norm(algebra, lifted(minor, equations.unknowns))[0]), Kind.AUXILIARY)
+            seen.adopt(
+                irreducible_factors(norm(algebra, lifted(minor, equations.unknowns))[0]),
+                Kind.AUXILIARY,
+            )
     if "hermite-matrix" in without:
         for part in determinant(trace_form(algebra)):
             seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
     components = tuple(
-        replace(c, continuum=continuum(from_plane(c.polynomial), on, given, jacobian_norm[0])) if not c.left_out else c
+        replace(c, continuum=continuum(from_plane(c.polynomial), on, given, jacobian_norm[0]))
+        if not c.left_out
+        else c
         for c in seen.in_order()
     )
     return DiscriminantVariety(components, algebra.dimension, equations.unknowns > given.unknowns)
@@ -147,20 +162,31 @@ class _Components:
 
     def outside(self, factor: Coefficient) -> str:
         """Why a curve is left out that has no point in the window, or the empty string."""
-        return NO_POINT if "no-real-points" not in self.without and nowhere_zero(factor, *self.window) else ""
+        return (
+            NO_POINT
+            if "no-real-points" not in self.without and nowhere_zero(factor, *self.window)
+            else ""
+        )
 
     def adopt(self, factors: Iterable[Coefficient], kind: Kind, left_out: str = "") -> None:
         for factor in factors:
             polynomial = to_plane(factor)
             if polynomial not in self.found:
-                self.found[polynomial] = Component(polynomial, kind, left_out or self.outside(factor))
+                self.found[polynomial] = Component(
+                    polynomial, kind, left_out or self.outside(factor)
+                )
 
     def in_order(self) -> tuple[Component, ...]:
         """Those left out last; by kind, number of terms and terms."""
         return tuple(
             sorted(
                 self.found.values(),
-                key=lambda c: (bool(c.left_out), _ORDER[c.kind], len(c.polynomial.terms), c.polynomial.terms),
+                key=lambda c: (
+                    bool(c.left_out),
+                    _ORDER[c.kind],
+                    len(c.polynomial.terms),
+                    c.polynomial.terms,
+                ),
             )
         )
 
@@ -188,7 +214,8 @@ Known = Callable[[SliceSystem], Nondegenerate | None]
 
 
 def nondegenerate(equations: SliceSystem) -> Nondegenerate:
-    """The equations, without the solutions that an inequality excludes everywhere if those are in the way.
+    """The equations, without the solutions that an inequality excludes everywhere if those are in
+    the way.
 
     Raises
     ------
@@ -229,7 +256,8 @@ def _with_jacobian(equations: SliceSystem) -> Nondegenerate:
 
 
 def sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[Coefficient]:
-    """The norms of the conditions, over those solutions at which they are not zero all over the slice.
+    """The norms of the conditions, over those solutions at which they are not zero all over the
+    slice.
 
     Raises
     ------
@@ -253,34 +281,47 @@ def sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[C
 
 
 def settles(equations: SliceSystem) -> bool:
-    """Whether real solutions that stay regular settle everything: they stay bounded, and nothing else is asked of them.
+    """Whether real solutions that stay regular settle everything: they stay bounded, and nothing
+    else is asked of them.
 
-    The sign of a condition can change across a curve where its norm does not vanish, at a solution that is real there
-    while a complex one leaves every bounded set.
+    The sign of a condition can change across a curve where its norm does not vanish, at a solution
+    that is real there while a complex one leaves every bounded set.
     """
     return equations.is_compact and not equations.inequalities and not equations.stability
 
 
 def harmless(
-    equations: SliceSystem, rows: Sequence[Vector], jacobian_norm: Ratio, suspects: Sequence[Coefficient]
+    equations: SliceSystem,
+    rows: Sequence[Vector],
+    jacobian_norm: Ratio,
+    suspects: Sequence[Coefficient],
 ) -> list[Coefficient]:
-    """Those of the curves across which no real count can change: near them det H stays away from 0 at all solutions.
+    """Those of the curves across which no real count can change: near them det H stays away from 0
+    at all solutions.
 
-    Real solutions stay bounded, as cosines and sines do; being regular as well, they continue across the curve one by
-    one. A second monomial order is tried where the first one's basis degenerates.
+    Real solutions stay bounded, as cosines and sines do; being regular as well, they continue
+    across the curve one by one. A second monomial order is tried where the first one's basis
+    degenerates.
     """
     proved = [f for f in suspects if bounded_away_from_zero(rows, jacobian_norm, f)]
     for permutation in _OTHER_ORDERS:
         if len(proved) < len(suspects) and len(permutation) == equations.unknowns:
-            other = quotient_algebra(groebner_basis(equations.equations, MonomialOrder(permutation)))
+            other = quotient_algebra(
+                groebner_basis(equations.equations, MonomialOrder(permutation))
+            )
             assert other is not None  # the ideal is zero-dimensional in any order
             rows = multiples(other, equations.jacobian)
-            proved += [f for f in suspects if f not in proved and bounded_away_from_zero(rows, jacobian_norm, f)]
+            proved += [
+                f
+                for f in suspects
+                if f not in proved and bounded_away_from_zero(rows, jacobian_norm, f)
+            ]
     return proved
 
 
 _OTHER_ORDERS = ((2, 0, 3, 1),)
-"""Orders of (cos th1, sin th1, cos th2, sin th2); there are none for other numbers of angles, where less is proved.
+"""Orders of (cos th1, sin th1, cos th2, sin th2); there are none for other numbers of angles, where
+less is proved.
 
 Where the first order's basis degenerates, these have not, so far."""
 

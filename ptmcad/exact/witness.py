@@ -1,7 +1,7 @@
 """A point that shows what is wrong with a slice that is degenerate at every point.
 
-Guarantee: exact, of that point. That nothing else degenerates there is likely, as it is the one of some points with the
-most solutions, and not proved.
+Guarantee: exact, of that point. That nothing else degenerates there is likely, as it is the one of
+some points with the most solutions, and not proved.
 """
 
 from __future__ import annotations
@@ -12,7 +12,12 @@ from fractions import Fraction
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import Values
-from ptmcad.errors import DegenerateSliceError, HypothesisError, InfiniteSolutionsError, NothingToCountError
+from ptmcad.errors import (
+    DegenerateSliceError,
+    HypothesisError,
+    InfiniteSolutionsError,
+    NothingToCountError,
+)
 from ptmcad.exact.models.system import ParametricSystem, SystemOnAxes
 from ptmcad.exact.point_system import solutions_at
 from ptmcad.text.flint_numbers import from_fraction
@@ -20,7 +25,13 @@ from ptmcad.text.flint_numbers import from_fraction
 Point = tuple[fmpq, fmpq]
 SHARES = tuple(
     (Fraction(a, b), Fraction(c, d))
-    for a, b, c, d in ((10, 21, 19, 35), (5, 11, 4, 13), (7, 17, 12, 19), (9, 23, 13, 29), (14, 31, 15, 37))
+    for a, b, c, d in (
+        (10, 21, 19, 35),
+        (5, 11, 4, 13),
+        (7, 17, 12, 19),
+        (9, 23, 13, 29),
+        (14, 31, 15, 37),
+    )
 )
 """Of the window: rarely on a curve that a person has in mind."""
 Solutions = tuple[int, int]
@@ -33,7 +44,8 @@ def with_witness(
     window: Sequence[Point],
     place: Callable[[Point], str],
 ) -> DegenerateSliceError | InfiniteSolutionsError:
-    """The error, with a point of the window that shows it added to its words; as it is where none was found.
+    """The error, with a point of the window that shows it added to its words; as it is where none
+    was found.
 
     Parameters
     ----------
@@ -50,13 +62,18 @@ def with_witness(
             examples.append((solutions, words, at))
     if not examples:
         return error
-    # where the fewest solutions have left to infinity or coincide by chance, the first of such points
+    # where the fewest solutions have left to infinity or coincide by chance, the first of such
+    # points
     _, words, at = max(examples, key=lambda example: example[0])
     return type(error)(f"{error}; for example at {place(at)}{words}", part=error.part)
 
 
-def _example(error: HypothesisError, system: ParametricSystem, values: Values) -> tuple[str, Solutions]:
-    """What shows a point's fault in words, none where it does not show, and the numbers of solutions there."""
+def _example(
+    error: HypothesisError, system: ParametricSystem, values: Values
+) -> tuple[str, Solutions]:
+    """What shows a point's fault in words, none where it does not show, and the numbers of
+    solutions there.
+    """
     if isinstance(error, NothingToCountError):
         return _nothing(system, values), (0, 0)
     different, multiplicity = solutions_at(system, values, saturated=True)
@@ -77,7 +94,9 @@ def _nothing(system: ParametricSystem, values: Values) -> str:
         return " infinitely many solutions are all excluded"
     if not different:
         return " there is none"
-    return f" the equations have {different} different solution{'s' * (different > 1)}, all excluded"
+    return (
+        f" the equations have {different} different solution{'s' * (different > 1)}, all excluded"
+    )
 
 
 def points(window: Sequence[Point]) -> Iterator[Point]:

@@ -1,7 +1,9 @@
-"""The workers as the server sees them: each takes one job at a time, and of each tab the last one that was asked for.
+"""The workers as the server sees them: each takes one job at a time, and of each tab the last one
+that was asked for.
 
-Guarantee: every request is answered: with what it asked for, with a reason in words, or with the word that a later
-request of its tab has superseded it. A worker that has died, or does not end in `ANSWER_SECONDS`, is replaced.
+Guarantee: every request is answered: with what it asked for, with a reason in words, or with the
+word that a later request of its tab has superseded it. A worker that has died, or does not end in
+`ANSWER_SECONDS`, is replaced.
 """
 
 from __future__ import annotations
@@ -23,7 +25,9 @@ from typing import Any
 from ptmcad.explore.panel import SliderPanel
 
 ANSWER_SECONDS = 180.0
-"""After which a worker is ended: FLINT's code, and compiling the certified engine, do not look at any clock."""
+"""After which a worker is ended: FLINT's code, and compiling the certified engine, do not look at
+any clock.
+"""
 CANCEL_SECONDS = 2.0
 """In which a superseded job has to leave; it is ended then."""
 _MAX_BYTES = 1 << 26
@@ -32,7 +36,9 @@ _MAX_BYTES = 1 << 26
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """How a job ended (``done``, ``refused``, ``superseded``, ``lost``), and the JSON that the page is told."""
+    """How a job ended (``done``, ``refused``, ``superseded``, ``lost``), and the JSON that the page
+    is told.
+    """
 
     ended: str
     body: bytes
@@ -157,7 +163,9 @@ class WorkerProcess:
 
 
 def _kill(process: asyncio.subprocess.Process) -> None:
-    """End a process, if it is there; asyncio's own way would take its status from the thread that waits for it."""
+    """End a process, if it is there; asyncio's own way would take its status from the thread that
+    waits for it.
+    """
     if process.returncode is None:
         with suppress(ProcessLookupError):
             os.kill(process.pid, signal.SIGKILL)

@@ -1,11 +1,13 @@
-"""Who may ask the explorer's server: the browser to which the terminal's address was given, and nobody else.
+"""Who may ask the explorer's server: the browser to which the terminal's address was given, and
+nobody else.
 
-Guarantee: the token of the address is good once; what it is exchanged for is a cookie, which scripts cannot read and
-which no other site's pages send, and a secret in the page, without which nothing is computed or written. Neither is in
-an address, nor in any log. Requests for another host's name (DNS rebinding) or from another origin are refused.
+Guarantee: the token of the address is good once; what it is exchanged for is a cookie, which
+scripts cannot read and which no other site's pages send, and a secret in the page, without which
+nothing is computed or written. Neither is in an address, nor in any log. Requests for another
+host's name (DNS rebinding) or from another origin are refused.
 
-Not guaranteed: cookies belong to a host, not to a port: another server on this machine that the same browser visits is
-sent it. Programs of the same user can read this one's memory anyway.
+Not guaranteed: cookies belong to a host, not to a port: another server on this machine that the
+same browser visits is sent it. Programs of the same user can read this one's memory anyway.
 """
 
 from __future__ import annotations
@@ -51,7 +53,9 @@ class Guard:
         return f"http://127.0.0.1:{self.port}/?token={self.token}"
 
     def is_addressed(self, headers: Mapping[str, str]) -> bool:
-        """Whether a request is for this server by its own name, and from a page of its own, or none."""
+        """Whether a request is for this server by its own name, and from a page of its own, or
+        none.
+        """
         hosts = [f"{host}:{self.port}" for host in _HOSTS]
         host, origin = headers.get("Host", ""), headers.get("Origin")
         return host in hosts and origin in (None, f"http://{host}")
@@ -62,7 +66,10 @@ class Guard:
 
     def trusts(self, headers: Mapping[str, str]) -> bool:
         """Whether a question comes from the page itself."""
-        own = headers.get("Origin") is not None and headers.get("Sec-Fetch-Site", "same-origin") == "same-origin"
+        own = (
+            headers.get("Origin") is not None
+            and headers.get("Sec-Fetch-Site", "same-origin") == "same-origin"
+        )
         return own and _same(headers.get(HEADER, ""), self.secret)
 
     def exchange(self, token: str) -> bool:

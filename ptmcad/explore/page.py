@@ -1,6 +1,8 @@
-"""The page's parts: its HTML, filled with the panel, and the scripts and style sheets that it shares with the report.
+"""The page's parts: its HTML, filled with the panel, and the scripts and style sheets that it
+shares with the report.
 
-Guarantee: the data cannot end the element they stand in, and nothing of the record is taken for markup.
+Guarantee: the data cannot end the element they stand in, and nothing of the record is taken for
+markup.
 """
 
 from __future__ import annotations
@@ -48,7 +50,9 @@ def page(panel: SliderPanel, secret: str) -> str:
     secret : what the page shows the server with every question.
     """
     record = panel.record
-    return Template((files("ptmcad.explore") / "explore.html").read_text(encoding="utf-8")).substitute(
+    return Template(
+        (files("ptmcad.explore") / "explore.html").read_text(encoding="utf-8")
+    ).substitute(
         title=escape(record.title or record.name),
         name=escape(record.name),
         side=SIDE,

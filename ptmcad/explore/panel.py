@@ -1,7 +1,8 @@
-"""The sliders of a record: which parameters one drags, between which ends, and the slice at given values of them.
+"""The sliders of a record: which parameters one drags, between which ends, and the slice at given
+values of them.
 
-Guarantee: a value is an exact rational between its slider's ends; the slice at the values is the one that a person gets
-who writes them into the record. No value is rounded.
+Guarantee: a value is an exact rational between its slider's ends; the slice at the values is the
+one that a person gets who writes them into the record. No value is rounded.
 """
 
 from __future__ import annotations
@@ -33,7 +34,9 @@ MAX_TEXT = 80
 """Characters of a number that the page may send."""
 MAX_NAME = 100
 REMEMBERED = 4
-"""Families whose variety is kept: one is left and come back to when another parameter is dragged to and fro."""
+"""Families whose variety is kept: one is left and come back to when another parameter is dragged to
+and fro.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +79,8 @@ class SliderPanel:
 
         Raises
         ------
-        ConfigError
-            For a name that no slider has, a text that is no number, or a number beyond the slider's ends.
+        ConfigError For a name that no slider has, a text that is no number, or a number beyond the
+            slider's ends.
         """
         values = self.start()
         known = {slider.name: slider for slider in self.sliders}
@@ -97,7 +100,9 @@ class SliderPanel:
         if not changed:
             return self.record
         scalars = {name: Scalar(text_of(value), Place(name)) for name, value in changed.items()}
-        name = self.record.name + "".join(f"-{n}-{text_of(v).replace('/', '_')}" for n, v in changed.items())
+        name = self.record.name + "".join(
+            f"-{n}-{text_of(v).replace('/', '_')}" for n, v in changed.items()
+        )
         return self.record._replace(
             name=name if len(name) <= MAX_NAME else f"{self.record.name[: MAX_NAME - 9]}-explored",
             values={**self.record.values, **scalars},
@@ -117,18 +122,24 @@ class SliderPanel:
         if record.free is None:
             return slice_of(record)
         name, value = record.free[0], values[record.free[0]]
-        return slice_of(bound(record, name, value)._replace(name=member_name(record, name, value)[:MAX_NAME]))
+        return slice_of(
+            bound(record, name, value)._replace(name=member_name(record, name, value)[:MAX_NAME])
+        )
 
 
 class Families:
-    """What the members of a panel's families have in common, computed when first asked for, and remembered."""
+    """What the members of a panel's families have in common, computed when first asked for, and
+    remembered.
+    """
 
     def __init__(self, panel: SliderPanel) -> None:
         self.panel = panel
         self.known: OrderedDict[tuple[Fraction, ...], Common] = OrderedDict()
 
     def common(self, values: Numbers, options: Options) -> Common:
-        """Of the family that the values are in; its only stated member is the one at the free value."""
+        """Of the family that the values are in; its only stated member is the one at the free
+        value.
+        """
         others = tuple(values[slider.name] for slider in self.panel.sliders if not slider.free)
         if others not in self.known:
             record = self.panel.record_at(values)
@@ -143,7 +154,8 @@ class Families:
 
 
 def panel_of(record: Record, ranges: Iterable[str] = ()) -> SliderPanel:
-    """The sliders of a record: its free parameter, then every parameter that is a number; there may be none.
+    """The sliders of a record: its free parameter, then every parameter that is a number; there may
+    be none.
 
     Parameters
     ----------
@@ -176,12 +188,16 @@ def panel_of(record: Record, ranges: Iterable[str] = ()) -> SliderPanel:
         sliders.append(Slider(name, min(low, value), max(high, value), _step(low, high), value))
     if ends:
         names = ", ".join(slider.name for slider in sliders) or "none, as no parameter is a number"
-        raise ConfigError(f"{shown(next(iter(ends)), 40)} has no slider; sliders are {names}", key="--slider")
+        raise ConfigError(
+            f"{shown(next(iter(ends)), 40)} has no slider; sliders are {names}", key="--slider"
+        )
     return SliderPanel(record, tuple(sliders))
 
 
 def _numbers(record: Record, member: Slice) -> dict[str, Fraction]:
-    """The parameters that are written as numbers, in the order of the model's; an alias is not beside its own."""
+    """The parameters that are written as numbers, in the order of the model's; an alias is not
+    beside its own.
+    """
     texts = written_in(record, member)
     known = record.model.parameters
     for name in tuple(texts):  # of free lengths, which a slice has by the springs' own names alone
@@ -209,7 +225,9 @@ def number_within(name: str, text: str, low: Fraction, high: Fraction) -> Fracti
     try:
         value = rational(text)
     except ExpressionError as error:
-        raise ConfigError(f"{name}: {shown(repr(text), 60)} is no number ({error.message})") from error
+        raise ConfigError(
+            f"{name}: {shown(repr(text), 60)} is no number ({error.message})"
+        ) from error
     if not low <= value <= high:
         raise ConfigError(f"{name} is between {text_of(low)} and {text_of(high)} here")
     return value
@@ -235,7 +253,9 @@ def _around(model: Model, name: str, value: Fraction) -> tuple[Fraction, Fractio
     elif value:
         low, high = sorted((Fraction(0), 2 * value))
     else:
-        low, high = (Fraction(-10), Fraction(10)) if kind is Kind.FORCE else (Fraction(-1), Fraction(1))
+        low, high = (
+            (Fraction(-10), Fraction(10)) if kind is Kind.FORCE else (Fraction(-1), Fraction(1))
+        )
     if parameter.window is not None:
         stated = [number_of(Scalar(text, Place(name))) for text in parameter.window]
         low, high = min(stated[0], value), max(stated[1], value)

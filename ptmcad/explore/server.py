@@ -1,9 +1,10 @@
 """The explorer's local server: one page, its scripts, and the questions that it asks.
 
-Guarantee: it listens on 127.0.0.1 alone; without cookie every request but the first one with the token is refused,
-whatever its path; bodies are small JSON; every answer has headers that keep it out of caches, frames and other sites.
-Whatever clients send, or do not send, it holds a bounded number of connections, none of them silent for long, answers
-the others, and prints nothing. It ends with its process and takes its workers with it.
+Guarantee: it listens on 127.0.0.1 alone; without cookie every request but the first one with the
+token is refused, whatever its path; bodies are small JSON; every answer has headers that keep it
+out of caches, frames and other sites. Whatever clients send, or do not send, it holds a bounded
+number of connections, none of them silent for long, answers the others, and prints nothing. It ends
+with its process and takes its workers with it.
 """
 
 from __future__ import annotations
@@ -30,9 +31,13 @@ from ptmcad.text.node import Node
 
 MAX_BODY = 1 << 14
 MAX_CONNECTIONS = 64
-"""That are open, or a quarter of the files that the process may have open; the others wait in the system's queue."""
+"""That are open, or a quarter of the files that the process may have open; the others wait in the
+system's queue.
+"""
 SILENT_SECONDS = 10.0
-"""After which a connection without a request under way is closed, before the first one as well, and for a body."""
+"""After which a connection without a request under way is closed, before the first one as well, and
+for a body.
+"""
 _PAUSE = 0.1
 """Seconds until another look at what is full."""
 MAX_ENTRIES, MAX_TEXT = 60, 100
@@ -56,7 +61,9 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 class Server:
-    """The page's side and the workers': one for maps and files, another one for points, so that these do not wait."""
+    """The page's side and the workers': one for maps and files, another one for points, so that
+    these do not wait.
+    """
 
     def __init__(self, panel: SliderPanel, folder: Path, guard: Guard) -> None:
         self.panel, self.guard = panel, guard
@@ -65,19 +72,25 @@ class Server:
         self.asking: set[web.RequestHandler] = set()
 
     async def accept(self, own: socket.socket, make: web.Server) -> NoReturn:
-        """Take connections; where as many are open as may be, the oldest without a question under way makes room."""
+        """Take connections; where as many are open as may be, the oldest without a question under
+        way makes room.
+        """
         loop = asyncio.get_running_loop()
         most = min(MAX_CONNECTIONS, os.sysconf("SC_OPEN_MAX") // 4)
         while True:
             while len(make.connections) >= most:
-                ends = [c.transport for c in make.connections if c.transport and c not in self.asking]
+                ends = [
+                    c.transport for c in make.connections if c.transport and c not in self.asking
+                ]
                 for end in ends[:1]:
                     end.abort()  # what it has not read of an answer is not waited for
                 await asyncio.sleep(0 if ends else _PAUSE)
             try:
                 accepted, _ = await loop.sock_accept(own)
                 await loop.connect_accepted_socket(make, accepted)
-            except OSError:  # the client has gone already, or there is no room for another file at the moment
+            except (
+                OSError
+            ):  # the client has gone already, or there is no room for another file at the moment
                 await asyncio.sleep(_PAUSE)
 
     def application(self) -> web.Application:
@@ -93,14 +106,19 @@ class Server:
 
     @web.middleware
     async def _guarded(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        """Refuse whoever is not known, before anything is looked at, and answer all refusals in words."""
+        """Refuse whoever is not known, before anything is looked at, and answer all refusals in
+        words.
+        """
         if not self.guard.is_addressed(request.headers):
             return _refused(403, "this is no request of the explorer's own page")
         token = request.query.get("token")
         if token is not None and request.method == "GET" and request.path == "/":
             return self._exchanged(request, token)
         if not self.guard.knows(request.cookies):
-            return _refused(403, "the address with the token, which the terminal shows, opens the explorer, once")
+            return _refused(
+                403,
+                "the address with the token, which the terminal shows, opens the explorer, once",
+            )
         if request.method not in ("GET", "POST"):
             return _refused(405, "there is nothing to do in this way")
         try:
@@ -112,16 +130,31 @@ class Server:
         """The cookie for the token; a browser that has it already is let in by any token."""
         known = self.guard.knows(request.cookies)
         if not known and not self.guard.exchange(token):
-            return _refused(403, "this address has been used already, or was never right: start ptmcad explore again")
-        # the cookie is sent with what a page of this server asks for: not where a file, or another site, has led here
+            return _refused(
+                403,
+                "this address has been used already, or was never right: start ptmcad explore again",
+            )
+        # the cookie is sent with what a page of this server asks for: not where a file, or another
+        # site, has led here
         led = request.headers.get("Sec-Fetch-Site") == "cross-site"
-        answer = web.Response(status=200 if led else 303, headers={"Refresh": "0; url=/"} if led else {"Location": "/"})
+        answer = web.Response(
+            status=200 if led else 303,
+            headers={"Refresh": "0; url=/"} if led else {"Location": "/"},
+        )
         if not known:
-            answer.set_cookie(self.guard.cookie_name, self.guard.cookie, httponly=True, samesite="Strict", path="/")
+            answer.set_cookie(
+                self.guard.cookie_name,
+                self.guard.cookie,
+                httponly=True,
+                samesite="Strict",
+                path="/",
+            )
         return answer
 
     async def _page(self, _request: web.Request) -> web.Response:
-        return web.Response(text=page(self.panel, self.guard.secret), content_type="text/html", charset="utf-8")
+        return web.Response(
+            text=page(self.panel, self.guard.secret), content_type="text/html", charset="utf-8"
+        )
 
     async def _asset(self, request: web.Request) -> web.Response:
         name = request.path.removeprefix("/")
@@ -137,8 +170,14 @@ class Server:
             async with asyncio.timeout(SILENT_SECONDS):
                 job = job_of(kind, await request.read())
             self.panel.values(job["values"])  # what is wrong with them is said without a worker
-        except (ValueError, OSError, web.RequestPayloadError) as error:  # or it is too slow, gone, or cut in no chunks
-            return web.json_response({"error": str(error) or "a question comes whole, and at once"}, status=400)
+        except (
+            ValueError,
+            OSError,
+            web.RequestPayloadError,
+        ) as error:  # or it is too slow, gone, or cut in no chunks
+            return web.json_response(
+                {"error": str(error) or "a question comes whole, and at once"}, status=400
+            )
         except ConfigError as error:
             return web.json_response({"error": str(error)}, status=422)
         self.asking.add(request.protocol)
@@ -146,7 +185,9 @@ class Server:
             answer = await self.workers[kind].ask(job.pop("tab"), job)
         finally:
             self.asking.remove(request.protocol)
-        return web.Response(body=answer.body, status=STATUS[answer.ended], content_type="application/json")
+        return web.Response(
+            body=answer.body, status=STATUS[answer.ended], content_type="application/json"
+        )
 
 
 def job_of(kind: str, body: bytes) -> dict[str, Any]:
@@ -161,9 +202,9 @@ def job_of(kind: str, body: bytes) -> dict[str, Any]:
         question = Node(json.loads(body.decode("utf-8")), "")
     except (UnicodeDecodeError, ValueError, RecursionError) as error:
         raise ValueError("a question is JSON, and this is none") from error
-    found: dict[str, Any] = record(dict, **{name: _PARTS[name] for name in ("tab", "values", *KINDS[kind])}).read(
-        question
-    )
+    found: dict[str, Any] = record(
+        dict, **{name: _PARTS[name] for name in ("tab", "values", *KINDS[kind])}
+    ).read(question)
     return {"kind": kind, **found}
 
 
@@ -176,7 +217,9 @@ _PARTS: dict[str, Codec[Any]] = {
 
 def _refused(status: int, reason: str) -> web.Response:
     """A refusal as a page, for a person who opens an address."""
-    return web.Response(text=refusal(status, reason), status=status, content_type="text/html", charset="utf-8")
+    return web.Response(
+        text=refusal(status, reason), status=status, content_type="text/html", charset="utf-8"
+    )
 
 
 async def _with_headers(_request: web.Request, response: web.StreamResponse) -> None:
@@ -185,7 +228,9 @@ async def _with_headers(_request: web.Request, response: web.StreamResponse) -> 
 
 
 def _is_own_fault(record: logging.LogRecord) -> bool:
-    """Whether a message is about an error of this program: what is sent that is no HTTP is answered, and no news."""
+    """Whether a message is about an error of this program: what is sent that is no HTTP is
+    answered, and no news.
+    """
     return not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError))
 
 
@@ -205,11 +250,15 @@ def listening(port: int) -> socket.socket:
         found.listen(256)
     except OSError as error:
         found.close()
-        raise ConfigError(f"port {port} cannot be listened on: {error.strerror}", key="--port") from error
+        raise ConfigError(
+            f"port {port} cannot be listened on: {error.strerror}", key="--port"
+        ) from error
     return found
 
 
-async def serve(panel: SliderPanel, folder: Path, port: int, announce: Callable[[str], None]) -> NoReturn:
+async def serve(
+    panel: SliderPanel, folder: Path, port: int, announce: Callable[[str], None]
+) -> NoReturn:
     """Serve until this process is ended.
 
     Parameters

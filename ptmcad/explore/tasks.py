@@ -1,7 +1,8 @@
-"""What a worker computes for the page: a map, the solutions at a point, the record of a figure, its files.
+"""What a worker computes for the page: a map, the solutions at a point, the record of a figure, its
+files.
 
-Guarantee: counts are exact or certified, and are those that `ptmcad classify` and `ptmcad solve` give. A map that is
-superseded is given up at the next step of its computation.
+Guarantee: counts are exact or certified, and are those that `ptmcad classify` and `ptmcad solve`
+give. A map that is superseded is given up at the next step of its computation.
 """
 
 from __future__ import annotations
@@ -34,7 +35,9 @@ from ptmcad.text.numerals import Numbers
 EXACT_SECONDS = 50.0
 """For one exact map."""
 CERTIFIED_SECONDS, FINE_SECONDS = 40.0, 3.0
-"""For a certified map at most; and after which the next one on the way is good enough where the hand rests."""
+"""For a certified map at most; and after which the next one on the way is good enough where the
+hand rests.
+"""
 PICTURES = ("png", "svg", "pdf")
 DIGITS = 10
 """To which solutions at a point are computed; fewer are shown."""
@@ -69,7 +72,9 @@ class Tasks:
         PtmcadError
             Where there is none, in words for the page.
         """
-        do = {"map": self._map, "point": self._point, "record": self._record, "save": self._save}[job["kind"]]
+        do = {"map": self._map, "point": self._point, "record": self._record, "save": self._save}[
+            job["kind"]
+        ]
         return do(self.panel.values(job["values"]), job)
 
     def _map(self, values: Numbers, job: Job) -> dict[str, Any]:
@@ -83,16 +88,24 @@ class Tasks:
 
     def _exact(self, slice: Slice, values: Numbers, *, areas: bool, sparing: bool) -> RegionMap:
         """The exact map; by the family's variety, where there is a family."""
-        options = Options(timeout=EXACT_SECONDS, progress=self._progress, areas=areas, sparing=sparing)
+        options = Options(
+            timeout=EXACT_SECONDS, progress=self._progress, areas=areas, sparing=sparing
+        )
         free = self.panel.record.free
         if free is None:
             return region_map(slice, options)
         return member_map(self.families.common(values, options), values[free[0]], options)
 
     def _certified(self, slice: Slice, fine: bool) -> RegionMap:
-        """The first certified map there is, or from where the last one of this slice was some seconds further."""
+        """The first certified map there is, or from where the last one of this slice was some
+        seconds further.
+        """
         last, self.last = self.last, None
-        resume = last if last is not None and replace(last.slice, name="") == replace(slice, name="") else None
+        resume = (
+            last
+            if last is not None and replace(last.slice, name="") == replace(slice, name="")
+            else None
+        )
         started, seconds = perf_counter(), FINE_SECONDS if fine else 0
 
         def handed(found: RegionMap) -> None:
@@ -101,7 +114,9 @@ class Tasks:
                 raise _Enough
 
         try:
-            options = Options(timeout=CERTIFIED_SECONDS, progress=self._progress, partial=handed, resume=resume)
+            options = Options(
+                timeout=CERTIFIED_SECONDS, progress=self._progress, partial=handed, resume=resume
+            )
             self.last = region_map(slice, options)
         except _Enough:
             pass
@@ -121,7 +136,10 @@ class Tasks:
         axes = {axis.name: axis for axis in slice.axes}
         if set(job["at"]) != set(axes):
             raise ConfigError(f"a point has {' and '.join(axes)}")
-        at = {name: number_within(name, job["at"][name], axes[name].low, axes[name].high) for name in axes}
+        at = {
+            name: number_within(name, job["at"][name], axes[name].low, axes[name].high)
+            for name in axes
+        }
         place: tuple[Fraction, Fraction] = (at[slice.axes[0].name], at[slice.axes[1].name])
         parameters = values_at(slice.parameters, *place)
         for name, value in parameters.items():
@@ -139,13 +157,19 @@ class Tasks:
                 "alone": command or ""}  # fmt: skip
 
     def _save(self, values: Numbers, job: Job) -> dict[str, Any]:
-        """The figure, its result and its record as files, all or none; nothing that is there is written over."""
+        """The figure, its result and its record as files, all or none; nothing that is there is
+        written over.
+        """
         name = file_name(job["name"], "the name")
         slice = replace(self.panel.slice(values), name=name)
         record = reproduction(slice)[0]
         if record is None:
             raise ConfigError("no problem record gives this slice")
-        names = [f"{name}.yaml", *(f"{name}.{kind}" for kind in PICTURES if kind in job["formats"]), f"{name}.json"]
+        names = [
+            f"{name}.yaml",
+            *(f"{name}.{kind}" for kind in PICTURES if kind in job["formats"]),
+            f"{name}.json",
+        ]
         for file in names:
             if os.path.lexists(self.folder / file):
                 raise ConfigError(f"{file} is there already: choose another name")

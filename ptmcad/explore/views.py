@@ -1,7 +1,8 @@
-"""What the page draws and shows, as JSON data: the map of a slice, and the solutions at a point of it.
+"""What the page draws and shows, as JSON data: the map of a slice, and the solutions at a point of
+it.
 
-Guarantee: every number that is shown comes from an exact or certified answer; outlines are lists of points on the
-curves. Nothing here chooses or computes an answer.
+Guarantee: every number that is shown comes from an exact or certified answer; outlines are lists of
+points on the curves. Nothing here chooses or computes an answer.
 """
 
 from __future__ import annotations
@@ -19,13 +20,22 @@ from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.outline import TOLERANCE, outline
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.report.chart import counts_text, hatch_id, pattern_defs, region_labels, region_outlines, wall_lines
+from ptmcad.show.report.chart import (
+    counts_text,
+    hatch_id,
+    pattern_defs,
+    region_labels,
+    region_outlines,
+    wall_lines,
+)
 from ptmcad.show.report.frame import SIDE, frame, room
 from ptmcad.show.table import area_digits, count_text
 from ptmcad.text.numerals import Numbers, approximate_text
 
 COARSE = 5e-4
-"""How far a chord may miss its curve while the map is dragged, as a share of the window: a third of a pixel."""
+"""How far a chord may miss its curve while the map is dragged, as a share of the window: a third of
+a pixel.
+"""
 DIGITS = 7
 """Of the numbers at a point."""
 
@@ -38,7 +48,11 @@ def map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
     fine : whether curves are as smooth as in other pictures, and areas are known.
     framed : whether the axes with their ticks are wanted.
     """
-    seen: Shapes = shapes(result) if result.cover is not None else outline(result, None, TOLERANCE if fine else COARSE)
+    seen: Shapes = (
+        shapes(result)
+        if result.cover is not None
+        else outline(result, None, TOLERANCE if fine else COARSE)
+    )
     slice = result.slice
     fills = [fill_of(region, slice.count) for region in result.regions]
     simpler = fine or result.cover is not None
@@ -50,20 +64,28 @@ def map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
                 "face": fills[number].face,
                 "hatch": hatch_id(fills[number].hatch) if fills[number].hatch else "",
                 "words": counts_text(region, slice.model),
-                "area": area_digits(result, region.area) if fine or result.cover is not None else "",
+                "area": area_digits(result, region.area)
+                if fine or result.cover is not None
+                else "",
             }
             for number, region in enumerate(result.regions)
         ],
         "strong": "".join(d for (separates, _), d in lines.items() if separates),
         "thin": "".join(d for (separates, _), d in lines.items() if not separates),
         "labels": [
-            [count_text(result.regions[number], slice.count), round(x * SIDE, 1), round((1 - y) * SIDE, 1)]
+            [
+                count_text(result.regions[number], slice.count),
+                round(x * SIDE, 1),
+                round((1 - y) * SIDE, 1),
+            ]
             for number, x, y in region_labels(seen)
         ],
         "patterns": pattern_defs(fills),
         "frame": _frame(seen) if framed else None,
         "certified": result.cover is not None,
-        "undetermined": approximate_text(100 * result.undetermined) if result.cover is not None else "",
+        "undetermined": approximate_text(100 * result.undetermined)
+        if result.cover is not None
+        else "",
         "settled": result.status is not Status.PARTIAL,
         "cells": len(result.cells),
         "digest": _digest(result),
@@ -107,7 +129,8 @@ def point_view(poses: Poses, at: Numbers) -> dict[str, Any]:
 def _pose_view(pose: Pose, model: Model) -> dict[str, Any]:
     return {
         "kind": kind_of(pose, model),
-        "unknowns": [f"{d.text(DIGITS)}°" for d in pose.degrees] + [r.text(DIGITS) for r in pose.reals],
+        "unknowns": [f"{d.text(DIGITS)}°" for d in pose.degrees]
+        + [r.text(DIGITS) for r in pose.reals],
         "energy": "" if pose.energy is None else pose.energy.text(DIGITS),
         "nodes": [[float(x), float(y)] for x, y in pose.nodes.values()],
     }

@@ -1,11 +1,12 @@
-"""The process that computes for the explorer: jobs come in as lines of JSON, answers go out as such.
+"""The process that computes for the explorer: jobs come in as lines of JSON, answers go out as
+such.
 
-Guarantee: it ends when the server does, whatever it is doing (`end_with`). Standard output holds answers
-alone, whatever libraries print.
+Guarantee: it ends when the server does, whatever it is doing (`end_with`). Standard output holds
+answers alone, whatever libraries print.
 
-The first line is the panel, which the server that started this process has pickled; then every line is a job
-``{"number": n, ...}`` or ``{"cancel": n}``. An answer is two lines: ``{"number": n, "ended": "done" | "refused" |
-"superseded"}``, and what the page is told.
+The first line is the panel, which the server that started this process has pickled; then every line
+is a job ``{"number": n, ...}`` or ``{"cancel": n}``. An answer is two lines: ``{"number": n,
+"ended": "done" | "refused" | "superseded"}``, and what the page is told.
 """
 
 from __future__ import annotations
@@ -75,7 +76,9 @@ class JobLoop:
             self.number = job["number"]
             ended, told = self._ended(tasks, job)
             for part in ({"number": self.number, "ended": ended}, told):
-                self.answers.write(json.dumps(part, separators=(",", ":"), allow_nan=False).encode() + b"\n")
+                self.answers.write(
+                    json.dumps(part, separators=(",", ":"), allow_nan=False).encode() + b"\n"
+                )
             self.answers.flush()
 
     def _ended(self, tasks: Tasks, job: dict[str, Any]) -> tuple[str, dict[str, Any]]:
@@ -91,7 +94,9 @@ def main() -> None:
     """Run as ``python -m ptmcad.explore.worker LIFELINE PARENT FOLDER``."""
     lifeline, parent, folder = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
     end_with(lifeline, parent)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the server, which ends this process
+    signal.signal(
+        signal.SIGINT, signal.SIG_IGN
+    )  # Ctrl-C goes to the server, which ends this process
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what libraries print
     os.environ["MPLBACKEND"], os.environ["MATPLOTLIBRC"] = "agg", os.devnull

@@ -1,16 +1,18 @@
-"""A tape run on a box in affine arithmetic: each node as a linear function of the unknowns, with a bounded error.
+"""A tape run on a box in affine arithmetic: each node as a linear function of the unknowns, with a
+bounded error.
 
-Guarantee: after a run that returns True, at every point of the box at which the operands of all meets are equal, the
-k-th node's value is forms[k, CENTER] + the sum over j of forms[k, FIRST + j] e_j + d with |d| <= forms[k, ERROR], and
-it lies in [low[k], high[k]]; e_j in [-1, 1] is the j-th unknown's distance from ``AffineFrame.middle`` over
-``AffineFrame.radius``. A run that returns False has proved that there is no such point. (Lemma 24 of
-docs/soundness.md.)
+Guarantee: after a run that returns True, at every point of the box at which the operands of all
+meets are equal, the k-th node's value is forms[k, CENTER] + the sum over j of forms[k, FIRST + j]
+e_j + d with |d| <= forms[k, ERROR], and it lies in [low[k], high[k]]; e_j in [-1, 1] is the j-th
+unknown's distance from ``AffineFrame.middle`` over ``AffineFrame.radius``. A run that returns False
+has proved that there is no such point. (Lemma 24 of docs/soundness.md.)
 
-Linear terms that cancel, as they do in the equations of equilibrium and in determinants, cancel here; what is left of
-nonlinear ones is of second order. Nothing is differentiated: formulas that hold at solutions only have forms, too.
+Linear terms that cancel, as they do in the equations of equilibrium and in determinants, cancel
+here; what is left of nonlinear ones is of second order. Nothing is differentiated: formulas that
+hold at solutions only have forms, too.
 
-The functions for single operations write to one row without a branch around it or a second way out: numba counts
-references to arrays otherwise, which takes four times as long as the arithmetic.
+The functions for single operations write to one row without a branch around it or a second way out:
+numba counts references to arrays otherwise, which takes four times as long as the arithmetic.
 
 References
 ----------
@@ -48,16 +50,22 @@ from ptmcad.formulas.rounding import MAX_ANGLE, SINE_ERROR, sine_cosine
 Place = int
 """Of a node; compiled code is given numbers without a sign, see `Places`."""
 LANES = 6
-"""Slopes in a form: as many unknowns as a system may have here. Loops of a known length are written out."""
+"""Slopes in a form: as many unknowns as a system may have here. Loops of a known length are written
+out.
+"""
 POLAR = (DIRECTION, LENGTH, INVERSE_LENGTH)
 CENTER, ERROR, REACH, FIRST = 0, 1, 2, 3
-"""Columns of a form: its value at the middle, the error, how far it is from the center at most, and the slopes."""
+"""Columns of a form: its value at the middle, the error, how far it is from the center at most, and
+the slopes.
+"""
 ROUNDING = 2.0**-52
 """Twice the largest relative error of an operation."""
 SLACK = 1 + 2.0**-48
 """Makes up for the rounding of a sum of some terms that are not negative."""
 FLOOR = 1e-150
-"""... and for that of numbers too small for a relative error; it keeps errors and reaches from being zero."""
+"""... and for that of numbers too small for a relative error; it keeps errors and reaches from
+being zero.
+"""
 LARGE, SMALL_SQUARE, SMALL = 1e140, 1e-200, 1e-140
 """Beyond these nothing is claimed."""
 MAX_TURN = 0.9
@@ -69,7 +77,8 @@ class AffineFrame(NamedTuple):
 
     Attributes
     ----------
-    middle, radius : of each variable, shape (v,): it lies between middle - radius and middle + radius.
+    middle, radius : of each variable, shape (v,): it lies between middle - radius and
+        middle + radius.
     lane : the number of the slope of each variable, or -1 for one that is no unknown.
     """
 
@@ -99,7 +108,9 @@ def set_frame(frame: AffineFrame, box_low: Floats, box_high: Floats) -> None:
 
 @compiled
 def _set_range(forms: Floats, k: Place, low: Floats, high: Floats) -> bool:
-    """Give the form its reach; where intervals know more, the interval; False when both have nothing in common."""
+    """Give the form its reach; where intervals know more, the interval; False when both have
+    nothing in common.
+    """
     reach, center = forms[k, ERROR], forms[k, CENTER]
     for j in range(FIRST, FIRST + LANES):
         reach += abs(forms[k, j])
@@ -142,7 +153,9 @@ def _multiply(forms: Floats, k: Place, a: Place, b: Place) -> None:
 
 @compiled
 def _square(forms: Floats, k: Place, a: Place) -> None:
-    """(a0 + A + r)^2 = a0^2 + 2 a0 (A + r) + (A + r)^2, the last one between 0 and the reach's square."""
+    """(a0 + A + r)^2 = a0^2 + 2 a0 (A + r) + (A + r)^2, the last one between 0 and the reach's
+    square.
+    """
     a0, reach = forms[a, CENTER], forms[a, REACH]
     half = 0.5 * reach * reach
     size = a0 * a0 + half
@@ -168,7 +181,9 @@ def _add(forms: Floats, k: Place, a: Place, b: Place, sign: float) -> None:
 
 @compiled
 def _sine(forms: Floats, k: Place, a: Place, cosine: bool) -> None:
-    """sin(m + d) = sin m cos d + cos m sin d, with 1 - d^2/2 <= cos d <= 1 and |sin d - d| <= |d|^3/6."""
+    """sin(m + d) = sin m cos d + cos m sin d, with 1 - d^2/2 <= cos d <= 1 and |sin
+    d - d| <= |d|^3/6.
+    """
     m, reach, error = forms[a, CENTER], forms[a, REACH], forms[a, ERROR]
     usable = abs(m) < MAX_ANGLE and reach < 4
     s, c = sine_cosine(m if usable else 0.0)
@@ -186,8 +201,8 @@ def _sine(forms: Floats, k: Place, a: Place, cosine: bool) -> None:
 def _polar(forms: Floats, k: Place, a: Place, b: Place, operation: int) -> None:
     """x/l, l or 1/l of z = x + iy, l = |z|.
 
-    With z = z0 (1 + p + iq), z0 the center: l = |z0| |1 + p + iq|, and z/l is z0/|z0| turned by an angle t with
-    cos t = (1 + p)/|1 + p + iq|, sin t = q/|1 + p + iq|.
+    With z = z0 (1 + p + iq), z0 the center: l = |z0| |1 + p + iq|, and z/l is z0/|z0| turned by an
+    angle t with cos t = (1 + p)/|1 + p + iq|, sin t = q/|1 + p + iq|.
     """
     x, y, error_x, error_y = forms[a, CENTER], forms[b, CENTER], forms[a, ERROR], forms[b, ERROR]
     square = x * x + y * y
@@ -214,11 +229,16 @@ def _polar(forms: Floats, k: Place, a: Place, b: Place, operation: int) -> None:
     near = 1 / (1 - (most_p if usable else 0.0)) * SLACK
     square_q = most_q * most_q
     if operation == DIRECTION:
-        # cos t is between 1 - q^2/(2 (1 + p)^2) and 1; sin t = q/|1 + p + iq|, and that inverse is near 1
+        # cos t is between 1 - q^2/(2 (1 + p)^2) and 1; sin t = q/|1 + p + iq|, and that inverse is
+        # near 1
         bend = 0.25 * square_q * near * near
         off = max(near - 1, most_p + 0.5 * square_q)
         center = ux * (1 - bend)
-        error = abs(ux) * bend + abs(uy) * (error_q + most_q * off) + 16 * ROUNDING * (1 + bend + most_q)
+        error = (
+            abs(ux) * bend
+            + abs(uy) * (error_q + most_q * off)
+            + 16 * ROUNDING * (1 + bend + most_q)
+        )
     elif operation == LENGTH:
         # between 1 + p and 1 + p + q^2/(2 (1 + p))
         bend = 0.25 * square_q * near
@@ -235,7 +255,9 @@ def _polar(forms: Floats, k: Place, a: Place, b: Place, operation: int) -> None:
 
 @compiled
 def _reciprocal(forms: Floats, k: Place, b: Place, low: float, high: float) -> None:
-    """1/x for x in [low, high], which has not 0: for x > 0 and any p > 0, 2 sqrt p <= 1/x + p x, largest at an end."""
+    """1/x for x in [low, high], which has not 0: for x > 0 and any p > 0, 2 sqrt p <= 1/x + p x,
+    largest at an end.
+    """
     usable = (low > SMALL or high < -SMALL) and forms[b, REACH] < LARGE and high - low < LARGE
     sign = -1.0 if high < 0 else 1.0
     u, v = min(abs(low), abs(high)), max(abs(low), abs(high))
@@ -267,8 +289,11 @@ def _variable(forms: Floats, k: Place, middle: float, radius: float, lane: int) 
 
 
 @compiled
-def run_affine(program: Program, frame: AffineFrame, low: Floats, high: Floats, forms: Floats, end: int) -> bool:
-    """Run the nodes before ``end``, which have been run in intervals on the frame's box or on one around it.
+def run_affine(
+    program: Program, frame: AffineFrame, low: Floats, high: Floats, forms: Floats, end: int
+) -> bool:
+    """Run the nodes before ``end``, which have been run in intervals on the frame's box or on one
+    around it.
 
     Parameters
     ----------

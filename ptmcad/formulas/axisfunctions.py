@@ -13,7 +13,9 @@ from ptmcad.text.expressions import Expression, Term
 
 
 def expression_formula(graph: Graph, expression: Expression) -> Formula:
-    """A rational function of the axes, by Horner's rule in the first axis over polynomials in the second."""
+    """A rational function of the axes, by Horner's rule in the first axis over polynomials in the
+    second.
+    """
     return _polynomial(graph, expression.numerator) / _polynomial(graph, expression.denominator)
 
 
@@ -22,7 +24,10 @@ def _polynomial(graph: Graph, terms: tuple[Term, ...]) -> Formula:
     for i, j, c in terms:
         rows.setdefault(i, {})[j] = c
     x, y = graph.variable(0), graph.variable(1)
-    coefficients = {i: _horner(graph, {j: graph.constant(c) for j, c in row.items()}, y) for i, row in rows.items()}
+    coefficients = {
+        i: _horner(graph, {j: graph.constant(c) for j, c in row.items()}, y)
+        for i, row in rows.items()
+    }
     return _horner(graph, coefficients, x)
 
 

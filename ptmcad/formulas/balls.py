@@ -1,11 +1,14 @@
-"""A tape run on a box in Arb's ball arithmetic, at any precision; it shares no code with the compiled evaluator.
+"""A tape run on a box in Arb's ball arithmetic, at any precision; it shares no code with the
+compiled evaluator.
 
-Guarantee: as for `ptmcad.formulas.intervals.run`: value k encloses the k-th node's values at every point of the box;
-where a node is a `meet`, at every point at which its two operands are equal. A ball that is not finite says nothing.
+Guarantee: as for `ptmcad.formulas.intervals.run`: value k encloses the k-th node's values at every
+point of the box; where a node is a `meet`, at every point at which its two operands are equal. A
+ball that is not finite says nothing.
 
 References
 ----------
-Johansson, Arb: efficient arbitrary-precision midpoint-radius interval arithmetic, IEEE Trans. Comput. 66 (2017).
+Johansson, Arb: efficient arbitrary-precision midpoint-radius interval arithmetic, IEEE Trans.
+Comput. 66 (2017).
 """
 
 from __future__ import annotations
@@ -25,7 +28,9 @@ from ptmcad.text.flint_numbers import from_fraction
 
 
 class EmptyMeet(Exception):
-    """Two enclosures of numbers that are equal at every solution are disjoint: the box holds no solution."""
+    """Two enclosures of numbers that are equal at every solution are disjoint: the box holds no
+    solution.
+    """
 
 
 def ball(low: Fraction, high: Fraction) -> arb:
@@ -73,7 +78,9 @@ def run_arb(tape: Tape, box: Sequence[arb], precision: int, stages: int | None =
 
 @lru_cache(maxsize=64)
 def _steps(tape: Tape) -> list[tuple[Callable[..., arb] | None, Any, int]]:
-    """For each node a function and its operands' places; of a variable none, of a constant `arb` and the number."""
+    """For each node a function and its operands' places; of a variable none, of a constant `arb`
+    and the number.
+    """
     steps: list[tuple[Callable[..., arb] | None, Any, int]] = []
     rows = zip(tape.operations.tolist(), tape.first.tolist(), tape.second.tolist(), strict=True)
     for place, (operation, a, b) in enumerate(rows):
@@ -85,7 +92,9 @@ def _steps(tape: Tape) -> list[tuple[Callable[..., arb] | None, Any, int]]:
 
 
 def evaluated(formulas: Sequence[Formula], box: Sequence[arb]) -> list[arb]:
-    """Enclosures of formulas at the context's precision; ``box`` and what is raised are those of `run_arb`."""
+    """Enclosures of formulas at the context's precision; ``box`` and what is raised are those of
+    `run_arb`.
+    """
     tape = record([formulas])
     values = run_arb(tape, box, ctx.prec)
     return [values[int(place)] for place in tape.outputs[0]]

@@ -1,10 +1,12 @@
-"""How the inner loops are compiled: by numba, kept on disk, without any licence to change floating-point arithmetic.
+"""How the inner loops are compiled: by numba, kept on disk, without any licence to change
+floating-point arithmetic.
 
-Guarantee: each operation is rounded once, to nearest, as IEEE 754 says; no fused or reordered operations, and division
-by zero gives an infinity. Nothing that depends on a slice is compiled in, so a new slice compiles nothing. What is kept
-on disk belongs to the present text of all modules of the rooms that have compiled code: numba looks only at the file of
-a function, and not at those of the functions that it calls, so that after a correction of the arithmetic old code would
-have gone on.
+Guarantee: each operation is rounded once, to nearest, as IEEE 754 says; no fused or reordered
+operations, and division by zero gives an infinity. Nothing that depends on a slice is compiled in,
+so a new slice compiles nothing. What is kept on disk belongs to the present text of all modules of
+the rooms that have compiled code: numba looks only at the file of a function, and not at those of
+the functions that it calls, so that after a correction of the arithmetic old code would have gone
+on.
 """
 
 from __future__ import annotations
@@ -73,22 +75,26 @@ _FOLDER = _folder()
 
 _PAUSE = 0.05
 _PATIENCE = 120.0
-"""Seconds for which a process waits until another one has compiled: more than all takes on a slow machine. It then
-compiles by itself, as the other may have been stopped without being ended."""
+"""Seconds for which a process waits until another one has compiled: more than all takes on a slow
+machine. It then compiles by itself, as the other may have been stopped without being ended."""
 
 
 @contextmanager
 def in_turn(part: str) -> Iterator[float]:
-    """While this lasts no other process compiles the part; yields the seconds of waiting for one that did.
+    """While this lasts no other process compiles the part; yields the seconds of waiting for one
+    that did.
 
-    Where files cannot be written or locked, each process compiles by itself, which is right as well, only slower.
+    Where files cannot be written or locked, each process compiles by itself, which is right as
+    well, only slower.
     """
     if sys.platform == "win32":
         yield 0.0
         return
     try:
         _FOLDER.mkdir(parents=True, exist_ok=True)
-        descriptor = os.open(_FOLDER / f"{part}.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
+        descriptor = os.open(
+            _FOLDER / f"{part}.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666
+        )
     except OSError:  # numba has ways of its own where this folder may not be written
         yield 0.0
         return
@@ -115,7 +121,9 @@ def _waited(descriptor: int) -> float:
 
 
 ZERO, ONE = cast("int", np.int64(0)), cast("int", np.int64(1))
-"""Numbers that numba takes for integers like any other: what takes a literal is compiled for that one besides."""
+"""Numbers that numba takes for integers like any other: what takes a literal is compiled for that
+one besides.
+"""
 FUNCTIONS: list[Any] = []
 """All that is compiled and kept, as numba's dispatchers."""
 
@@ -123,10 +131,11 @@ FUNCTIONS: list[Any] = []
 def compiled(function: F) -> F:
     """Compile for the machine; the global interpreter lock is released while the function runs.
 
-    Each function is optimised once more with every one that calls it, and for each type that it is called with, for
-    which a literal counts as one of its own. So what has one caller is better `inlined`, and a literal argument is
-    written as `ZERO` or `ONE`. Assigning one array to a slice of another compiles numba's broadcasting, with the texts
-    of its errors: a loop takes a twentieth of the time.
+    Each function is optimised once more with every one that calls it, and for each type that it is
+    called with, for which a literal counts as one of its own. So what has one caller is better
+    `inlined`, and a literal argument is written as `ZERO` or `ONE`. Assigning one array to a slice
+    of another compiles numba's broadcasting, with the texts of its errors: a loop takes a twentieth
+    of the time.
     """
     usual = _CONFIG.CACHE_DIR
     # numba asks for the folder when it decorates
@@ -141,4 +150,6 @@ def compiled(function: F) -> F:
 
 def inlined(function: F) -> F:
     """The same for a function of a few operations, which is written out where it is used."""
-    return cast("F", njit(nogil=True, error_model="numpy", fastmath=False, inline="always")(function))
+    return cast(
+        "F", njit(nogil=True, error_model="numpy", fastmath=False, inline="always")(function)
+    )

@@ -1,8 +1,10 @@
-"""Solutions along a parameter, enclosed and followed by Krawczyk's operator in balls, in any number of unknowns.
+"""Solutions along a parameter, enclosed and followed by Krawczyk's operator in balls, in any number
+of unknowns.
 
-Guarantee: a `BranchTube` that `enclose` returns holds, for every value of the parameter in its range, exactly one
-solution, which is nondegenerate and depends smoothly on the parameter. Two tubes are taken to hold the same branch
-only where a third one, for a value that both cover, lies inside both. So `follow` never jumps to another branch.
+Guarantee: a `BranchTube` that `enclose` returns holds, for every value of the parameter in its
+range, exactly one solution, which is nondegenerate and depends smoothly on the parameter. Two tubes
+are taken to hold the same branch only where a third one, for a value that both cover, lies inside
+both. So `follow` never jumps to another branch.
 
 Reference: Krawczyk, Computing 4 (1969); Neumaier, Interval Methods for Systems of Equations, 5.1.
 """
@@ -25,11 +27,15 @@ BITS = 160
 _MIN_STEP = Fraction(1, 2**60)
 """Steps shorter than this, against the distance to be gone, are not tried."""
 _MAX_STEPS = 3000
-"""Where a branch comes ever nearer to others, steps shrink with the distance and their number has no bound."""
+"""Where a branch comes ever nearer to others, steps shrink with the distance and their number has
+no bound.
+"""
 _MAX_PASSES = 8
 """Of Krawczyk's operator over one range of values."""
 _MAX_NEAR = 1000
-"""Of which the way to a fold takes some hundred; to a pitchfork, of which fewer digits are known, it takes them all."""
+"""Of which the way to a fold takes some hundred; to a pitchfork, of which fewer digits are known,
+it takes them all.
+"""
 
 Vector = tuple[arb, ...]
 """One ball for each unknown: the angles, then those on the line."""
@@ -37,14 +43,16 @@ Vector = tuple[arb, ...]
 
 @dataclass(frozen=True, slots=True)
 class BranchEquations:
-    """Equations along a parameter, as many as unknowns; variable 0 is the parameter, the next ones are the unknowns.
+    """Equations along a parameter, as many as unknowns; variable 0 is the parameter, the next ones
+    are the unknowns.
 
     Attributes
     ----------
     size : the number of equations.
     angles : how many of the unknowns are on the circle: the first ones.
-    tape : of four stages: the equations; their derivatives by the unknowns, row by row; those by the parameter; the
-        derivatives of the second stage by the parameter and by each unknown, then the third stage's by the parameter.
+    tape : of four stages: the equations; their derivatives by the unknowns, row by row; those by
+        the parameter; the derivatives of the second stage by the parameter and by each unknown,
+        then the third stage's by the parameter.
     """
 
     size: int
@@ -62,14 +70,18 @@ class BranchEquations:
         return arb_mat(self.size, 1, self._outputs(2, value, point))
 
     def second(self, value: arb, point: arb_mat) -> tuple[arb_mat, list[arb_mat], arb_mat]:
-        """The Jacobian's derivative by the parameter, that by each unknown, and the slope's by the parameter."""
+        """The Jacobian's derivative by the parameter, that by each unknown, and the slope's by the
+        parameter.
+        """
         n, outputs = self.size, self._outputs(3, value, point)
         square = n * n
         mixed, *by = (arb_mat(n, n, outputs[k * square : (k + 1) * square]) for k in range(n + 1))
         return mixed, by, arb_mat(n, 1, outputs[(n + 1) * square :])
 
     def bend(self, value: arb, point: arb_mat, velocity: arb_mat) -> arb_mat:
-        """The second derivative of the equations by the parameter along a straight line of unknowns."""
+        """The second derivative of the equations by the parameter along a straight line of
+        unknowns.
+        """
         mixed, by, total = self.second(value, point)
         total = total + mixed * velocity * 2
         for derivative, speed in zip(by, velocity.entries(), strict=True):
@@ -87,11 +99,13 @@ def branch_equations(
     jacobian: Sequence[Formula] = (),
     gradients: Sequence[Sequence[Formula]] = (),
 ) -> BranchEquations:
-    """The formulas of some equations in the parameter and the unknowns, of which so many are angles.
+    """The formulas of some equations in the parameter and the unknowns, of which so many are
+    angles.
 
     Parameters
     ----------
-    jacobian : their derivatives by the unknowns, row by row, where there are better formulas than those of the graph.
+    jacobian : their derivatives by the unknowns, row by row, where there are better formulas than
+        those of the graph.
     gradients : and of each of these the derivatives by the unknowns.
     """
     derivative, unknowns = equations[0].graph.derivative, range(1, len(equations) + 1)
@@ -105,10 +119,11 @@ def branch_equations(
 
 @dataclass(frozen=True, slots=True)
 class BranchTube:
-    """A box of unknowns that moves with the parameter x: center + velocity (x - middle) + (a box around 0).
+    """A box of unknowns that moves with the parameter x: center + velocity (x - middle) + (a box
+    around 0).
 
-    For every x from low to high there is one solution in the box ``unique``, and it lies in the box ``tight``; all are
-    columns.
+    For every x from low to high there is one solution in the box ``unique``, and it lies in the box
+    ``tight``; all are columns.
     """
 
     low: Fraction
@@ -146,7 +161,11 @@ class BranchTube:
 
 
 def enclose(
-    equations: BranchEquations, low: Fraction, high: Fraction, guess: Vector, room: Fraction = Fraction(0)
+    equations: BranchEquations,
+    low: Fraction,
+    high: Fraction,
+    guess: Vector,
+    room: Fraction = Fraction(0),
 ) -> BranchTube | None:
     """A tube around the branch near a guess for the middle of the range; None when not proved.
 
@@ -156,12 +175,13 @@ def enclose(
 
     Notes
     -----
-    With the tube's center c(x) and w the distance from it, Krawczyk's operator is applied to g(x, w) = f(c(x) + w, x)
-    for all x at once; g(x, 0) comes from the mean value theorem in x, multiplied by the approximate inverse first.
-    Where that fails the Jacobian comes from the mean value theorem too. Near a place where branches merge, at a
-    distance d, it is nearly singular: as balls of a step h make it, it would be off by h, and steps could be no longer
-    than its determinant, which is d^(3/2) times a constant at a pitchfork, d^2 where branches cross. Its derivative
-    along the branch is known far better, so that steps are in proportion to d.
+    With the tube's center c(x) and w the distance from it, Krawczyk's operator is applied to g(x,
+    w) = f(c(x) + w, x) for all x at once; g(x, 0) comes from the mean value theorem in x,
+    multiplied by the approximate inverse first. Where that fails the Jacobian comes from the mean
+    value theorem too. Near a place where branches merge, at a distance d, it is nearly singular: as
+    balls of a step h make it, it would be off by h, and steps could be no longer than its
+    determinant, which is d^(3/2) times a constant at a pitchfork, d^2 where branches cross. Its
+    derivative along the branch is known far better, so that steps are in proportion to d.
     """
     with ctx.workprec(BITS):
         middle, over = ball_of((low + high) / 2), ball_over(low, high)
@@ -184,14 +204,22 @@ def enclose(
             mixed, by, _ = equations.second(over, swept + spread)
             by = [inverse * derivative for derivative in by]
             along, beside = inverse * mixed, inverse * jacobian
-            for derivative, speed, reach in zip(by, velocity.entries(), spread.entries(), strict=True):
+            for derivative, speed, reach in zip(
+                by, velocity.entries(), spread.entries(), strict=True
+            ):
                 along, beside = along + derivative * speed, beside + derivative * reach
             return beside + along * ahead
 
-        drift = inverse * equations.slope(over, swept) + inverse * equations.jacobian(over, swept) * velocity
+        drift = (
+            inverse * equations.slope(over, swept)
+            + inverse * equations.jacobian(over, swept) * velocity
+        )
         found = _krawczyk(equations.angles, start + drift * ahead, least, slopes)
         if found is None and low < high:
-            drift = inverse * (slope + jacobian * velocity) + inverse * equations.bend(over, swept, velocity) * ahead
+            drift = (
+                inverse * (slope + jacobian * velocity)
+                + inverse * equations.bend(over, swept, velocity) * ahead
+            )
             found = _krawczyk(equations.angles, start + drift * ahead, least, centered_slopes)
         return None if found is None else BranchTube(low, high, center, velocity, *found)
 
@@ -199,7 +227,8 @@ def enclose(
 def _krawczyk(
     angles: int, move: arb_mat, least: Sequence[arb], slopes: Callable[[arb_mat], arb_mat]
 ) -> tuple[arb_mat, arb_mat] | None:
-    """Boxes around a moving center: one that holds a single solution at each value, and one in which it lies.
+    """Boxes around a moving center: one that holds a single solution at each value, and one in
+    which it lies.
 
     Parameters
     ----------
@@ -225,7 +254,10 @@ def _krawczyk(
 def _least(center: arb_mat, angles: int) -> list[arb]:
     """The least reach of a tube in each unknown, a little more than what rounding does to it."""
     least = arb(fmpq(1, 2 ** (BITS - 20)))
-    return [least if k < angles else (least * (1 + abs(c))).upper() for k, c in enumerate(center.entries())]
+    return [
+        least if k < angles else (least * (1 + abs(c))).upper()
+        for k, c in enumerate(center.entries())
+    ]
 
 
 def _inverse(matrix: arb_mat) -> arb_mat | None:
@@ -253,7 +285,9 @@ def _polished(equations: BranchEquations, value: arb, guess: arb_mat) -> arb_mat
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """A value of the parameter with the branch's place there; ``over`` covers the branch since the last one."""
+    """A value of the parameter with the branch's place there; ``over`` covers the branch since the
+    last one.
+    """
 
     value: Fraction
     place: BranchTube
@@ -273,9 +307,14 @@ def at_value(
 
 
 def follow(
-    equations: BranchEquations, start: Reached, end: Fraction, longest: Fraction, most: int | None = None
+    equations: BranchEquations,
+    start: Reached,
+    end: Fraction,
+    longest: Fraction,
+    most: int | None = None,
 ) -> tuple[list[Reached], bool]:
-    """Follow a branch from one value of the parameter to another, in steps no longer than ``longest``.
+    """Follow a branch from one value of the parameter to another, in steps no longer than
+    ``longest``.
 
     Parameters
     ----------
@@ -291,9 +330,12 @@ def follow(
     while current.value != end:
         if len(found) == (_MAX_STEPS if most is None else most):
             return found, False
-        # a rational of few digits about a step away: otherwise each step would make the value's digits more
+        # a rational of few digits about a step away: otherwise each step would make the value's
+        # digits more
         last = abs(step) >= abs(end - current.value)
-        goal = end if last else simplest_fraction(current.value + step * 15 / 16, current.value + step)
+        goal = (
+            end if last else simplest_fraction(current.value + step * 15 / 16, current.value + step)
+        )
         reached = bridge(equations, current, goal)
         if reached is not None:
             found.append(reached)
@@ -315,7 +357,9 @@ def bridge(equations: BranchEquations, start: Reached, value: Fraction) -> Reach
     """The same branch at another value, if one tube proves it for all values between; else None."""
     with ctx.workprec(BITS):
         half = ball_of((value - start.value) / 2)
-        guess = tuple(a + v * half for a, v in zip(start.point, start.place.velocity.entries(), strict=True))
+        guess = tuple(
+            a + v * half for a, v in zip(start.point, start.place.velocity.entries(), strict=True)
+        )
     over = enclose(equations, min(start.value, value), max(start.value, value), guess)
     if over is None or not over.holds(start.place, start.value):
         return None
@@ -323,16 +367,23 @@ def bridge(equations: BranchEquations, start: Reached, value: Fraction) -> Reach
     return Reached(value, place, over) if place is not None and over.holds(place, value) else None
 
 
-def over_range(equations: BranchEquations, start: Reached, low: Fraction, high: Fraction) -> BranchTube | None:
+def over_range(
+    equations: BranchEquations, start: Reached, low: Fraction, high: Fraction
+) -> BranchTube | None:
     """The branch at all values of a range at one side of its place; None where that is not proved."""
     end = low if start.value > high else high
     across = bridge(equations, start, end)
     tube = None if across is None else enclose(equations, low, high, across.point)
-    return tube if across is not None and tube is not None and across.over.holds(tube, end) else None
+    return (
+        tube if across is not None and tube is not None and across.over.holds(tube, end) else None
+    )
 
 
-def in_the_limit(potential: Formula, place: Reached, low: Fraction, high: Fraction, angles: int) -> arb:
-    """The value of a function to which it tends along a branch of its critical points, at any value in a range.
+def in_the_limit(
+    potential: Formula, place: Reached, low: Fraction, high: Fraction, angles: int
+) -> arb:
+    """The value of a function to which it tends along a branch of its critical points, at any value
+    in a range.
 
     It changes with the parameter alone, which is bounded as all unknowns are angles.
     """
@@ -340,5 +391,7 @@ def in_the_limit(potential: Formula, place: Reached, low: Fraction, high: Fracti
     with ctx.workprec(BITS):
         (value,) = evaluated([potential], (ball_of(place.value), *place.point))
         anywhere = (arb(0, 4),) * angles
-        (slope,) = evaluated([potential.graph.derivative(potential, 0)], (ball_over(low, high), *anywhere))
+        (slope,) = evaluated(
+            [potential.graph.derivative(potential, 0)], (ball_over(low, high), *anywhere)
+        )
         return value + ball_of(high - low) * slope * arb(0, 1)

@@ -1,6 +1,8 @@
-"""Formulas in doubles: written out once, then evaluated often, at a point or at many points at once.
+"""Formulas in doubles: written out once, then evaluated often, at a point or at many points at
+once.
 
-Guarantee: none but that of doubles. Where a length is zero, what is divided by it is infinite or no number.
+Guarantee: none but that of doubles. Where a length is zero, what is divided by it is infinite or no
+number.
 """
 
 from __future__ import annotations
@@ -18,7 +20,8 @@ class Doubles:
 
     Parameters
     ----------
-    functions : a module with ``cos``, ``sin`` and ``sqrt``: `math` for numbers, numpy for arrays that fit each other.
+    functions : a module with ``cos``, ``sin`` and ``sqrt``: `math` for numbers, numpy for arrays
+        that fit each other.
     """
 
     def __init__(self, structure: Any, functions: Any):
@@ -37,7 +40,9 @@ class Doubles:
                 self._steps.append((node.number, known[node.operation], operands))
 
     def at(self, values: Mapping[int, Any], of: Callable[[Any], Any] = lambda value: value) -> Any:
-        """The same with the formulas' values, or something made of each, given those of the variables by number."""
+        """The same with the formulas' values, or something made of each, given those of the
+        variables by number.
+        """
         found: dict[int, Any] = dict(self._constants)
         for number, variable in self._variables.items():
             found[number] = values[variable]

@@ -1,7 +1,9 @@
-"""Formulas: expressions in variables, shared as nodes of one graph, with exact constants and exact derivatives.
+"""Formulas: expressions in variables, shared as nodes of one graph, with exact constants and exact
+derivatives.
 
-Guarantee: a node is created once for the same operation on the same nodes; rational constants are folded exactly; and
-terms that are zero, such as those of a load or a free length that a slice does not have, are left out.
+Guarantee: a node is created once for the same operation on the same nodes; rational constants are
+folded exactly; and terms that are zero, such as those of a load or a free length that a slice does
+not have, are left out.
 
 >>> graph = Graph()
 >>> x, y = graph.variable(0), graph.variable(1)
@@ -163,7 +165,9 @@ class Graph:
     _known: dict[tuple[object, ...], Formula] = field(default_factory=dict)
     _derivatives: dict[tuple[int, int], Formula] = field(default_factory=dict)
 
-    def node(self, operation: Operation, a: Formula | None = None, b: Formula | None = None) -> Formula:
+    def node(
+        self, operation: Operation, a: Formula | None = None, b: Formula | None = None
+    ) -> Formula:
         """The node of this operation; an old one if there is one."""
         return self._intern(operation, a, b)
 
@@ -193,7 +197,9 @@ class Graph:
         return known
 
     def derivative(self, formula: Formula, variable: int) -> Formula:
-        """The partial derivative. That of `meet` is its first operand's: the operands have to be equal functions."""
+        """The partial derivative. That of `meet` is its first operand's: the operands have to be
+        equal functions.
+        """
         key = (formula.number, variable)
         known = self._derivatives.get(key)
         if known is None:
@@ -252,7 +258,9 @@ def direction(x: Formula, y: Formula) -> Formula:
 
 
 def meet(a: Formula, b: Formula) -> Formula:
-    """A number that both a and b enclose; where their enclosures are disjoint, the box holds no solution."""
+    """A number that both a and b enclose; where their enclosures are disjoint, the box holds no
+    solution.
+    """
     return a.graph.node(Operation.MEET, a, b)
 
 

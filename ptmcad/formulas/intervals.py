@@ -1,8 +1,8 @@
 """A tape run on a box: enclosures of all its nodes, in compiled code.
 
-Guarantee: after a run that returns True, entry k of ``low`` and ``high`` encloses the k-th node's values at every point
-of the box; where a node is a `meet`, at every point at which its two operands are equal. A run that returns False has
-proved that they are equal at no point of the box.
+Guarantee: after a run that returns True, entry k of ``low`` and ``high`` encloses the k-th node's
+values at every point of the box; where a node is a `meet`, at every point at which its two operands
+are equal. A run that returns False has proved that they are equal at no point of the box.
 """
 
 from __future__ import annotations
@@ -15,13 +15,25 @@ from numpy.typing import NDArray
 
 from ptmcad.formulas.compiled import ONE, ZERO, compiled
 from ptmcad.formulas.graph import Operation
-from ptmcad.formulas.rounding import direction, down, length, magnitude, mignitude, multiply, reciprocal, sine, up
+from ptmcad.formulas.rounding import (
+    direction,
+    down,
+    length,
+    magnitude,
+    mignitude,
+    multiply,
+    reciprocal,
+    sine,
+    up,
+)
 from ptmcad.formulas.tape import Tape
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Places = NDArray[np.uint64]
-"""Without a sign: of each signed index compiled code asks whether it is negative, which costs a tenth of the time."""
+"""Without a sign: of each signed index compiled code asks whether it is negative, which costs a
+tenth of the time.
+"""
 
 
 class Program(NamedTuple):
@@ -47,7 +59,15 @@ def program(tape: Tape) -> Program:
 
 
 @compiled
-def run(program: Program, box_low: Floats, box_high: Floats, low: Floats, high: Floats, start: int, end: int) -> bool:
+def run(
+    program: Program,
+    box_low: Floats,
+    box_high: Floats,
+    low: Floats,
+    high: Floats,
+    start: int,
+    end: int,
+) -> bool:
     """Run the nodes from ``start`` to before ``end``; those before them have been run on this box."""
     operations, first, second, constant_low, constant_high = program
     for i in range(np.uint64(start), np.uint64(end)):

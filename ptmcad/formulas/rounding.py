@@ -1,8 +1,10 @@
-"""Interval arithmetic on pairs of floats, with outward rounding and no function of the C library but sqrt.
+"""Interval arithmetic on pairs of floats, with outward rounding and no function of the C library
+but sqrt.
 
-Guarantee: the result of each function encloses every value that its exact counterpart takes on the arguments. An
-infinite end, or a NaN, means that nothing is known on that side; no test that is written as a comparison succeeds on
-it. Proofs are in docs/soundness-arithmetic.md, in the order of the functions here.
+Guarantee: the result of each function encloses every value that its exact counterpart takes on the
+arguments. An infinite end, or a NaN, means that nothing is known on that side; no test that is
+written as a comparison succeeds on it. Proofs are in docs/soundness-arithmetic.md, in the order of
+the functions here.
 """
 
 from __future__ import annotations
@@ -12,19 +14,26 @@ from math import floor, inf, sqrt
 from ptmcad.formulas.compiled import compiled, inlined
 
 UNIT = 1.5 * 2.0**-52
-"""An operation rounded to nearest, and the step that makes up for it, err by less than this part of the result ..."""
+"""An operation rounded to nearest, and the step that makes up for it, err by less than this part of
+the result ...
+"""
 TINY = 2.0**-1022
 """... or by less than this where results are subnormal."""
 SINE_ERROR = 2.0**-50
 """`sine_cosine` errs by less."""
 MAX_ANGLE = 60.0
 """Beyond it nothing is claimed of sine and cosine."""
-_HALF_PI_1 = float.fromhex("0x1.921fb54400000p+0")  # the first 33 bits of pi/2: products with small integers are exact
+_HALF_PI_1 = float.fromhex(
+    "0x1.921fb54400000p+0"
+)  # the first 33 bits of pi/2: products with small integers are exact
 _HALF_PI_2 = float.fromhex("0x1.0b4611a600000p-34")  # the next 33
 _HALF_PI_3 = float.fromhex("0x1.3198a2e037073p-69")  # and the rest, rounded
 _HALF_PI = float.fromhex("0x1.921fb54442d18p+0")
 _INVERSE = 1 / _HALF_PI
-_SMALL, _LARGE = 1e-140, 1e140  # squares of numbers between them neither overflow nor lose digits that matter
+_SMALL, _LARGE = (
+    1e-140,
+    1e140,
+)  # squares of numbers between them neither overflow nor lose digits that matter
 
 
 @inlined
@@ -87,7 +96,9 @@ def reciprocal(c: float, d: float) -> tuple[float, float]:
 
 @compiled
 def sine_cosine(x: float) -> tuple[float, float]:
-    """sin x and cos x for |x| <= MAX_ANGLE, within SINE_ERROR: less quarter turns, then Taylor's polynomials."""
+    """sin x and cos x for |x| <= MAX_ANGLE, within SINE_ERROR: less quarter turns, then Taylor's
+    polynomials.
+    """
     turns = floor(x * _INVERSE + 0.5)
     r = ((x - turns * _HALF_PI_1) - turns * _HALF_PI_2) - turns * _HALF_PI_3
     z = r * r

@@ -1,4 +1,5 @@
-"""Formulas as data for a page's script: one list of instructions, each with the places of earlier ones.
+"""Formulas as data for a page's script: one list of instructions, each with the places of earlier
+ones.
 
 Guarantee: the instructions are those of the formulas, each once, with constants rounded to doubles.
 """
@@ -16,8 +17,9 @@ MAX_CONSTANT = 10**100
 """Of constants: products of a few stay within the range of doubles."""
 
 Instruction = tuple[Any, ...]
-"""``("=", number)``; ``("p", number)`` for a parameter, ``("u" | "c" | "s", number)`` for an unknown, its cosine and
-sine; ``("r", operand)`` for a square root; ``("+" | "-" | "*", left, right)``."""
+"""``("=", number)``; ``("p", number)`` for a parameter, ``("u" | "c" | "s", number)`` for an
+unknown, its cosine and sine; ``("r", operand)`` for a square root; ``("+" | "-" | "*", left,
+right)``."""
 
 _SIGNS = {
     Operation.ADD: "+",
@@ -43,7 +45,10 @@ def script(structure: Any, sources: Mapping[int, Instruction]) -> tuple[list[Ins
         return written.setdefault(instruction, len(written))
 
     for node in nodes_of(formulas_in(structure)):
-        operation, operands = node.operation, [operand for operand in (node.a, node.b) if operand is not None]
+        operation, operands = (
+            node.operation,
+            [operand for operand in (node.a, node.b) if operand is not None],
+        )
         if node.value is not None:
             place = put("=", float(node.value) if abs(node.value) < MAX_CONSTANT else inf)
         elif operation is Operation.VARIABLE:

@@ -1,7 +1,8 @@
-"""Tapes: formulas written out as straight-line programs, in stages, for the compiled and the exact evaluators.
+"""Tapes: formulas written out as straight-line programs, in stages, for the compiled and the exact
+evaluators.
 
-Guarantee: after the first k stages of a tape have been run, the outputs of these stages have their values; a node that
-no output needs is not on the tape; every operand stands before its use.
+Guarantee: after the first k stages of a tape have been run, the outputs of these stages have their
+values; a node that no output needs is not on the tape; every operand stands before its use.
 """
 
 from __future__ import annotations
@@ -45,7 +46,9 @@ class Tape:
 
 
 def enclosing_floats(value: Fraction) -> tuple[float, float]:
-    """The nearest floats at or below and at or above a rational number; infinite beyond the floats' range."""
+    """The nearest floats at or below and at or above a rational number; infinite beyond the floats'
+    range.
+    """
     try:
         nearest = float(value)
     except OverflowError:
@@ -75,8 +78,16 @@ def record(stages: Sequence[Sequence[Formula]]) -> Tape:
             constants[k] = formula.value
     return Tape(
         np.array([formula.operation for formula in order], np.int64),
-        np.array([formula.variable if formula.a is None else place[formula.a.number] for formula in order], np.int64),
-        np.array([-1 if formula.b is None else place[formula.b.number] for formula in order], np.int64),
+        np.array(
+            [
+                formula.variable if formula.a is None else place[formula.a.number]
+                for formula in order
+            ],
+            np.int64,
+        ),
+        np.array(
+            [-1 if formula.b is None else place[formula.b.number] for formula in order], np.int64
+        ),
         low,
         high,
         constants,

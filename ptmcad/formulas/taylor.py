@@ -1,8 +1,9 @@
 """Taylor arithmetic: a tape run on power series in one variable, with intervals for coefficients.
 
-Guarantee: let the variables be series in t about each point s of a set S, and ``low[x, k] <= (k-th coefficient of
-variable x about s) <= high[x, k]`` for all s in S and all k up to the order. Then the same holds for every node of the
-tape that is analytic there; where a node may not be, its coefficients are unbounded. (Lemma 28 of docs/soundness.md.)
+Guarantee: let the variables be series in t about each point s of a set S, and ``low[x, k] <= (k-th
+coefficient of variable x about s) <= high[x, k]`` for all s in S and all k up to the order. Then
+the same holds for every node of the tape that is analytic there; where a node may not be, its
+coefficients are unbounded. (Lemma 28 of docs/soundness.md.)
 
 References
 ----------
@@ -43,8 +44,8 @@ class TapeSeries(NamedTuple):
     Attributes
     ----------
     low, high : of the nodes, shape (nodes, order + 1).
-    other_low, other_high : of what a node needs besides: the cosine of a sine and the reverse, the length of a
-        direction or of an inverse length.
+    other_low, other_high : of what a node needs besides: the cosine of a sine and the reverse, the
+        length of a direction or of an inverse length.
     """
 
     low: Floats
@@ -75,7 +76,9 @@ def _product(
 
 
 @compiled
-def _weighted(a_low: Floats, a_high: Floats, b_low: Floats, b_high: Floats, k: int) -> tuple[float, float]:
+def _weighted(
+    a_low: Floats, a_high: Floats, b_low: Floats, b_high: Floats, k: int
+) -> tuple[float, float]:
     """The sum of i a_i b_(k - i) for i from 1 to k, over k."""
     u = v = 0.0
     for i in range(1, k + 1):
@@ -86,7 +89,13 @@ def _weighted(a_low: Floats, a_high: Floats, b_low: Floats, b_high: Floats, k: i
 
 @compiled
 def _length_coefficient(
-    a_low: Floats, a_high: Floats, b_low: Floats, b_high: Floats, l_low: Floats, l_high: Floats, k: int
+    a_low: Floats,
+    a_high: Floats,
+    b_low: Floats,
+    b_high: Floats,
+    l_low: Floats,
+    l_high: Floats,
+    k: int,
 ) -> tuple[float, float]:
     """Coefficient k > 0 of l = |(a, b)|, from l^2 = a^2 + b^2 and the coefficients of l before."""
     u, v = _product(a_low, a_high, a_low, a_high, 0, k, k)
@@ -100,7 +109,13 @@ def _length_coefficient(
 
 @compiled
 def _quotient_coefficient(
-    a_low: float, a_high: float, d_low: Floats, d_high: Floats, b_low: Floats, b_high: Floats, k: int
+    a_low: float,
+    a_high: float,
+    d_low: Floats,
+    d_high: Floats,
+    b_low: Floats,
+    b_high: Floats,
+    k: int,
 ) -> tuple[float, float]:
     """Coefficient k of d = a/b, from d b = a, a's coefficient and the coefficients of d before."""
     p, q = _product(d_low, d_high, b_low, b_high, 0, k - 1, k)
@@ -111,9 +126,16 @@ def _quotient_coefficient(
 
 @compiled
 def extend(
-    program: Program, low_of: Floats, high_of: Floats, into: TapeSeries, first: int, last: int, end: int
+    program: Program,
+    low_of: Floats,
+    high_of: Floats,
+    into: TapeSeries,
+    first: int,
+    last: int,
+    end: int,
 ) -> None:
-    """Coefficients ``first`` to ``last`` of the tape's nodes before ``end``; those before are known.
+    """Coefficients ``first`` to ``last`` of the tape's nodes before ``end``; those before are
+    known.
 
     Parameters
     ----------
@@ -147,7 +169,9 @@ def extend(
                     p, q = reciprocal(low[b, 0], high[b, 0])
                     u, v = multiply(low[a, 0], high[a, 0], p, q)
                 else:
-                    u, v = _quotient_coefficient(low[a, k], high[a, k], low[i], high[i], low[b], high[b], k)
+                    u, v = _quotient_coefficient(
+                        low[a, k], high[a, k], low[i], high[i], low[b], high[b], k
+                    )
             elif operation in (SINE, COSINE):
                 u, v = _wave(operation == COSINE, low[a], high[a], into, i, k)
             else:
@@ -156,7 +180,9 @@ def extend(
 
 
 @inlined
-def _wave(cosine: bool, low: Floats, high: Floats, into: TapeSeries, i: int, k: int) -> tuple[float, float]:
+def _wave(
+    cosine: bool, low: Floats, high: Floats, into: TapeSeries, i: int, k: int
+) -> tuple[float, float]:
     """Coefficient k of a sine or cosine, whose derivative is the other one, up to its sign."""
     if k == 0:
         u, v = sine(low[0], high[0], ONE if cosine else ZERO)
@@ -174,9 +200,19 @@ def _wave(cosine: bool, low: Floats, high: Floats, into: TapeSeries, i: int, k: 
 
 @inlined
 def _of_length(
-    operation: int, low: Floats, high: Floats, l_low: Floats, l_high: Floats, a: int, b: int, i: int, k: int
+    operation: int,
+    low: Floats,
+    high: Floats,
+    l_low: Floats,
+    l_high: Floats,
+    a: int,
+    b: int,
+    i: int,
+    k: int,
 ) -> tuple[float, float]:
-    """Coefficient k of |(a, b)|, of 1/|(a, b)| or of a/|(a, b)|; of the length in ``l_low`` and ``l_high``, too."""
+    """Coefficient k of |(a, b)|, of 1/|(a, b)| or of a/|(a, b)|; of the length in ``l_low`` and
+    ``l_high``, too.
+    """
     if k == 0:
         l_low[0], l_high[0] = length(low[a, 0], high[a, 0], low[b, 0], high[b, 0])
         if operation == LENGTH:
@@ -187,7 +223,9 @@ def _of_length(
             u = down(1 / l_high[0]) if l_high[0] > 0 else 0.0
             v = up(1 / l_low[0]) if l_low[0] > 0 else inf
     else:
-        l_low[k], l_high[k] = _length_coefficient(low[a], high[a], low[b], high[b], l_low, l_high, k)
+        l_low[k], l_high[k] = _length_coefficient(
+            low[a], high[a], low[b], high[b], l_low, l_high, k
+        )
         if operation == LENGTH:
             u, v = l_low[k], l_high[k]
         elif operation == DIRECTION:

@@ -1,7 +1,9 @@
-"""The values of formulas in any arithmetic with sums and products: each node of the graph is computed once.
+"""The values of formulas in any arithmetic with sums and products: each node of the graph is
+computed once.
 
-Guarantee: exact as far as the arithmetic is; a constant meets it as a fraction. Cosines and sines are those of
-variables only, as in compiled systems, but for an arithmetic whose numbers have some: that of `Substitution`.
+Guarantee: exact as far as the arithmetic is; a constant meets it as a fraction. Cosines and sines
+are those of variables only, as in compiled systems, but for an arithmetic whose numbers have some:
+that of `Substitution`.
 """
 
 from __future__ import annotations
@@ -11,15 +13,26 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Protocol, TypeVar
 
-from ptmcad.formulas.graph import OPERATORS, Formula, Graph, Operation, direction, inverse_length, length, meet
+from ptmcad.formulas.graph import (
+    OPERATORS,
+    Formula,
+    Graph,
+    Operation,
+    direction,
+    inverse_length,
+    length,
+    meet,
+)
 
 V_co = TypeVar("V_co", covariant=True)
 
 
 class Arithmetic(Protocol[V_co]):
-    """Numbers, or what is computed with as with numbers: it has sums, differences, products and changes of sign.
+    """Numbers, or what is computed with as with numbers: it has sums, differences, products and
+    changes of sign.
 
-    One with lengths has a method ``length(x, y)`` as well, of values; and so for other operations on two of them.
+    One with lengths has a method ``length(x, y)`` as well, of values; and so for other operations
+    on two of them.
     """
 
     def constant(self, value: Fraction, /) -> V_co: ...
@@ -34,7 +47,9 @@ class Arithmetic(Protocol[V_co]):
 
 @dataclass(frozen=True, slots=True)
 class Substitution:
-    """The arithmetic of formulas: with others in the place of some variables, of the same graph or of another one."""
+    """The arithmetic of formulas: with others in the place of some variables, of the same graph or
+    of another one.
+    """
 
     graph: Graph
     places: Mapping[int, Formula]
@@ -67,8 +82,8 @@ def values(formulas: Sequence[Formula], arithmetic: Arithmetic[Any]) -> list[Any
 
     Raises
     ------
-    AttributeError
-        Where a node is none of which the arithmetic has a value: a quotient, or the cosine of a sum.
+    AttributeError Where a node is none of which the arithmetic has a value: a quotient, or the
+        cosine of a sum.
     """
     known: dict[int, Any] = {}
 
@@ -78,14 +93,16 @@ def values(formulas: Sequence[Formula], arithmetic: Arithmetic[Any]) -> list[Any
         return known[node.number]
 
     for node in nodes_of(formulas):
-        # a cosine is taken of a variable by its number, so that the variable itself need not have a value
+        # a cosine is taken of a variable by its number, so that the variable itself need not have a
+        # value
         if node.operation is not Operation.VARIABLE:
             value(node)
     return list(map(value, formulas))
 
 
 def evaluated(structure: Any, arithmetic: Arithmetic[Any]) -> Any:
-    """Tuples and mappings, nested in any way, with values in place of their formulas; anything else in them stays.
+    """Tuples and mappings, nested in any way, with values in place of their formulas; anything else
+    in them stays.
 
     Raises
     ------
@@ -128,7 +145,9 @@ def substituted(formula: Formula, places: Mapping[int, Formula]) -> Formula:
 
 
 def nodes_of(formulas: Iterable[Formula]) -> list[Formula]:
-    """All nodes that the formulas need: operands have smaller numbers than what is made of them, and come first."""
+    """All nodes that the formulas need: operands have smaller numbers than what is made of them,
+    and come first.
+    """
     found: dict[int, Formula] = {}
     waiting = list(formulas)
     while waiting:

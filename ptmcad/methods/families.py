@@ -1,6 +1,7 @@
 """The methods of answers about many slices: families and their changes, sweeps, designs.
 
-Each imports what it needs when it is called: reading a result must not load the algebra that locating a point takes.
+Each imports what it needs when it is called: reading a result must not load the algebra that
+locating a point takes.
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ def _family_plot(
     Parameters
     ----------
     solid : draw the maps one above the other in three dimensions.
-    surface : what `boundary_surface` gave: drawn in three dimensions with the members' curves, instead of their maps.
+    surface : what `boundary_surface` gave: drawn in three dimensions with the members' curves,
+        instead of their maps.
     style, dpi, options : as of `RegionMap.plot`.
 
     Raises
@@ -70,15 +72,16 @@ def _family_boundary_surface(
 ) -> BoundarySurface:
     """The surface between regions of different counts, over the free parameter, as a mesh.
 
-    Its vertices lie on the boundaries of exact members, which are computed for it; between them it is linear
-    interpolation. No sheet reaches past a change of the arrangement, which is why the changes have to be known:
-    ``ptmcad.family(record, changes=True)``.
+    Its vertices lie on the boundaries of exact members, which are computed for it; between them it
+    is linear interpolation. No sheet reaches past a change of the arrangement, which is why the
+    changes have to be known: ``ptmcad.family(record, changes=True)``.
 
     Parameters
     ----------
-    tolerance : members are added until the boundary of one halfway between neighbours is this near to the sheet between
-        them, as a share of the window.
-    max_members : the most members that are computed; what is left then, `BoundarySurface.deviation` says.
+    tolerance : members are added until the boundary of one halfway between neighbours is this near
+        to the sheet between them, as a share of the window.
+    max_members : the most members that are computed; what is left then, `BoundarySurface.deviation`
+        says.
     timeout : seconds after which `LimitReached` is raised.
     progress : called as progress(stage, done, total).
 
@@ -89,7 +92,9 @@ def _family_boundary_surface(
     """
     from ptmcad.ask.boundarysurface import boundary_surface
 
-    return boundary_surface(self, tolerance, max_members=max_members, timeout=timeout, progress=progress)
+    return boundary_surface(
+        self, tolerance, max_members=max_members, timeout=timeout, progress=progress
+    )
 
 
 def _surface_to_obj(self: BoundarySurface) -> str:
@@ -230,7 +235,9 @@ def _sweep_to_dataframe(self: Sweep) -> DataFrame:
     from ptmcad.show.sweeps.table import columns, counts_in, frame_rows
 
     names = [*columns(self, counts_in(self)), "seconds", "attempts"]
-    return pandas_frame(frame_rows(self, self.__iter__), names, ("same_as", "cells", "regions", "attempts"))
+    return pandas_frame(
+        frame_rows(self, self.__iter__), names, ("same_as", "cells", "regions", "attempts")
+    )
 
 
 def _sweep_repr_html(self: Sweep) -> str:
@@ -241,7 +248,11 @@ def _sweep_repr_html(self: Sweep) -> str:
 
 METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "boundary_surface": _family_boundary_surface,
                         "_repr_html_": _family_repr_html, "_repr_png_": _family_repr_png}  # fmt: skip
-METHODS["BoundarySurface"] = {"to_obj": _surface_to_obj, "to_ply": _surface_to_ply, "_repr_html_": _surface_repr_html}
+METHODS["BoundarySurface"] = {
+    "to_obj": _surface_to_obj,
+    "to_ply": _surface_to_ply,
+    "_repr_html_": _surface_repr_html,
+}
 METHODS["BestDesign"] = {
     "table": _design_table,
     "to_json": _design_to_json,

@@ -1,6 +1,7 @@
 """The methods of a region map and of what is made of one: pixels, fields, comparisons, motions.
 
-Each imports what it needs when it is called: reading a result must not load the algebra that locating a point takes.
+Each imports what it needs when it is called: reading a result must not load the algebra that
+locating a point takes.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
 
 
 def _locate(self: RegionMap, point: Any = None, /, **at: Any) -> Location:
-    """The region of a rational point, exactly; names are the two axes, values numbers or text such as "7/10".
+    """The region of a rational point, exactly; names are the two axes, values numbers or text such
+    as "7/10".
 
     A float stands for its shortest decimal: 0.1 is 1/10. The values may be given as one
     mapping instead, such as the sample of a cell.
@@ -68,8 +70,9 @@ def _map_table(self: RegionMap) -> str:
 def _map_boundaries(self: RegionMap, tolerance: Any = "1/1000") -> tuple[Boundary, ...]:
     """The boundaries between regions, and the variety's other curves, as polylines.
 
-    No curve is further from its polyline than the tolerance, a share of the window's side, unless the polyline says so
-    (`Boundary.distance`). A certified map gives the outlines of its cells, between which lies what is undetermined.
+    No curve is further from its polyline than the tolerance, a share of the window's side, unless
+    the polyline says so (`Boundary.distance`). A certified map gives the outlines of its cells,
+    between which lies what is undetermined.
 
     Raises
     ------
@@ -87,7 +90,8 @@ def _map_boundaries(self: RegionMap, tolerance: Any = "1/1000") -> tuple[Boundar
 
 
 def _map_grid(self: RegionMap, columns: int = 200, rows: int | None = None) -> Grid:
-    """Region and counts at the centres of columns x rows pixels, exactly; as many rows as columns if not given.
+    """Region and counts at the centres of columns x rows pixels, exactly; as many rows as columns
+    if not given.
 
     Raises
     ------
@@ -105,19 +109,26 @@ def _map_grid(self: RegionMap, columns: int = 200, rows: int | None = None) -> G
 
 
 def _map_field(
-    self: RegionMap, value: str = "energy", pose: str = "stable:1", columns: int = 400, rows: int | None = None
+    self: RegionMap,
+    value: str = "energy",
+    pose: str = "stable:1",
+    columns: int = 400,
+    rows: int | None = None,
 ) -> Field:
-    """A continuous quantity of one equilibrium at the centres of columns x rows pixels, in floating point.
+    """A continuous quantity of one equilibrium at the centres of columns x rows pixels, in floating
+    point.
 
-    Every pixel has as many different solutions as the map counts there, and 50 of them are compared with exact poses:
-    `Field.difference` says how well they agree.
+    Every pixel has as many different solutions as the map counts there, and 50 of them are compared
+    with exact poses: `Field.difference` says how well they agree.
 
     Parameters
     ----------
-    value : ``energy``, ``stiffness`` (least eigenvalue of the Hessian), ``barrier`` (energy to the lowest pass towards
-        another stable pose), ``force:SPRING``, ``length:SPRING``, ``angle:UNKNOWN`` in degrees, ``x:POINT``,
-        ``y:POINT``, or an expression in unknowns (angles in radians), parameters and axes.
-    pose : ``stable:1``, ``unstable:2``, ``saddle:1``, ``maximum:1`` or ``pose:3``, in the order of `solve`.
+    value : ``energy``, ``stiffness`` (least eigenvalue of the Hessian), ``barrier`` (energy to the
+        lowest pass towards another stable pose), ``force:SPRING``, ``length:SPRING``,
+        ``angle:UNKNOWN`` in degrees, ``x:POINT``, ``y:POINT``, or an expression in unknowns (angles
+        in radians), parameters and axes.
+    pose : ``stable:1``, ``unstable:2``, ``saddle:1``, ``maximum:1`` or ``pose:3``, in the order of
+        `solve`.
 
     Raises
     ------
@@ -135,10 +146,12 @@ def _map_field(
 
 
 def _map_animate(self: RegionMap, path: Any, pose: str = "stable:1", frames: int = 90) -> Motion:
-    """The motion of one pose along a path of the map, through the folds where it vanishes, in floating point.
+    """The motion of one pose along a path of the map, through the folds where it vanishes, in
+    floating point.
 
-    Every step is one of as many equilibria as the map counts there; steps of a fall, by steepest descent of the energy,
-    say that they are none. `Motion.save` writes it as a GIF or, with ffmpeg, as MP4.
+    Every step is one of as many equilibria as the map counts there; steps of a fall, by steepest
+    descent of the energy, say that they are none. `Motion.save` writes it as a GIF or, with ffmpeg,
+    as MP4.
 
     Parameters
     ----------
@@ -162,11 +175,12 @@ def _map_animate(self: RegionMap, path: Any, pose: str = "stable:1", frames: int
 
 
 def _map_explore(self: RegionMap) -> Explorer:
-    """The map as a living widget of a notebook, with the extra ``notebook``: one drags a point over it.
+    """The map as a living widget of a notebook, with the extra ``notebook``: one drags a point over
+    it.
 
-    Poses and energy follow in the browser in floating point. Where the point rests, ``widget.point`` has it, a mapping
-    of the two axes to floats, and ``widget.poses`` the exact `Poses` there, as of `solve`; setting ``widget.point``
-    moves it.
+    Poses and energy follow in the browser in floating point. Where the point rests,
+    ``widget.point`` has it, a mapping of the two axes to floats, and ``widget.poses`` the exact
+    `Poses` there, as of `solve`; setting ``widget.point`` moves it.
 
     Raises
     ------
@@ -183,7 +197,14 @@ def _map_explore(self: RegionMap) -> Explorer:
 
 
 def _motion_save(
-    self: Motion, path: Any, *, fps: int = 20, size: Any = None, palette: Any = None, title: Any = None, dpi: int = 100
+    self: Motion,
+    path: Any,
+    *,
+    fps: int = 20,
+    size: Any = None,
+    palette: Any = None,
+    title: Any = None,
+    dpi: int = 100,
 ) -> None:
     """Write the motion as a film: a GIF or, with the program ffmpeg, MP4, by the file's suffix.
 
@@ -194,8 +215,8 @@ def _motion_save(
 
     Raises
     ------
-    ConfigError
-        For a system, which cannot be drawn, another suffix, a size that is too small, or MP4 without ffmpeg.
+    ConfigError For a system, which cannot be drawn, another suffix, a size that is too small, or
+        MP4 without ffmpeg.
     OSError
         When the file cannot be written.
     """
@@ -204,7 +225,9 @@ def _motion_save(
     from ptmcad.show import render
     from ptmcad.show.style import styled
 
-    render.save_film(self, Path(path), styled("default", size=size, palette=palette, title=title), fps, dpi)
+    render.save_film(
+        self, Path(path), styled("default", size=size, palette=palette, title=title), fps, dpi
+    )
 
 
 def _motion_repr_html(self: Motion) -> str:
@@ -214,7 +237,8 @@ def _motion_repr_html(self: Motion) -> str:
 
 
 def _map_to_dataframe(self: RegionMap, what: str = "regions", **options: Any) -> DataFrame:
-    """The map as a pandas data frame: its ``regions``, ``cells``, ``components``, ``boundaries`` or ``grid``.
+    """The map as a pandas data frame: its ``regions``, ``cells``, ``components``, ``boundaries`` or
+    ``grid``.
 
     Options are those of `boundaries` (``tolerance``) and `grid` (``columns``, ``rows``).
 
@@ -248,25 +272,33 @@ def _map_repr_png(self: RegionMap) -> bytes | None:
 
 
 def _map_plot(
-    self: RegionMap, ax: Any = None, style: Any = "default", *, samples: bool = False, dpi: int = 150, **options: Any
+    self: RegionMap,
+    ax: Any = None,
+    style: Any = "default",
+    *,
+    samples: bool = False,
+    dpi: int = 150,
+    **options: Any,
 ) -> Any:
-    """The picture as objects of matplotlib's: a `Figure` of its own, or the axes ``ax`` with the map drawn into them.
+    """The picture as objects of matplotlib's: a `Figure` of its own, or the axes ``ax`` with the
+    map drawn into them.
 
-    Axes have the units of the map's own axes and a caller's settings, no insets, and a legend beside them unless
-    ``legend="none"``. A figure is that of ``ptmcad plot``; `Figure.savefig` writes it.
+    Axes have the units of the map's own axes and a caller's settings, no insets, and a legend
+    beside them unless ``legend="none"``. A figure is that of ``ptmcad plot``; `Figure.savefig`
+    writes it.
 
     Parameters
     ----------
     style : "default", "ieee", "elsevier", "springer", "beamer" or "poster".
     samples : whether to draw the cells' sample points.
     dpi : resolution for which thin regions get arrows and insets.
-    options : ``size``, ``font_size``, ``font_family``, ``palette``, ``title``, ``legend``, ``line_width`` and
-        ``thin_lines``, as on the command line.
+    options : ``size``, ``font_size``, ``font_family``, ``palette``, ``title``, ``legend``,
+        ``line_width`` and ``thin_lines``, as on the command line.
 
     Raises
     ------
-    ConfigError
-        For an unknown style or option, a value that cannot be drawn, or what does not fit into the size.
+    ConfigError For an unknown style or option, a value that cannot be drawn, or what does not fit
+        into the size.
 
     >>> import ptmcad
     >>> figure = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho")).plot(style="ieee", legend="below")
@@ -279,7 +311,8 @@ def _map_plot(
 
 
 def _map_compare(self: RegionMap, other: RegionMap) -> Comparison:
-    """Where two maps of the same axes, window and count, both exact or both certified, differ: with certified areas.
+    """Where two maps of the same axes, window and count, both exact or both certified, differ: with
+    certified areas.
 
     Raises
     ------

@@ -1,6 +1,7 @@
 """The methods of answers at points and along lines: poses, varieties, intervals, paths, widths.
 
-Each imports what it needs when it is called: reading a result must not load the algebra that locating a point takes.
+Each imports what it needs when it is called: reading a result must not load the algebra that
+locating a point takes.
 """
 
 from __future__ import annotations

@@ -1,6 +1,8 @@
-"""Mechanisms as data: a description, read from a record, compiled once into formulas for all but the checker.
+"""Mechanisms as data: a description, read from a record, compiled once into formulas for all but
+the checker.
 
-Guarantee: nothing here computes an equilibrium; a description that was read can be evaluated in any ring.
+Guarantee: nothing here computes an equilibrium; a description that was read can be evaluated in any
+ring.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 """Points that bodies and X-joints of a record add.
 
-Those fixed to a rigid body are at + R(angle) local, where R turns by a sum of unknown angles and quarter turns.
+Those fixed to a rigid body are at + R(angle) local, where R turns by a sum of unknown angles and
+quarter turns.
 
-Guarantee: distances within a body are constant, as `ptmcad.model.proofs` proves of bars between its points. The base of
-an X-joint is known by direction and length: it lies on a level, from left to right, where no unknown moves it, or it is
-the top of a joint that stands above in the record.
+Guarantee: distances within a body are constant, as `ptmcad.model.proofs` proves of bars between its
+points. The base of an X-joint is known by direction and length: it lies on a level, from left to
+right, where no unknown moves it, or it is the top of a joint that stands above in the record.
 """
 
 from __future__ import annotations
@@ -89,7 +90,8 @@ def _placed(at: Place, turned: Place, local: Place) -> Place:
 def _sum(start: Tree, *parts: Any) -> Tree:
     """start + a f + b g; a sum goes on flat, so that bodies on bodies nest no deeper."""
     steps = tuple(
-        Step(operator, Chain(factor, (Step("*", turned),))) for operator, factor, turned in (parts[:3], parts[3:])
+        Step(operator, Chain(factor, (Step("*", turned),)))
+        for operator, factor, turned in (parts[:3], parts[3:])
     )
     if isinstance(start, Chain) and start.is_sum:
         return Chain(start.first, start.steps + steps)
@@ -146,10 +148,16 @@ def xjoints(context: Context) -> Codec[tuple[XJoint, ...]]:
     return reading(read_all, **by_names(joint.schema, MAX_UNKNOWNS))
 
 
-def _joint(name: str, said: Mapping[str, Any], context: Context, below: Mapping[str, XJoint]) -> XJoint:
+def _joint(
+    name: str, said: Mapping[str, Any], context: Context, below: Mapping[str, XJoint]
+) -> XJoint:
     base, bars = said["base"], said["bars"]
     angle, other = said["angles"]
-    taken = {**context.parameters, **context.unknowns, **{joint.other: joint for joint in below.values()}}
+    taken = {
+        **context.parameters,
+        **context.unknowns,
+        **{joint.other: joint for joint in below.values()},
+    }
     second = new_name(other.plain, other.key, taken)
     moving = context.moving.angles
     first = angle.plain

@@ -1,6 +1,8 @@
-"""Mechanisms with closed loops or X-joints as models whose equations are known not to be too large, and as text.
+"""Mechanisms with closed loops or X-joints as models whose equations are known not to be too large,
+and as text.
 
-Guarantee: what is refused may have too many terms when it is multiplied out; no equation is simplified.
+Guarantee: what is refused may have too many terms when it is multiplied out; no equation is
+simplified.
 """
 
 from __future__ import annotations
@@ -31,10 +33,15 @@ def without_loops(model: Mechanism) -> Model:
     if not (model.closing or model.xjoints):
         return model
     found = ClosedMechanism.of(model)
-    key, what = ("x-joint", "with x-joints") if model.xjoints else ("closing", "with their loops closed")
+    key, what = (
+        ("x-joint", "with x-joints") if model.xjoints else ("closing", "with their loops closed")
+    )
     try:
         system = compiled(found)
-        if model.closing and _terms(system, () if found.multipliers else system.stability) > MAX_TERMS:
+        if (
+            model.closing
+            and _terms(system, () if found.multipliers else system.stability) > MAX_TERMS
+        ):
             raise ExpressionError(TOO_LARGE)
     except ExpressionError as error:
         raise ConfigError(f"{what} {error.message}", key=key) from error
@@ -42,8 +49,8 @@ def without_loops(model: Mechanism) -> Model:
 
 
 def terms_of(model: Model) -> int:
-    """A bound of the number of terms of a model's equations and conditions, or of its energy; `MAX_TERMS` where one of
-    these may have more."""
+    """A bound of the number of terms of a model's equations and conditions, or of its energy;
+    `MAX_TERMS` where one of these may have more."""
     system = compiled(model)
     try:
         return _terms(system, (*system.inequalities, *system.stability))
@@ -57,8 +64,9 @@ def _terms(system: CompiledSystem, more: Iterable[Formula]) -> int:
 
 
 def conditions_of(model: Model) -> tuple[Trees, Mapping[str, Tree], Trees]:
-    """Equations, inequalities by keys, and conditions for stability as trees: of a system as they are written, with
-    closed loops and X-joints multiplied out; inequalities alone where solutions are critical points of an energy."""
+    """Equations, inequalities by keys, and conditions for stability as trees: of a system as they
+    are written, with closed loops and X-joints multiplied out; inequalities alone where solutions
+    are critical points of an energy."""
     own = equations_in(model)
     if own is not None:
         return own.equations, own.conditions, own.stability

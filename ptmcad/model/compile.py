@@ -1,11 +1,13 @@
-"""A description compiled: unknowns, points, springs, energy, equations and conditions as formulas of one graph.
+"""A description compiled: unknowns, points, springs, energy, equations and conditions as formulas
+of one graph.
 
-It is made once for a description, whatever the slice, and both engines, fields, pictures and pages read it; the checker
-does not.
+It is made once for a description, whatever the slice, and both engines, fields, pictures and pages
+read it; the checker does not.
 
-Guarantee: exact, and nothing is known by name: each formula follows from the description's expressions. All are
-polynomials in the parameters, the unknowns on the line, and the cosines and sines of angles; what a spring with a free
-length takes off the energy is kept beside them, as that has a root.
+Guarantee: exact, and nothing is known by name: each formula follows from the description's
+expressions. All are polynomials in the parameters, the unknowns on the line, and the cosines and
+sines of angles; what a spring with a free length takes off the energy is kept beside them, as that
+has a root.
 """
 
 from __future__ import annotations
@@ -37,29 +39,33 @@ E = TypeVar("E", bound=Element)
 
 @dataclass(frozen=True, eq=False)
 class CompiledSystem:
-    """A description's formulas, in variables: the parameters, the unknown angles, those on the line, then followers.
+    """A description's formulas, in variables: the parameters, the unknown angles, those on the
+    line, then followers.
 
     Attributes
     ----------
     names : of the variables; a variable's number is its place.
     angles, reals : numbers of the unknowns.
-    followers : with their relations to the unknowns; points and what is made of them may depend on them.
+    followers : with their relations to the unknowns; points and what is made of them may depend on
+        them.
     points : coordinates by name; empty of a system.
     springs, torsion : in the description's order.
     loads : the forces' components.
-    smooth : the energy of springs and loads, or the potential, as if no spring had a free length; None of equations.
+    smooth : the energy of springs and loads, or the potential, as if no spring had a free length;
+        None of equations.
     others : its terms that are of no spring between points.
-    moments : for each unknown, what its equation lacks of the energy's slope: constant moments; without a potential
-        all moments.
-    equations : one for each unknown, zero at solutions as if no spring had a free length; with closed loops those that
-        close them, and then the energy's slope along them.
+    moments : for each unknown, what its equation lacks of the energy's slope: constant moments;
+        without a potential all moments.
+    equations : one for each unknown, zero at solutions as if no spring had a free length; with
+        closed loops those that close them, and then the energy's slope along them.
     are_slopes : whether they are the smooth energy's derivatives by the unknowns, less the moments.
     inequalities, stability : a solution counts, and is stable, where all are positive.
     tangent : along closed loops with one degree of freedom, the direction in which unknowns move.
     heights : of the points that the unknowns raise, where no loop holds these together.
-    has_energy : whether that is an energy, and not only a part of what acts, as beside moments without a potential.
-    criterion : what is known of solutions; where they have an index they are critical points of the energy, less the
-        work of constant moments.
+    has_energy : whether that is an energy, and not only a part of what acts, as beside moments
+        without a potential.
+    criterion : what is known of solutions; where they have an index they are critical points of the
+        energy, less the work of constant moments.
     """
 
     graph: Graph = field(repr=False)
@@ -85,8 +91,12 @@ class CompiledSystem:
 
     @cached_property
     def shown(self) -> CompiledSystem:
-        """What is drawn and followed of a pose: no points, springs and loads yet where loops are closed."""
-        return self if self.are_slopes else replace(self, points={}, springs=(), torsion=(), loads=())
+        """What is drawn and followed of a pose: no points, springs and loads yet where loops are
+        closed.
+        """
+        return (
+            self if self.are_slopes else replace(self, points={}, springs=(), torsion=(), loads=())
+        )
 
     @property
     def unknowns(self) -> tuple[int, ...]:
@@ -100,7 +110,9 @@ class CompiledSystem:
 
     @property
     def stretches(self) -> tuple[tuple[Formula, Formula, Formula], ...]:
-        """Of each spring its length, its free length, and its force, which is positive where it pulls."""
+        """Of each spring its length, its free length, and its force, which is positive where it
+        pulls.
+        """
         return tuple((spring.length, spring.free, spring.force) for spring in self.springs)
 
     @property
@@ -115,7 +127,9 @@ class CompiledSystem:
         return (*parts, *self.others)
 
     def pulling(self, ring: Ring[E]) -> Iterator[tuple[ElasticLine, E, tuple[E, E]]]:
-        """The springs that have a free length where parameters are in a ring, with pull and difference there."""
+        """The springs that have a free length where parameters are in a ring, with pull and
+        difference there.
+        """
         for spring in self.springs:
             pull, x, y = self.values((spring.pull, *spring.difference), ring)
             if pull != ring.constant(Fraction(0)):
@@ -124,7 +138,11 @@ class CompiledSystem:
     @property
     def acting(self) -> dict[int, Formula]:
         """The moments that are not zero, by the unknowns' places, where the equations are slopes."""
-        return {k: moment for k, moment in enumerate(self.moments) if moment.value != 0 and self.are_slopes}
+        return {
+            k: moment
+            for k, moment in enumerate(self.moments)
+            if moment.value != 0 and self.are_slopes
+        }
 
     @property
     def forces(self) -> tuple[Formula, ...]:
@@ -135,7 +153,9 @@ class CompiledSystem:
     @property
     def work(self) -> Formula:
         """Of the moments."""
-        parts = (self.graph.variable(self.unknowns[k]) * moment for k, moment in self.acting.items())
+        parts = (
+            self.graph.variable(self.unknowns[k]) * moment for k, moment in self.acting.items()
+        )
         return sum(parts, self.graph.constant(0))
 
     def energy(self, relaxed: Iterable[int] | None = None) -> Formula | None:
@@ -143,7 +163,8 @@ class CompiledSystem:
 
         Parameters
         ----------
-        relaxed : numbers of the springs whose free length counts, others being zero; all where nothing is said.
+        relaxed : numbers of the springs whose free length counts, others being zero; all where
+            nothing is said.
         """
         return self.stored(relaxed) if self.has_energy else None
 
@@ -167,19 +188,24 @@ class CompiledSystem:
         if self.tangent:  # the last equation is the slope along the loops
             slopes = (loops.dot(self.tangent, slopes),)
         closed = len(self.equations) - len(slopes)
-        balanced = (equation + slope for equation, slope in zip(self.equations[closed:], slopes, strict=True))
+        balanced = (
+            equation + slope
+            for equation, slope in zip(self.equations[closed:], slopes, strict=True)
+        )
         return (*self.equations[:closed], *balanced)
 
     @property
     def quantities(self) -> dict[str, Formula]:
-        """By name: ``P.x`` and ``P.y`` of a point, ``.length`` and ``.force`` of a spring, of a torsion spring
-        ``.deflection.cos``, ``.deflection.sin`` and ``.moment``."""
+        """By name: ``P.x`` and ``P.y`` of a point, ``.length`` and ``.force`` of a spring, of a
+        torsion spring ``.deflection.cos``, ``.deflection.sin`` and ``.moment``."""
         found: dict[str, Formula] = {}
         for name, (x, y) in self.points.items():
             found |= {f"{name}.x": x, f"{name}.y": y}
         springs: tuple[ElasticLine | AngularSpring, ...] = (*self.springs, *self.torsion)
         for spring in springs:
-            found |= {f"{spring.name}.{what}": formula for what, formula in spring.quantities.items()}
+            found |= {
+                f"{spring.name}.{what}": formula for what, formula in spring.quantities.items()
+            }
         return found
 
     def values(self, formulas: Sequence[Formula], ring: Ring[E]) -> list[E]:
@@ -203,17 +229,23 @@ def compiled(model: Model) -> CompiledSystem:
 
 
 def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSystem:
-    """The same with formulas of one graph for all names; those for unknowns and followers are variables.
+    """The same with formulas of one graph for all names; those for unknowns and followers are
+    variables.
 
-    So parameters may be numbers or functions of others. Names are known of the variables in their places alone.
+    So parameters may be numbers or functions of others. Names are known of the variables in their
+    places alone.
     """
     mechanism = model.whole
     followers = () if mechanism is None else tuple(mechanism.followers)
     graph = next((formula.graph for formula in variables.values()), Graph())
     ring = _Ring(graph, variables, {*model.angles, *followers})
-    angles, reals = (tuple(variables[name].variable for name in some) for some in (model.angles, model.reals))
+    angles, reals = (
+        tuple(variables[name].variable for name in some) for some in (model.angles, model.reals)
+    )
     conditions = ring.of(model.conditions.values())
-    known = CompiledSystem(graph, tuple(variables), angles, reals, inequalities=conditions, criterion=model.criterion)
+    known = CompiledSystem(
+        graph, tuple(variables), angles, reals, inequalities=conditions, criterion=model.criterion
+    )
     if mechanism is None:
         return _of_system(known, model, ring)
     known = _with_mechanism(known, mechanism, ring)
@@ -222,11 +254,17 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
     if not mechanism.xjoints:
         return _with_loops(known, mechanism, ring)
     found = _with_followers(known, model, variables)
-    return replace(known, **found._replace(inequalities=known.inequalities + found.inequalities)._asdict())
+    return replace(
+        known, **found._replace(inequalities=known.inequalities + found.inequalities)._asdict()
+    )
 
 
-def _with_followers(known: CompiledSystem, model: Model, variables: Mapping[str, Formula]) -> crossed.AngleConditions:
-    """What holds in the unknowns alone. It is multiplied out in names, which variables have in their own places."""
+def _with_followers(
+    known: CompiledSystem, model: Model, variables: Mapping[str, Formula]
+) -> crossed.AngleConditions:
+    """What holds in the unknowns alone. It is multiplied out in names, which variables have in
+    their own places.
+    """
     if any(formula is not known.graph.variable(k) for k, formula in enumerate(variables.values())):
         own = compiled(model)
         places = {k: variables[name] for k, name in enumerate(own.names)}
@@ -265,9 +303,13 @@ class _Ring:
 
 def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> CompiledSystem:
     """Points, springs, loads, the smooth energy, moments."""
-    points = {name: (evaluate(x, ring), evaluate(y, ring)) for name, (x, y) in mechanism.points.items()}
+    points = {
+        name: (evaluate(x, ring), evaluate(y, ring)) for name, (x, y) in mechanism.points.items()
+    }
     springs = tuple(ElasticLine.of(spring, points, ring) for spring in mechanism.springs)
-    torsion = [AngularSpring(t.name, *ring.of((t.stiffness, *t.deflection))) for t in mechanism.torsion]
+    torsion = [
+        AngularSpring(t.name, *ring.of((t.stiffness, *t.deflection))) for t in mechanism.torsion
+    ]
     split = split_moments(mechanism)
     others = [turned.stiffness * (1 - turned.cosine) for turned in torsion]
     loads = []
@@ -293,7 +335,9 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
         loads=tuple(loads),
         others=tuple(others),
         moments=tuple(steady[name] for name in mechanism.sorted_unknowns),
-        heights=() if mechanism.closing or followers else tuple(points[name][1] for name in mechanism.rising),
+        heights=()
+        if mechanism.closing or followers
+        else tuple(points[name][1] for name in mechanism.rising),
         has_energy=not mechanism.coupled,
     )
     return replace(known, smooth=sum(known.summands(), start=ring.constant(Fraction(0))))
@@ -308,7 +352,9 @@ def _of_system(known: CompiledSystem, model: Model, ring: _Ring) -> CompiledSyst
         return known
     moments = (ring.constant(Fraction(0)),) * len(known.unknowns)
     energy = evaluate(own.potential, ring)
-    return _of_slopes(replace(known, smooth=energy, others=(energy,), moments=moments, has_energy=True))
+    return _of_slopes(
+        replace(known, smooth=energy, others=(energy,), moments=moments, has_energy=True)
+    )
 
 
 def _of_slopes(known: CompiledSystem) -> CompiledSystem:
@@ -321,7 +367,9 @@ def _with_loops(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> Com
     closing = []
     for bar in mechanism.closing:
         (x0, y0), (x1, y1) = known.points[bar.start], known.points[bar.end]
-        closing.append((x1 - x0).squared() + (y1 - y0).squared() - evaluate(bar.length, ring).squared())
+        closing.append(
+            (x1 - x0).squared() + (y1 - y0).squared() - evaluate(bar.length, ring).squared()
+        )
     own = len(known.unknowns) - len(mechanism.force_densities)
     tensions = tuple(map(known.graph.variable, known.unknowns[own:]))
     found = loops.conditions(tuple(closing), known.forces[:own], known.unknowns[:own], tensions)

@@ -1,7 +1,7 @@
 """What is known of a solution beside that it is one: whether it is stable, and its index.
 
-Guarantee: a model has one criterion, which decides, counts and names what is known in its case. Whoever needs a
-number, a word or a matrix asks for that; where nothing is known there is none.
+Guarantee: a model has one criterion, which decides, counts and names what is known in its case.
+Whoever needs a number, a word or a matrix asks for that; where nothing is known there is none.
 """
 
 from __future__ import annotations
@@ -24,20 +24,24 @@ def critical_point(negative: int, unknowns: int) -> str:
 class Criterion:
     """By what it is known whether a solution is stable; without arguments by nothing.
 
-    Signs are ``+``, ``-`` and ``0``, one for each eigenvalue of the Hessian, or for each condition for stability.
+    Signs are ``+``, ``-`` and ``0``, one for each eigenvalue of the Hessian, or for each condition
+    for stability.
 
     Attributes
     ----------
     counts : what can be counted, by names of `ptmcad.question.counts`; the finest last.
     order : the number of rows of the Hessian; 0 where there is none.
-    is_definite : whether conditions for stability hold together where a symmetric matrix is positive definite, and the
-        last one is its determinant, times what is positive.
+    is_definite : whether conditions for stability hold together where a symmetric matrix is
+        positive definite, and the last one is its determinant, times what is positive.
     stable_at_zero : whether a solution at which a condition vanishes may be stable all the same.
-    numbers, differences : what has values where there is an energy: of one solution, and between two.
-    adjective, poses : before the noun of the solutions that are followed and make ranges, and as messages call them.
+    numbers, differences : what has values where there is an energy: of one solution, and between
+        two.
+    adjective, poses : before the noun of the solutions that are followed and make ranges, and as
+        messages call them.
     solutions, singular, matrix, determinant : what they are called in messages.
     loose : why there may be infinitely many solutions.
-    undecided, degenerate : a solution of which it is not decided whether it is stable, and one without signs.
+    undecided, degenerate : a solution of which it is not decided whether it is stable, and one
+        without signs.
     may_vary : why the number of stable solutions is not said of a region in which all are counted.
     no_descent : why nothing falls from where a stable solution vanishes.
     no_target : what is not said of a followed solution that vanishes.
@@ -92,12 +96,16 @@ class Criterion:
         return [*stable].count(True) if self.is_told else None
 
     def indices(self, signs: Sequence[str]) -> tuple[int, ...] | None:
-        """Numbers of solutions by the number of negative eigenvalues; None where there is no Hessian."""
+        """Numbers of solutions by the number of negative eigenvalues; None where there is no
+        Hessian.
+        """
         negative = [each.count("-") for each in signs]
         return tuple(negative.count(k) for k in range(self.order + 1)) if self.order else None
 
     def works(self, stable: bool | None) -> bool:
-        """Whether a solution is among those that make ranges: stable ones, or all where nothing says which are."""
+        """Whether a solution is among those that make ranges: stable ones, or all where nothing
+        says which are.
+        """
         return stable is True or not self.is_told
 
     def kind(self, stable: bool | None, index: int | None) -> str:
@@ -122,7 +130,9 @@ class Criterion:
         return (max(row, column), min(row, column)) if self.order else (row, column)
 
     def turned(self, equations: Sequence[Any], i: int, j: int, sign: int) -> tuple[Any, ...]:
-        """Equations where the angle i is a new one and sign times the angle j: slopes are those by the new angles."""
+        """Equations where the angle i is a new one and sign times the angle j: slopes are those by
+        the new angles.
+        """
         if not self.order:
             return tuple(equations)
         return tuple(e + sign * equations[i] if k == j else e for k, e in enumerate(equations))
@@ -132,7 +142,9 @@ class Criterion:
         return conditions[-1:] if self.is_definite else conditions
 
     def at_zero(self, what: str, number: int, condition: Tree | None) -> str:
-        """What it means that a condition for stability, None of what is multiplied out, vanishes at some solutions."""
+        """What it means that a condition for stability, None of what is multiplied out, vanishes at
+        some solutions.
+        """
         if self.is_definite:
             return f"{what} {'are' if number > 1 else 'is'} degenerate: poses meet there, or the loop is flat"
         assert condition is not None
@@ -155,7 +167,9 @@ DEFINITENESS = replace(CONDITIONS, is_definite=True, stable_at_zero=True)
 
 
 def by_hessian(unknowns: int) -> Criterion:
-    """Solutions are critical points, near each of a function: stable where its Hessian is positive definite."""
+    """Solutions are critical points, near each of a function: stable where its Hessian is positive
+    definite.
+    """
     return replace(
         CONDITIONS,
         counts=("total", "stable", "index"),

@@ -1,17 +1,19 @@
-"""Equilibria with angles that follow from unknown ones, as those of X-joints' second bars do, in the unknowns alone.
+"""Equilibria with angles that follow from unknown ones, as those of X-joints' second bars do, in
+the unknowns alone.
 
-Guarantee: the real solutions are the equilibria, and the stable ones the strict minima of the energy; complex solutions
-at which some D is zero, where the energy has no value, are excluded by inequalities that every real one satisfies.
+Guarantee: the real solutions are the equilibria, and the stable ones the strict minima of the
+energy; complex solutions at which some D is zero, where the energy has no value, are excluded by
+inequalities that every real one satisfies.
 
-With the followers' cosines and sines, rational functions of the angles th_i that they follow, the energy is
-N/D_1^m_1 ... D_n^m_n, N a polynomial and each D_i positive. Its derivative by th_i, times these powers and D_i, is the
-polynomial
+With the followers' cosines and sines, rational functions of the angles th_i that they follow, the
+energy is N/D_1^m_1 ... D_n^m_n, N a polynomial and each D_i positive. Its derivative by th_i, times
+these powers and D_i, is the polynomial
 
     e_i = D_i dN/dth_i - m_i N dD_i/dth_i,
 
-and where all e_i vanish the rows of their Jacobian are those of the Hessian times positive numbers. So the Hessian is
-positive definite where the leading principal minors of the Jacobian are positive (Sylvester); the last one is its
-determinant.
+and where all e_i vanish the rows of their Jacobian are those of the Hessian times positive numbers.
+So the Hessian is positive definite where the leading principal minors of the Jacobian are positive
+(Sylvester); the last one is its determinant.
 """
 
 from __future__ import annotations
@@ -30,7 +32,9 @@ from ptmcad.model.identities import Polynomial, Ring
 from ptmcad.model.sizes import MAX_TERMS, TOO_LARGE
 
 MAX_PRODUCTS = 2_000_000
-"""Products of terms while the energy is made: some seconds. Two joints with symbolic lengths take a tenth of that."""
+"""Products of terms while the energy is made: some seconds. Two joints with symbolic lengths take a
+tenth of that.
+"""
 MAX_MINOR = 20 * MAX_TERMS
 """Of a condition for stability, multiplied out by the engine."""
 
@@ -41,7 +45,8 @@ class Follower(NamedTuple):
     Attributes
     ----------
     leader, variable : numbers of the unknown angle, and of its own.
-    cosine, sine, below : numerators and the common denominator, positive, in parameters and the unknown angle.
+    cosine, sine, below : numerators and the common denominator, positive, in parameters and the
+        unknown angle.
     """
 
     leader: int
@@ -66,7 +71,10 @@ class AngleConditions(NamedTuple):
 
 
 def conditions(
-    energy: Formula, followers: Sequence[Follower], moments: Mapping[str, Formula], variables: Mapping[str, Formula]
+    energy: Formula,
+    followers: Sequence[Follower],
+    moments: Mapping[str, Formula],
+    variables: Mapping[str, Formula],
 ) -> AngleConditions:
     """What holds at equilibria, multiplied out.
 
@@ -84,7 +92,9 @@ def conditions(
     names = tuple(variables)
     expanded = ByNames(names, Ring(MAX_PRODUCTS))
     left, *steady = values([energy, *moments.values()], expanded)
-    bars = [_SecondBar(names[f.leader], names[f.variable], *values(f[2:], expanded)) for f in followers]
+    bars = [
+        _SecondBar(names[f.leader], names[f.variable], *values(f[2:], expanded)) for f in followers
+    ]
     equations = _equations(left, bars, dict(zip(moments, steady, strict=True)))
     rows = [[e.derivative(name) for name in moments] for e in equations]
     most = prod(max(len(entry.terms) for entry in row) for row in rows)
@@ -108,16 +118,22 @@ class _SecondBar(NamedTuple):
     below: Polynomial
 
 
-def _equations(energy: Polynomial, bars: Sequence[_SecondBar], moments: Mapping[str, Polynomial]) -> list[Polynomial]:
+def _equations(
+    energy: Polynomial, bars: Sequence[_SecondBar], moments: Mapping[str, Polynomial]
+) -> list[Polynomial]:
     """The e_i."""
     below, powers = energy.ring.constant(Fraction(1)), [_degree(energy, bar.angle) for bar in bars]
     for bar, power in zip(bars, powers, strict=True):
         energy = _substituted(energy, bar, power)
         below = _times(below, bar.below, power)
-    slopes = {unknown: energy.derivative(unknown) - moment * below for unknown, moment in moments.items()}
+    slopes = {
+        unknown: energy.derivative(unknown) - moment * below for unknown, moment in moments.items()
+    }
     for bar, power in zip(bars, powers, strict=True):
         if power:
-            turned = energy.ring.constant(Fraction(power)) * energy * bar.below.derivative(bar.leader)
+            turned = (
+                energy.ring.constant(Fraction(power)) * energy * bar.below.derivative(bar.leader)
+            )
             slopes[bar.leader] = bar.below * slopes[bar.leader] - turned
     return list(slopes.values())
 
@@ -130,7 +146,9 @@ def _formula(p: Polynomial, variables: Mapping[str, Formula]) -> Formula:
         for name, e in monomial:
             function, _, own = name.rpartition(" ")
             variable = variables[own]
-            factor = variable.cos() if function == "cos" else variable.sin() if function else variable
+            factor = (
+                variable.cos() if function == "cos" else variable.sin() if function else variable
+            )
             for _ in range(e):
                 term = term * factor
         total = total + term
@@ -139,7 +157,9 @@ def _formula(p: Polynomial, variables: Mapping[str, Formula]) -> Formula:
 
 def _degree(p: Polynomial, angle: str) -> int:
     """In cosine and sine of an angle together."""
-    return max((sum(e for v, e in m if v in (f"cos {angle}", f"sin {angle}")) for m in p.terms), default=0)
+    return max(
+        (sum(e for v, e in m if v in (f"cos {angle}", f"sin {angle}")) for m in p.terms), default=0
+    )
 
 
 def _substituted(p: Polynomial, bar: _SecondBar, power: int) -> Polynomial:

@@ -1,9 +1,11 @@
-"""A planar mechanism as data: parameters, unknowns, points, bars, and its `elements`, made of expressions.
+"""A planar mechanism as data: parameters, unknowns, points, bars, and its `elements`, made of
+expressions.
 
 And any other parametric system: equations or a potential, and what a solution has to satisfy.
 
-Guarantee: what `ptmcad.model.record` has read is consistent: every name that occurs is a parameter, an unknown or a
-point, angles stand inside of cosines and sines only, and every tree has a value in any ring (`evaluate`).
+Guarantee: what `ptmcad.model.record` has read is consistent: every name that occurs is a parameter,
+an unknown or a point, angles stand inside of cosines and sines only, and every tree has a value in
+any ring (`evaluate`).
 """
 
 from __future__ import annotations
@@ -59,12 +61,13 @@ class Mechanism(Model):
     points : to the trees of their coordinates, in the unit of the lengths.
     bars : pairs of points, for drawings.
     springs, loads : in the record's order.
-    symmetries : substitutions of parameters and unknowns under which the energy changes by what no unknown is in.
+    symmetries : substitutions of parameters and unknowns under which the energy changes by what no
+        unknown is in.
     bodies : to the points fixed to them, for drawings.
     moments : generalised forces that need not come from a potential.
     torsion : springs between directions, in the record's order.
-    closing, xjoints : bars that close loops, and X-joints; with any, `ptmcad.model.closed` makes a `ClosedMechanism`
-        of it.
+    closing, xjoints : bars that close loops, and X-joints; with any, `ptmcad.model.closed` makes a
+        `ClosedMechanism` of it.
     """
 
     points: Mapping[str, tuple[Tree, Tree]]
@@ -112,12 +115,19 @@ class Mechanism(Model):
 
     def written(self, kind: Kind) -> tuple[Tree, ...]:
         """What is written for a kind of quantity, element by element."""
-        return tuple(part.tree for element in self.elements.values() for part in element.written if part.kind is kind)
+        return tuple(
+            part.tree
+            for element in self.elements.values()
+            for part in element.written
+            if part.kind is kind
+        )
 
     @cached_property
     def coordinates(self) -> Mapping[str, Tree]:
         return {
-            f"{point}.{c}": tree for point, place in self.points.items() for c, tree in zip("xy", place, strict=True)
+            f"{point}.{c}": tree
+            for point, place in self.points.items()
+            for c, tree in zip("xy", place, strict=True)
         }
 
     @cached_property
@@ -130,24 +140,32 @@ class Mechanism(Model):
 
     @cached_property
     def coupled(self) -> tuple[str, ...]:
-        return tuple(u for u, value in self.work.items() if self.unknowns.keys() & set(names_of(value)) - {u})
+        return tuple(
+            u for u, value in self.work.items() if self.unknowns.keys() & set(names_of(value)) - {u}
+        )
 
     @cached_property
     def criterion(self) -> Criterion:
-        """A moment that depends on no unknown but its own has a potential, though of several values on a circle."""
+        """A moment that depends on no unknown but its own has a potential, though of several values
+        on a circle.
+        """
         return NOTHING if self.coupled else by_hessian(len(self.unknowns))
 
     @cached_property
     def followers(self) -> Mapping[str, str]:
-        """The angles that follow from an unknown one, to this: those of the second bars of X-joints."""
+        """The angles that follow from an unknown one, to this: those of the second bars of
+        X-joints.
+        """
         return {joint.other: joint.angle for joint in self.xjoints}
 
     @cached_property
     def force_densities(self) -> tuple[str, ...]:
-        """Names for the tension of each closing bar divided by its length, which are further unknowns where the bars
-        leave several degrees of freedom; else none."""
+        """Names for the tension of each closing bar divided by its length, which are further
+        unknowns where the bars leave several degrees of freedom; else none."""
         several = len(self.unknowns) > len(self.closing) + 1
-        return tuple(f"force_density_{bar.start}{bar.end}" for bar in self.closing) if several else ()
+        return (
+            tuple(f"force_density_{bar.start}{bar.end}" for bar in self.closing) if several else ()
+        )
 
     @cached_property
     def moving(self) -> tuple[str, ...]:
@@ -172,7 +190,8 @@ class Mechanism(Model):
             for angle in self.angles
             for bar in self.bars
             for start, end in (bar, bar[::-1])
-            if start not in self.moving and any(angle in names_of(tree) for tree in self.points[end])
+            if start not in self.moving
+            and any(angle in names_of(tree) for tree in self.points[end])
         }
 
     @property
@@ -191,7 +210,9 @@ class Mechanism(Model):
 
     @property
     def laws(self) -> Mapping[str, str]:
-        """What springs do, by the keys of the description, where it is not what an engineer expects."""
+        """What springs do, by the keys of the description, where it is not what an engineer
+        expects.
+        """
         return {"torsion": _TORSION} if self.torsion else {}
 
     @property
@@ -211,12 +232,16 @@ class Mechanism(Model):
 
     @cached_property
     def spring_numbers(self) -> Mapping[str, int]:
-        """Every name under which a spring is asked for, to its number: its own, and its ends' names put together."""
+        """Every name under which a spring is asked for, to its number: its own, and its ends' names
+        put together.
+        """
         ends = {f"{start}{end}": k for k, (start, end) in enumerate(self.spring_ends)}
         return ends | {spring.name: k for k, spring in enumerate(self.springs)}
 
     def unit_of(self, name: str) -> Unit:
-        """As of any model; a stiffness that is a number times those of springs of one sort alone has their unit."""
+        """As of any model; a stiffness that is a number times those of springs of one sort alone
+        has their unit.
+        """
         known = super().unit_of(name)
         if known != UNITS[Kind.STIFFNESS]:
             return known
@@ -249,7 +274,8 @@ def _is_multiple(tree: Tree) -> bool:
 
 @dataclass(frozen=True)
 class System(Model):
-    """A parametric system of any field: as many equations as unknowns, or a potential whose critical points are meant.
+    """A parametric system of any field: as many equations as unknowns, or a potential whose
+    critical points are meant.
 
     Attributes
     ----------
@@ -283,14 +309,19 @@ class System(Model):
 
     @cached_property
     def polynomials(self) -> Mapping[str, tuple[Tree, ...]]:
-        trees = _numbered("equations", self.equations) | dict(self.conditions) | _numbered("stable", self.stability)
+        trees = (
+            _numbered("equations", self.equations)
+            | dict(self.conditions)
+            | _numbered("stable", self.stability)
+        )
         found = {key: (tree,) for key, tree in trees.items()}
         return found if self.potential is None else {**found, "potential": (self.potential,)}
 
 
 @dataclass(frozen=True)
 class ClosedMechanism(Model):
-    """A mechanism with closed loops, or with X-joints: what its unknowns satisfy follows by `ptmcad.model.compile`.
+    """A mechanism with closed loops, or with X-joints: what its unknowns satisfy follows by
+    `ptmcad.model.compile`.
 
     Attributes
     ----------
@@ -306,14 +337,17 @@ class ClosedMechanism(Model):
     @classmethod
     def of(cls, mechanism: Mechanism) -> ClosedMechanism:
         """That of a mechanism, with further unknowns where several degrees of freedom are left."""
-        unknowns = {**mechanism.unknowns, **dict.fromkeys(mechanism.force_densities, UnknownKind.REAL)}
+        unknowns = {
+            **mechanism.unknowns,
+            **dict.fromkeys(mechanism.force_densities, UnknownKind.REAL),
+        }
         own = mechanism.name, mechanism.parameters, unknowns, mechanism
         return cls(*own, source=mechanism.source, title=mechanism.title)
 
     @property
     def multipliers(self) -> tuple[str, ...]:
-        """The last unknowns, where more degrees of freedom are left: of each closing bar its tension divided by its
-        length."""
+        """The last unknowns, where more degrees of freedom are left: of each closing bar its
+        tension divided by its length."""
         return self.mechanism.force_densities
 
     @property
@@ -322,8 +356,8 @@ class ClosedMechanism(Model):
 
     @cached_property
     def whole(self) -> Mechanism:
-        """The mechanism with the bars that close its loops among the bars, and their tensions among the unknowns, for
-        what shows its poses."""
+        """The mechanism with the bars that close its loops among the bars, and their tensions among
+        the unknowns, for what shows its poses."""
         closing = tuple((closing.start, closing.end) for closing in self.mechanism.closing)
         return replace(self.mechanism, bars=self.mechanism.bars + closing, unknowns=self.unknowns)
 
@@ -332,7 +366,9 @@ class ClosedMechanism(Model):
 
 
 def looped(model: Model) -> Mechanism | None:
-    """The mechanism whose loops leave one degree of freedom, as it was described; None where there are none."""
+    """The mechanism whose loops leave one degree of freedom, as it was described; None where there
+    are none.
+    """
     if not isinstance(model, ClosedMechanism) or model.multipliers or model.mechanism.xjoints:
         return None
     return model.mechanism

@@ -1,4 +1,5 @@
-"""Gradients of formulas, and determinants of matrices by Laplace's expansion: for the few rows that there are.
+"""Gradients of formulas, and determinants of matrices by Laplace's expansion: for the few rows that
+there are.
 
 Guarantee: exact identities.
 """
@@ -29,7 +30,8 @@ def determinant(matrix: Rows) -> Formula:
 
 
 def cofactors(rows: Rows) -> tuple[Formula, ...]:
-    """What a further row's entries are multiplied by in the determinant: a vector at right angles to all rows.
+    """What a further row's entries are multiplied by in the determinant: a vector at right angles
+    to all rows.
 
     Parameters
     ----------

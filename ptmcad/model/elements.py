@@ -1,9 +1,10 @@
-"""What descriptions are made of: parameters, springs, loads, moments and joints, with their expressions as trees.
+"""What descriptions are made of: parameters, springs, loads, moments and joints, with their
+expressions as trees.
 
-Guarantee: each says by `element` all that a traversal of a description needs of it: what is written in it, its energy,
-and what an unknown has to change in it. So proofs, loops and X-joints need no list of kinds. What a spring between
-points does is said once, by its `Law`, whose formulas both engines, drawings and documents read; the checker has its
-own in `verification/derivation`.
+Guarantee: each says by `element` all that a traversal of a description needs of it: what is written
+in it, its energy, and what an unknown has to change in it. So proofs, loops and X-joints need no
+list of kinds. What a spring between points does is said once, by its `Law`, whose formulas both
+engines, drawings and documents read; the checker has its own in `verification/derivation`.
 """
 
 from __future__ import annotations
@@ -69,8 +70,8 @@ class Kind(Enum):
 
 
 class UnknownKind(Enum):
-    """Where an unknown lives: the word of records, then what others ask of it. A part of the line has a condition, too,
-    in `Model.conditions`.
+    """Where an unknown lives: the word of records, then what others ask of it. A part of the line
+    has a condition, too, in `Model.conditions`.
 
     Attributes
     ----------
@@ -219,7 +220,8 @@ def _difference(tree: Tree, less: Tree) -> str:
 
 
 class Law(Enum):
-    """What springs between points do, in the stiffness k, the free length f, the length l and its square q.
+    """What springs between points do, in the stiffness k, the free length f, the length l and its
+    square q.
 
     Attributes
     ----------
@@ -227,7 +229,8 @@ class Law(Enum):
     energy : smooth - pull*l, but for what has no length in it.
     smooth : the energy without a free length: a polynomial in q.
     density : twice its slope by q, the force for each unit of length.
-    pull : what the energy lacks for each unit of length; without lengths, and zero without a free length.
+    pull : what the energy lacks for each unit of length; without lengths, and zero without a free
+        length.
     force : the energy's slope by the length, positive where the spring pulls.
     """
 
@@ -239,7 +242,9 @@ class Law(Enum):
 
 
 class Spring(NamedTuple):
-    """A spring between two points; its name, which no other has, is that of its stiffness or is made of its points'."""
+    """A spring between two points; its name, which no other has, is that of its stiffness or is
+    made of its points'.
+    """
 
     name: str
     start: str
@@ -271,7 +276,12 @@ class Spring(NamedTuple):
         """Its energy as problem records write it, with a root."""
         (x0, y0), (x1, y1) = points[self.start], points[self.end]
         square = f"({_difference(x1, x0)})^2 + ({_difference(y1, y0)})^2"
-        names = {"k": factor(self.stiffness), "f": factor(self.free), "l": f"sqrt({square})", "q": f"({square})"}
+        names = {
+            "k": factor(self.stiffness),
+            "f": factor(self.free),
+            "l": f"sqrt({square})",
+            "q": f"({square})",
+        }
         return re.sub("[kflq]", lambda name: names[name[0]], text_of(self.law.energy))
 
 
@@ -292,7 +302,10 @@ class Load(NamedTuple):
         forces = self.x, self.y
         return Element(
             tuple(Part(key, Kind.FORCE, force) for key, force in zip("12", forces, strict=True)),
-            tuple(negative(product(f, place)) for f, place in zip(forces, points[self.point], strict=True)),
+            tuple(
+                negative(product(f, place))
+                for f, place in zip(forces, points[self.point], strict=True)
+            ),
         )
 
     def text(self, points: Mapping[str, Place]) -> str:
@@ -308,7 +321,9 @@ class Moment(NamedTuple):
     value: Tree
 
     def element(self, points: Mapping[str, Place]) -> Element:
-        """For traversals; its work is no energy, or one that takes integration (`ptmcad.model.work`)."""
+        """For traversals; its work is no energy, or one that takes integration
+        (`ptmcad.model.work`).
+        """
         return Element((Part("", Kind.NUMBER, self.value),))
 
 
@@ -325,14 +340,17 @@ class Closing(NamedTuple):
 
     def text(self, points: Mapping[str, Place]) -> str:
         """What is zero where it has its length, given the points' coordinates."""
-        return text_of(total(squared_distance(points, self.start, self.end), negative(squared(self.length))))
+        return text_of(
+            total(squared_distance(points, self.start, self.end), negative(squared(self.length)))
+        )
 
 
 class TorsionSpring(NamedTuple):
     """A spring between directions: its energy is stiffness * (1 - cos(angle - rest)).
 
-    Its moment is the energy's derivative by the angle, stiffness * sin(angle - rest): positive where it turns back an
-    angle beyond rest, as a spring's force is positive where it pulls back ends that are too far apart.
+    Its moment is the energy's derivative by the angle, stiffness * sin(angle - rest): positive
+    where it turns back an angle beyond rest, as a spring's force is positive where it pulls back
+    ends that are too far apart.
 
     Attributes
     ----------
@@ -355,7 +373,9 @@ class TorsionSpring(NamedTuple):
 
     @property
     def energy(self) -> Tree:
-        """As a tree; the cosine of the difference is expanded, since only the rest's cosine and sine are known."""
+        """As a tree; the cosine of the difference is expanded, since only the rest's cosine and
+        sine are known.
+        """
         return product(self.stiffness, total(ONE, negative(self.deflection[0])))
 
     @property
@@ -379,23 +399,28 @@ class TorsionSpring(NamedTuple):
     def text(self, points: Mapping[str, Place]) -> str:
         """Its energy as problem records write it."""
         pairs = zip(self.rest, ("cos", "sin"), strict=True)
-        turned = "".join(f" - {_number(value)}*{name}({text_of(self.angle)})" for value, name in pairs if value)
+        turned = "".join(
+            f" - {_number(value)}*{name}({text_of(self.angle)})" for value, name in pairs if value
+        )
         return f"{factor(self.stiffness)}*(1{turned})"
 
 
 class XJoint(NamedTuple):
-    """An X-joint: two crossed bars of one length between a base and a top of another, an antiparallelogram.
+    """An X-joint: two crossed bars of one length between a base and a top of another, an
+    antiparallelogram.
 
-    The second bar's angle psi follows from the first one's, th, on the branch on which the bars stay crossed:
+    The second bar's angle psi follows from the first one's, th, on the branch on which the bars
+    stay crossed:
 
-        cos psi = ((L^2 + b^2) cos th - 2 L b)/D,   sin psi = (L^2 - b^2) sin th/D,   D = L^2 + b^2 - 2 L b cos th
+        cos psi = ((L^2 + b^2) cos th - 2 L b)/D,   sin psi = (L^2 - b^2) sin th/D,
+        D = L^2 + b^2 - 2 L b cos th
 
-    with L the bars' length and b the base's, both angles against the base. That is tan(psi/2) = (L + b)/(L - b)
-    tan(th/2), and D, the squared distance of the two ends on the right, is positive where L and b differ. The top is
-    turned by th + psi - pi.
+    with L the bars' length and b the base's, both angles against the base. That is
+    tan(psi/2) = (L + b)/(L - b) tan(th/2), and D, the squared distance of the two ends on the
+    right, is positive where L and b differ. The top is turned by th + psi - pi.
 
-    Source: elementary; Furet and Wenger, Kinetostatic analysis and actuation strategy of a planar tensegrity 2-X
-    manipulator, J. Mech. Robotics 11 (2019), name it.
+    Source: elementary; Furet and Wenger, Kinetostatic analysis and actuation strategy of a planar
+    tensegrity 2-X manipulator, J. Mech. Robotics 11 (2019), name it.
 
     Attributes
     ----------
@@ -426,14 +451,20 @@ class XJoint(NamedTuple):
     @property
     def upper(self) -> tuple[Tree, int]:
         """Direction and quarter turns of the top."""
-        return self._towards(Chain(Name(self.angle), (Step("+", Name(self.other)),))), (self.turns + 2) % 4
+        return self._towards(Chain(Name(self.angle), (Step("+", Name(self.other)),))), (
+            self.turns + 2
+        ) % 4
 
     def bar(self, angle: str) -> tuple[Tree, Tree]:
         """Cosine and sine of the direction of a bar at this angle against the base."""
         return cosine_and_sine(self._towards(Name(angle)), self.turns)
 
     def _towards(self, angle: Tree) -> Tree:
-        return angle if isinstance(self.direction, Number) else Chain(self.direction, (Step("+", angle),))
+        return (
+            angle
+            if isinstance(self.direction, Number)
+            else Chain(self.direction, (Step("+", angle),))
+        )
 
     def element(self, points: Mapping[str, Place]) -> Element:
         """For traversals."""
@@ -449,7 +480,9 @@ class XJoint(NamedTuple):
 
 
 def second_bar(bars: Any, length: Any, cosine: Any, sine: Any) -> tuple[Any, Any, Any]:
-    """D cos psi, D sin psi and D, of L, b, cos th and sin th, in any numbers that can be added and multiplied."""
+    """D cos psi, D sin psi and D, of L, b, cos th and sin th, in any numbers that can be added and
+    multiplied.
+    """
     far, near = bars * bars, length * length
     twice = bars * length + bars * length
     return (far + near) * cosine - twice, (far - near) * sine, far + near - twice * cosine

@@ -1,8 +1,9 @@
-"""The value of a tree in any ring that has the parameters, and the cosines and sines of the unknown angles.
+"""The value of a tree in any ring that has the parameters, and the cosines and sines of the unknown
+angles.
 
-Guarantee: exact as far as the ring is; constants are computed as fractions before they meet the ring. A cosine or sine
-of a sum of multiples of angles is expanded by the addition theorems, so the ring needs those of single angles only.
-Division is by constants only: a coordinate is a polynomial.
+Guarantee: exact as far as the ring is; constants are computed as fractions before they meet the
+ring. A cosine or sine of a sum of multiples of angles is expanded by the addition theorems, so the
+ring needs those of single angles only. Division is by constants only: a coordinate is a polynomial.
 """
 
 from __future__ import annotations
@@ -84,16 +85,17 @@ def evaluate(tree: Tree, ring: Ring[E]) -> E:
 
     Raises
     ------
-    ExpressionError
-        With the position of what has no meaning: a name that the ring refuses, a division by what is no constant or
-        zero, an exponent that is no whole number from 0 to `MAX_EXPONENT`, an argument of a function that is no sum of
-        whole multiples of angles.
+    ExpressionError With the position of what has no meaning: a name that the ring refuses, a
+        division by what is no constant or zero, an exponent that is no whole number from 0 to
+        `MAX_EXPONENT`, an argument of a function that is no sum of whole multiples of angles.
     """
     return evaluated([tree], ring)[0]
 
 
 def evaluated(trees: Iterable[Tree], ring: Ring[E]) -> tuple[E, ...]:
-    """The values of several trees, of which parts that they share are evaluated once; errors as of `evaluate`."""
+    """The values of several trees, of which parts that they share are evaluated once; errors as of
+    `evaluate`.
+    """
     evaluation, known = _Evaluation(ring), dict[int, tuple[Tree, Fraction | E]]()
     return tuple(evaluation.lifted(interpret(tree, evaluation, known)) for tree in trees)
 
@@ -250,7 +252,9 @@ def multiples_with_positions(tree: Tree) -> tuple[dict[str, Fraction], dict[str,
 
 
 class _Angles:
-    """The interpretation as a sum of multiples of angles: names to multiples, the empty name to the constant."""
+    """The interpretation as a sum of multiples of angles: names to multiples, the empty name to the
+    constant.
+    """
 
     def __init__(self) -> None:
         self.positions: dict[str, int] = {}
@@ -265,18 +269,26 @@ class _Angles:
     def negative(self, value: dict[str, Fraction]) -> dict[str, Fraction]:
         return {name: -multiple for name, multiple in value.items()}
 
-    def joined(self, left: dict[str, Fraction], step: Step, right: dict[str, Fraction]) -> dict[str, Fraction]:
+    def joined(
+        self, left: dict[str, Fraction], step: Step, right: dict[str, Fraction]
+    ) -> dict[str, Fraction]:
         if step.operator in "+-":
             sign = 1 if step.operator == "+" else -1
-            return left | {name: left.get(name, Fraction(0)) + sign * m for name, m in right.items()}
+            return left | {
+                name: left.get(name, Fraction(0)) + sign * m for name, m in right.items()
+            }
         if step.operator == "*" and left.keys() == {""}:
             left, right = right, left
         if right.keys() != {""}:
-            raise ExpressionError("an angle is multiplied or divided by numbers only", step.position)
+            raise ExpressionError(
+                "an angle is multiplied or divided by numbers only", step.position
+            )
         factor = _inverse(right[""], step) if step.operator == "/" else right[""]
         return {name: _bounded(multiple * factor, step.position) for name, multiple in left.items()}
 
-    def power(self, base: dict[str, Fraction], power: Power, exponent: dict[str, Fraction]) -> dict[str, Fraction]:
+    def power(
+        self, base: dict[str, Fraction], power: Power, exponent: dict[str, Fraction]
+    ) -> dict[str, Fraction]:
         if base.keys() != {""} or exponent.keys() != {""}:
             raise ExpressionError("a power of an angle is no angle", power.position)
         return {"": _power(base[""], _whole(exponent[""], power.position), power.position)}

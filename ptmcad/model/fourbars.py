@@ -1,11 +1,13 @@
-"""Four-bar loops that fold flat whatever the loads: parallelograms, kites, rhombi, and lengths that add up alike.
+"""Four-bar loops that fold flat whatever the loads: parallelograms, kites, rhombi, and lengths that
+add up alike.
 
-A loop A P Q B of four rigid parts with lengths a, c, d and b of AP, PQ, QB and BA is singular exactly where its corners
-are on one line. It has such poses if and only if a + c = +-d +- b for some choice of signs, that of c included. Where
-two pairs of lengths are equal, its poses are two or three branches that cross there.
+A loop A P Q B of four rigid parts with lengths a, c, d and b of AP, PQ, QB and BA is singular
+exactly where its corners are on one line. It has such poses if and only if a + c = +-d +- b for
+some choice of signs, that of c included. Where two pairs of lengths are equal, its poses are two or
+three branches that cross there.
 
-Guarantee: exact, for all values of the axes at once: what is called flat folds flat at every point at which its lengths
-have values. Both engines take names and sentences from here.
+Guarantee: exact, for all values of the axes at once: what is called flat folds flat at every point
+at which its lengths have values. Both engines take names and sentences from here.
 
 Source: elementary; the product over all signs is a polynomial in the squares.
 """
@@ -71,16 +73,22 @@ class Fold(Enum):
 
 @dataclass(frozen=True, slots=True)
 class FourBar:
-    """A loop of four rigid parts, whose corners are the points A, P, Q and B: PQ is the closing bar."""
+    """A loop of four rigid parts, whose corners are the points A, P, Q and B: PQ is the closing
+    bar.
+    """
 
     mechanism: Mechanism
     closing: Closing
     corners: tuple[str, str, str, str]
 
     def fold(self, parameters: Expressions) -> Fold | None:
-        """Why the loop folds flat at all values of the axes; None where it does not, or that is not shown."""
+        """Why the loop folds flat at all values of the axes; None where it does not, or that is not
+        shown.
+        """
         try:
-            return self._fold(Points(self.mechanism, SliceRing(self.mechanism.unknowns, parameters)))
+            return self._fold(
+                Points(self.mechanism, SliceRing(self.mechanism.unknowns, parameters))
+            )
         except ExpressionError:
             return None
 
@@ -98,10 +106,13 @@ class FourBar:
         four = points.ring.constant(Fraction(4))
         s = one + coupler - two - ground
         t = s * s - (one * coupler + two * ground) * four
-        return Fold.EQUAL_SUMS if t * t == one * two * coupler * ground * four * four * four else None
+        return (
+            Fold.EQUAL_SUMS if t * t == one * two * coupler * ground * four * four * four else None
+        )
 
     def turns_freely(self) -> bool:
-        """Whether the loop is all that joins the only two unknowns, angles that turn its sides to all directions.
+        """Whether the loop is all that joins the only two unknowns, angles that turn its sides to
+        all directions.
 
         Then it has every pose in which its sides are closed, the flat ones too.
         """
@@ -115,11 +126,14 @@ class FourBar:
             return False
         if None in sides:
             return False
-        (g1, g2), (f1, f2), (s1, s2) = ([side[u] for u in mechanism.angles] for side in sides if side is not None)
+        (g1, g2), (f1, f2), (s1, s2) = (
+            [side[u] for u in mechanism.angles] for side in sides if side is not None
+        )
         return (f1 - g1) * (s2 - g2) != (f2 - g2) * (s1 - g1)
 
     def named(self, fold: Fold, free_lengths: bool = False) -> str:
-        """Which linkage the loop is, which branches its poses are, and how to describe each branch by itself.
+        """Which linkage the loop is, which branches its poses are, and how to describe each branch
+        by itself.
 
         Parameters
         ----------
@@ -135,11 +149,19 @@ class FourBar:
         elif fold is Fold.PARALLELOGRAM:
             far = f"{a}{q}"
             mirrored = _MIRRORED.format(
-                far=far, image=p, object=b, mirror=f"{far}'s perpendicular bisector", closing=f"{q}{b}"
+                far=far,
+                image=p,
+                object=b,
+                mirror=f"{far}'s perpendicular bisector",
+                closing=f"{q}{b}",
             )
-            branches = _PARALLELOGRAM.format(**corners) + (f"the {mirrored}" if free_lengths else "'x-joint:'")
+            branches = _PARALLELOGRAM.format(**corners) + (
+                f"the {mirrored}" if free_lengths else "'x-joint:'"
+            )
         else:
-            image, centre, far, closing = (p, b, a + q, q + b) if fold is Fold.KITE_P else (q, a, b + p, p + a)
+            image, centre, far, closing = (
+                (p, b, a + q, q + b) if fold is Fold.KITE_P else (q, a, b + p, p + a)
+            )
             there = {"image": image, "object": centre, "far": far}
             mirrored = _MIRRORED.format(**there, mirror=far, closing=closing)
             branches = _KITE.format(**corners, **there, mirrored=mirrored)
@@ -172,7 +194,9 @@ def four_bars(mechanism: Mechanism) -> Iterator[FourBar]:
 
 
 def flat_everywhere(mechanism: Mechanism, parameters: Expressions) -> tuple[FourBar, Fold] | None:
-    """The loop that has flat poses for all values of the axes, and why; None where there is none, or no proof."""
+    """The loop that has flat poses for all values of the axes, and why; None where there is none,
+    or no proof.
+    """
     for loop in four_bars(mechanism) if len(mechanism.closing) == 1 else ():
         fold = loop.fold(parameters)
         if fold is not None and loop.turns_freely():
@@ -181,9 +205,15 @@ def flat_everywhere(mechanism: Mechanism, parameters: Expressions) -> tuple[Four
 
 
 def may_be_flat(mechanism: Mechanism, parameters: Expressions) -> str:
-    """What to say of four-bar loops among others that fold flat where these let them; empty where there are none."""
+    """What to say of four-bar loops among others that fold flat where these let them; empty where
+    there are none.
+    """
     found = ((loop, loop.fold(parameters)) for loop in four_bars(mechanism))
-    said = {loop.closing: f"{' '.join(loop.corners)} is {fold.words}" for loop, fold in found if fold is not None}
+    said = {
+        loop.closing: f"{' '.join(loop.corners)} is {fold.words}"
+        for loop, fold in found
+        if fold is not None
+    }
     if not said:
         return ""
     return f"{', '.join(said.values())}: nothing is decided wherever its corners can come to lie on one line"

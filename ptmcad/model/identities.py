@@ -1,6 +1,8 @@
-"""Polynomials in which identities of descriptions are decided, and the coordinates of a mechanism's points as such.
+"""Polynomials in which identities of descriptions are decided, and the coordinates of a mechanism's
+points as such.
 
-Guarantee: exact; in Q[parameters, lengths][cos, sin], reduced by cos^2 + sin^2 = 1, so that equal functions are equal.
+Guarantee: exact; in Q[parameters, lengths][cos, sin], reduced by cos^2 + sin^2 = 1, so that equal
+functions are equal.
 
 The ring is a small one of its own: readers and checkers load no algebra.
 """
@@ -18,10 +20,14 @@ from ptmcad.model.evaluate import Named, evaluated
 from ptmcad.text.tree import Name, Tree, names_of, replaced
 
 MAX_WORK = 12_000
-"""Products of terms for one question, a fraction of a second; two bars and a spring take some hundred."""
+"""Products of terms for one question, a fraction of a second; two bars and a spring take some
+hundred.
+"""
 
 Monomial = tuple[tuple[str, int], ...]
-"""Variables with their exponents, in order; the cosine of an angle is ``cos NAME``, its exponent at most 1."""
+"""Variables with their exponents, in order; the cosine of an angle is ``cos NAME``, its exponent at
+most 1.
+"""
 
 
 class Polynomial:
@@ -62,19 +68,27 @@ class Polynomial:
 
     def derivative(self, unknown: str) -> Polynomial:
         """By an unknown, on the line or on the circle."""
-        others = {unknown: "", f"cos {unknown}": f"sin {unknown}", f"sin {unknown}": f"cos {unknown}"}
+        others = {
+            unknown: "",
+            f"cos {unknown}": f"sin {unknown}",
+            f"sin {unknown}": f"cos {unknown}",
+        }
         slopes = list[tuple[Monomial, Fraction]]()
         for monomial, c in self.terms.items():
             for variable, e in monomial:
                 if variable in others:
-                    lower = tuple((v, n - (v == variable)) for v, n in monomial if v != variable or n > 1)
+                    lower = tuple(
+                        (v, n - (v == variable)) for v, n in monomial if v != variable or n > 1
+                    )
                     own = ((others[variable], 1),) if others[variable] else ()
                     slopes += _product(lower, own, c * (-e if variable.startswith("cos ") else e))
         return self._collected(slopes)
 
 
 class Ring:
-    """Q[parameters, lengths][cos, sin], as a ring in which trees have values; it stops after so much work."""
+    """Q[parameters, lengths][cos, sin], as a ring in which trees have values; it stops after so
+    much work.
+    """
 
     def __init__(self, most: int = MAX_WORK) -> None:
         self.work = 0
@@ -132,12 +146,18 @@ class Points:
     images : trees in place of names.
     """
 
-    def __init__(self, mechanism: Mechanism, ring: Ring | None = None, images: Mapping[str, Tree] | None = None):
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        ring: Ring | None = None,
+        images: Mapping[str, Tree] | None = None,
+    ):
         self.mechanism = mechanism
         self.ring = ring or Ring()
         self.images = images or {}
         self.placed = Named(
-            self.ring, {name: replaced(tree, self.images) for name, tree in mechanism.coordinates.items()}
+            self.ring,
+            {name: replaced(tree, self.images) for name, tree in mechanism.coordinates.items()},
         )
 
     def value(self, tree: Tree) -> Polynomial:
@@ -156,9 +176,15 @@ class Points:
         return self.value(squared_distance(NAMES, start, end))
 
     def varies(self, tree: Tree) -> bool:
-        """Whether an expression changes with an unknown; also where that is too much to be multiplied out."""
+        """Whether an expression changes with an unknown; also where that is too much to be
+        multiplied out.
+        """
         unknowns = {*self.mechanism.unknowns, *self.mechanism.followers}
-        names = {name for part in names_of(tree) for name in names_of(self.placed.trees.get(part, Name(part)))}
+        names = {
+            name
+            for part in names_of(tree)
+            for name in names_of(self.placed.trees.get(part, Name(part)))
+        }
         if not names & unknowns:
             return False
         try:
@@ -168,8 +194,9 @@ class Points:
             return True
 
     def turning(self, start: str, end: str) -> dict[str, Fraction] | None:
-        """By how much the way from one point to another, (x, y), turns with each unknown u, in turns of u: n, where
-        dx/du = -n y and dy/du = n x; None where it is no rigid one, or no way at all."""
+        """By how much the way from one point to another, (x, y), turns with each unknown u, in
+        turns of u: n, where dx/du = -n y and dy/du = n x; None where it is no rigid one, or no way
+        at all."""
         (x0, y0), (x1, y1) = self.at(start), self.at(end)
         x, y = x1 - x0, y1 - y0
         if not (x.terms or y.terms):
@@ -178,7 +205,11 @@ class Points:
         found = {}
         for unknown in (*self.mechanism.unknowns, *self.mechanism.followers):
             dx, dy = x.derivative(unknown), y.derivative(unknown)
-            n = dy.terms.get(term, Fraction(0)) / c if x.terms else -dx.terms.get(term, Fraction(0)) / c
+            n = (
+                dy.terms.get(term, Fraction(0)) / c
+                if x.terms
+                else -dx.terms.get(term, Fraction(0)) / c
+            )
             times = self.ring.constant(n)
             if (dy - times * x).terms or (dx + times * y).terms:
                 return None

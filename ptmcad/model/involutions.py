@@ -1,15 +1,19 @@
-"""Involutions of a model over a window of two axes, as data that both engines read: what becomes of unknowns and axes.
+"""Involutions of a model over a window of two axes, as data that both engines read: what becomes of
+unknowns and axes.
 
-Guarantee: each `Involution` that is found takes the window to itself, and at every point of it solutions to solutions
-at the point's image, those that count to such, stable ones to stable ones of the same index. That is proved by
-identities of polynomials over Q, decided exactly. All are found that exchange and reflect unknowns and axes, turn
-angles by half a turn, and keep the energy but for what no unknown is in, the springs with a free length, the moments,
-the equations up to their order and signs, and the conditions up to their order; so those that a record's `symmetries`
-list are found again where they are of this kind. None is found where expressions are too large to be multiplied out,
-nor with free lengths in closed loops; none that moves axes where parameters have denominators.
+Guarantee: each `Involution` that is found takes the window to itself, and at every point of it
+solutions to solutions at the point's image, those that count to such, stable ones to stable ones of
+the same index. That is proved by identities of polynomials over Q, decided exactly. All are found
+that exchange and reflect unknowns and axes, turn angles by half a turn, and keep the energy but for
+what no unknown is in, the springs with a free length, the moments, the equations up to their order
+and signs, and the conditions up to their order; so those that a record's `symmetries` list are
+found again where they are of this kind. None is found where expressions are too large to be
+multiplied out, nor with free lengths in closed loops; none that moves axes where parameters have
+denominators.
 
-In cosines and sines such a change only permutes monomials and gives them signs. For each permutation of unknowns and
-axes the signs with which all polynomials are kept are the solutions of linear equations over the field of two elements.
+In cosines and sines such a change only permutes monomials and gives them signs. For each
+permutation of unknowns and axes the signs with which all polynomials are kept are the solutions of
+linear equations over the field of two elements.
 """
 
 from __future__ import annotations
@@ -30,7 +34,9 @@ from ptmcad.model.parametric import Model
 from ptmcad.text.expressions import Expressions, constant
 
 MAX_WORK = 100_000
-"""Products of terms, about half a second; the bars and springs of shipped mechanisms take some hundred."""
+"""Products of terms, about half a second; the bars and springs of shipped mechanisms take some
+hundred.
+"""
 MAX_UNKNOWNS = 6
 """Of six unknowns there are 76 involutions without signs, and of seven three times as many."""
 
@@ -40,11 +46,15 @@ _AXIS_SIGNS = [(1, 1), (-1, -1), (1, -1), (-1, 1)]
 """In which order they are looked for."""
 _Terms = Mapping[Monomial, Fraction]
 _Bits = Mapping[int, int]
-"""Linear equations over the field of two elements, by the length of their numbers; bit 0 is the constant."""
+"""Linear equations over the field of two elements, by the length of their numbers; bit 0 is the
+constant.
+"""
 
 
 class _Part(NamedTuple):
-    """A polynomial that an involution takes to one of some polynomials, or to the negative of one if it may."""
+    """A polynomial that an involution takes to one of some polynomials, or to the negative of one
+    if it may.
+    """
 
     polynomial: _Terms
     images: Sequence[_Terms]
@@ -73,7 +83,10 @@ class Involution:
     @property
     def odd(self) -> int:
         """How many unknowns are odd, in coordinates of which the others are kept."""
-        return sum(j > k or (j == k and s < 0) for k, (j, s) in enumerate(zip(self.images, self.signs, strict=True)))
+        return sum(
+            j > k or (j == k and s < 0)
+            for k, (j, s) in enumerate(zip(self.images, self.signs, strict=True))
+        )
 
     @property
     def has_fixed_unknowns(self) -> bool:
@@ -89,7 +102,8 @@ class Involution:
     def coordinates(self, kinds: Sequence[UnknownKind]) -> list[tuple[int, int]]:
         """Which coordinate comes to each one's place, and its sign.
 
-        Coordinates are cosine and sine of each angle, one angle after the other, and then the unknowns on the line.
+        Coordinates are cosine and sine of each angle, one angle after the other, and then the
+        unknowns on the line.
 
         Parameters
         ----------
@@ -101,11 +115,16 @@ class Involution:
         for k in angles:
             place, sign = 2 * angles.index(self.images[k]), 1 - 2 * self.halves[k]
             found += [(place, sign), (place + 1, sign * self.signs[k])]
-        return found + [(2 * len(angles) + reals.index(self.images[k]), self.signs[k]) for k in reals]
+        return found + [
+            (2 * len(angles) + reals.index(self.images[k]), self.signs[k]) for k in reals
+        ]
 
     def at(self, point: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
         """The image of a point of the slice."""
-        x, y = (s * point[k] + c for k, s, c in zip(self.axes, self.axis_signs, self.shifts, strict=True))
+        x, y = (
+            s * point[k] + c
+            for k, s, c in zip(self.axes, self.axis_signs, self.shifts, strict=True)
+        )
         return x, y
 
     def text(self, unknowns: Sequence[str], axes: Sequence[str]) -> str:
@@ -114,13 +133,17 @@ class Involution:
         signs = (*self.axis_signs, *self.signs)
         shifts = (*map(str, self.shifts), *("pi" if half else "0" for half in self.halves))
         moves = {
-            name: f"{'-' * (sign < 0)}{names[k]} + {shift}".removesuffix(" + 0").replace("+ -", "- ")
+            name: f"{'-' * (sign < 0)}{names[k]} + {shift}".removesuffix(" + 0").replace(
+                "+ -", "- "
+            )
             for name, k, sign, shift in zip(names, images, signs, shifts, strict=True)
         }
         return ", ".join(f"{name} -> {image}" for name, image in moves.items() if image != name)
 
 
-def involutions(model: Model, parameters: Expressions, window: Window | None = None) -> list[Involution]:
+def involutions(
+    model: Model, parameters: Expressions, window: Window | None = None
+) -> list[Involution]:
     """The involutions of a model over a window, but for the identity.
 
     Parameters
@@ -148,23 +171,34 @@ def involutions(model: Model, parameters: Expressions, window: Window | None = N
                 continue
             change = _Change((*model.unknowns, *_AXES), images)
             for system in _kept(change, parts, change.known(kinds, is_fixed)):
-                found += [change.involution(bits, axes, ring.middle) for bits in _solutions(system, size + 2)]
+                found += [
+                    change.involution(bits, axes, ring.middle)
+                    for bits in _solutions(system, size + 2)
+                ]
     found.sort(key=lambda each: (each.axes, _AXIS_SIGNS.index(each.axis_signs), each.images))
     return list(dict.fromkeys(found))[1:]  # the identity comes first
 
 
 class SliceRing(Ring):
-    """The ring with the slice's parameters in it, as polynomials in the axes, measured from the window's middle.
+    """The ring with the slice's parameters in it, as polynomials in the axes, measured from the
+    window's middle.
 
     A denominator's inverse is a variable. What becomes of it where the axes change is not known.
     """
 
-    def __init__(self, unknowns: Collection[str], parameters: Expressions, window: Window | None = None) -> None:
+    def __init__(
+        self, unknowns: Collection[str], parameters: Expressions, window: Window | None = None
+    ) -> None:
         super().__init__(MAX_WORK)
         self.unknowns, self.parameters = unknowns, parameters
         self.has_denominators = False
-        self.middle = [Fraction(0)] * 2 if window is None else [(low + high) / 2 for low, high in window]
-        self.axes = [self.variable(name) + self.constant(m) for name, m in zip(_AXES, self.middle, strict=True)]
+        self.middle = (
+            [Fraction(0)] * 2 if window is None else [(low + high) / 2 for low, high in window]
+        )
+        self.axes = [
+            self.variable(name) + self.constant(m)
+            for name, m in zip(_AXES, self.middle, strict=True)
+        ]
 
     def parameter(self, name: str) -> Polynomial:
         if name in self.unknowns:
@@ -188,7 +222,11 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
     unknowns = {name for u in model.unknowns for name in (u, f"cos {u}", f"sin {u}")}
 
     def marked(parts: Mapping[str, Polynomial]) -> _Terms:
-        return {tuple(sorted(((mark, 1), *m))): c for mark, p in parts.items() for m, c in p.terms.items()}
+        return {
+            tuple(sorted(((mark, 1), *m))): c
+            for mark, p in parts.items()
+            for m, c in p.terms.items()
+        }
 
     def values(formulas: Iterable[Formula]) -> list[Polynomial]:
         return system.values(tuple(formulas), ring)
@@ -199,11 +237,15 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
         marked({"pull": pull, "square": square, "number": ring.constant(Fraction(number))})
         for (pull, square), number in pulls.items()
     ]
-    kept: list[list[_Terms]] = [[p.terms for p in values(some)] for some in (system.inequalities, system.stability)]
+    kept: list[list[_Terms]] = [
+        [p.terms for p in values(some)] for some in (system.inequalities, system.stability)
+    ]
     if system.are_slopes:
         assert system.smooth is not None
         (energy,) = values([system.smooth])
-        moments = zip((f"d {system.names[k]}" for k in system.unknowns), values(system.moments), strict=True)
+        moments = zip(
+            (f"d {system.names[k]}" for k in system.unknowns), values(system.moments), strict=True
+        )
         felt = {m: c for m, c in energy.terms.items() if any(v in unknowns for v, _ in m)}
         kept += [[felt], [marked(dict(moments))], lengths]
     elif lengths:
@@ -215,10 +257,11 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
 
 
 class _Change(NamedTuple):
-    """A permutation of the unknowns and of the axes, which are as unknowns on the line, the signs being open.
+    """A permutation of the unknowns and of the axes, which are as unknowns on the line, the signs
+    being open.
 
-    Those of an unknown's cosine and sine are two bits, of two that are exchanged those of the first one; of one on the
-    line the second bit is its sign.
+    Those of an unknown's cosine and sine are two bits, of two that are exchanged those of the first
+    one; of one on the line the second bit is its sign.
     """
 
     names: tuple[str, ...]
@@ -230,7 +273,9 @@ class _Change(NamedTuple):
         return 2 << 2 * first, 4 << 2 * first
 
     def known(self, kinds: Sequence[UnknownKind], with_axes: bool) -> _Bits:
-        """The equations for bits that nothing stands for, and with those of the axes, if they have to stay."""
+        """The equations for bits that nothing stands for, and with those of the axes, if they have
+        to stay.
+        """
         found: dict[int, int] = {}
         for k, (kind, j) in enumerate(zip(kinds, self.images, strict=True)):
             cosine, sine = 2 << 2 * k, 4 << 2 * k
@@ -240,11 +285,15 @@ class _Change(NamedTuple):
                 found[sine.bit_length()] = sine
         return found
 
-    def involution(self, bits: int, axes: tuple[int, int], middle: Sequence[Fraction]) -> Involution:
+    def involution(
+        self, bits: int, axes: tuple[int, int], middle: Sequence[Fraction]
+    ) -> Involution:
         """That of some bits; the axes are measured from their middle."""
         halves = [bool(bits & self.bits(k)[0]) for k in range(len(self.images))]
         signs = [-1 if half != bool(bits & self.bits(k)[1]) else 1 for k, half in enumerate(halves)]
-        x, y = (middle[k] - s * middle[j] for k, (j, s) in enumerate(zip(axes, signs[-2:], strict=True)))
+        x, y = (
+            middle[k] - s * middle[j] for k, (j, s) in enumerate(zip(axes, signs[-2:], strict=True))
+        )
         own = self.images[:-2], tuple(signs[:-2]), tuple(map(int, halves[:-2]))
         return Involution(*own, axes, (signs[-2], signs[-1]), (x, y))
 
@@ -255,7 +304,10 @@ class _Change(NamedTuple):
             return name, 0
         k = self.names.index(own)
         cosine, sine = self.bits(k)
-        return f"{mark} {self.names[self.images[k]]}".strip(), {"cos": cosine, "d": cosine | sine}.get(mark, sine)
+        return f"{mark} {self.names[self.images[k]]}".strip(), {
+            "cos": cosine,
+            "d": cosine | sine,
+        }.get(mark, sine)
 
     def monomial(self, m: Monomial) -> tuple[Monomial, int]:
         """What becomes of a monomial, and the bits that may change its sign."""
@@ -268,7 +320,9 @@ class _Change(NamedTuple):
 
 
 def _kept(change: _Change, parts: Sequence[_Part], known: _Bits) -> list[_Bits]:
-    """The equations for the bits with which all polynomials are kept, for each choice of what they become."""
+    """The equations for the bits with which all polynomials are kept, for each choice of what they
+    become.
+    """
     systems = [known]
     for n, part in enumerate(parts):
         images = ((change.monomial(m), c) for m, c in part.polynomial.items())
@@ -281,8 +335,12 @@ def _kept(change: _Change, parts: Sequence[_Part], known: _Bits) -> list[_Bits]:
     return systems
 
 
-def _same(moved: Mapping[Monomial, tuple[Fraction, int]], image: _Terms, own: int, known: _Bits) -> _Bits | None:
-    """The equations for the bits with which a polynomial becomes another one, or its negative if its own bit is 1."""
+def _same(
+    moved: Mapping[Monomial, tuple[Fraction, int]], image: _Terms, own: int, known: _Bits
+) -> _Bits | None:
+    """The equations for the bits with which a polynomial becomes another one, or its negative if
+    its own bit is 1.
+    """
     if moved.keys() != image.keys():
         return None
     system: _Bits | None = known

@@ -1,13 +1,14 @@
-"""The joints of torsion springs: the points at which the parts meet whose directions a spring's angle is between.
+"""The joints of torsion springs: the points at which the parts meet whose directions a spring's
+angle is between.
 
-A part is a bar, a body, or the frame: the points that no unknown moves, and those that slide and do not turn. As
-complex numbers, the way from one point of a rigid part to another is C exp(i n.u), where n are whole numbers and u the
-angles: n is the part's direction. A spring on the angle m.u belongs to a point at which parts meet whose directions
-differ by m or by -m.
+A part is a bar, a body, or the frame: the points that no unknown moves, and those that slide and do
+not turn. As complex numbers, the way from one point of a rigid part to another is C exp(i n.u),
+where n are whole numbers and u the angles: n is the part's direction. A spring on the angle m.u
+belongs to a point at which parts meet whose directions differ by m or by -m.
 
-Guarantee: exact; the direction is read off the derivatives by the unknowns. A joint is told only where there is one
-such point, else none: the sides of a parallelogram have the same angle at two points, and a description may show
-neither part. What is told is for drawings alone.
+Guarantee: exact; the direction is read off the derivatives by the unknowns. A joint is told only
+where there is one such point, else none: the sides of a parallelogram have the same angle at two
+points, and a description may show neither part. What is told is for drawings alone.
 """
 
 from __future__ import annotations
@@ -31,7 +32,9 @@ Direction = tuple[Fraction, ...]
 
 
 class Joint(NamedTuple):
-    """Where a torsion spring is drawn: at a point, its outer end towards another one, where there is one."""
+    """Where a torsion spring is drawn: at a point, its outer end towards another one, where there
+    is one.
+    """
 
     point: str
     towards: str = ""
@@ -44,7 +47,9 @@ class _Part(NamedTuple):
 
 @lru_cache(maxsize=8)
 def joints_of(mechanism: Mechanism) -> tuple[Joint | None, ...]:
-    """The joint of each torsion spring, in their order: where it says, else where it can be derived; else None."""
+    """The joint of each torsion spring, in their order: where it says, else where it can be
+    derived; else None.
+    """
     if not mechanism.torsion:
         return ()
     meeting: dict[str, dict[Direction, _Part]] = {}
@@ -66,7 +71,9 @@ def torsion_springs(mechanism: Mechanism) -> tuple[tuple[TorsionSpring, Joint | 
 
 
 def _joint_at(mechanism: Mechanism, point: str) -> Joint:
-    """At a point, towards the other end of the first bar there, or the next point of the first body."""
+    """At a point, towards the other end of the first bar there, or the next point of the first
+    body.
+    """
     for part in (*mechanism.bars, *mechanism.bodies.values()):
         others = [name for name in part if name != point]
         if point in part and others:

@@ -1,31 +1,37 @@
-"""Closed loops, as equations: each loop is cut at a bar, which keeps its length. With one degree of freedom left:
+"""Closed loops, as equations: each loop is cut at a bar, which keeps its length. With one degree of
+freedom left:
 
-Guarantee: off the places where a loop folds flat the solutions are the equilibria, and the stable ones are the strict
-minima of the energy under the loops' conditions.
+Guarantee: off the places where a loop folds flat the solutions are the equilibria, and the stable
+ones are the strict minima of the energy under the loops' conditions.
 
-Let g_1 .. g_m be squared distances less squared lengths, in m + 1 unknowns, and T the vector of the maximal minors of
-their derivatives, with signs: it is tangent to g = 0 and vanishes only where these derivatives are dependent, where a
-loop folds flat. Along the curve g = 0, run through with velocity T, the energy has the derivative E = T . grad U, and
-where that is zero the second derivative T . grad E: which is the determinant of the derivatives of g_1 .. g_m and E. So
-an equilibrium is a zero of g and E, simple where the determinant is not zero, and stable where it is positive. Where T
-vanishes E does, and the determinant: such places are on the curves at which solutions meet.
+Let g_1 .. g_m be squared distances less squared lengths, in m + 1 unknowns, and T the vector of the
+maximal minors of their derivatives, with signs: it is tangent to g = 0 and vanishes only where
+these derivatives are dependent, where a loop folds flat. Along the curve g = 0, run through with
+velocity T, the energy has the derivative E = T . grad U, and where that is zero the second
+derivative T . grad E: which is the determinant of the derivatives of g_1 .. g_m and E. So an
+equilibrium is a zero of g and E, simple where the determinant is not zero, and stable where it is
+positive. Where T vanishes E does, and the determinant: such places are on the curves at which
+solutions meet.
 
-A spring with a free length takes K |d| off the energy, K its stiffness times that length and d between its ends, which
-takes K (T . grad) |d| off E. The equations here are those without it, which exact algebra solves where no spring has a
-free length; `ptmcad.model.compile` and `ptmcad.certified.plain.problem` take it off.
+A spring with a free length takes K |d| off the energy, K its stiffness times that length and d
+between its ends, which takes K (T . grad) |d| off E. The equations here are those without it, which
+exact algebra solves where no spring has a free length; `ptmcad.model.compile` and
+`ptmcad.certified.plain.problem` take it off.
 
-With several degrees of freedom left there is one multiplier for each closing bar. Let g_i = (d_i^2 - l_i^2)/2 with d_i
-the distance of the ends of closing bar i and l_i its length, in n unknowns u, and U the energy. An equilibrium is a
-zero of g and of the derivatives of U + sum t_i g_i by u; t_i is the bar's tension divided by its length. With B(s) the
-symmetric matrix of the second derivatives of this sum by u, s added on the diagonal, bordered by the derivatives of g,
+With several degrees of freedom left there is one multiplier for each closing bar. Let
+g_i = (d_i^2 - l_i^2)/2 with d_i the distance of the ends of closing bar i and l_i its length, in n
+unknowns u, and U the energy. An equilibrium is a zero of g and of the derivatives of U + sum t_i
+g_i by u; t_i is the bar's tension divided by its length. With B(s) the symmetric matrix of the
+second derivatives of this sum by u, s added on the diagonal, bordered by the derivatives of g,
 
     det B(s) = (-1)^m (c_0 s^f + ... + c_(f-1) s + c_f),
 
-m bars, f = n - m: c_0 > 0 where the derivatives of g are independent, and the roots of the polynomial, all real, are
-the eigenvalues of the Hessian on the loops' tangent space with the other sign. So that is positive definite where
-c_1, ..., c_f are all positive (Descartes' rule). The determinant of the Jacobian of the equations is det B(0), so that
-c_f is that but for its sign. A tension that leaves every bounded set is noticed, as it is an unknown on the line: loops
-fold flat on curves at infinity, which are part of the variety.
+m bars, f = n - m: c_0 > 0 where the derivatives of g are independent, and the roots of the
+polynomial, all real, are the eigenvalues of the Hessian on the loops' tangent space with the other
+sign. So that is positive definite where c_1, ..., c_f are all positive (Descartes' rule). The
+determinant of the Jacobian of the equations is det B(0), so that c_f is that but for its sign. A
+tension that leaves every bounded set is noticed, as it is an unknown on the line: loops fold flat
+on curves at infinity, which are part of the variety.
 
 Source: elementary (Lagrange); for the bordered determinant Mann, Amer. Math. Monthly 50 (1943).
 """
@@ -72,15 +78,21 @@ def conditions(closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row
     rows = [gradient(g, unknowns) for g in closing]
     tangent = cofactors(rows)
     slope = dot(tangent, forces)
-    return LoopConditions((*closing, slope), (determinant([*rows, gradient(slope, unknowns)]),), tangent)
+    return LoopConditions(
+        (*closing, slope), (determinant([*rows, gradient(slope, unknowns)]),), tangent
+    )
 
 
-def _stationary(closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row) -> LoopConditions:
+def _stationary(
+    closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row
+) -> LoopConditions:
     """The multipliers' equations and the conditions c_1, ..., c_f for stability."""
     halves = tuple(g / 2 for g in closing)
     rows = [gradient(g, unknowns) for g in halves]
     columns = list(zip(*rows, strict=True))
-    pulls = tuple(force + dot(tensions, column) for force, column in zip(forces, columns, strict=True))
+    pulls = tuple(
+        force + dot(tensions, column) for force, column in zip(forces, columns, strict=True)
+    )
     zero = (closing[0].graph.constant(0),) * len(closing)
     matrix = [(*gradient(p, unknowns), *column) for p, column in zip(pulls, columns, strict=True)]
     matrix += [(*row, *zero) for row in rows]
@@ -88,7 +100,9 @@ def _stationary(closing: Row, forces: Row, unknowns: Sequence[int], tensions: Ro
 
 
 def _definite(matrix: Sequence[Row], bars: int) -> Iterator[Formula]:
-    """c_k is the sum of the principal minors with the border and k + m of the other rows, but for its sign."""
+    """c_k is the sum of the principal minors with the border and k + m of the other rows, but for
+    its sign.
+    """
     count = len(matrix) - bars
     border = tuple(range(count, len(matrix)))
     for k in range(1, count - bars + 1):

@@ -1,4 +1,6 @@
-"""The built-in mechanisms as records: that of Wenger & Chablat, two crossed bars, three springs, one slider."""
+"""The built-in mechanisms as records: that of Wenger & Chablat, two crossed bars, three springs,
+one slider.
+"""
 
 from __future__ import annotations
 
@@ -77,7 +79,9 @@ def ptm() -> Mechanism:
 
 
 def title_of(spring: Any, model: Model) -> str:
-    """Of a spring as it is described, or compiled: the paper's are named by their ends, as in all answers."""
+    """Of a spring as it is described, or compiled: the paper's are named by their ends, as in all
+    answers.
+    """
     return f"{spring.start}{spring.end}" if model == ptm() else spring.name
 
 
@@ -98,7 +102,8 @@ def built_in() -> tuple[str, ...]:
 
 
 def recognised(found: Mechanism) -> Mechanism:
-    """A mechanism that was described, or the built-in one that it is, whether or not its symmetries were written down.
+    """A mechanism that was described, or the built-in one that it is, whether or not its symmetries
+    were written down.
 
     Raises
     ------
@@ -109,12 +114,16 @@ def recognised(found: Mechanism) -> Mechanism:
         return found
     known = _BUILT_IN[found.name]()
     if replace(found, symmetries=known.symmetries) != known:
-        raise ConfigError(f"'{found.name}' is the name of a built-in mechanism, which is another", key="name")
+        raise ConfigError(
+            f"'{found.name}' is the name of a built-in mechanism, which is another", key="name"
+        )
     return known
 
 
 def known_of(name: str) -> Mechanism:
-    """What is known of a mechanism by its name, as a stored result has it: nothing of one that is not built in."""
+    """What is known of a mechanism by its name, as a stored result has it: nothing of one that is
+    not built in.
+    """
     return _BUILT_IN[name]() if name in _BUILT_IN else Mechanism(name, {}, {}, {}, (), {}, (), ())
 
 

@@ -1,4 +1,5 @@
-"""What a mechanism and any other parametric system have in common: parameters with kinds, unknowns, units.
+"""What a mechanism and any other parametric system have in common: parameters with kinds, unknowns,
+units.
 
 Guarantee: data, and what follows from names and kinds alone.
 """
@@ -68,7 +69,9 @@ class Model:
 
     @property
     def drawable(self) -> Mechanism | None:
-        """The mechanism whose points, bars and springs pages and films show; none of what has equations."""
+        """The mechanism whose points, bars and springs pages and films show; none of what has
+        equations.
+        """
         return None
 
     @property
@@ -88,7 +91,9 @@ class Model:
 
     @property
     def coupled(self) -> tuple[str, ...]:
-        """The unknowns on which a moment works that depends on another one, so that there is no potential."""
+        """The unknowns on which a moment works that depends on another one, so that there is no
+        potential.
+        """
         return ()
 
     @property
@@ -136,7 +141,9 @@ class Model:
 
     @cached_property
     def without_free_lengths(self) -> tuple[str, ...]:
-        """The other variables: those of the polynomial energy, or equations, of springs without free lengths."""
+        """The other variables: those of the polynomial energy, or equations, of springs without
+        free lengths.
+        """
         return self._of(*(kind for kind in Kind if kind is not Kind.FREE_LENGTH))
 
     @cached_property
@@ -164,7 +171,9 @@ class Model:
 
     @cached_property
     def shorthands(self) -> Mapping[str, tuple[str, ...]]:
-        """Parameters that only stand for others, such as one stiffness for all springs, to those others."""
+        """Parameters that only stand for others, such as one stiffness for all springs, to those
+        others.
+        """
         found: dict[str, list[str]] = {}
         for name, parameter in self.parameters.items():
             if parameter.alias_of:
@@ -173,12 +182,16 @@ class Model:
 
     @cached_property
     def units(self) -> tuple[str, str]:
-        """The first length and the first force: what the others are measured in; an empty name where there is none."""
+        """The first length and the first force: what the others are measured in; an empty name
+        where there is none.
+        """
         return self.first(Kind.LENGTH), self.first(Kind.FORCE)
 
     def first(self, kind: Kind) -> str:
         """The first parameter of a kind; an empty name when there is none."""
-        return next((name for name, parameter in self.parameters.items() if parameter.kind is kind), "")
+        return next(
+            (name for name, parameter in self.parameters.items() if parameter.kind is kind), ""
+        )
 
     def kind(self, name: str) -> Kind:
         """What a parameter measures."""
@@ -192,11 +205,13 @@ class Model:
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
-        """What is written in elements and has to be positive, or not negative, and is no parameter of such a kind
-        itself; by the keys of the description."""
+        """What is written in elements and has to be positive, or not negative, and is no parameter
+        of such a kind itself; by the keys of the description."""
         elements = {} if self.whole is None else self.whole.elements
         found = (
-            part._replace(key=f"{key}.{part.key}") for key, element in elements.items() for part in element.written
+            part._replace(key=f"{key}.{part.key}")
+            for key, element in elements.items()
+            for part in element.written
         )
         return tuple(part for part in found if self._has_to_be_shown(part))
 
@@ -223,7 +238,9 @@ class Model:
 
     @cached_property
     def polynomials(self) -> Mapping[str, tuple[Tree, ...]]:
-        """What its equations or its energy are made of, by the keys of the description; points have names there."""
+        """What its equations or its energy are made of, by the keys of the description; points have
+        names there.
+        """
         raise NotImplementedError
 
     def _trees(self) -> Iterator[Tree]:

@@ -1,9 +1,9 @@
-"""What a description of a mechanism has to satisfy and no single entry shows: rigid bars, no loose unknown, symmetries,
-and loops that are computed.
+"""What a description of a mechanism has to satisfy and no single entry shows: rigid bars, no loose
+unknown, symmetries, and loops that are computed.
 
-Guarantee: exact; decided by identities of polynomials. A bar is accepted only when its length was proved constant, a
-symmetry only when it was proved to be one; an unknown is refused only when its equation was proved to vanish
-identically.
+Guarantee: exact; decided by identities of polynomials. A bar is accepted only when its length was
+proved constant, a symmetry only when it was proved to be one; an unknown is refused only when its
+equation was proved to vanish identically.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from ptmcad.model.trees import ZERO
 from ptmcad.text.tree import Name, names_of
 
 MAX_BORDERED = 8
-"""Rows of the bordered matrix of closed loops with several degrees of freedom: the number of terms of its minors grows
-with the factorial."""
+"""Rows of the bordered matrix of closed loops with several degrees of freedom: the number of terms
+of its minors grows with the factorial."""
 
 
 def check_bars(mechanism: Mechanism, faults: Faults) -> None:
@@ -37,9 +37,15 @@ def check_bars(mechanism: Mechanism, faults: Faults) -> None:
         with faults:
             try:
                 squared = points.squared(start, end)
-                loose = [u for u in (*mechanism.unknowns, *mechanism.followers) if squared.derivative(u).terms]
+                loose = [
+                    u
+                    for u in (*mechanism.unknowns, *mechanism.followers)
+                    if squared.derivative(u).terms
+                ]
             except ExpressionError as error:
-                raise ConfigError(f"it is not proved that its length is constant: {error.message}", key=key) from None
+                raise ConfigError(
+                    f"it is not proved that its length is constant: {error.message}", key=key
+                ) from None
             if loose:
                 raise ConfigError(
                     f"the length of {start}{end} is not constant, it varies with {' and '.join(loose)}: a bar is "
@@ -51,10 +57,17 @@ def check_bars(mechanism: Mechanism, faults: Faults) -> None:
 def check_elements(mechanism: Mechanism, faults: Faults) -> None:
     """Note each spring whose length or angle no unknown changes."""
     points = Points(mechanism)
-    closing = [frozenset(names_of(squared_distance(NAMES, bar.start, bar.end))) for bar in mechanism.closing]
+    closing = [
+        frozenset(names_of(squared_distance(NAMES, bar.start, bar.end)))
+        for bar in mechanism.closing
+    ]
     for key, element in mechanism.elements.items():
         varying = element.varying
-        if varying is not None and frozenset(names_of(varying)) not in closing and points.varies(varying):
+        if (
+            varying is not None
+            and frozenset(names_of(varying)) not in closing
+            and points.varies(varying)
+        ):
             continue
         with faults:
             if element.idle:
@@ -97,7 +110,9 @@ def _held(mechanism: Mechanism) -> set[str]:
     lengths = [squared for _, squared in roots]
     lengths += [points.squared(bar.start, bar.end) for bar in mechanism.closing]
     held.update(u for u in mechanism.unknowns for p in (energy, *lengths) if p.derivative(u).terms)
-    return held | {first for second, first in mechanism.followers.items() if energy.derivative(second).terms}
+    return held | {
+        first for second, first in mechanism.followers.items() if energy.derivative(second).terms
+    }
 
 
 def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
@@ -108,9 +123,13 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
             try:
                 here, there = felt(Points(mechanism)), felt(Points(mechanism, images=images))
                 change = here.energy - there.energy
-                holds = here[1:] == there[1:] and not any(change.derivative(u).terms for u in mechanism.unknowns)
+                holds = here[1:] == there[1:] and not any(
+                    change.derivative(u).terms for u in mechanism.unknowns
+                )
             except ExpressionError as error:
-                raise ConfigError(f"it is not proved to be a symmetry: {error.message}", key=key) from None
+                raise ConfigError(
+                    f"it is not proved to be a symmetry: {error.message}", key=key
+                ) from None
             if not holds:
                 raise ConfigError(
                     "this is no symmetry: with these substitutions the energy changes by something that varies with an "
@@ -120,8 +139,9 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
 
 
 class Felt(NamedTuple):
-    """What unknowns feel: the energy's polynomial part, its roots (pull, squared length), and the moments' work along
-    each unknown. Equilibria are the same where these are, but for numbers in the energy."""
+    """What unknowns feel: the energy's polynomial part, its roots (pull, squared length), and the
+    moments' work along each unknown. Equilibria are the same where these are, but for numbers in
+    the energy."""
 
     energy: Polynomial
     roots: Counter[tuple[Polynomial, Polynomial]]
@@ -133,7 +153,9 @@ def felt(points: Points) -> Felt:
     mechanism, zero = points.mechanism, points.ring.constant(Fraction(0))
     energy, roots = zero, Counter[tuple[Polynomial, Polynomial]]()
     for element in mechanism.elements.values():
-        *energies, pull, squared = points.values((*element.energies, *(element.root or (ZERO, ZERO))))
+        *energies, pull, squared = points.values(
+            (*element.energies, *(element.root or (ZERO, ZERO)))
+        )
         energy = sum(energies, energy)
         if pull.terms:
             roots[pull, squared] += 1
@@ -147,7 +169,9 @@ def felt(points: Points) -> Felt:
 
 def check_loops(mechanism: Mechanism, faults: Faults) -> None:
     """Note what is not computed with closed loops, or with X-joints, by its key."""
-    roots = [f"{key}.free" for key, element in mechanism.elements.items() if element.root is not None]
+    roots = [
+        f"{key}.free" for key, element in mechanism.elements.items() if element.root is not None
+    ]
     of_loops = _limits_of_loops(mechanism, roots) if mechanism.closing else ()
     of_xjoints = _limits_of_xjoints(mechanism, roots) if mechanism.xjoints else ()
     for key, problem in (*of_loops, *of_xjoints):
@@ -160,7 +184,10 @@ def _limits_of_loops(mechanism: Mechanism, roots: Sequence[str]) -> Iterator[tup
     count, bars = len(mechanism.unknowns), len(mechanism.closing)
     free = count - bars
     if free < 1:
-        yield "closing", "no degree of freedom is left: there have to be more unknowns than closing bars"
+        yield (
+            "closing",
+            "no degree of freedom is left: there have to be more unknowns than closing bars",
+        )
     if free > 1 and mechanism.coupled:
         yield (
             "moments",
@@ -168,13 +195,19 @@ def _limits_of_loops(mechanism: Mechanism, roots: Sequence[str]) -> Iterator[tup
             f"degree of freedom, not {free}",
         )
     for key in roots if free > 1 else ():
-        yield key, f"free lengths in closed loops are computed where these leave one degree of freedom, not {free}"
+        yield (
+            key,
+            f"free lengths in closed loops are computed where these leave one degree of freedom, not {free}",
+        )
     if mechanism.symmetries:
         yield "symmetries", "symmetries are not used in closed loops: leave them out"
     taken = {*mechanism.parameters, *mechanism.unknowns}
     for name in mechanism.force_densities:
         if name in taken:
-            yield "closing", f"'{name}' is the name of a closing bar's force density: choose another name"
+            yield (
+                "closing",
+                f"'{name}' is the name of a closing bar's force density: choose another name",
+            )
     if free > 1 and count + bars > MAX_BORDERED:
         yield (
             "closing",
@@ -196,14 +229,18 @@ def _limits_of_xjoints(mechanism: Mechanism, roots: Sequence[str]) -> Iterator[t
 
 
 def check_closing(mechanism: Mechanism, faults: Faults) -> None:
-    """Note each closing bar between points whose distance no unknown changes, and one that is listed twice."""
+    """Note each closing bar between points whose distance no unknown changes, and one that is
+    listed twice.
+    """
     points = Points(mechanism)
     known: dict[frozenset[str], int] = {}
     for n, closing in enumerate(mechanism.closing, 1):
         with faults:
             first = known.setdefault(frozenset((closing.start, closing.end)), n)
             if first < n:
-                raise ConfigError(f"number {first} is a bar between the same points", key=f"closing.{n}.between")
+                raise ConfigError(
+                    f"number {first} is a bar between the same points", key=f"closing.{n}.between"
+                )
             if not points.varies(squared_distance(NAMES, closing.start, closing.end)):
                 raise ConfigError(
                     f"the distance of {closing.start} and {closing.end} is constant, so that a bar between them closes "

@@ -1,4 +1,5 @@
-"""What the readers of descriptions share: shapes, names and expressions, each fault a `ConfigError` with its key.
+"""What the readers of descriptions share: shapes, names and expressions, each fault a `ConfigError`
+with its key.
 
 Guarantee: an expression that leaves here has a value in every ring (`ptmcad.model.evaluate`).
 """
@@ -54,11 +55,14 @@ def new_name(name: object, key: str, taken: Mapping[str, object]) -> str:
     """A name that nothing else has."""
     if not isinstance(name, str) or not NAME.fullmatch(name) or len(name) > MAX_NAME:
         raise ConfigError(
-            f"{as_written(name)} is no name: use ASCII letters, digits and '_', starting with a letter", key=key
+            f"{as_written(name)} is no name: use ASCII letters, digits and '_', starting with a letter",
+            key=key,
         )
     if name in FUNCTIONS or name == PI or name.lower() in NOT_NUMBERS:
         infinite = f"; {FINITE}" if name.lower() in NOT_NUMBERS else ""
-        raise ConfigError(f"'{name}' has a meaning of its own: choose another name{infinite}", key=key)
+        raise ConfigError(
+            f"'{name}' has a meaning of its own: choose another name{infinite}", key=key
+        )
     if name in taken:
         raise ConfigError(f"the name '{name}' is given twice: choose another one", key=key)
     return name
@@ -83,7 +87,9 @@ def title_in(entry: Node) -> str:
     line = " ".join(text_in(entry, MAX_TITLE).split())
     if not line.isprintable():
         hidden = next(c for c in line if not c.isprintable())
-        raise entry.fault(f"the title has a character that cannot be printed, U+{ord(hidden):04X}: remove it")
+        raise entry.fault(
+            f"the title has a character that cannot be printed, U+{ord(hidden):04X}: remove it"
+        )
     return line
 
 
@@ -95,7 +101,9 @@ def _title(entry: Node) -> str:
 
 
 class Unread(dict[str, tuple[Tree, Tree]]):
-    """Points of which nothing is known, because what lists them is missing or faulty: any name may be one's."""
+    """Points of which nothing is known, because what lists them is missing or faulty: any name may
+    be one's.
+    """
 
     def __missing__(self, name: str) -> tuple[Tree, Tree]:
         return ZERO, ZERO
@@ -126,7 +134,12 @@ _UNKNOWN = choice(UnknownKind)
 
 def by_names(entry: Mapping[str, Any], most: int) -> dict[str, Any]:
     """The schema of several of the same by names that are given here."""
-    return {"type": "object", "maxProperties": most, "propertyNames": NAME_SCHEMA, "additionalProperties": entry}
+    return {
+        "type": "object",
+        "maxProperties": most,
+        "propertyNames": NAME_SCHEMA,
+        "additionalProperties": entry,
+    }
 
 
 DEFINITIONS: dict[str, Mapping[str, Any]] = {
@@ -147,7 +160,8 @@ POINTS = by_names(two(VALUE), MAX_ENTRIES)
 
 
 class Context:
-    """What has been read of a description, to which its further parts refer; their codecs, of mappings as of keys.
+    """What has been read of a description, to which its further parts refer; their codecs, of
+    mappings as of keys.
 
     Attributes
     ----------
@@ -249,7 +263,9 @@ class Context:
             return name
         known = f"; the points are {', '.join(points)}" if points else ": there are no points"
         if isinstance(name, str) and points:
-            raise entry.fault(f"there is no point {quoted(name)}{did_you_mean(name, points) or known}")
+            raise entry.fault(
+                f"there is no point {quoted(name)}{did_you_mean(name, points) or known}"
+            )
         raise entry.fault(f"{as_written(name)} is no point's name{known}")
 
     def known_unknown(self, entry: Node, name: str) -> str:
@@ -269,7 +285,9 @@ class Context:
 
     def _ends(self, entry: Node) -> tuple[str, str]:
         """The names of two different points."""
-        start, end = (self.known_point(entry, end.plain) for end in entry.pair("two points", "[A1, A3]"))
+        start, end = (
+            self.known_point(entry, end.plain) for end in entry.pair("two points", "[A1, A3]")
+        )
         if start == end:
             raise entry.fault(f"both ends are {start}")
         return start, end
@@ -321,7 +339,8 @@ class Context:
 
 
 class _Names(Sizes):
-    """The ring of sizes, in which names are refused that have no meaning: of angles when their cosine is asked for.
+    """The ring of sizes, in which names are refused that have no meaning: of angles when their
+    cosine is asked for.
 
     Parameters
     ----------
@@ -331,10 +350,16 @@ class _Names(Sizes):
     """
 
     def __init__(
-        self, constants: Iterable[str], angles: Iterable[str], excluded: Iterable[str], doubtful: frozenset[str]
+        self,
+        constants: Iterable[str],
+        angles: Iterable[str],
+        excluded: Iterable[str],
+        doubtful: frozenset[str],
     ):
         # dictionaries for their order and for fast look-up: a hostile record has thousands of names
-        self.constants, self.angles, self.excluded = map(dict.fromkeys, (constants, angles, excluded))
+        self.constants, self.angles, self.excluded = map(
+            dict.fromkeys, (constants, angles, excluded)
+        )
         self.doubtful = doubtful
 
     def parameter(self, name: str) -> Size:
@@ -359,7 +384,9 @@ class _Names(Sizes):
         if name in self.excluded:
             raise ExpressionError(f"{name} is an unknown: only points may depend on it")
         if name == PI:
-            raise ExpressionError(f"pi is no rational number: name a parameter in its place{did_you_mean(name, ())}")
+            raise ExpressionError(
+                f"pi is no rational number: name a parameter in its place{did_you_mean(name, ())}"
+            )
         if name not in known:
             hint = did_you_mean(name, self.constants | self.angles) or (
                 f"; the names are {', '.join(known)}" if known else "; no name is known here"
@@ -371,7 +398,9 @@ def parsed(entry: Node) -> Tree:
     """A text or an exact number as a tree."""
     value = entry.plain
     if isinstance(value, bool) or not isinstance(value, int | str):
-        raise entry.fault(f"{as_written(value)} is neither an exact number nor an expression as text")
+        raise entry.fault(
+            f"{as_written(value)} is neither an exact number nor an expression as text"
+        )
     found: Tree = entry.place.read(str(value), parse)
     return found
 

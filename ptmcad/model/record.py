@@ -1,7 +1,8 @@
-"""A mechanism's description read from a record: a mapping of texts, numbers, lists and mappings, as YAML gives it.
+"""A mechanism's description read from a record: a mapping of texts, numbers, lists and mappings, as
+YAML gives it.
 
-Guarantee: what is wrong is a `ConfigError` with its key, which knows all other faults; what `described` returns is
-consistent, see `description`.
+Guarantee: what is wrong is a `ConfigError` with its key, which knows all other faults; what
+`described` returns is consistent, see `description`.
 """
 
 from __future__ import annotations
@@ -24,7 +25,16 @@ from ptmcad.model.proofs import (
     check_symmetries,
     check_unknowns,
 )
-from ptmcad.model.reading import NAME_SCHEMA, NUMBER, POINTS, VALUE, Context, constant, new_name, two
+from ptmcad.model.reading import (
+    NAME_SCHEMA,
+    NUMBER,
+    POINTS,
+    VALUE,
+    Context,
+    constant,
+    new_name,
+    two,
+)
 from ptmcad.model.sizes import check_sizes
 from ptmcad.model.trees import ONE, ZERO, angle_name
 from ptmcad.model.work import split_moments
@@ -49,18 +59,19 @@ _UNWRITTEN: Callable[[Any], Any] = list
 
 
 def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
-    """The mechanism of a record, which is a mapping as YAML gives it: texts, integers, lists and mappings.
+    """The mechanism of a record, which is a mapping as YAML gives it: texts, integers, lists and
+    mappings.
 
     Parameters
     ----------
-    proved : whether its bars are known to be rigid and its unknowns to be held, as tests prove of built-in ones.
+    proved : whether its bars are known to be rigid and its unknowns to be held, as tests prove of
+        built-in ones.
 
     Raises
     ------
-    ConfigError
-        With the key of what is wrong: an unknown key, kind, name or point, a name that is given twice, a text that is
-        no expression, or one that has no value in every ring; a bar whose length varies, an unknown that no equation
-        holds. Its ``faults`` are all of these.
+    ConfigError With the key of what is wrong: an unknown key, kind, name or point, a name that is
+        given twice, a text that is no expression, or one that has no value in every ring; a bar
+        whose length varies, an unknown that no equation holds. Its ``faults`` are all of these.
     """
     faults = Faults()
     found = read_mechanism(record, faults, proved)
@@ -72,7 +83,9 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
 def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = False) -> Mechanism:
     """As `described`, but what is wrong is noted, and left out or replaced."""
     second = second_angles(record["x-joint"]) if "x-joint" in record else ()
-    read = mechanism_codec(Context(faults, second)).read(Node.of(from_python(record, Place()), faults))
+    read = mechanism_codec(Context(faults, second)).read(
+        Node.of(from_python(record, Place()), faults)
+    )
     read["bars"] += tuple(bar for joint in read["xjoints"] for bar in joint.rigid)
     found = Mechanism(**read, source=record)
     if not proved:
@@ -130,7 +143,9 @@ def _bodies(context: Context) -> dict[str, Key]:
             (),
         )._replace(field="xjoints"),
         "bodies": part(
-            bodies(context), "Rigid bodies: place, angle, and points in coordinates that turn with the body.", {}
+            bodies(context),
+            "Rigid bodies: place, angle, and points in coordinates that turn with the body.",
+            {},
         ),
         "bars": part(
             listed(context.between(), most=MAX_ENTRIES, like="[[O, P]]"),
@@ -149,12 +164,20 @@ def _forces(context: Context) -> dict[str, Key]:
     """The keys of what forces there are."""
     return {
         "springs": part(
-            converted(listed(_spring(context), None, MAX_ENTRIES, "[{between: [A, P], k: 1}]"), _UNWRITTEN, _springs),
+            converted(
+                listed(_spring(context), None, MAX_ENTRIES, "[{between: [A, P], k: 1}]"),
+                _UNWRITTEN,
+                _springs,
+            ),
             "Springs between points, along their lines.",
             (),
         ),
         "torsion": part(
-            converted(listed(_torsion_spring(context), None, MAX_ENTRIES, "[{angle: th, k: 1}]"), _UNWRITTEN, _torsion),
+            converted(
+                listed(_torsion_spring(context), None, MAX_ENTRIES, "[{angle: th, k: 1}]"),
+                _UNWRITTEN,
+                _torsion,
+            ),
             "Springs between directions: energy k (1 - cos(angle - rest)), moment k sin(angle - rest). For small "
             "angles that is the linear spring of energy k (angle - rest)^2/2, which is no polynomial in cosines and "
             "sines and no function on a circle.",
@@ -265,7 +288,11 @@ def _springs(found: tuple[dict[str, Any], ...]) -> tuple[Spring, ...]:
     springs: dict[str, Spring] = {}
     for n, said in enumerate(found, 1):
         (start, end), stiffness = said["between"], said["k"]
-        names = (*([stiffness.name] if isinstance(stiffness, Name) else []), f"{start}{end}", f"{start}{end}_{n}")
+        names = (
+            *([stiffness.name] if isinstance(stiffness, Name) else []),
+            f"{start}{end}",
+            f"{start}{end}_{n}",
+        )
         name = next(name for name in names if name not in springs)
         springs[name] = Spring(name, start, end, stiffness, said["free"])
     return tuple(springs.values())
@@ -289,7 +316,9 @@ def _weight(weight: Tree) -> tuple[Tree, Tree]:
 
 def _load(context: Context) -> Codec[tuple[Tree, Tree]]:
     """Two components, or a weight."""
-    weight = record(_weight, "{weight: W}", weight=part(context.value(), default=ZERO)).narrowed(required=["weight"])
+    weight = record(_weight, "{weight: W}", weight=part(context.value(), default=ZERO)).narrowed(
+        required=["weight"]
+    )
 
     def read(entry: Node) -> tuple[Tree, Tree]:
         if entry.is_mapping and entry.mapping():
@@ -302,7 +331,10 @@ def _load(context: Context) -> Codec[tuple[Tree, Tree]]:
 _DIRECTION = record(
     lambda cos, sin: (cos, sin),
     "{cos: 3/5, sin: 4/5}",
-    **{name: part(reading(lambda entry: value_at(parse(constant(entry)), {}), **NUMBER)) for name in ("cos", "sin")},
+    **{
+        name: part(reading(lambda entry: value_at(parse(constant(entry)), {}), **NUMBER))
+        for name in ("cos", "sin")
+    },
 )
 
 

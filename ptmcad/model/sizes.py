@@ -1,7 +1,9 @@
-"""How many terms a description has once it is multiplied out, bounded before anything is: what is too much is refused.
+"""How many terms a description has once it is multiplied out, bounded before anything is: what is
+too much is refused.
 
-Guarantee: the bound is one. A sum has no more terms than its parts together, a product no more than theirs multiplied,
-and no polynomial of degree d in n variables more than binomial(d + n, n); cosines and sines are variables here.
+Guarantee: the bound is one. A sum has no more terms than its parts together, a product no more than
+theirs multiplied, and no polynomial of degree d in n variables more than binomial(d + n, n);
+cosines and sines are variables here.
 """
 
 from __future__ import annotations
@@ -14,12 +16,16 @@ from ptmcad.model.description import Model
 from ptmcad.model.evaluate import Named, evaluate
 
 MAX_TERMS = 50_000
-"""Of one expression, and of all that a model's equations are made of; to multiply these out takes about a second."""
+"""Of one expression, and of all that a model's equations are made of; to multiply these out takes
+about a second.
+"""
 TOO_LARGE = f"this is too large to be multiplied out: it may have over {MAX_TERMS} terms"
 
 
 class Size:
-    """What is known of a polynomial: bounds of its degree and of its number of terms, and its variables."""
+    """What is known of a polynomial: bounds of its degree and of its number of terms, and its
+    variables.
+    """
 
     __slots__ = ("degree", "terms", "variables")
 
@@ -29,7 +35,11 @@ class Size:
         self.terms = terms
 
     def __add__(self, other: Size) -> Size:
-        return _bounded(max(self.degree, other.degree), self.variables | other.variables, self.terms + other.terms)
+        return _bounded(
+            max(self.degree, other.degree),
+            self.variables | other.variables,
+            self.terms + other.terms,
+        )
 
     __sub__ = __add__
 
@@ -37,7 +47,9 @@ class Size:
         return self
 
     def __mul__(self, other: Size) -> Size:
-        return _bounded(self.degree + other.degree, self.variables | other.variables, self.terms * other.terms)
+        return _bounded(
+            self.degree + other.degree, self.variables | other.variables, self.terms * other.terms
+        )
 
 
 def _bounded(degree: int, variables: frozenset[str], terms: int) -> Size:

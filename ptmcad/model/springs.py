@@ -19,7 +19,8 @@ class ElasticLine(NamedTuple):
     Attributes
     ----------
     difference, square : from its start to its end, and the square of its length.
-    smooth, density : its energy, and its force for each unit of length, as if its free length were zero.
+    smooth, density : its energy, and its force for each unit of length, as if its free length were
+        zero.
     pull : what its energy with the free length lacks for each unit of length.
     """
 
@@ -44,7 +45,9 @@ class ElasticLine(NamedTuple):
         law = spring.law
         formulas = Assignment(names, ring.constant)
         of_law = evaluated((law.smooth, law.pull, law.density), formulas)
-        return cls(spring.name, spring.start, spring.end, law, stiffness, free, (x, y), names["q"], *of_law)
+        return cls(
+            spring.name, spring.start, spring.end, law, stiffness, free, (x, y), names["q"], *of_law
+        )
 
     @property
     def length(self) -> Formula:
@@ -62,8 +65,14 @@ class ElasticLine(NamedTuple):
 
     @property
     def energy(self) -> Formula:
-        """Where the free length is the number zero without the length, so that short springs are nothing singular."""
-        return self.smooth if self.free.value == 0 else self._at(self.law.energy, self.length, self.square)
+        """Where the free length is the number zero without the length, so that short springs are
+        nothing singular.
+        """
+        return (
+            self.smooth
+            if self.free.value == 0
+            else self._at(self.law.energy, self.length, self.square)
+        )
 
     @property
     def collapsed(self) -> Formula:
@@ -78,7 +87,8 @@ class ElasticLine(NamedTuple):
 
 
 class AngularSpring(NamedTuple):
-    """A spring between directions: its energy is stiffness (1 - cos deflection), its moment stiffness sin deflection.
+    """A spring between directions: its energy is stiffness (1 - cos deflection), its moment
+    stiffness sin deflection.
 
     Attributes
     ----------

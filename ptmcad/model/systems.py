@@ -1,4 +1,5 @@
-"""A parametric system's description read from a record: equations or a potential, inequalities, stability conditions.
+"""A parametric system's description read from a record: equations or a potential, inequalities,
+stability conditions.
 
 Guarantee: what is wrong is a `ConfigError` with its key, which knows all other faults.
 """
@@ -26,13 +27,13 @@ _HOLDING = frozenset({"unknowns", "equations", "potential"})
 def described_system(record: Mapping[str, Any]) -> System:
     """The parametric system of a record, which is a mapping as YAML gives it.
 
-    Names that are no unknowns are its parameters; those that the record does not list are numbers without a default.
+    Names that are no unknowns are its parameters; those that the record does not list are numbers
+    without a default.
 
     Raises
     ------
-    ConfigError
-        With the key of what is wrong; also where there are not as many equations as unknowns, or where an unknown
-        stands in no equation. Its ``faults`` are all that is wrong.
+    ConfigError With the key of what is wrong; also where there are not as many equations as
+        unknowns, or where an unknown stands in no equation. Its ``faults`` are all that is wrong.
     """
     faults = Faults()
     found = read_system(record, faults)
@@ -47,7 +48,10 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     found = codec.read(Node.of(from_python(record, Place()), faults))
     system = System(**{**found, "parameters": context.parameters}, source=record)
     # a key that nobody knows has been told, and may be meant for one of these
-    misspelt = not {"equations", "potential"} & record.keys() and not record.keys() <= codec.schema["properties"].keys()
+    misspelt = (
+        not {"equations", "potential"} & record.keys()
+        and not record.keys() <= codec.schema["properties"].keys()
+    )
     equations = record.get("equations")
     written = len(equations) if isinstance(equations, list | tuple) else 0
     number, unknowns = len(system.parameters), len(system.unknowns)
@@ -78,7 +82,9 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
 
 
 def system_codec(context: Context) -> Codec[dict[str, Any]]:
-    """A system's keys, read in this order; names in expressions that are no unknowns become parameters."""
+    """A system's keys, read in this order; names in expressions that are no unknowns become
+    parameters.
+    """
 
     def read(entry: Node) -> Tree:
         for name in names_of(parsed(entry)):
@@ -95,13 +101,19 @@ def system_codec(context: Context) -> Codec[dict[str, Any]]:
     tree, positive = reading(read, **VALUE), reading(read_positive, **VALUE)
     whole: Codec[dict[str, Any]] = record(
         dict,
-        **context.start(DEFAULT_NAME, "Kinds, defaults and ranges; other names in the equations are numbers."),
+        **context.start(
+            DEFAULT_NAME, "Kinds, defaults and ranges; other names in the equations are numbers."
+        ),
         equations=part(listed(tree, None, MAX_ENTRIES, '["x^3 - a*x + b"]'), "Each is zero.", ()),
         positive=part(
-            listed(positive, None, MAX_ENTRIES, "[x]"), "Strict inequalities that a counted solution satisfies.", ()
+            listed(positive, None, MAX_ENTRIES, "[x]"),
+            "Strict inequalities that a counted solution satisfies.",
+            (),
         )._replace(field="inequalities"),
         stable=part(
-            listed(tree, None, MAX_ENTRIES, '["3*x^2 - a"]'), "A solution is stable where all are positive.", ()
+            listed(tree, None, MAX_ENTRIES, '["3*x^2 - a"]'),
+            "A solution is stable where all are positive.",
+            (),
         )._replace(field="stability"),
         potential=part(tree, "Solutions are its critical points.", None),
     )

@@ -1,9 +1,10 @@
 """Trees that are made of trees: sums, products, and angles without quarter turns.
 
-Quarter turns may be added to angles, ``phi - th + pi/2``: their cosine and
-sine are whole numbers, so that what `split_angle` and `without_quarter_turns` return has no pi in it.
+Quarter turns may be added to angles, ``phi - th + pi/2``: their cosine and sine are whole numbers,
+so that what `split_angle` and `without_quarter_turns` return has no pi in it.
 
-Guarantee: exact. What is zero at sight is left out, and no more is simplified: values are expanded where they are made.
+Guarantee: exact. What is zero at sight is left out, and no more is simplified: values are expanded
+where they are made.
 """
 
 from __future__ import annotations
@@ -54,7 +55,11 @@ def product(*trees: Tree) -> Tree:
         return ZERO
     if abs(number) != 1 or not factors:
         factors.insert(0, Number(abs(number)))
-    whole = factors[0] if len(factors) == 1 else Chain(factors[0], tuple(Step("*", tree) for tree in factors[1:]))
+    whole = (
+        factors[0]
+        if len(factors) == 1
+        else Chain(factors[0], tuple(Step("*", tree) for tree in factors[1:]))
+    )
     return Negative(whole) if number < 0 else whole
 
 
@@ -69,8 +74,8 @@ def split_angle(tree: Tree) -> tuple[Tree, int]:
 
     Raises
     ------
-    ExpressionError
-        When the angle is no sum of multiples of names, or what is added to it is no multiple of pi/2.
+    ExpressionError When the angle is no sum of multiples of names, or what is added to it is no
+        multiple of pi/2.
     """
     parts, positions = multiples_with_positions(tree)
     turns = 2 * parts.get(PI, Fraction(0))
@@ -83,7 +88,9 @@ def split_angle(tree: Tree) -> tuple[Tree, int]:
 
 
 def angle_name(tree: Tree) -> str:
-    """A sum of multiples of angles in the shortest way, such as ``phi-2*th``; empty for the angle zero."""
+    """A sum of multiples of angles in the shortest way, such as ``phi-2*th``; empty for the angle
+    zero.
+    """
     name = ""
     for angle, multiple in multiples(tree).items():
         if angle and multiple:
@@ -115,5 +122,7 @@ def _of_varying_angle(part: Tree) -> Tree | None:
     try:
         pair = cosine_and_sine(*split_angle(part.argument))
     except ExpressionError as error:
-        raise ExpressionError(error.message, part.position if error.position is None else error.position) from None
+        raise ExpressionError(
+            error.message, part.position if error.position is None else error.position
+        ) from None
     return pair[0 if part.function == "cos" else 1]

@@ -1,10 +1,12 @@
-"""What moments do: those that depend on their own unknown alone have a constant part and the slope of an energy.
+"""What moments do: those that depend on their own unknown alone have a constant part and the slope
+of an energy.
 
-Guarantee: exact. With M = m + w', where m is free of unknowns and w is a polynomial in the unknown's cosine and sine,
-or in an unknown on the line, that is zero where the unknown is, equilibria are those of the energy less w under the
-moment m. On the circle m is the mean of M, whose work is another one after each turn; w has one value for each pose.
-The energy less the work of m has many values on the circle, so that whatever is said of an energy's descent has to ask
-for moments first.
+Guarantee: exact. With M = m + w', where m is free of unknowns and w is a polynomial in the
+unknown's cosine and sine, or in an unknown on the line, that is zero where the unknown is,
+equilibria are those of the energy less w under the moment m. On the circle m is the mean of M,
+whose work is another one after each turn; w has one value for each pose. The energy less the work
+of m has many values on the circle, so that whatever is said of an energy's descent has to ask for
+moments first.
 """
 
 from __future__ import annotations
@@ -34,8 +36,10 @@ class Split(NamedTuple):
     Attributes
     ----------
     steady : their parts without unknowns.
-    energies : less what the other parts of the moments do, to be added to the energy of springs and loads.
-    coupled : all of them as they are written where one depends on another unknown than its own; then alone.
+    energies : less what the other parts of the moments do, to be added to the energy of springs and
+        loads.
+    coupled : all of them as they are written where one depends on another unknown than its own;
+        then alone.
     """
 
     steady: tuple[Moment, ...]
@@ -50,7 +54,8 @@ class Split(NamedTuple):
 
 @lru_cache(maxsize=8)
 def split_moments(mechanism: Model) -> Split:
-    """The constant parts of the moments, and the energies of which the rest are slopes; a system has none of these.
+    """The constant parts of the moments, and the energies of which the rest are slopes; a system
+    has none of these.
 
     Raises
     ------
@@ -84,7 +89,9 @@ def acting(model: Model, unknowns: Iterable[str]) -> str:
 
 
 def foreign(model: Model) -> str:
-    """What depends on another unknown than its own, so that there is no potential; empty where nothing does."""
+    """What depends on another unknown than its own, so that there is no potential; empty where
+    nothing does.
+    """
     if any(name in model.angles for name in model.coupled):
         return "a moment"
     return "".join([f"the force on {name}" for name in model.unknowns if name in model.coupled][:1])
@@ -109,7 +116,9 @@ def moments_at(model: Model, parameters: Numbers) -> dict[str, Fraction]:
 
 
 class PointForce(NamedTuple):
-    """A load where the parameters have values: its point, and its components across and up by their names."""
+    """A load where the parameters have values: its point, and its components across and up by their
+    names.
+    """
 
     point: str
     names: tuple[str, str]
@@ -140,7 +149,9 @@ def _integrated(moment: Polynomial, unknown: str) -> tuple[Polynomial, Polynomia
 
 
 def _antiderivative(own: _Factors, unknown: str) -> Iterator[tuple[_Factors, Fraction]]:
-    """That of a power of an unknown on the line, or of sin^n or sin^n cos; `_ITSELF` is that of a constant."""
+    """That of a power of an unknown on the line, or of sin^n or sin^n cos; `_ITSELF` is that of a
+    constant.
+    """
     cosine, sine = f"cos {unknown}", f"sin {unknown}"
     if not own:
         yield _ITSELF, Fraction(1)

@@ -1,8 +1,10 @@
-"""What ties a computing process to the one that watches it: messages through a pipe, one way, and its end.
+"""What ties a computing process to the one that watches it: messages through a pipe, one way, and
+its end.
 
-Guarantee: a message is received whole or not at all, also from a process that is killed while it sends. In a process
-that nobody watches `send` does nothing. On a system whose pipes send signals (Linux) the kernel ends a process by
-`end_with`, whatever code it is in, as soon as the other one has ended; elsewhere nothing is promised.
+Guarantee: a message is received whole or not at all, also from a process that is killed while it
+sends. In a process that nobody watches `send` does nothing. On a system whose pipes send signals
+(Linux) the kernel ends a process by `end_with`, whatever code it is in, as soon as the other one
+has ended; elsewhere nothing is promised.
 
 It is imported before everything else of the program, so it imports nothing that takes time.
 """
@@ -22,16 +24,17 @@ _HEAD = 9  # a topic's letter and the length of the body in 8 bytes
 class Topic(Enum):
     """What a message is about, and the texts it consists of."""
 
-    TEMPORARY = b"T"  # path of the folder that is being made or used, of no use once the process is gone
+    TEMPORARY = (
+        b"T"  # path of the folder that is being made or used, of no use once the process is gone
+    )
     SAVED = b"R"  # the last file of a set, which is in place now
     DEADLINE = b"D"  # reading of time.monotonic() at which the time is over, the limit in words
     MEMORY = b"M"  # the memory limit in bytes, and in words
-    RESULT = (
-        b"P"  # "partial" or "complete", the result's text as it is by now, a remark on how far it is, or "", the path
-    )
+    RESULT = b"P"  # "partial" or "complete", the result's text as it is by now, a remark on how far it is, or "", the path
     # of its file, and the names of the other files that are to be written
     RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work;
-    # with what there is to say while there is none, and why, if one is made at a signal; "" where that is the usual end
+    # with what there is to say while there is none, and why, if one is made at a signal; "" where
+    # that is the usual end
     DONE = b"E"  # the program has come to its end and exits with its status
 
 
@@ -41,8 +44,8 @@ class Own:
     pipe: int | None = None
     """Its end of the pipe, when it is watched."""
     status: int | None = None
-    """With which it has been asked to leave. What the signal's handler has raised may be lost: code that C code calls,
-    such as a callback of the collector, loses what is raised in it."""
+    """With which it has been asked to leave. What the signal's handler has raised may be lost: code
+    that C code calls, such as a callback of the collector, loses what is raised in it."""
 
 
 def watched() -> bool:
@@ -66,7 +69,9 @@ def end_with(lifeline: int, parent: int) -> None:
     """
     signal.signal(signal.SIGIO, signal.SIG_DFL)  # the caller may have had it ignored
     fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
-    fcntl.fcntl(lifeline, fcntl.F_SETFL, os.O_ASYNC)  # sends SIGIO, whose default is to end the process
+    fcntl.fcntl(
+        lifeline, fcntl.F_SETFL, os.O_ASYNC
+    )  # sends SIGIO, whose default is to end the process
     if os.getppid() != parent:
         os._exit(1)
 
@@ -77,7 +82,8 @@ def send(topic: Topic, *texts: str) -> None:
         return
     body = "\0".join(texts).encode("utf-8", "surrogateescape")
     rest = memoryview(topic.value + len(body).to_bytes(_HEAD - 1, "big") + body)
-    # where the watching process is gone this one goes with it, at the end of what nothing may disturb
+    # where the watching process is gone this one goes with it, at the end of what nothing may
+    # disturb
     with undisturbed(), suppress(BrokenPipeError):
         while rest:
             rest = rest[os.write(Own.pipe, rest) :]
@@ -111,7 +117,9 @@ def undisturbed() -> Iterator[None]:
     """A few steps between which no signal gets in, except one that cannot be blocked."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ())
     try:
-        signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())  # a handler of one before may raise here
+        signal.pthread_sigmask(
+            signal.SIG_BLOCK, signal.valid_signals()
+        )  # a handler of one before may raise here
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -1,8 +1,9 @@
 """A bound on the memory of this process, and whether memory was what a process lacked.
 
-Guarantee: on Linux the process's private memory stays below the bound: an allocation beyond it fails, in Python as a
-MemoryError, in C libraries in their way, which may be to abort. Libraries are loaded without the bound, because many
-neither load nor fail in an orderly way when memory runs out; a bound that they alone exceed is refused right after.
+Guarantee: on Linux the process's private memory stays below the bound: an allocation beyond it
+fails, in Python as a MemoryError, in C libraries in their way, which may be to abort. Libraries are
+loaded without the bound, because many neither load nor fail in an orderly way when memory runs out;
+a bound that they alone exceed is refused right after.
 
 Not guaranteed: the bound on systems that do not count mapped memory as data (macOS).
 """
@@ -20,7 +21,9 @@ from ptmcad.errors import ConfigError
 from ptmcad.process.handover import watched
 
 MIN_ROOM = 32 << 20
-"""What there must be beside the libraries once they are loaded, for anything to be computed or drawn."""
+"""What there must be beside the libraries once they are loaded, for anything to be computed or
+drawn.
+"""
 
 LOW_LIMIT = 1 << 30
 """Below so many bytes a memory limit may keep the libraries from being loaded."""
@@ -30,8 +33,8 @@ SIGNS = (
     "failed to map segment", "static TLS block", "t start new thread", "pthread_create failed",
     "LLVM ERROR: out of memory",
 )  # fmt: skip
-"""What FLINT, GMP, OpenBLAS, C++, LLVM, Python and the loader of libraries print when they could not allocate, GMP also
-at its size limit."""
+"""What FLINT, GMP, OpenBLAS, C++, LLVM, Python and the loader of libraries print when they could
+not allocate, GMP also at its size limit."""
 
 
 class Bound(NamedTuple):
@@ -42,7 +45,8 @@ class Bound(NamedTuple):
 
 
 _in_force: list[tuple[Bound, tuple[int, int]]] = []
-"""The bound that this process keeps, if any, and the soft and hard limits that its caller had set."""
+"""The bound that this process keeps, if any, and the soft and hard limits that its caller had set.
+"""
 
 
 def kernel_lines(path: str | Path) -> list[str]:
@@ -55,7 +59,9 @@ def kernel_lines(path: str | Path) -> list[str]:
 
 @contextmanager
 def bounded(bound: Bound) -> Iterator[None]:
-    """Keep this process below the bound, or below the one that its caller has set already if that is lower."""
+    """Keep this process below the bound, or below the one that its caller has set already if that
+    is lower.
+    """
     soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
     size = bound.size if soft == resource.RLIM_INFINITY else min(bound.size, soft)
     resource.setrlimit(resource.RLIMIT_DATA, (size, hard))
@@ -77,9 +83,8 @@ def loading(what: str = "") -> Iterator[None]:
 
     Raises
     ------
-    MemoryError
-        When a library says that it cannot be loaded for lack of memory, whatever it raises, or just that it cannot be
-        loaded, under a small limit of the caller's.
+    MemoryError When a library says that it cannot be loaded for lack of memory, whatever it raises,
+        or just that it cannot be loaded, under a small limit of the caller's.
     ConfigError
         That names the least bound that would do.
     """
@@ -90,7 +95,11 @@ def loading(what: str = "") -> Iterator[None]:
     try:
         with redirect_stderr(printed):
             yield
-    except (ImportError, OSError, SystemError) as error:  # many loaders, as LLVM's, say nothing of memory
+    except (
+        ImportError,
+        OSError,
+        SystemError,
+    ) as error:  # many loaders, as LLVM's, say nothing of memory
         if isinstance(error, ModuleNotFoundError) or not exhausted(str(error)):
             raise
         raise MemoryError(str(error)) from error
@@ -106,17 +115,25 @@ def loading(what: str = "") -> Iterator[None]:
 
 
 def missing_room(room: int = MIN_ROOM) -> int | None:
-    """The least bound that would do, in bytes, if the libraries that are loaded by now leave less room; else None."""
+    """The least bound that would do, in bytes, if the libraries that are loaded by now leave less
+    room; else None.
+    """
     # private writable memory; where the system does not count it there is no bound either
-    used = [int(line.split()[1]) << 10 for line in kernel_lines("/proc/self/status") if line.startswith("VmData:")]
+    used = [
+        int(line.split()[1]) << 10
+        for line in kernel_lines("/proc/self/status")
+        if line.startswith("VmData:")
+    ]
     least = max(used, default=0) + room
     return least if _in_force and least > _in_force[-1][0].size else None
 
 
 def exhausted(text: str, most: int = 0, own: Sequence[str] = (), how: str = "") -> str:
-    """Whether lack of memory has ended a process, in words, which name the lowest limit; empty if not.
+    """Whether lack of memory has ended a process, in words, which name the lowest limit; empty if
+    not.
 
-    Where nothing says so it is most likely under a small limit of the caller's, or when half of a limit had been used.
+    Where nothing says so it is most likely under a small limit of the caller's, or when half of a
+    limit had been used.
 
     Parameters
     ----------
@@ -137,7 +154,9 @@ def exhausted(text: str, most: int = 0, own: Sequence[str] = (), how: str = "") 
 
 
 def caller_limits() -> list[tuple[int, str]]:
-    """The limits on memory that this process was started with, such as a shell's ``ulimit -v``: bytes, and words."""
+    """The limits on memory that this process was started with, such as a shell's ``ulimit -v``:
+    bytes, and words.
+    """
     found = []
     for which, option in ((resource.RLIMIT_DATA, "-d"), (resource.RLIMIT_AS, "-v")):
         size = resource.getrlimit(which)[0]

@@ -1,18 +1,22 @@
-"""The files of a result: written under hidden names first, then put into place together, under a lock on their folder.
+"""The files of a result: written under hidden names first, then put into place together, under a
+lock on their folder.
 
-The last file of a set is its *voucher* (the JSON); the others are pictures of what it says, and carry its hash.
+The last file of a set is its *voucher* (the JSON); the others are pictures of what it says, and
+carry its hash.
 
-Guarantee: every file under its own name is whole. Whatever ends the process, at every moment those that can be seen of
-the names of a set are of one set: the voucher is the old one or the new one, and the others are of the same set or
-missing. A picture in a format that is not written now stays as it is; its stamp tells that it is of an older result.
-Nothing is put into place before everything is written and on disk; then the old pictures are hidden, the new voucher
-is renamed over the old one, and the new pictures are renamed. An error before the voucher is in place restores the
-older set; one after it costs the pictures that it concerns. What is hidden lies in a folder ``.NAME.*.tmp`` that its
-process locks and removes; one that a killed process has left is removed by the next `check_writable` for the same
-name. No file in a folder says what to do. A result that a limit has stopped replaces no complete one.
+Guarantee: every file under its own name is whole. Whatever ends the process, at every moment those
+that can be seen of the names of a set are of one set: the voucher is the old one or the new one,
+and the others are of the same set or missing. A picture in a format that is not written now stays
+as it is; its stamp tells that it is of an older result. Nothing is put into place before everything
+is written and on disk; then the old pictures are hidden, the new voucher is renamed over the old
+one, and the new pictures are renamed. An error before the voucher is in place restores the older
+set; one after it costs the pictures that it concerns. What is hidden lies in a folder
+``.NAME.*.tmp`` that its process locks and removes; one that a killed process has left is removed by
+the next `check_writable` for the same name. No file in a folder says what to do. A result that a
+limit has stopped replaces no complete one.
 
-Not guaranteed: the order of the steps on disk when the machine loses power; that two processes that write the same
-set at once, on a file system without locks, do not mix theirs.
+Not guaranteed: the order of the steps on disk when the machine loses power; that two processes that
+write the same set at once, on a file system without locks, do not mix theirs.
 """
 
 from __future__ import annotations
@@ -59,8 +63,8 @@ def reason(error: OSError | ValueError) -> str:
 def locked(folder: Path, patience: float = math.inf) -> Iterator[bool]:
     """Keep other processes of this program from renaming files in the folder.
 
-    Yields whether they are kept out: False where the file system has no locks, the folder may be written to but not
-    read, or is gone.
+    Yields whether they are kept out: False where the file system has no locks, the folder may be
+    written to but not read, or is gone.
 
     Parameters
     ----------
@@ -97,14 +101,18 @@ def _lock(descriptor: int, until: float) -> bool:
 
 @contextmanager
 def _hidden_folder(target: Path) -> Iterator[Path]:
-    """A new folder beside the target, locked while it is used, and removed in the end with what is in it."""
+    """A new folder beside the target, locked while it is used, and removed in the end with what is
+    in it.
+    """
     while True:
         path = target.with_name(f".{target.stem}.{os.urandom(4).hex()}.tmp")
         send(Topic.TEMPORARY, str(path))
         path.mkdir()
         try:
             with locked(path):
-                if path.exists():  # otherwise another process has taken it for a stale one before it was locked
+                if (
+                    path.exists()
+                ):  # otherwise another process has taken it for a stale one before it was locked
                     yield path
                     return
         finally:
@@ -113,7 +121,9 @@ def _hidden_folder(target: Path) -> Iterator[Path]:
 
 
 def _remove_stale(folder: Path, names: Iterable[str]) -> None:
-    """Remove hidden folders for these names whose process has ended: one that lives holds a lock on its own."""
+    """Remove hidden folders for these names whose process has ended: one that lives holds a lock on
+    its own.
+    """
     for stem in {escape(Path(name).stem) for name in names}:
         for left in folder.glob(f".{stem}.{'[0-9a-f]' * 8}.tmp"):
             with suppress(OSError), locked(left, patience=0) as alone:
@@ -122,7 +132,8 @@ def _remove_stale(folder: Path, names: Iterable[str]) -> None:
 
 
 def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
-    """Create the folder if it is missing and prove, by writing, that files of these names can be put there.
+    """Create the folder if it is missing and prove, by writing, that files of these names can be
+    put there.
 
     To be called before a long computation. What killed runs have left there is removed.
 
@@ -159,17 +170,22 @@ def _check_kinds(targets: Iterable[Path]) -> None:
     for target in targets:
         if os.path.exists(target) and not os.path.isfile(target):
             kind = "a folder" if os.path.isdir(target) else "no regular file"
-            raise OutputError(f"{target} is {kind}, so no file can be written there; choose another --out")
+            raise OutputError(
+                f"{target} is {kind}, so no file can be written there; choose another --out"
+            )
 
 
-def write_files(folder: Path, writers: Mapping[str, Writer], *, new: bool = False) -> tuple[Path, ...]:
+def write_files(
+    folder: Path, writers: Mapping[str, Writer], *, new: bool = False
+) -> tuple[Path, ...]:
     """Write all files, then put them into place.
 
     Parameters
     ----------
     folder : where they go; it exists.
-    writers : for each file's name, one at least, a function that writes the file at the path it is given (the path has
-        the name's suffix). The last one is the file that vouches for the others.
+    writers : for each file's name, one at least, a function that writes the file at the path it is
+        given (the path has the name's suffix). The last one is the file that vouches for the
+        others.
     new : that nothing, not even a link, may have these names yet.
 
     Raises
@@ -206,10 +222,12 @@ def _written(folder: Path, writers: Mapping[str, Writer]) -> Iterator[dict[Path,
 
 
 def stamp(pictures: Iterable[Path], voucher: Path) -> None:
-    """Give every picture among the files the SHA-256 of a JSON document, which tells whether both are of one set.
+    """Give every picture among the files the SHA-256 of a JSON document, which tells whether both
+    are of one set.
 
-    Guarantee: what is drawn stays as it was; readers of each format pass over the stamp, which ``grep -a sha256``
-    shows. It is a text chunk of a PNG, and a comment in an SVG, a PDF and an EPS.
+    Guarantee: what is drawn stays as it was; readers of each format pass over the stamp, which
+    ``grep -a sha256`` shows. It is a text chunk of a PNG, and a comment in an SVG, a PDF and an
+    EPS.
 
     Raises
     ------
@@ -221,7 +239,9 @@ def stamp(pictures: Iterable[Path], voucher: Path) -> None:
         return
     from hashlib import sha256  # with OpenSSL, which only runs that draw need
 
-    text = f"sha256 of {voucher.name}: {sha256(voucher.read_bytes()).hexdigest()}".encode("ascii", "replace")
+    text = f"sha256 of {voucher.name}: {sha256(voucher.read_bytes()).hexdigest()}".encode(
+        "ascii", "replace"
+    )
     for path in pictures:
         content = path.read_bytes()
         if content.startswith(b"\x89PNG"):
@@ -247,7 +267,11 @@ def _put_into_place(files: Mapping[Path, Path]) -> None:
         When a file cannot be renamed; the message says what there is now.
     """
     *others, (voucher, new) = files.items()
-    old = [(target, path.with_name(f".old-{path.name}")) for target, path in others if os.path.lexists(target)]
+    old = [
+        (target, path.with_name(f".old-{path.name}"))
+        for target, path in others
+        if os.path.lexists(target)
+    ]
     with undisturbed():
         try:
             for source, target in (*old, (new, voucher)):
@@ -276,15 +300,19 @@ def _rename(moves: Iterable[tuple[Path, Path]]) -> str:
     return ", ".join(failures)
 
 
-def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterable[str] = ()) -> tuple[Path, str]:
+def save_stopped(
+    target: Path, text: str, *, whole: bool = False, beside: Iterable[str] = ()
+) -> tuple[Path, str]:
     """Save the result of a computation that a limit has stopped.
 
-    Returns where, and why not in the file that was asked for, as the end of a sentence; empty if there.
+    Returns where, and why not in the file that was asked for, as the end of a sentence; empty if
+    there.
 
-    Guarantee: a whole older result stays, and so do its pictures. Only a file that is marked as partial is replaced,
-    and only where none of the pictures is there that the run would have replaced. Otherwise the result goes to
-    ``NAME.partial.json``, or ``NAME.complete.json`` if all but its pictures is done, where the newest is kept. What
-    is no such result, or has less undetermined, stays there, and ``NAME.partial-2.json`` is taken, and so on.
+    Guarantee: a whole older result stays, and so do its pictures. Only a file that is marked as
+    partial is replaced, and only where none of the pictures is there that the run would have
+    replaced. Otherwise the result goes to ``NAME.partial.json``, or ``NAME.complete.json`` if all
+    but its pictures is done, where the newest is kept. What is no such result, or has less
+    undetermined, stays there, and ``NAME.partial-2.json`` is taken, and so on.
 
     Parameters
     ----------
@@ -303,7 +331,9 @@ def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterab
         busy = ""
         try:
             lock.enter_context(locked(target.parent, LOCK_PATIENCE))
-        except BlockingIOError:  # a process that does not move on has it: what is no part of a set needs no lock
+        except (
+            BlockingIOError
+        ):  # a process that does not move on has it: what is no part of a set needs no lock
             busy = f", because another process is writing {target.name}"
         why = _why_not(target, text, beside=beside) or busy
         place = next(name for name in names if not _why_not(name, text, whole)) if why else target
@@ -326,7 +356,9 @@ def _why_not(place: Path, text: str, whole: bool = False, beside: Iterable[str] 
         # what is no result is not ours to replace unasked
         if not isinstance(stored, dict) or not (whole or stored.get("status") == "partial"):
             return f", because {place.name} holds an older result that is not partial"
-        with suppress(KeyError, TypeError, ValueError, ZeroDivisionError):  # an exact result, or no map of this program
+        with suppress(
+            KeyError, TypeError, ValueError, ZeroDivisionError
+        ):  # an exact result, or no map of this program
             new = json.loads(text)
             maps = stored["cover"] is not None and new["cover"] is not None
             if maps and Fraction(stored["undetermined"]) < Fraction(new["undetermined"]):

@@ -1,8 +1,9 @@
 """A standard stream whose reader may leave, as in ``ptmcad locate ... | head``.
 
-Guarantee: once the reader of the pipe has gone, what is written is dropped and nothing fails. Every other failure, such
-as a full disk, is raised as for any file, unless the stream is the one for messages: there is no third place to report
-that, so there they are dropped. A descriptor that its owner has made non-blocking is waited for.
+Guarantee: once the reader of the pipe has gone, what is written is dropped and nothing fails. Every
+other failure, such as a full disk, is raised as for any file, unless the stream is the one for
+messages: there is no third place to report that, so there they are dropped. A descriptor that its
+owner has made non-blocking is waited for.
 """
 
 import io
@@ -37,7 +38,9 @@ class _Pipe(io.FileIO):
 def quiet_stream(descriptor: int, like: TextIO, for_messages: bool = False) -> TextIO:
     """A text stream for the descriptor with the encoding and the line buffering of another."""
     raw = io.BufferedWriter(_Pipe(descriptor, for_messages))
-    return io.TextIOWrapper(raw, like.encoding, like.errors, line_buffering=bool(like.line_buffering))
+    return io.TextIOWrapper(
+        raw, like.encoding, like.errors, line_buffering=bool(like.line_buffering)
+    )
 
 
 def reader_left(stream: TextIO) -> bool:

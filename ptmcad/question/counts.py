@@ -1,8 +1,10 @@
-"""The kinds of count as one table: what is counted, what that asks of a model, where it changes, and how it is called.
+"""The kinds of count as one table: what is counted, what that asks of a model, where it changes,
+and how it is called.
 
-Guarantee: data and plain functions that look at no solution. The question, both engines, answers with their documents,
-tables, pictures and pages read this table for words, colours and margins; a new kind with a predicate is a new row,
-and one in the checker, which derives predicates by itself (`ptmcad.verification.kinds`).
+Guarantee: data and plain functions that look at no solution. The question, both engines, answers
+with their documents, tables, pictures and pages read this table for words, colours and margins; a
+new kind with a predicate is a new row, and one in the checker, which derives predicates by itself
+(`ptmcad.verification.kinds`).
 """
 
 from __future__ import annotations
@@ -55,16 +57,17 @@ class Shades(Enum):
 
 @dataclass(frozen=True)  # slots and a type parameter do not go together
 class Margin(Generic[V]):
-    """A quantity that has to be positive at a solution; where it vanishes a solution begins or stops to count.
+    """A quantity that has to be positive at a solution; where it vanishes a solution begins or
+    stops to count.
 
     Attributes
     ----------
     text : what it is, in words or as it is written.
     value : in the parameters and unknowns of a model, or over a slice.
-    curve, reason : the name of the curve on which it vanishes, and why the count changes there; empty for those that
-        are made of the text.
-    squares : the value is the sum of their squares, less something. Where this is zero all over a window the value has
-        no simple zeros, and these vanish in its place.
+    curve, reason : the name of the curve on which it vanishes, and why the count changes there;
+        empty for those that are made of the text.
+    squares : the value is the sum of their squares, less something. Where this is zero all over a
+        window the value has no simple zeros, and these vanish in its place.
     """
 
     text: str
@@ -86,7 +89,8 @@ class PoseColumn:
     Attributes
     ----------
     margins : numbers of a pose that are positive exactly where the predicate's margins are.
-    head, note, tally : above the column, its meaning, and what follows the number of poses at which it holds.
+    head, note, tally : above the column, its meaning, and what follows the number of poses at which
+        it holds.
     """
 
     margins: Callable[[_Posed], Sequence[Enclosure]]
@@ -102,13 +106,15 @@ class Predicate:
     Attributes
     ----------
     margins : of a mechanism, all positive where it holds.
-    is_symmetric : whether each symmetry of a mechanism's energy takes solutions at which it holds to such.
+    is_symmetric : whether each symmetry of a mechanism's energy takes solutions at which it holds
+        to such.
     needs_free_lengths : whether it says nothing without any.
-    of_systems, without_free_lengths : what is wrong with this count of a model that has no springs, or none with a free
-        length.
+    of_systems, without_free_lengths : what is wrong with this count of a model that has no springs,
+        or none with a free length.
     column : of a table of poses; None where these leave it out.
-    is_always_stored : whether each certified map has its number, or null where that was not asked for: so it has been
-        since that form of documents was made. Of others a map has the number that its count is of.
+    is_always_stored : whether each certified map has its number, or null where that was not asked
+        for: so it has been since that form of documents was made. Of others a map has the number
+        that its count is of.
     """
 
     margins: Callable[[Mechanism], Iterator[Margin[Tree]]]
@@ -132,7 +138,8 @@ class CountKind:
     page : after "by".
     shades : by what its colours are chosen.
     rank : 0 is the finest; of several counts of the same the first one says most.
-    implied : the kinds of which two places have the same number where they have the same of this kind.
+    implied : the kinds of which two places have the same number where they have the same of this
+        kind.
     is_of_stable : whether no other solutions than stable ones matter.
     needs : what a model's criterion counts for it.
     predicate : None where each (stable) solution counts.
@@ -151,8 +158,8 @@ class CountKind:
 
 
 def _longer_than_free(mechanism: Mechanism) -> Iterator[Margin[Tree]]:
-    """|d|^2 - l0^2 of each spring, d being the vector between its ends: of the sign of |d| - l0, as no free length is
-    negative. Lengths that are constant are in no description."""
+    """|d|^2 - l0^2 of each spring, d being the vector between its ends: of the sign of |d| - l0, as
+    no free length is negative. Lengths that are constant are in no description."""
     for spring in mechanism.springs:
         name = title_of(spring, mechanism)
         vector = difference(mechanism.points, spring.start, spring.end)
@@ -225,15 +232,23 @@ KINDS = {
 """The table."""
 USUAL = Count.STABLE
 """The count of a slice that names none."""
-PREDICATES = {count.value: kind.predicate for count, kind in KINDS.items() if kind.predicate is not None}
+PREDICATES = {
+    count.value: kind.predicate for count, kind in KINDS.items() if kind.predicate is not None
+}
 """Those of the table by the names of their counts."""
-POSE_COLUMNS = {name: predicate.column for name, predicate in PREDICATES.items() if predicate.column is not None}
+POSE_COLUMNS = {
+    name: predicate.column for name, predicate in PREDICATES.items() if predicate.column is not None
+}
 """Of those that tables of poses have."""
 
 
 def further_names(count: Count) -> tuple[str, ...]:
-    """The predicates of which a certified map by this count has a number, or null, for each cell and region."""
-    return tuple(name for name, each in PREDICATES.items() if each.is_always_stored or name == count.value)
+    """The predicates of which a certified map by this count has a number, or null, for each cell
+    and region.
+    """
+    return tuple(
+        name for name, each in PREDICATES.items() if each.is_always_stored or name == count.value
+    )
 
 
 def phrases() -> str:

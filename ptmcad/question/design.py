@@ -1,4 +1,5 @@
-"""Conditions on a design: inequalities between expressions in its parameters, of numbers and of intervals.
+"""Conditions on a design: inequalities between expressions in its parameters, of numbers and of
+intervals.
 
 Guarantee: exact for numbers; over intervals the bounds hold for all values in them.
 """
@@ -99,7 +100,11 @@ class Intervals:
             raise ExpressionError("an exponent here is a whole number from 0 to 32", power.position)
         n = int(exponent[0])
         ends = sorted((base[0] ** n, base[1] ** n))
-        return (Fraction(0), ends[1]) if n and n % 2 == 0 and base[0] < 0 < base[1] else (ends[0], ends[1])
+        return (
+            (Fraction(0), ends[1])
+            if n and n % 2 == 0 and base[0] < 0 < base[1]
+            else (ends[0], ends[1])
+        )
 
 
 def named(known: Mapping[str, Bounds], texts: Mapping[str, str]) -> Callable[[str], Bounds]:

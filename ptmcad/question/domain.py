@@ -1,10 +1,13 @@
-"""The domain of the geometry: what each parameter of the mechanism needs to be in the whole open window.
+"""The domain of the geometry: what each parameter of the mechanism needs to be in the whole open
+window.
 
-So does each stiffness and free length that is an expression of parameters, written where a spring has it.
+So does each stiffness and free length that is an expression of parameters, written where a spring
+has it.
 
-Guarantee: `proved` returns only when all of them are, by proof, what they need to be: hypotheses (H1) and (H2) of
-docs/soundness.md. Nothing is concluded from not having found a counterexample. What is proved is proved once: the
-slice that is returned carries it, as one does that was read from a record, and it is looked up there.
+Guarantee: `proved` returns only when all of them are, by proof, what they need to be: hypotheses
+(H1) and (H2) of docs/soundness.md. Nothing is concluded from not having found a counterexample.
+What is proved is proved once: the slice that is returned carries it, as one does that was read from
+a record, and it is looked up there.
 """
 
 from __future__ import annotations
@@ -23,7 +26,9 @@ from ptmcad.text.parsing import value_in_axes
 
 _NOTHING: Mapping[Subject, Finding] = {}
 MAX_DEGREE = 32
-"""Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far more."""
+"""Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far
+more.
+"""
 
 
 def need(kind: Kind, expression: Expression) -> Need:
@@ -45,7 +50,9 @@ def sign_of(subject: Subject, axes: Axes, max_work: int | None = None) -> Findin
     for asked in dict.fromkeys((Need.NO_POLE, need(subject.kind, subject.value))):
         verdict = decide(subject.value, axes, asked, max_work)
         if isinstance(verdict, Witness):
-            return found._replace(verdict=verdict, problem=_refutation(subject, asked, verdict, axes), is_final=True)
+            return found._replace(
+                verdict=verdict, problem=_refutation(subject, asked, verdict, axes), is_final=True
+            )
         if isinstance(verdict, Undecided) and not found.problem:
             problem = (
                 f"it is not proved that {subject.text} is {asked.value} in the whole window: its sign is not decided "
@@ -86,7 +93,9 @@ def sign_of_part(
     window = window_of(axes)
     subject = Subject(part.text, part.kind, constant(0), part.key)
     try:
-        value = value_in_axes(part.tree, {**dict.fromkeys(model.free_lengths, constant(0)), **parameters})
+        value = value_in_axes(
+            part.tree, {**dict.fromkeys(model.free_lengths, constant(0)), **parameters}
+        )
     except ExpressionError as error:
         return Finding(subject, window, Undecided(()), f"cannot be judged: {error.message}")
     subject = subject._replace(value=value)
@@ -101,9 +110,13 @@ def sign_of_part(
 
 
 def signs_of(slice: Slice) -> Iterator[Finding]:
-    """The signs of all parameters of a slice, and of what its springs are given: as it carries them, or proved here."""
+    """The signs of all parameters of a slice, and of what its springs are given: as it carries
+    them, or proved here.
+    """
     window, final = window_of(slice.axes), dict[Subject, Finding]()
-    final.update((sign.subject, sign) for sign in slice.signs if sign.is_final and sign.window == window)
+    final.update(
+        (sign.subject, sign) for sign in slice.signs if sign.is_final and sign.window == window
+    )
     for name, value in slice.parameters.items():
         subject = Subject(name, slice.model.kind(name), value)
         yield final.get(subject) or sign_of(subject, slice.axes)
@@ -112,13 +125,13 @@ def signs_of(slice: Slice) -> Iterator[Finding]:
 
 
 def proved(slice: Slice) -> Slice:
-    """The slice, which carries the proof that every subject is in the whole open window what it needs to be.
+    """The slice, which carries the proof that every subject is in the whole open window what it
+    needs to be.
 
     Raises
     ------
-    GeometryError
-        With the parameter, or the part of the description, and the place where it is not, or where that could not be
-        decided.
+    GeometryError With the parameter, or the part of the description, and the place where it is not,
+        or where that could not be decided.
     """
     found = []
     for sign in signs_of(slice):

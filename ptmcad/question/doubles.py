@@ -21,4 +21,6 @@ def within_doubles(slice: Slice) -> Iterator[None]:
     try:
         yield
     except OverflowError as error:
-        raise ConfigError(f"{slice.name} has numbers beyond doubles, 1.8e308: there are no arrays of it") from error
+        raise ConfigError(
+            f"{slice.name} has numbers beyond doubles, 1.8e308: there are no arrays of it"
+        ) from error

@@ -23,7 +23,9 @@ from ptmcad.text.parsing import number_for
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """The part of a slice that lies on a line: parameters as expressions in ``along``, the first axis."""
+    """The part of a slice that lies on a line: parameters as expressions in ``along``, the first
+    axis.
+    """
 
     along: Axis
     at: Numbers
@@ -45,21 +47,24 @@ def varying_axis(slice: Slice, along: str, at: Mapping[str, Any]) -> tuple[int, 
 
     Raises
     ------
-    ConfigError
-        When ``along`` is no axis, or ``at`` does not name exactly the other one with an exact number.
+    ConfigError When ``along`` is no axis, or ``at`` does not name exactly the other one with an
+        exact number.
     """
     expect(slice, Slice, "slice", A_SLICE)
     names = slice.axis_names
     expect(along, str, "along", f"an axis of the slice, {names[0]} or {names[1]}")
     expect(at, Mapping, "at", "a mapping of the other axis to its value")
     if along not in names:
-        raise ConfigError(f"{along} is not an axis of the slice: choose {names[0]} or {names[1]}", key="along")
+        raise ConfigError(
+            f"{along} is not an axis of the slice: choose {names[0]} or {names[1]}", key="along"
+        )
     varying = names.index(along)
     other = names[1 - varying]
     if set(at) != {other}:
         given = ", ".join(map(str, at)) or "nothing"
         raise ConfigError(
-            f"a line along {along} needs a value of {other} and of nothing else, not of {given}", key="at"
+            f"a line along {along} needs a value of {other} and of nothing else, not of {given}",
+            key="at",
         )
     return varying, other, number_for(f"at {other}", at[other])
 
@@ -69,9 +74,9 @@ def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
 
     Raises
     ------
-    ConfigError
-        When ``along`` is no axis, ``at`` does not name exactly the other one, its value is not an exact number, a
-        parameter is not defined on the line, or springs have a free length on it.
+    ConfigError When ``along`` is no axis, ``at`` does not name exactly the other one, its value is
+        not an exact number, a parameter is not defined on the line, or springs have a free length
+        on it.
     """
     varying, other, value = varying_axis(slice, along, at)
     try:
@@ -95,7 +100,10 @@ def on_line(slice: Slice, varying: int, value: Fraction) -> dict[str, Expression
     ExpressionError
         When one has a pole all along the line.
     """
-    return {name: _restricted(expression, varying, value) for name, expression in slice.parameters.items()}
+    return {
+        name: _restricted(expression, varying, value)
+        for name, expression in slice.parameters.items()
+    }
 
 
 def _restricted(expression: Expression, varying: int, value: Fraction) -> Expression:
@@ -110,7 +118,8 @@ def _restricted(expression: Expression, varying: int, value: Fraction) -> Expres
 
 
 def compiled_on(model: Model, parameters: Expressions) -> CompiledSystem:
-    """A model's formulas on a line: variable 0 is the axis that varies, the next ones are the unknowns.
+    """A model's formulas on a line: variable 0 is the axis that varies, the next ones are the
+    unknowns.
 
     Parameters
     ----------
@@ -118,16 +127,22 @@ def compiled_on(model: Model, parameters: Expressions) -> CompiledSystem:
     """
     graph = Graph()
     given = {
-        name: expression_formula(graph, parameters[name]) if name in parameters else graph.constant(0)
+        name: expression_formula(graph, parameters[name])
+        if name in parameters
+        else graph.constant(0)
         for name in model.variables
     }
     followers = () if model.whole is None else tuple(model.whole.followers)
     unknowns = (*model.angles, *model.reals, *followers)
-    return compiled_with(model, given | {name: graph.variable(k) for k, name in enumerate(unknowns, 1)})
+    return compiled_with(
+        model, given | {name: graph.variable(k) for k, name in enumerate(unknowns, 1)}
+    )
 
 
 def has_free_lengths(slice: Slice, along: str, at: Mapping[str, Any]) -> bool:
-    """Whether a spring has a free length on the line; where none has, algebra answers, or refuses the line."""
+    """Whether a spring has a free length on the line; where none has, algebra answers, or refuses
+    the line.
+    """
     try:
         varying, _, value = varying_axis(slice, along, at)
         return have_free_lengths(slice.model, on_line(slice, varying, value))

@@ -1,14 +1,18 @@
-"""The sign of a rational function in the open window: proved, refuted by a point, or undecided with the place.
+"""The sign of a rational function in the open window: proved, refuted by a point, or undecided with
+the place.
 
-Guarantee: `Proved` is a theorem, and a `Witness` is exact: the function has the stated value at the stated point, or is
-zero within the stated distance of it. What is neither is `Undecided`, a value of its own and never taken for a proof.
+Guarantee: `Proved` is a theorem, and a `Witness` is exact: the function has the stated value at the
+stated point, or is zero within the stated distance of it. What is neither is `Undecided`, a value
+of its own and never taken for a proof.
 
-Two methods, the cheap one first. Bernstein coefficients on boxes: those on a box bound the polynomial there, and those
-at its corners are its values; the box with the lowest bound is halved next, so that the work gathers where a dip may
-be. What `MAX_SPLITS` and `MAX_WORK` leave open (zeros that only touch, thin dips, valleys) is decided by algebra,
-`ptmcad.algebra.definite`, which is loaded for this only: FLINT takes longer to load than a record to read.
+Two methods, the cheap one first. Bernstein coefficients on boxes: those on a box bound the
+polynomial there, and those at its corners are its values; the box with the lowest bound is halved
+next, so that the work gathers where a dip may be. What `MAX_SPLITS` and `MAX_WORK` leave open
+(zeros that only touch, thin dips, valleys) is decided by algebra, `ptmcad.algebra.definite`, which
+is loaded for this only: FLINT takes longer to load than a record to read.
 
-References: Farouki, "The Bernstein polynomial basis: a centennial retrospective", CAGD 29 (2012), section 4.
+References: Farouki, "The Bernstein polynomial basis: a centennial retrospective", CAGD 29 (2012),
+section 4.
 """
 
 from collections.abc import Iterator, Sequence
@@ -30,9 +34,11 @@ MAX_SPLITS = 400
 MAX_WORK = 2_000_000
 """Additions of Bernstein coefficients; less than a second."""
 READING_WORK = 10**8
-"""Work of algebra, in the unit of `ptmcad.algebra.definite.MAX_WORK`, while a record is read: some tenth of a second.
+"""Work of algebra, in the unit of `ptmcad.algebra.definite.MAX_WORK`, while a record is read: some
+tenth of a second.
 
-A reader answers at once and knows no time limit; an engine, which does, asks again without this bound.
+A reader answers at once and knows no time limit; an engine, which does, asks again without this
+bound.
 """
 MAX_SHOWN = 10**40
 """Numerators and denominators from here on are shown rounded."""
@@ -57,8 +63,8 @@ def decide(expression: Expression, axes: Axes, need: Need, max_work: int | None 
 
     Guarantee
     ---------
-    For `Need.POSITIVE` and `Need.NOT_NEGATIVE` the verdict holds where the denominator, as it is written, is not zero;
-    ask for `Need.NO_POLE` too.
+    For `Need.POSITIVE` and `Need.NOT_NEGATIVE` the verdict holds where the denominator, as it is
+    written, is not zero; ask for `Need.NO_POLE` too.
     """
     window = window_of(axes)
     middle = middle_of(window)
@@ -85,7 +91,8 @@ def place(verdict: Witness | Undecided, axes: Axes) -> str:
     """Where it is, in words: ``at rho = 1, m = 2``, or ``near``."""
     if isinstance(verdict, Witness) and verdict.distance:  # the digits that it is known by
         return "near " + ", ".join(
-            f"{axis.name} = {approximate_text(value)}" for axis, value in zip(axes, verdict.point, strict=True)
+            f"{axis.name} = {approximate_text(value)}"
+            for axis, value in zip(axes, verdict.point, strict=True)
         )
     if isinstance(verdict, Witness):
         return f"at {named(verdict.point, axes)}"
@@ -94,7 +101,9 @@ def place(verdict: Witness | Undecided, axes: Axes) -> str:
 
 def named(point: Corner, axes: Axes) -> str:
     """A point in words, numbers of many digits rounded."""
-    return ", ".join(f"{axis.name} = {number(value)}" for axis, value in zip(axes, point, strict=True))
+    return ", ".join(
+        f"{axis.name} = {number(value)}" for axis, value in zip(axes, point, strict=True)
+    )
 
 
 def number(value: Fraction) -> str:
@@ -110,14 +119,20 @@ def _decided(terms: tuple[Term, ...], window: Box, strict: bool, max_work: int |
     if not terms:
         return Witness(middle_of(window), Fraction(0)) if strict else PROVED
     found = _by_halving(terms, window, strict)
-    return _by_algebra(terms, window, strict, found, max_work) if isinstance(found, Undecided) else found
+    return (
+        _by_algebra(terms, window, strict, found, max_work)
+        if isinstance(found, Undecided)
+        else found
+    )
 
 
 # --------------------------------------------------------------------------------------------------- by halving
 
 
 class _Part(NamedTuple):
-    """A box with the Bernstein coefficients of the polynomial on it, times 2^shift and a constant: row i is for x^i."""
+    """A box with the Bernstein coefficients of the polynomial on it, times 2^shift and a constant:
+    row i is for x^i.
+    """
 
     box: Box
     rows: tuple[tuple[int, ...], ...]
@@ -151,14 +166,20 @@ def _by_halving(terms: tuple[Term, ...], window: Box, strict: bool) -> Verdict:
         for half in _halves(heappop(waiting)[2]):
             if (witness := look(half)) is not None:
                 return witness
-    return Undecided(tuple(part.box for _, _, part in sorted(waiting, key=lambda w: w[:2]))) if waiting else PROVED
+    return (
+        Undecided(tuple(part.box for _, _, part in sorted(waiting, key=lambda w: w[:2])))
+        if waiting
+        else PROVED
+    )
 
 
 def _is_proved(part: _Part, window: Box, strict: bool) -> bool:
-    """Whether the polynomial is not negative on the box; and positive but on the window's edge, if that is asked for.
+    """Whether the polynomial is not negative on the box; and positive but on the window's edge, if
+    that is asked for.
 
-    Coefficients that are not negative and not all zero are a positive polynomial inside of the box; those along a side
-    are its coefficients there, and that in a corner is its value. Sides on the window's edge do not count.
+    Coefficients that are not negative and not all zero are a positive polynomial inside of the box;
+    those along a side are its coefficients there, and that in a corner is its value. Sides on the
+    window's edge do not count.
     """
     rows = part.rows
     if min(map(min, rows)) < 0:
@@ -166,18 +187,25 @@ def _is_proved(part: _Part, window: Box, strict: bool) -> bool:
     if not strict:
         return True
     # for each axis: all coefficients, and those of the ends that are inside of the window
-    faces = [[slice(None), *(slice(i, i + 1 or None) for i, _ in _inner_ends(part, window, k))] for k in (0, 1)]
+    faces = [
+        [slice(None), *(slice(i, i + 1 or None) for i, _ in _inner_ends(part, window, k))]
+        for k in (0, 1)
+    ]
     return all(any(any(row[up]) for row in rows[across]) for across in faces[0] for up in faces[1])
 
 
 def _inner_ends(part: _Part, window: Box, k: int) -> list[tuple[int, Fraction]]:
-    """The ends of the box along an axis that are inside of the window, each after the number of its coefficients."""
+    """The ends of the box along an axis that are inside of the window, each after the number of its
+    coefficients.
+    """
     low, high = part.box[k]
     return [(i, end) for i, end in ((0, low), (-1, high)) if window[k][0] < end < window[k][1]]
 
 
 def _inner_corners(part: _Part, window: Box) -> Iterator[tuple[Corner, Fraction]]:
-    """Corners of the box inside of the window, with the polynomial's values; an axis that does not occur is halved."""
+    """Corners of the box inside of the window, with the polynomial's values; an axis that does not
+    occur is halved.
+    """
     across, up = (
         _inner_ends(part, window, k) if size > 1 else [(0, middle_of(part.box)[k])]
         for k, size in enumerate((len(part.rows), len(part.rows[0])))
@@ -206,15 +234,20 @@ def _variation(rows: Sequence[Sequence[int]]) -> int:
     return max(max(row) - min(row) for row in rows)
 
 
-def _integer_rows(terms: tuple[Term, ...], window: Box) -> tuple[tuple[tuple[int, ...], ...], Fraction]:
-    """Integers and a positive unit: the Bernstein coefficients on the window are the integers times the unit."""
+def _integer_rows(
+    terms: tuple[Term, ...], window: Box
+) -> tuple[tuple[tuple[int, ...], ...], Fraction]:
+    """Integers and a positive unit: the Bernstein coefficients on the window are the integers times
+    the unit.
+    """
     rows = bernstein(terms, window)
     denominator = lcm(*(c.denominator for row in rows for c in row))
     return tuple(tuple(int(c * denominator) for c in row) for row in rows), Fraction(1, denominator)
 
 
 def bernstein(terms: tuple[Term, ...], box: Box) -> list[list[Fraction]]:
-    """The Bernstein coefficients of a polynomial on a box; row p belongs to the p-th basis function of the first axis.
+    """The Bernstein coefficients of a polynomial on a box; row p belongs to the p-th basis function
+    of the first axis.
 
     >>> one = Fraction(1)
     >>> form = bernstein(((0, 0, -one), (1, 0, one)), ((Fraction(0), Fraction(4)), (Fraction(0), one)))
@@ -225,11 +258,16 @@ def bernstein(terms: tuple[Term, ...], box: Box) -> list[list[Fraction]]:
     n = max((j for _, j, _ in terms), default=0)
     left = [_power_in_bernstein(i, m, box[0]) for i in range(m + 1)]
     right = [_power_in_bernstein(j, n, box[1]) for j in range(n + 1)]
-    by_power = [[Fraction(0)] * (n + 1) for _ in range(m + 1)]  # of x^i, in the Bernstein basis of the second axis
+    by_power = [
+        [Fraction(0)] * (n + 1) for _ in range(m + 1)
+    ]  # of x^i, in the Bernstein basis of the second axis
     for i, j, c in terms:
         by_power[i] = [total + c * r for total, r in zip(by_power[i], right[j], strict=True)]
     return [
-        [sum((left[i][p] * by_power[i][q] for i in range(m + 1)), Fraction(0)) for q in range(n + 1)]
+        [
+            sum((left[i][p] * by_power[i][q] for i in range(m + 1)), Fraction(0))
+            for q in range(n + 1)
+        ]
         for p in range(m + 1)
     ]
 
@@ -240,7 +278,9 @@ def _power_in_bernstein(power: int, degree: int, interval: Interval) -> list[Fra
     return [
         sum(
             (
-                Fraction(comb(p, r) * comb(degree - p, power - r), comb(degree, power)) * high**r * low ** (power - r)
+                Fraction(comb(p, r) * comb(degree - p, power - r), comb(degree, power))
+                * high**r
+                * low ** (power - r)
                 for r in range(max(0, power - degree + p), min(p, power) + 1)
             ),
             Fraction(0),
@@ -252,9 +292,13 @@ def _power_in_bernstein(power: int, degree: int, interval: Interval) -> list[Fra
 # --------------------------------------------------------------------------------------------------- by algebra
 
 
-def _by_algebra(terms: tuple[Term, ...], window: Box, strict: bool, left: Undecided, max_work: int | None) -> Verdict:
+def _by_algebra(
+    terms: tuple[Term, ...], window: Box, strict: bool, left: Undecided, max_work: int | None
+) -> Verdict:
     """The same, for what halving has left."""
-    from ptmcad.algebra import definite  # only here: few records need it, and FLINT takes long to load
+    from ptmcad.algebra import (
+        definite,
+    )  # only here: few records need it, and FLINT takes long to load
     from ptmcad.algebra.polynomials import from_terms
     from ptmcad.text.flint_numbers import from_fraction, to_fraction
 

@@ -1,7 +1,9 @@
-"""The savings: what a computation leaves out because a slice does not need it, each with the reason, by name.
+"""The savings: what a computation leaves out because a slice does not need it, each with the
+reason, by name.
 
-Guarantee: with any of them switched off the regions, their counts and their neighbours are the same, and the bounds of
-areas overlap. Names are stable; a result's plan says which savings were made and which were kept.
+Guarantee: with any of them switched off the regions, their counts and their neighbours are the
+same, and the bounds of areas overlap. Names are stable; a result's plan says which savings were
+made and which were kept.
 """
 
 from __future__ import annotations
@@ -16,7 +18,9 @@ from ptmcad.text.syntax import did_you_mean
 ALL = "all"
 """Stands for every saving."""
 GENERAL_SAVING = "imports"
-"""The saving that is made on every slice alike: results state it, and what explains a slice leaves it out."""
+"""The saving that is made on every slice alike: results state it, and what explains a slice leaves
+it out.
+"""
 IMPORTED = ("numpy", "matplotlib.figure", "sympy", "numba")
 """What the saving "imports" leaves out where nothing needs it."""
 
@@ -46,7 +50,11 @@ class Saving(NamedTuple):
 
 _WHAT_AND_WHY = {
     Engine.EXACT: (
-        ("sign-curve", "projection of H11 = 0", "where it vanishes off the critical curves, det H < 0"),
+        (
+            "sign-curve",
+            "projection of H11 = 0",
+            "where it vanishes off the critical curves, det H < 0",
+        ),
         (
             "hermite-matrix",
             "determinant of the Hermite matrix",
@@ -71,22 +79,38 @@ _WHAT_AND_WHY = {
         ),
     ),
     Engine.CERTIFIED: (
-        ("folds-of-saddles", "folds of saddles and maxima", "the number of stable equilibria does not change"),
+        (
+            "folds-of-saddles",
+            "folds of saddles and maxima",
+            "the number of stable equilibria does not change",
+        ),
         (
             "cones-and-creases",
             "points where a spring has no length",
             "no minimum appears or vanishes there without a fold",
         ),
-        ("dependent-equations", "boxes on which dependent equations do not vanish", "they vanish at every equilibrium"),
+        (
+            "dependent-equations",
+            "boxes on which dependent equations do not vanish",
+            "they vanish at every equilibrium",
+        ),
         (
             "mirror-images",
             "mirror images of folds, and what is singular on the mirror",
             "an exchange or a reflection of the unknowns leaves the slice as it is",
         ),
     ),
-    Engine.ANY: (("imports", "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),),
+    Engine.ANY: (
+        (
+            "imports",
+            "imports of numpy, matplotlib, sympy and numba",
+            "nothing needs them before it asks",
+        ),
+    ),
 }
-SAVINGS = tuple(Saving(name, engine, *rest) for engine, table in _WHAT_AND_WHY.items() for name, *rest in table)
+SAVINGS = tuple(
+    Saving(name, engine, *rest) for engine, table in _WHAT_AND_WHY.items() for name, *rest in table
+)
 """Every saving, in the order in which the engines make them."""
 BY_NAME = {saving.name: saving for saving in SAVINGS}
 

@@ -1,6 +1,7 @@
 """Problem records by path or, of those that are shipped, by name.
 
-Guarantee: a name is found from anywhere, in a wheel and in a source tree; a file of that name wins over a shipped one.
+Guarantee: a name is found from anywhere, in a wheel and in a source tree; a file of that name wins
+over a shipped one.
 """
 
 from __future__ import annotations
@@ -20,15 +21,21 @@ RecordSource = str | Path | Mapping[str, Any]
 
 
 def shipped_records() -> dict[str, Path]:
-    """The records of ``configs/`` by name: of the folder that a wheel has, or else of the source tree."""
+    """The records of ``configs/`` by name: of the folder that a wheel has, or else of the source
+    tree.
+    """
     package = Path(__file__).resolve().parents[1]
-    folder = next(folder for folder in (package / "configs", package.parent / "configs") if folder.is_dir())
+    folder = next(
+        folder for folder in (package / "configs", package.parent / "configs") if folder.is_dir()
+    )
     return {path.stem: path for path in sorted(folder.rglob("*.yaml"))}
 
 
 def record_file(record: str | Path) -> Path:
     """The file of a record that is named by its path or, of a shipped one, by its name."""
-    return Path(record) if os.path.isfile(record) else shipped_records().get(str(record), Path(record))
+    return (
+        Path(record) if os.path.isfile(record) else shipped_records().get(str(record), Path(record))
+    )
 
 
 def record_tree(record: str | Path) -> Tree:
@@ -44,5 +51,10 @@ def record_tree(record: str | Path) -> Tree:
     except ConfigError as error:
         if not isinstance(error.__cause__, FileNotFoundError):
             raise
-        hint = did_you_mean(Path(record).stem, shipped_records()) or ": `ptmcad mechanisms` lists those"
-        raise ConfigError(f"{error.message}, and no record of this name is shipped{hint}", file=error.file) from error
+        hint = (
+            did_you_mean(Path(record).stem, shipped_records())
+            or ": `ptmcad mechanisms` lists those"
+        )
+        raise ConfigError(
+            f"{error.message}, and no record of this name is shipped{hint}", file=error.file
+        ) from error

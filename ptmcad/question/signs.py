@@ -1,7 +1,9 @@
-"""What is known of the signs of a question's quantities in its window, as data that the question carries.
+"""What is known of the signs of a question's quantities in its window, as data that the question
+carries.
 
-Guarantee: a `Finding` says of which function and in which window it holds, so that it cannot be taken for that of
-another one: a question whose parameters or axes were changed by hand carries none of the new ones.
+Guarantee: a `Finding` says of which function and in which window it holds, so that it cannot be
+taken for that of another one: a question whose parameters or axes were changed by hand carries none
+of the new ones.
 """
 
 from __future__ import annotations
@@ -33,8 +35,8 @@ class Witness(NamedTuple):
     Attributes
     ----------
     value : of the function there, or of its denominator when a pole is the matter.
-    distance : 0, or, when the value is a zero at a point with irrational coordinates, how far in each coordinate the
-        zero may be from ``point``.
+    distance : 0, or, when the value is a zero at a point with irrational coordinates, how far in
+        each coordinate the zero may be from ``point``.
     other : for a pole, a point at which the denominator has the other sign, if one was found.
     """
 

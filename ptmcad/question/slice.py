@@ -1,7 +1,9 @@
-"""A slice: a two-parameter family of mechanisms over a rectangular window, with exact rational data.
+"""A slice: a two-parameter family of mechanisms over a rectangular window, with exact rational
+data.
 
-Guarantee: a `Slice` that `config` has built is complete (every parameter of the mechanism has a value as a
-rational function of the two axes), its window is a nonempty rectangle, and no number in it was rounded.
+Guarantee: a `Slice` that `config` has built is complete (every parameter of the mechanism has a
+value as a rational function of the two axes), its window is a nonempty rectangle, and no number in
+it was rounded.
 """
 
 from __future__ import annotations
@@ -27,7 +29,9 @@ MAX_UNIT = 20
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One axis of the window: the open interval ``low < name < high`` (its ends belong to the picture's edge)."""
+    """One axis of the window: the open interval ``low < name < high`` (its ends belong to the
+    picture's edge).
+    """
 
     name: str
     low: Fraction
@@ -71,16 +75,18 @@ class Slice:
     name : used for the names of the files that are written.
     model : the mechanism, or another parametric system.
     axes : the two axes, first the horizontal one.
-    parameters : every parameter of the model as an `Expression` (a rational function in the two axes, exponent
-        pairs in the order of ``axes``). An axis that is itself a parameter maps to itself. The free lengths are among
-        them unless all of them are zero everywhere.
+    parameters : every parameter of the model as an `Expression` (a rational function in the two
+        axes, exponent pairs in the order of ``axes``). An axis that is itself a parameter maps to
+        itself. The free lengths are among them unless all of them are zero everywhere.
     count : which count distinguishes two regions.
     title : the picture's title, the name when empty.
     reference : published answers, as read from the record; never used by the computation.
-    text : each parameter as the user wrote it, for reports; and any of k, l0, l0_1, l0_2 and l0_3 that such a text
-        names, even where it is not among the parameters. An axis has only the text of the parameter that it is.
+    text : each parameter as the user wrote it, for reports; and any of k, l0, l0_1, l0_2 and l0_3
+        that such a text names, even where it is not among the parameters. An axis has only the text
+        of the parameter that it is.
     units : of ``length`` and ``force``, where they are declared; nothing but text depends on them.
-    signs : what is proved of these parameters in this window, and what is not (`ptmcad.question.domain`).
+    signs : what is proved of these parameters in this window, and what is not
+        (`ptmcad.question.domain`).
     """
 
     name: str
@@ -114,12 +120,16 @@ class Slice:
 
     @property
     def has_free_lengths(self) -> bool:
-        """Whether some spring has a free length that is not zero everywhere; algebra cannot answer then."""
+        """Whether some spring has a free length that is not zero everywhere; algebra cannot answer
+        then.
+        """
         return have_free_lengths(self.model, self.parameters)
 
     @property
     def heading(self) -> str:
-        """The title; without one, what is fixed and how parameters depend on the axes, such as "L1 = 1, k = 100"."""
+        """The title; without one, what is fixed and how parameters depend on the axes, such as
+        "L1 = 1, k = 100".
+        """
         return self.title or ", ".join(self.fixed) or self.name
 
     @property
@@ -128,7 +138,10 @@ class Slice:
         return tuple(self._fixed())
 
     def _fixed(self) -> Iterator[str]:
-        values = {name: expression.to_text(self.axis_names) for name, expression in self.parameters.items()}
+        values = {
+            name: expression.to_text(self.axis_names)
+            for name, expression in self.parameters.items()
+        }
         values = merged(values, self.model)
         loads = [name for name in values if name in self.model.forces]
         for name, value in values.items():
@@ -143,19 +156,24 @@ _Value = TypeVar("_Value", bound=Hashable)
 
 
 def merged(values: Mapping[str, _Value], model: Model) -> dict[str, _Value]:
-    """Values as shown: a shorthand in place of its parameters where these agree, and not beside them where not."""
+    """Values as shown: a shorthand in place of its parameters where these agree, and not beside
+    them where not.
+    """
     shown = dict(values)
     for shorthand, names in model.shorthands.items():
         own = {shown[name] for name in names if name in shown}
         if len(own) == 1:
-            shown = {name: value for name, value in shown.items() if name not in names} | {shorthand: own.pop()}
+            shown = {name: value for name, value in shown.items() if name not in names} | {
+                shorthand: own.pop()
+            }
         else:
             shown.pop(shorthand, None)
     return shown
 
 
 def check_names(model: Model, parameters: Mapping[str, object]) -> None:
-    """Check that there is a value of each parameter that the model uses, but of free lengths, and of no others.
+    """Check that there is a value of each parameter that the model uses, but of free lengths, and
+    of no others.
 
     Of a mechanism that is known by its name alone nothing is said.
 
@@ -172,7 +190,9 @@ def check_names(model: Model, parameters: Mapping[str, object]) -> None:
 
 
 def have_free_lengths(model: Model, parameters: Expressions) -> bool:
-    """Whether some spring has a free length that is not zero everywhere; a parameter that is missing is zero."""
+    """Whether some spring has a free length that is not zero everywhere; a parameter that is
+    missing is zero.
+    """
     return bool(relaxed_springs(model, parameters))
 
 
@@ -188,9 +208,15 @@ def count_fault(count: Count, model: Model, parameters: Expressions) -> str:
     kind, mechanism, predicate = count.kind, model.whole, count.kind.predicate
     if predicate is not None and mechanism is None:
         return predicate.of_systems
-    if predicate is not None and predicate.needs_free_lengths and not have_free_lengths(model, parameters):
+    if (
+        predicate is not None
+        and predicate.needs_free_lengths
+        and not have_free_lengths(model, parameters)
+    ):
         return predicate.without_free_lengths
-    if predicate is not None and mechanism is not None and mechanism.followers:  # margins are in the unknowns alone
+    if (
+        predicate is not None and mechanism is not None and mechanism.followers
+    ):  # margins are in the unknowns alone
         return f"with x-joints {count.value} is not counted yet: count stable or total"
     if kind.needs in model.criterion.counts:
         return ""
@@ -198,13 +224,13 @@ def count_fault(count: Count, model: Model, parameters: Expressions) -> str:
         return "solutions of equations have no index, which is that of a potential's Hessian: count total"
     if mechanism is None:
         return "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"
-    return (
-        f"{foreign(mechanism)} that depends on another unknown has no potential, which says what is stable: count total"
-    )
+    return f"{foreign(mechanism)} that depends on another unknown has no potential, which says what is stable: count total"
 
 
 def moved(model: Model, parameters: Expressions) -> tuple[str, ...]:
-    """The unknowns on which a moment, or a force on a length, does work that is in no stored energy."""
+    """The unknowns on which a moment, or a force on a length, does work that is in no stored
+    energy.
+    """
     known = dict.fromkeys(model.parameters, constant(0)) | dict(parameters)
     split = split_moments(model)
     acting = [m for m in split.steady if value_among(m.value, known, constant).numerator]

@@ -1,7 +1,9 @@
-"""A sweep: which values some parameters take together, as products of lists and progressions, one after another.
+"""A sweep: which values some parameters take together, as products of lists and progressions, one
+after another.
 
-Guarantee: values are exact, and the members of a sweep are numbered from 0 in the order of the record: products in
-their order, of each the last parameter's value changing fastest. Nothing is listed that a progression describes.
+Guarantee: values are exact, and the members of a sweep are numbered from 0 in the order of the
+record: products in their order, of each the last parameter's value changing fastest. Nothing is
+listed that a progression describes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""The changes of a family as text for the terminal: a line for each, with what is known of its value.
+"""The changes of a family as text for the terminal: a line for each, with what is known of its
+value.
 
 Guarantee: the digits of an exact value are right; the ends of an enclosure are rounded outwards.
 """
@@ -18,9 +19,7 @@ _OTHERS = 8
 def changes_table(found: Changes) -> str:
     """Value, how it is known, and what changes, line by line; then what is known of completeness."""
     free = found.free
-    title = (
-        f"changes of the arrangement for {free.name} between {shortest_text(free.low)} and {shortest_text(free.high)}"
-    )
+    title = f"changes of the arrangement for {free.name} between {shortest_text(free.low)} and {shortest_text(free.high)}"
     rows = [(value_text(change), _kind(change), change.words) for change in found.changes]
     width = max((len(value) for value, _, _ in rows), default=0)
     cells = [
@@ -36,7 +35,9 @@ def changes_table(found: Changes) -> str:
     if found.others:
         listed = ", ".join(number.text(6) for number in found.others[:_OTHERS])
         more = f" and {len(found.others) - _OTHERS} more" if len(found.others) > _OTHERS else ""
-        lines.append(f"where curves meet or turn and the arrangement is the same on both sides: {listed}{more}")
+        lines.append(
+            f"where curves meet or turn and the arrangement is the same on both sides: {listed}{more}"
+        )
     return "\n".join(lines)
 
 

@@ -9,7 +9,9 @@ WIDTH = 100
 """Characters of a line."""
 
 
-def aligned(rows: Sequence[Sequence[str]], justified: Callable[[str, int], str] = str.ljust) -> list[str]:
+def aligned(
+    rows: Sequence[Sequence[str]], justified: Callable[[str, int], str] = str.ljust
+) -> list[str]:
     """Rows as lines with columns of equal width."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return ["  ".join(map(justified, row, widths)).rstrip() for row in rows]

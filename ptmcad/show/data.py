@@ -1,8 +1,8 @@
 """A map as tables of numbers: for data frames, as CSV and as NumPy's NPZ.
 
-Guarantee: the same map gives the same text. Numbers are the floats nearest to the exact ones, areas' bounds rounded
-outwards. Between two polylines there is a line without numbers (``nan``), where MATLAB, pgfplots and matplotlib break
-a line.
+Guarantee: the same map gives the same text. Numbers are the floats nearest to the exact ones,
+areas' bounds rounded outwards. Between two polylines there is a line without numbers (``nan``),
+where MATLAB, pgfplots and matplotlib break a line.
 """
 
 from __future__ import annotations
@@ -37,7 +37,9 @@ _OF_ITS_OWN = {
 
 
 def axis_columns(result: RegionMap) -> tuple[str, str]:
-    """The names of the coordinates' columns: the axes', with an underscore where a table has such a column already."""
+    """The names of the coordinates' columns: the axes', with an underscore where a table has such a
+    column already.
+    """
     first, second = (f"{n}_" if n in _OF_ITS_OWN else n for n in result.slice.axis_names)
     return first, second
 
@@ -114,7 +116,8 @@ _OPTIONS: dict[str, tuple[str, ...]] = {"boundaries": ("tolerance",), "grid": ("
 
 
 def data_frame(result: RegionMap, what: str, options: Mapping[str, Any]) -> DataFrame:
-    """One of the tables as a data frame; whole numbers that may be missing are pandas' own ``Int64``.
+    """One of the tables as a data frame; whole numbers that may be missing are pandas' own
+    ``Int64``.
 
     Raises
     ------
@@ -130,10 +133,14 @@ def data_frame(result: RegionMap, what: str, options: Mapping[str, Any]) -> Data
     if what == "grid":
         grid: DataFrame = _pandas().DataFrame(grid_columns(result, result.grid(**options)))
         return grid
-    return pandas_frame(rows_of(result, what, lambda: result.boundaries(**options)), None, _MAY_BE_MISSING)
+    return pandas_frame(
+        rows_of(result, what, lambda: result.boundaries(**options)), None, _MAY_BE_MISSING
+    )
 
 
-def pandas_frame(rows: Iterable[Row], columns: Sequence[str] | None, whole: Iterable[str]) -> DataFrame:
+def pandas_frame(
+    rows: Iterable[Row], columns: Sequence[str] | None, whole: Iterable[str]
+) -> DataFrame:
     """Rows as a data frame.
 
     Parameters
@@ -163,7 +170,9 @@ def _pandas() -> Any:
 _MAY_BE_MISSING = ("stable", "total", *PREDICATES, "component", "left", "right", "stack")
 
 
-def rows_of(result: RegionMap, what: str, boundaries: Callable[[], Sequence[Boundary]]) -> Iterable[Row]:
+def rows_of(
+    result: RegionMap, what: str, boundaries: Callable[[], Sequence[Boundary]]
+) -> Iterable[Row]:
     """The rows of one of the tables but that of a grid."""
     if what == "boundaries":
         return boundary_rows(result, boundaries())
@@ -190,10 +199,10 @@ def csv_text(rows: Iterable[Row], names: Sequence[str] | None = None) -> str:
 def npz_bytes(result: RegionMap, boundaries: Sequence[Boundary], grid: Grid) -> bytes:
     """The map as arrays in NumPy's format, the same bytes for the same map.
 
-    ``boundary`` has shape (n, 2) with rows of nan between polylines, ``piece`` their numbers, ``left`` and ``right``
-    the regions on their two sides (-1: none); ``x``, ``y``, ``cell``, ``region``, ``stable``, ``total`` are the
-    grid's; ``area`` has shape (regions, 2), ``region_stable`` and ``region_total`` shape (regions,); ``axes`` are the
-    names.
+    ``boundary`` has shape (n, 2) with rows of nan between polylines, ``piece`` their numbers,
+    ``left`` and ``right`` the regions on their two sides (-1: none); ``x``, ``y``, ``cell``,
+    ``region``, ``stable``, ``total`` are the grid's; ``area`` has shape (regions, 2),
+    ``region_stable`` and ``region_total`` shape (regions,); ``axes`` are the names.
     """
     import numpy as np
 
@@ -211,7 +220,8 @@ def npz_bytes(result: RegionMap, boundaries: Sequence[Boundary], grid: Grid) -> 
         "separates": np.array([b.separates for b in boundaries], dtype=np.bool_),
         "distance": np.array([b.distance for b in boundaries], dtype=np.float64),
         "area": np.array(
-            [(_rounded(r.area[0], -inf), _rounded(r.area[1], inf)) for r in result.regions], dtype=np.float64
+            [(_rounded(r.area[0], -inf), _rounded(r.area[1], inf)) for r in result.regions],
+            dtype=np.float64,
         ).reshape(-1, 2),
         "region_stable": _labels(r.stable for r in result.regions),
         "region_total": _labels(r.total for r in result.regions),
@@ -229,21 +239,27 @@ def _zipped(arrays: Mapping[str, Any]) -> bytes:
 
 
 def field_csv(field: Field) -> str:
-    """A field with a line for each pixel, row after row from the bottom; empty where there is no value."""
+    """A field with a line for each pixel, row after row from the bottom; empty where there is no
+    value.
+    """
     x, y = (f"{n}_" if n in ("value", "region") else n for n in field.names)
     rows = (
         {x: u, y: v, "value": "" if isnan(value) else value, "region": region}
-        for v, values, regions in zip(field.y.tolist(), field.values.tolist(), field.region.tolist(), strict=True)
+        for v, values, regions in zip(
+            field.y.tolist(), field.values.tolist(), field.region.tolist(), strict=True
+        )
         for u, value, region in zip(field.x.tolist(), values, regions, strict=True)
     )
     return csv_text(rows)
 
 
 def field_npz(field: Field) -> bytes:
-    """A field as arrays: ``x``, ``y``, ``values`` and ``region`` of shape (rows, columns), ``axes`` the names.
+    """A field as arrays: ``x``, ``y``, ``values`` and ``region`` of shape (rows, columns), ``axes``
+    the names.
 
-    ``jump_right``, shape (rows, columns - 1), and ``jump_above``, shape (rows - 1, columns), say where the branch
-    changes between a pixel and its neighbour, as `Field.jumps` does; they are missing where it was not looked for.
+    ``jump_right``, shape (rows, columns - 1), and ``jump_above``, shape (rows - 1, columns), say
+    where the branch changes between a pixel and its neighbour, as `Field.jumps` does; they are
+    missing where it was not looked for.
     """
     import numpy as np
 

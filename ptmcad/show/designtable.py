@@ -59,7 +59,9 @@ def value_text(value: Enclosure) -> str:
     for digits in range(DIGITS, 1, -1):
         if value.settles(digits):
             return value.text(digits)
-    low, high = (decimal(end, up, _BOUND_DIGITS) for end, up in ((value.low, False), (value.high, True)))
+    low, high = (
+        decimal(end, up, _BOUND_DIGITS) for end, up in ((value.low, False), (value.high, True))
+    )
     return f"{low} to {high}"
 
 
@@ -74,4 +76,6 @@ def _proof(found: BestDesign) -> str:
         return f"no design has more than {bound}, {found.reason}"
     share = f"{decimal(excess * 100, up=True, digits=2)} % more"
     words = f"no design has more than {bound}, {share}, {found.reason}"
-    return words if found.proved else f"{words}; not within {shortest_text(found.tolerance * 100)} %"
+    return (
+        words if found.proved else f"{words}; not within {shortest_text(found.tolerance * 100)} %"
+    )

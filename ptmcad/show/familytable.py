@@ -19,9 +19,13 @@ def family_table(family: FamilyMap) -> str:
     width = max(len(family.free.name), *(len(value) for value in values))
     lines = [f"{family.free.name:>{width}}  regions  cells  areas by count"]
     for value, result in zip(values, family.members, strict=True):
-        lines.append(f"{value:>{width}}  {len(result.regions):>7}  {len(result.cells):>5}  {_areas(result)}")
+        lines.append(
+            f"{value:>{width}}  {len(result.regions):>7}  {len(result.cells):>5}  {_areas(result)}"
+        )
     if family.surfaces:
-        sizes = ", ".join(f"{several(len(terms), 'term')} of degree {_degree(terms)}" for terms in family.surfaces)
+        sizes = ", ".join(
+            f"{several(len(terms), 'term')} of degree {_degree(terms)}" for terms in family.surfaces
+        )
         many = "surfaces" if len(family.surfaces) > 1 else "surface"
         lines.append(f"computed once for all: {many} where solutions meet, {sizes}")
     if family.changes is not None:

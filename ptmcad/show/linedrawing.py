@@ -1,4 +1,5 @@
-"""A mechanism as a line drawing, in characters or as SVG: bars, springs, supports and the points' names.
+"""A mechanism as a line drawing, in characters or as SVG: bars, springs, supports and the points'
+names.
 
 Springs between directions are spirals, where their joints are known (`ptmcad.model.joints`).
 
@@ -26,7 +27,11 @@ SPIRAL = (4.5, 13.0, 3.0)
 """Inner and outer radius of a spiral, and the gap between two at one joint."""
 _ANGLES = (0.9, 2.1, 0.3, 1.6)
 """Of the pose that is drawn, in turn: no two are alike, so that bars do not hide each other."""
-_SUPPORTS = {Support.PIN: "fixed", Support.SLIDER_X: "slides along x", Support.SLIDER_Y: "slides along y"}
+_SUPPORTS = {
+    Support.PIN: "fixed",
+    Support.SLIDER_X: "slides along x",
+    Support.SLIDER_Y: "slides along y",
+}
 Place = tuple[float, float]
 
 
@@ -58,11 +63,15 @@ def approximate_places(mechanism: Mechanism) -> dict[str, Place]:
 
 
 def approximate_text(mechanism: Mechanism) -> str:
-    """The drawing in characters: bars ``#``, springs ``.``, points ``o`` or, with spirals, ``@``, and names."""
+    """The drawing in characters: bars ``#``, springs ``.``, points ``o`` or, with spirals, ``@``,
+    and names.
+    """
     canvas = [[" "] * WIDTH for _ in range(HEIGHT)]
     at = {
         name: (round(x * (WIDTH - 6)), round((1 - y) * (HEIGHT - 1)))
-        for name, (x, y) in _fitted(approximate_places(mechanism), 2.0 * (HEIGHT - 1) / (WIDTH - 6)).items()
+        for name, (x, y) in _fitted(
+            approximate_places(mechanism), 2.0 * (HEIGHT - 1) / (WIDTH - 6)
+        ).items()
     }
     for pairs, character in ((mechanism.spring_ends, "."), (mechanism.bars, "#")):
         for start, end in pairs:
@@ -78,10 +87,15 @@ def approximate_text(mechanism: Mechanism) -> str:
 
 def _fitted(places: Mapping[str, Place], shape: float) -> dict[str, Place]:
     """Places in the unit square that stands for a frame as many times as high as wide."""
-    (left, right), (low, high) = ((min(ends), max(ends)) for ends in zip(*places.values(), strict=True))
+    (left, right), (low, high) = (
+        (min(ends), max(ends)) for ends in zip(*places.values(), strict=True)
+    )
     unit = max(right - left, (high - low) / shape) or 1.0
     across, up = (1 - (right - left) / unit) / 2, (1 - (high - low) / (unit * shape)) / 2
-    return {name: (across + (x - left) / unit, up + (y - low) / (unit * shape)) for name, (x, y) in places.items()}
+    return {
+        name: (across + (x - left) / unit, up + (y - low) / (unit * shape))
+        for name, (x, y) in places.items()
+    }
 
 
 def _line(start: tuple[int, int], end: tuple[int, int]) -> Iterator[tuple[int, int]]:
@@ -97,7 +111,9 @@ def approximate_svg(mechanism: Mechanism) -> str:
         name: (MARGIN + inner * x, SIDE - MARGIN - inner * y)
         for name, (x, y) in _fitted(approximate_places(mechanism), 1.0).items()
     }
-    parts = [f'<title>{escape(mechanism.name)}</title><rect width="{SIDE:g}" height="{SIDE:g}" fill="white"/>']
+    parts = [
+        f'<title>{escape(mechanism.name)}</title><rect width="{SIDE:g}" height="{SIDE:g}" fill="white"/>'
+    ]
     for start, end in mechanism.bars:
         parts.append(_path([at[start], at[end]], "#17365d", 5))
     for start, end in mechanism.spring_ends:

@@ -39,7 +39,9 @@ def picture(result: RegionMap, kind: str) -> bytes | None:
     """The map's picture as the content of a PNG or SVG; None where there is nothing to draw yet."""
     if not result.cells:
         return None
-    image: bytes = render.content(render.plot(result, None, DEFAULT, False, MAP_DPI, {}), kind, dpi=MAP_DPI)
+    image: bytes = render.content(
+        render.plot(result, None, DEFAULT, False, MAP_DPI, {}), kind, dpi=MAP_DPI
+    )
     return image
 
 
@@ -50,7 +52,13 @@ def map_html(result: RegionMap) -> str:
     rows = [_region_row(result, k, r) for k, r in enumerate(result.regions[:MAX_ROWS])]
     if len(result.regions) > MAX_ROWS:
         rows.append(("…", f"{len(result.regions) - MAX_ROWS} more", "", "", ""))
-    head = ("region", result.slice.count.value, "in all", count_words("({index})", result.slice.model), "area")
+    head = (
+        "region",
+        result.slice.count.value,
+        "in all",
+        count_words("({index})", result.slice.model),
+        "area",
+    )
     return f"<div><b>{escape(result.slice.heading)}</b>, {result.status.value}</div>{shown}{_table(head, rows)}"
 
 
@@ -114,7 +122,9 @@ def field_png(field: Field) -> bytes:
 
 def field_words(field: Field) -> str:
     """What of the field is known."""
-    missed = f" {field.missed} pixels have such a solution that was not found." if field.missed else ""
+    missed = (
+        f" {field.missed} pixels have such a solution that was not found." if field.missed else ""
+    )
     agreeing = f"{field.checked} pixels agree with exact poses to {field.difference:.1g}"
     return f"{render.description(field)} {agreeing}.{missed}"
 

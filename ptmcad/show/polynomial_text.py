@@ -1,8 +1,9 @@
-"""A polynomial in the two axes as the code of a computer algebra system, as LaTeX, or as plain text.
+"""A polynomial in the two axes as the code of a computer algebra system, as LaTeX, or as plain
+text.
 
-Guarantee: what is written stands for exactly the polynomial, term by term in its own order, whatever the length of its
-coefficients; the axes' names are changed only where the language reserves or cannot spell them, and two names stay
-different.
+Guarantee: what is written stands for exactly the polynomial, term by term in its own order,
+whatever the length of its coefficients; the axes' names are changed only where the language
+reserves or cannot spell them, and two names stay different.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ _POWERS = {Style.SYMPY: "{}**{}", Style.LATEX: "{}^{{{}}}"}
 _PRODUCTS = {Style.QEPCAD: " ", Style.LATEX: " "}
 
 _MAX_PYTHON_NUMBER = 4000
-"""Digits; Python refuses decimal numbers of more than 4300 digits in a program, but takes hexadecimal ones."""
+"""Digits; Python refuses decimal numbers of more than 4300 digits in a program, but takes
+hexadecimal ones.
+"""
 _PYTHON_TAKEN = re.compile("|".join((*kwlist, "sympy", "variety")))
 _MAPLE_TAKEN = re.compile(
     "and|assuming|break|by|catch|description|do|done|elif|else|end|error|export|fi|finally|for|from|global|if|implies|in|"
@@ -96,7 +99,8 @@ def polynomial_lines(
 ) -> list[str]:
     """The polynomial on lines of at most ``width`` characters, broken before the sign of a term.
 
-    A term that is longer than that has a line of its own. Joined by blanks the lines are `polynomial_text`.
+    A term that is longer than that has a line of its own. Joined by blanks the lines are
+    `polynomial_text`.
     """
     lines: list[str] = []
     for term in _terms(polynomial, symbols(names, Style(style)), Style(style)):
@@ -120,7 +124,9 @@ def _number(natural: int, style: Style) -> str:
 
 
 def _spelled(name: str, underscore: str, taken: re.Pattern[str], end: str) -> str:
-    """A name with another sign for its underscores, and one more at its end where the language has the name already."""
+    """A name with another sign for its underscores, and one more at its end where the language has
+    the name already.
+    """
     symbol = name.replace("_", underscore)
     return f"{symbol}{end}" if taken.fullmatch(symbol) else symbol
 

@@ -1,7 +1,7 @@
 """The equilibria at a point as a table for the terminal.
 
-Guarantee: every digit is right; lines have at most `WIDTH` characters unless a single column needs more. What is not
-decided is said, of a pose and of all of them.
+Guarantee: every digit is right; lines have at most `WIDTH` characters unless a single column needs
+more. What is not decided is said, of a pose and of all of them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,9 @@ _MAX_BOUNDS = 6
 
 
 def kind_of(pose: Pose, model: Model) -> str:
-    """Stable, saddle, maximum or degenerate; of a system of equations stable, unstable or just a solution."""
+    """Stable, saddle, maximum or degenerate; of a system of equations stable, unstable or just a
+    solution.
+    """
     return "degenerate" if pose.multiplicity > 1 else model.criterion.kind(pose.stable, pose.index)
 
 
@@ -35,7 +37,8 @@ def table(poses: Poses, digits: int | None = None) -> str:
 
     Parameters
     ----------
-    digits : significant digits, at most those that the poses were computed with; all of them unless given.
+    digits : significant digits, at most those that the poses were computed with; all of them unless
+        given.
     """
     shown = poses.digits if digits is None else digits
     lines = [*wrapped("point", _point(poses)), *wrapped("result", _summary(poses))]
@@ -45,7 +48,15 @@ def table(poses: Poses, digits: int | None = None) -> str:
         notes = {"units": _units(poses), "energy": [_energy_note(poses)]}
         notes |= {label: [note] for label, note in poses.equilibria[0].notes.items()}
         notes |= {each.head: [each.note] for each in _columns(poses).values()}
-        lines += ["", *(line for label, parts in notes.items() if any(parts) for line in wrapped(label, parts))]
+        lines += [
+            "",
+            *(
+                line
+                for label, parts in notes.items()
+                if any(parts)
+                for line in wrapped(label, parts)
+            ),
+        ]
         lines += _bounds(poses)
     return "\n".join(lines)
 
@@ -59,7 +70,10 @@ def _units(poses: Poses) -> list[str]:
         units.get(what) or (f"that of {name}" if name else "")
         for what, name in zip(("length", "force"), mechanism.units, strict=True)
     )
-    pose, product = poses.equilibria[0], declared_units(mechanism, units).get("energy", "their product")
+    pose, product = (
+        poses.equilibria[0],
+        declared_units(mechanism, units).get("energy", "their product"),
+    )
     parts = {
         "energies": pose.energy,
         "moments": mechanism.energy_unit in {spring.unit for spring in mechanism.elastic},
@@ -74,7 +88,11 @@ def _units(poses: Poses) -> list[str]:
     return [
         *(f"{what} in {unit}" for what, unit in measured.items() if what and unit),
         # only of what is built in it is known where an angle is measured from
-        *([f"angles between rod and base, {pivots}"] if pivots and mechanism.name in built_in() else []),
+        *(
+            [f"angles between rod and base, {pivots}"]
+            if pivots and mechanism.name in built_in()
+            else []
+        ),
     ]
 
 
@@ -91,19 +109,29 @@ def _point(poses: Poses) -> list[str]:
     values = merged(values, poses.model)
     loads = [name for name in values if name in poses.model.forces]
     parts = [f"{name} = {value}" for name, value in values.items() if name not in loads]
-    return parts + ([f"{n} = {values[n]}" for n in loads if values[n] != "0"] or (["no load"] if loads else []))
+    return parts + (
+        [f"{n} = {values[n]}" for n in loads if values[n] != "0"] or (["no load"] if loads else [])
+    )
 
 
 def _bounds(poses: Poses) -> list[str]:
     """The quantities that may be zero, with what is proved of them."""
     where: dict[str, list[str]] = {}
-    for header, unit, entries in (quantity for group in _groups(poses) for quantity in group if quantity[1] != "rad"):
+    for header, unit, entries in (
+        quantity for group in _groups(poses) for quantity in group if quantity[1] != "rad"
+    ):
         for n, x in enumerate(entries, 1):
             if isinstance(x, Enclosure) and x.exact is None and x.low <= 0 <= x.high:
-                where.setdefault(f"|{header}| < {exact_text(x.high)}{unit and f' {unit}'}", []).append(str(n))
+                where.setdefault(
+                    f"|{header}| < {exact_text(x.high)}{unit and f' {unit}'}", []
+                ).append(str(n))
     said = [f"{bound} in {noun(poses.model, len(n))} {', '.join(n)}" for bound, n in where.items()]
     more = [f"{len(said) - _MAX_BOUNDS} more such bounds"] if len(said) > _MAX_BOUNDS else []
-    return wrapped("bounds", ["of what may be zero: " + said[0], *said[1:_MAX_BOUNDS], *more], "; ") if said else []
+    return (
+        wrapped("bounds", ["of what may be zero: " + said[0], *said[1:_MAX_BOUNDS], *more], "; ")
+        if said
+        else []
+    )
 
 
 _KINDS = ("stable", "saddle", "maximum", "degenerate", "unstable", "undecided")
@@ -115,8 +143,15 @@ def _summary(poses: Poses) -> list[str]:
         return [poses.remark]
     kinds = [kind_of(pose, poses.model) for pose in poses.equilibria]
     told = () if "solution" in kinds else _KINDS
-    tally = [f"{n} {_PLURALS.get(kind, kind) if n > 1 else kind}" for kind in told if (n := kinds.count(kind))]
-    parts = [": ".join(filter(None, (counted(poses.model, len(kinds)), ", ".join(tally)))), poses.status.value]
+    tally = [
+        f"{n} {_PLURALS.get(kind, kind) if n > 1 else kind}"
+        for kind in told
+        if (n := kinds.count(kind))
+    ]
+    parts = [
+        ": ".join(filter(None, (counted(poses.model, len(kinds)), ", ".join(tally)))),
+        poses.status.value,
+    ]
     if poses.status is Status.UNDECIDED:
         boxes = f"{poses.undecided} box{'' if poses.undecided == 1 else 'es'}"
         parts = [f"at least {parts[0]}, each certified", f"{boxes} of configurations undecided"]
@@ -132,14 +167,19 @@ def _columns(poses: Poses) -> dict[str, PoseColumn]:
 
 
 def _blocks(poses: Poses, digits: int) -> Iterator[list[list[str]]]:
-    """The columns in as few blocks as the width allows, in their order; each begins with the equilibria's numbers."""
+    """The columns in as few blocks as the width allows, in their order; each begins with the
+    equilibria's numbers.
+    """
     numbers = ["#", *(str(k + 1) for k in range(len(poses.equilibria)))]
     for group in _groups(poses):
         block = [numbers]
         for header, unit, entries in group:
             column = [f"{header} [{unit}]" if unit else header]
             column += [x if isinstance(x, str) else x.text(digits) for x in entries]
-            if len(block) > 1 and sum(2 + max(map(len, each)) for each in (*block, column)) > WIDTH + 2:
+            if (
+                len(block) > 1
+                and sum(2 + max(map(len, each)) for each in (*block, column)) > WIDTH + 2
+            ):
                 yield block
                 block = [numbers]
             block.append(column)
@@ -165,10 +205,16 @@ def _groups(poses: Poses) -> list[list[Numbers]]:
     states.append(("mult.", "", [str(p.multiplicity) for p in found]))
     if first.energy is not None:
         states.append(("energy", "", [p.known_energy for p in found]))
-    states += [(f"eigenvalue {k + 1}", "", [p.eigenvalues[k] for p in found]) for k in range(len(first.eigenvalues))]
+    states += [
+        (f"eigenvalue {k + 1}", "", [p.eigenvalues[k] for p in found])
+        for k in range(len(first.eigenvalues))
+    ]
     groups = zip(*(pose.quantities(model) for pose in found), strict=True)
     numbers: list[list[Numbers]] = [
-        [(column[0].name, column[0].unit, [each.value for each in column]) for column in zip(*group, strict=True)]
+        [
+            (column[0].name, column[0].unit, [each.value for each in column])
+            for column in zip(*group, strict=True)
+        ]
         for group in groups
     ]
     return [states, *numbers]

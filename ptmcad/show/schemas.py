@@ -1,7 +1,8 @@
 """The JSON Schemas of all documents, made of the codecs that write and read them.
 
-Guarantee: what is written is valid, and what is valid has the keys and types that are read. What keys mean, for people,
-is written in the published files, docs/*.schema.json, and taken over from there.
+Guarantee: what is written is valid, and what is valid has the keys and types that are read. What
+keys mean, for people, is written in the published files, docs/*.schema.json, and taken over from
+there.
 """
 
 from __future__ import annotations

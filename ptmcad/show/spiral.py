@@ -1,4 +1,5 @@
-"""A torsion spring on paper: a spiral about its joint whose outer end lies on one of the parts that meet there.
+"""A torsion spring on paper: a spiral about its joint whose outer end lies on one of the parts that
+meet there.
 
 Floating point throughout: a drawing decides nothing.
 """
@@ -18,9 +19,14 @@ TURNS, STEPS = 1.75, 24
 
 
 def spirals(
-    joints: Sequence[Joint | None], places: Mapping[str, Place], inner: float, outer: float, gap: float
+    joints: Sequence[Joint | None],
+    places: Mapping[str, Place],
+    inner: float,
+    outer: float,
+    gap: float,
 ) -> dict[int, tuple[Place, ...]]:
-    """The spirals of joints as polylines from the inside out, by their numbers from 1; none where there is no joint.
+    """The spirals of joints as polylines from the inside out, by their numbers from 1; none where
+    there is no joint.
 
     Parameters
     ----------
@@ -32,7 +38,9 @@ def spirals(
         if joint is not None:
             shift, centre = seen[joint.point] * (outer - inner + gap), places[joint.point]
             seen[joint.point] += 1
-            found[number] = spiral(centre, places.get(joint.towards, centre), inner + shift, outer + shift)
+            found[number] = spiral(
+                centre, places.get(joint.towards, centre), inner + shift, outer + shift
+            )
     return found
 
 

@@ -1,6 +1,8 @@
-"""The style of a region map's picture: size, text, colours, title, legend and lines, with presets for where it goes.
+"""The style of a region map's picture: size, text, colours, title, legend and lines, with presets
+for where it goes.
 
-Guarantee: a style is plain data; what cannot be drawn at all is refused when it is made, before anything is computed.
+Guarantee: a style is plain data; what cannot be drawn at all is refused when it is made, before
+anything is computed.
 """
 
 import re
@@ -15,7 +17,9 @@ MIN_FONT, MAX_FONT = 6.0, 96.0
 MIN_SIDE, MAX_SIDE = 1.0, 60.0
 """Of a picture, in inches."""
 PAGE_HEIGHT = 9.0
-"""Inches that a picture over both columns of a journal may be tall: what its page has, less a caption."""
+"""Inches that a picture over both columns of a journal may be tall: what its page has, less a
+caption.
+"""
 MAX_LINE = 10.0
 MAX_TITLE = 200
 _TO_INCHES = {"in": 1.0, "mm": 1 / 25.4, "cm": 1 / 2.54, "pt": 1 / 72}
@@ -49,17 +53,20 @@ class PictureStyle(NamedTuple):
 
     Attributes
     ----------
-    size : width and height in inches, of the whole picture; None for one that grows with what it shows.
-    font_size : of the legend and the numbers at the axes, in points; other text is in proportion, none below
-        `MIN_FONT`.
-    font_family : families, the first that is installed; empty for the one that comes with matplotlib.
+    size : width and height in inches, of the whole picture; None for one that grows with what it
+        shows.
+    font_size : of the legend and the numbers at the axes, in points; other text is in proportion,
+        none below `MIN_FONT`.
+    font_family : families, the first that is installed; empty for the one that comes with
+        matplotlib.
     palette : one of `PALETTES`, or colours for the map's counts in increasing order.
     title : instead of the slice's heading; empty for none.
     legend : where it stands; None where it fits best.
     line_width : in points, of curves where the count changes; other lines are in proportion.
     thin_lines : one of `LINES`, for curves where it does not.
-    wide : width in inches of a picture over both columns of a journal, which is what needs more room than one column
-        has (poses around a map, two maps and their difference); None where the size is given.
+    wide : width in inches of a picture over both columns of a journal, which is what needs more
+        room than one column has (poses around a map, two maps and their difference); None where the
+        size is given.
     """
 
     size: Size | None = None
@@ -80,7 +87,12 @@ class PictureStyle(NamedTuple):
     @property
     def flows(self) -> bool:
         """Whether the picture grows with what it shows, as it does by default."""
-        return self.size is None and self.font_size is None and not self.font_family and self.legend is None
+        return (
+            self.size is None
+            and self.font_size is None
+            and not self.font_family
+            and self.legend is None
+        )
 
     @property
     def base_font(self) -> float:
@@ -110,8 +122,12 @@ def _mm(width: float, height: float) -> Size:
 PRESETS: Mapping[str, PictureStyle] = {
     "default": DEFAULT,
     "ieee": PictureStyle(size=(3.5, 2.6), font_size=8.0, title="", line_width=1.0, wide=7.16),
-    "elsevier": PictureStyle(size=_mm(90, 68), font_size=7.5, title="", line_width=1.0, wide=190 / 25.4),
-    "springer": PictureStyle(size=_mm(84, 64), font_size=8.0, title="", line_width=1.0, wide=174 / 25.4),
+    "elsevier": PictureStyle(
+        size=_mm(90, 68), font_size=7.5, title="", line_width=1.0, wide=190 / 25.4
+    ),
+    "springer": PictureStyle(
+        size=_mm(84, 64), font_size=8.0, title="", line_width=1.0, wide=174 / 25.4
+    ),
     "beamer": PictureStyle(size=_mm(120, 70), font_size=9.0, title=""),
     "poster": PictureStyle(size=_mm(600, 420), font_size=28.0),
 }
@@ -123,8 +139,8 @@ def styled(name: str | PictureStyle = "default", **options: Any) -> PictureStyle
 
     Parameters
     ----------
-    options : fields of `PictureStyle`, each as its type or as text: ``size="90x70mm"``, ``palette="grey"``,
-        ``legend="below"``.
+    options : fields of `PictureStyle`, each as its type or as text: ``size="90x70mm"``,
+        ``palette="grey"``, ``legend="below"``.
 
     Raises
     ------
@@ -142,13 +158,16 @@ def styled(name: str | PictureStyle = "default", **options: Any) -> PictureStyle
         raise ConfigError(f"{name!r} is not among {', '.join(PRESETS)}", key="style")
     unknown = [key for key in options if key not in _READERS]
     if unknown:
-        raise ConfigError(f"a picture has no {unknown[0]!r}; there are {', '.join(_READERS)}", key=unknown[0])
+        raise ConfigError(
+            f"a picture has no {unknown[0]!r}; there are {', '.join(_READERS)}", key=unknown[0]
+        )
     given = {key: _READERS[key](value) for key, value in options.items() if value is not None}
     made = base._replace(**given)
     if "size" in given:
         made = made._replace(wide=None)
     if "size" in given and "font_size" not in given and made.font_size is not None:
-        # a preset's font is for its size: on a narrower one it stays, on a much wider one it would be lost
+        # a preset's font is for its size: on a narrower one it stays, on a much wider one it would
+        # be lost
         return made._replace(font_size=max(made.font_size, round(1.06 * given["size"][0], 1)))
     return made
 
@@ -156,7 +175,9 @@ def styled(name: str | PictureStyle = "default", **options: Any) -> PictureStyle
 def _size(value: Any) -> Size:
     """Inches of a text such as 3.5x2.6in or 90x70mm, or of two numbers of inches."""
     if isinstance(value, str):
-        match = re.fullmatch(r"\s*(\d*\.?\d+)\s*(?:x|×|\*)\s*(\d*\.?\d+)\s*(in|mm|cm|pt)\s*", value, re.ASCII)
+        match = re.fullmatch(
+            r"\s*(\d*\.?\d+)\s*(?:x|×|\*)\s*(\d*\.?\d+)\s*(in|mm|cm|pt)\s*", value, re.ASCII
+        )
         if match is None:
             raise ConfigError(f"{value!r} is not a size such as 3.5x2.6in or 90x70mm", key="size")
         size = (float(match[1]) * _TO_INCHES[match[3]], float(match[2]) * _TO_INCHES[match[3]])
@@ -164,7 +185,9 @@ def _size(value: Any) -> Size:
         size = _two(value)
     if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):
         least, most = f"{MIN_SIDE:g}", f"{MAX_SIDE:g}"
-        raise ConfigError(f"{value!r}: each side must be {least} to {most} inches ({least}x{least}in)", key="size")
+        raise ConfigError(
+            f"{value!r}: each side must be {least} to {most} inches ({least}x{least}in)", key="size"
+        )
     return size
 
 
@@ -198,7 +221,9 @@ def _parts(value: Any) -> list[Any]:
 def _family(value: Any) -> tuple[str, ...]:
     names = _parts(value)
     if not names or not all(isinstance(name, str) and name for name in names):
-        raise ConfigError(f"{value!r} is not a font's family such as serif or Times New Roman", key="font_family")
+        raise ConfigError(
+            f"{value!r} is not a font's family such as serif or Times New Roman", key="font_family"
+        )
     return tuple(names)
 
 
@@ -206,7 +231,11 @@ def _palette(value: Any) -> str | tuple[str, ...]:
     if value in PALETTES:
         return str(value)
     colours = _parts(value)
-    wrong = [c for c in colours if not (isinstance(c, str) and (_COLOUR.fullmatch(c) or c.lower() in NAMED))]
+    wrong = [
+        c
+        for c in colours
+        if not (isinstance(c, str) and (_COLOUR.fullmatch(c) or c.lower() in NAMED))
+    ]
     if wrong or not colours:
         raise ConfigError(
             f"{(wrong or [value])[0]!r} is neither {', '.join(PALETTES)} nor a colour such as #c7e4f6 or orange",
@@ -222,7 +251,9 @@ def _palette(value: Any) -> str | tuple[str, ...]:
 def _hexadecimal(colour: str) -> str:
     if not colour.startswith("#"):
         return NAMED[colour.lower()]
-    return (colour if len(colour) == 7 else "#" + "".join(2 * digit for digit in colour[1:])).lower()
+    return (
+        colour if len(colour) == 7 else "#" + "".join(2 * digit for digit in colour[1:])
+    ).lower()
 
 
 def _title(value: Any) -> str:

@@ -37,7 +37,9 @@ def in_order(text: str) -> list[int]:
 
 
 def area_text(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
-    """An area as it is printed everywhere: one number of an exact map, both bounds of a certified one, and its unit."""
+    """An area as it is printed everywhere: one number of an exact map, both bounds of a certified
+    one, and its unit.
+    """
     known = area_unit(result.slice)
     return f"{area_digits(result, bounds)} {known}" if known else area_digits(result, bounds)
 
@@ -48,17 +50,22 @@ def area_digits(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
 
 
 NOT_COMPUTED = "not computed"
-"""What is said of areas that are not known, which then all have the window's as their upper bound."""
+"""What is said of areas that are not known, which then all have the window's as their upper bound.
+"""
 
 
 def areas_are_known(result: RegionMap) -> bool:
-    """Whether areas were computed: of an exact map that leaves them out, or is not as far, none has a lower bound."""
+    """Whether areas were computed: of an exact map that leaves them out, or is not as far, none has
+    a lower bound.
+    """
     return result.cover is not None or any(region.area[0] for region in result.regions)
 
 
 def region_area(result: RegionMap, number: int) -> str:
     """The area of one region, as the legend and the table have it where no other one has its count."""
-    return area_text(result, result.regions[number].area) if areas_are_known(result) else NOT_COMPUTED
+    return (
+        area_text(result, result.regions[number].area) if areas_are_known(result) else NOT_COMPUTED
+    )
 
 
 def area_by_count(result: RegionMap) -> dict[str, tuple[Fraction, Fraction]]:
@@ -80,14 +87,20 @@ def area_by_count(result: RegionMap) -> dict[str, tuple[Fraction, Fraction]]:
 def _short(value: Fraction) -> str:
     """A number, not negative, in two digits, of any size."""
     return (
-        "0.0e+00" if value == 0 else f"{float(value):.1e}" if abs(magnitude(value)) < 300 else f"1e{magnitude(value)}"
+        "0.0e+00"
+        if value == 0
+        else f"{float(value):.1e}"
+        if abs(magnitude(value)) < 300
+        else f"1e{magnitude(value)}"
     )
 
 
 def _curves(result: RegionMap) -> str:
     names = result.slice.axis_names
     alike = Counter(
-        (c.kind.value, c.polynomial.degrees, len(c.polynomial.terms)) for c in result.components if c.separates
+        (c.kind.value, c.polynomial.degrees, len(c.polynomial.terms))
+        for c in result.components
+        if c.separates
     )
     curves = "; ".join(
         f"{n} {kind} of degree {degrees[0]} in {names[0]}, {degrees[1]} in {names[1]} ({several(terms, 'term')})"
@@ -122,10 +135,12 @@ def table(result: RegionMap) -> str:
     """Regions, counts, areas, boundary curves with degrees (or the cover), time and error."""
     count, model = result.slice.count, result.slice.model
     tally = Counter(
-        f"{count_text(r, count)} {count_words(count.kind.tail, model, r.total or 0)}" for r in result.regions
+        f"{count_text(r, count)} {count_words(count.kind.tail, model, r.total or 0)}"
+        for r in result.regions
     )
     counts = "; ".join(
-        f"{text}: {several(n, 'region')}" for text, n in sorted(tally.items(), key=lambda item: in_order(item[0]))
+        f"{text}: {several(n, 'region')}"
+        for text, n in sorted(tally.items(), key=lambda item: in_order(item[0]))
     )
     bounds = [(count_text(r, count), r.area) for r in result.regions]
     if result.cover is not None:
@@ -135,14 +150,20 @@ def table(result: RegionMap) -> str:
     if missing:
         areas = NOT_COMPUTED
     widths = [(high - low) / low for _, (low, high) in bounds if low]
-    known = widths and len(widths) == len(bounds) and min(widths) >= 0  # a damaged file may say anything
+    known = (
+        widths and len(widths) == len(bounds) and min(widths) >= 0
+    )  # a damaged file may say anything
     error = _short(max(widths)) if known else "unknown"
     bound = "no area bounds" if missing else f"area bounds within {error}"
     if result.cover is not None and bounds:
         # relative to a region that is hardly larger than its border a width says nothing
         bound = f"area bounds at most {_short(max(high - low for _, (low, high) in bounds))} apart"
     # nothing is misclassified by either engine, see docs/error.md
-    wrong = f"{percent(result.undetermined)} undetermined" if result.undetermined else "nothing undetermined"
+    wrong = (
+        f"{percent(result.undetermined)} undetermined"
+        if result.undetermined
+        else "nothing undetermined"
+    )
     return "\n".join(
         [
             f"regions   {len(result.regions)} of {len(result.cells)} cells, {result.status.value}",
@@ -157,9 +178,11 @@ def table(result: RegionMap) -> str:
 
 
 def stability_in_words(result: RegionMap) -> str:
-    """Of how many solutions are stable where a certified map does not say it of its cells; empty where there is none.
+    """Of how many solutions are stable where a certified map does not say it of its cells; empty
+    where there is none.
 
-    Where all solutions are counted, no curve is enclosed across which one of them loses its stability.
+    Where all solutions are counted, no curve is enclosed across which one of them loses its
+    stability.
     """
     criterion = result.slice.model.criterion
     if result.slice.count.is_of_stable or result.cover is None or not result.cells:

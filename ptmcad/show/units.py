@@ -19,7 +19,9 @@ _SIGNS = frozenset("/·")
 
 
 def _quantities(slice: Slice, axis: int) -> Unit:
-    """Of an axis; empty where they are not known, or not the same for all parameters that are a number times it."""
+    """Of an axis; empty where they are not known, or not the same for all parameters that are a
+    number times it.
+    """
     return _quantities_in(slice, slice.parameters, (1, 0) if axis == 0 else (0, 1))
 
 
@@ -38,7 +40,9 @@ def _joined(slice: Slice, quantities: Unit) -> str:
 
 
 def unit(slice: Slice, axis: int) -> str:
-    """The unit of an axis, such as ``mm``, or ``length`` where the record declares none; empty when not known."""
+    """The unit of an axis, such as ``mm``, or ``length`` where the record declares none; empty when
+    not known.
+    """
     return _joined(slice, _quantities(slice, axis))
 
 
@@ -50,12 +54,18 @@ def unit_of_free(slice: Slice, free: str, text: Mapping[str, str]) -> str:
     slice : one of the members.
     text : of the family's parameters, as `FamilyMap.text`.
     """
-    own = {name: parse(written, {free: axis(0)}) for name, written in text.items() if names_in(written) == (free,)}
+    own = {
+        name: parse(written, {free: axis(0)})
+        for name, written in text.items()
+        if names_in(written) == (free,)
+    }
     return _joined(slice, _quantities_in(slice, {free: axis(0), **own}, (1, 0)))
 
 
 def energy_unit(model: Model, units: Mapping[str, str]) -> str:
-    """The unit of a model's energies, such as ``kN·m``; in words as far as units are not declared, none of a system."""
+    """The unit of a model's energies, such as ``kN·m``; in words as far as units are not declared,
+    none of a system.
+    """
     parts = [units.get(part, part) for part in model.energy_unit]
     return "".join(parts) if _declares(units, model.energy_unit) else " ".join(parts)
 

@@ -1,7 +1,8 @@
 """The report's living map as a widget of Jupyter, whose point and exact poses Python has.
 
-Guarantee: what the browser shows is the report's page as it is, in a frame that may run its script and nothing else;
-nothing is loaded from a network. ``poses`` are those of the point that ``point`` has, or None where there is none.
+Guarantee: what the browser shows is the report's page as it is, in a frame that may run its script
+and nothing else; nothing is loaded from a network. ``poses`` are those of the point that ``point``
+has, or None where there is none.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc]
 
     Attributes
     ----------
-    point : where it is: the two axes' names to floats; empty until the page has said where it begins. May be set.
+    point : where it is: the two axes' names to floats; empty until the page has said where it
+        begins. May be set.
     poses : the exact solutions there, the floats taken as the decimal numbers that they show.
     """
 
@@ -60,7 +62,9 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc]
         for axis in axes:
             value = point[axis.name]
             if not (isfinite(value) and axis.low < exactly(value) < axis.high):
-                raise traitlets.TraitError(f"{axis.name} = {value} is not inside the window, {axis.low} to {axis.high}")
+                raise traitlets.TraitError(
+                    f"{axis.name} = {value} is not inside the window, {axis.low} to {axis.high}"
+                )
         return point
 
     @traitlets.observe("point")  # type: ignore[untyped-decorator]
@@ -70,7 +74,9 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc]
             return
         try:
             poses = self._solve(*(exactly(self.point[name]) for name in self._names))
-        except PtmcadError as error:  # of a point where the question has no answer; the next one may have
+        except (
+            PtmcadError
+        ) as error:  # of a point where the question has no answer; the next one may have
             self.set_trait("poses", None)
             self._answer = str(error)
         else:

@@ -73,7 +73,8 @@ def derivatives(
     ----------
     parameters : by name, those that are missing being zero.
     circles : cosine and sine of th1 and of th2, elements of the parameters' field, or arrays.
-    root : the field's square root, of either sign; asked for the springs with a free length only, in their order.
+    root : the field's square root, of either sign; asked for the springs with a free length only,
+        in their order.
     """
     p = defaultdict[str, Any](int, parameters)
     rho, first, second = p["rho"], p["L1"], p["L2"]
@@ -90,7 +91,10 @@ def derivatives(
         k, free = p[f"k{number}"], p[f"l0_{number}"]
         if free != 0:
             length = root(square)
-            bends = [old + k * free / length**3 * new for old, new in zip(bends, (a * a, a * b, b * b), strict=True)]
+            bends = [
+                old + k * free / length**3 * new
+                for old, new in zip(bends, (a * a, a * b, b * b), strict=True)
+            ]
             k = k * (1 - free / length)
         pulls.append(k)
     k1, k2, k3 = pulls
@@ -108,7 +112,8 @@ def derivatives(
 
 
 def sextic(p: Elements) -> tuple[tuple[Any, ...], ...]:
-    """The sextic N, and beside it V, W and X^2 + Y^2, each times 1 + t^2: coefficients of 1, t, t^2, ...
+    """The sextic N, and beside it V, W and X^2 + Y^2, each times 1 + t^2: coefficients of 1, t,
+    t^2, ...
 
     Parameters
     ----------
@@ -119,7 +124,10 @@ def sextic(p: Elements) -> tuple[tuple[Any, ...], ...]:
     v, w = (p["F3"], 2 * b1, -p["F3"]), (-p["F4"], 2 * b2, p["F4"])
     middle, along = b1 * b1 + stretch * stretch + p["F3"] * p["F3"], 2 * b1 * p["k3"] * p["L2"]
     square = (middle - along, 4 * p["k3"] * p["L2"] * p["F3"], middle + along)
-    left, right = product((pull * pull, 0 * pull, pull * pull), product(v, v)), product(square, product(w, w))
+    left, right = (
+        product((pull * pull, 0 * pull, pull * pull), product(v, v)),
+        product(square, product(w, w)),
+    )
     return tuple(a - b for a, b in zip(left, right, strict=True)), v, w, square
 
 
@@ -153,9 +161,11 @@ def product(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, ...]:
 
 
 def companion(p: Values, real_tolerance: float = REAL_TOLERANCE) -> tuple[Floats, Floats]:
-    """th1 and th2 of equilibria without free lengths, each of shape (12, points), NaN in places that have none.
+    """th1 and th2 of equilibria without free lengths, each of shape (12, points), NaN in places
+    that have none.
 
-    Two places belong to a root of the sextic; the second one has a pose where the mechanism is flat.
+    Two places belong to a root of the sextic; the second one has a pose where the mechanism is
+    flat.
 
     Raises
     ------
@@ -183,12 +193,16 @@ def companion(p: Values, real_tolerance: float = REAL_TOLERANCE) -> tuple[Floats
     whole1, whole2, *_ = parts(p, 0.0, 1.0)
     flat = (np.abs(v) <= SAME_POSE * np.abs(whole1)) & (np.abs(w) <= SAME_POSE * np.abs(whole2))
     side = np.where(flat, 1.0, np.sign(v * w))
-    th1 = np.stack([np.arctan2(side * y, side * x), np.where(flat, np.arctan2(-y, -x), np.nan)], axis=1)
+    th1 = np.stack(
+        [np.arctan2(side * y, side * x), np.where(flat, np.arctan2(-y, -x), np.nan)], axis=1
+    )
     return th1.reshape(12, -1), np.repeat(th2, 2, axis=0)
 
 
 def newton(p: Values, starts: int) -> tuple[Floats, Floats]:
-    """th1 and th2 to which so many starts along each angle lead, of shape (starts^2, points), or NaN."""
+    """th1 and th2 to which so many starts along each angle lead, of shape (starts^2, points), or
+    NaN.
+    """
     grid = 2 * np.pi * (np.arange(starts) + 0.37) / starts - np.pi
     th1, th2 = (a.reshape(-1, 1) + 0 * p["rho"] for a in np.meshgrid(grid, grid))
     for _ in range(ROUNDS):
@@ -198,7 +212,9 @@ def newton(p: Values, starts: int) -> tuple[Floats, Floats]:
         longest = np.maximum(1.0, 2 * np.hypot(step1, step2))  # steps of at most half a radian
         th1, th2 = th1 - step1 / longest, th2 - step2 / longest
     good = np.hypot(*at(p, th1, th2)[0]) <= RESIDUAL * scale(p)
-    first, second = (np.where(good, (angle + np.pi) % (2 * np.pi) - np.pi, np.nan) for angle in (th1, th2))
+    first, second = (
+        np.where(good, (angle + np.pi) % (2 * np.pi) - np.pi, np.nan) for angle in (th1, th2)
+    )
     return first, second
 
 
@@ -210,8 +226,12 @@ def at(p: Values, th1: Floats, th2: Floats) -> tuple[Any, Any]:
 def scale(p: Elements) -> Any:
     """The largest summand of the gradient: of a spring's or a load's moment about a joint."""
     longest = np.maximum(p["L1"], p["L2"])
-    span = np.maximum.reduce([p["rho"], longest, *(value for name, value in p.items() if name.startswith("l0"))])
-    loads = np.maximum.reduce([0 * longest, *(np.abs(value) for name, value in p.items() if name.startswith("F"))])
+    span = np.maximum.reduce(
+        [p["rho"], longest, *(value for name, value in p.items() if name.startswith("l0"))]
+    )
+    loads = np.maximum.reduce(
+        [0 * longest, *(np.abs(value) for name, value in p.items() if name.startswith("F"))]
+    )
     return np.maximum(np.maximum.reduce([p["k1"], p["k2"], p["k3"]]) * span, loads) * longest
 
 
@@ -235,7 +255,9 @@ def angle_error(a: Any, b: Any) -> Any:
 
 
 def grid_values(question: Mapping[str, Any], n: int) -> dict[str, Floats]:
-    """The mechanism's parameters at the n x n pixel centres, of shape (n * n,), the second axis running fastest."""
+    """The mechanism's parameters at the n x n pixel centres, of shape (n * n,), the second axis
+    running fastest.
+    """
     x, y = (low + (high - low) * (np.arange(n) + 0.5) / n for low, high in question["window"])
     first, second = (a.ravel() for a in np.meshgrid(x, y, indexing="ij"))
 
@@ -251,9 +273,14 @@ def counts(method: str, p: Values) -> NDArray[np.int8]:
     for k in range(0, len(p["rho"]), BATCH_POINTS):
         part = {name: values[k : k + BATCH_POINTS] for name, values in p.items()}
         with np.errstate(all="ignore"):
-            poses = companion(part, MAX_IMAGINARY) if method == "companion" else newton(part, GRID_STARTS)
+            poses = (
+                companion(part, MAX_IMAGINARY)
+                if method == "companion"
+                else newton(part, GRID_STARTS)
+            )
             kept = distinct(*poses)
-            # roots count as often as they are there: at a double one floating point has two poses that differ
+            # roots count as often as they are there: at a double one floating point has two poses
+            # that differ
             total = np.isfinite(poses[1][::2]) if method == "companion" else kept
             h11, h12, h22 = at(part, *poses)[1]
             stable = kept & (h11 > 0) & (h11 * h22 > h12 * h12)

@@ -1,7 +1,7 @@
 """The picture of measurements: panels of curves or loose marks on logarithmic axes.
 
-Guarantee: every mark is drawn, none is moved. Below its least decade the ordinate is linear, so that it has a zero; it
-is the same in all panels.
+Guarantee: every mark is drawn, none is moved. Below its least decade the ordinate is linear, so
+that it has a zero; it is the same in all panels.
 """
 
 from __future__ import annotations
@@ -51,8 +51,11 @@ class Curve(NamedTuple):
     marks: Sequence[Mark]
 
 
-def draw(title: str, x: str, y: str, panels: Mapping[str, Sequence[Curve]], below: Sequence[str] = ()) -> Figure:
-    """The picture of panels by their titles, with what the axes show and sentences below; each has a mark at least.
+def draw(
+    title: str, x: str, y: str, panels: Mapping[str, Sequence[Curve]], below: Sequence[str] = ()
+) -> Figure:
+    """The picture of panels by their titles, with what the axes show and sentences below; each has
+    a mark at least.
 
     The figure's label is its description.
     """
@@ -61,9 +64,15 @@ def draw(title: str, x: str, y: str, panels: Mapping[str, Sequence[Curve]], belo
     columns = min(len(panels), COLUMNS) or 1
     rows = ceil(len(panels) / columns)
     notes = [line for sentence in below for line in textwrap.wrap(sentence, LINE)]
-    words = [f"{c.name}: {', '.join(f'{m.x:.3g}: {m.y:.3g}' for m in c.marks)}." for c in curves if c.marks]
+    words = [
+        f"{c.name}: {', '.join(f'{m.x:.3g}: {m.y:.3g}' for m in c.marks)}."
+        for c in curves
+        if c.marks
+    ]
     with settings():
-        figure = Figure((9.2, 6.4) if columns == 1 else (3 * columns, 2.6 * rows + 1.5), layout="constrained")
+        figure = Figure(
+            (9.2, 6.4) if columns == 1 else (3 * columns, 2.6 * rows + 1.5), layout="constrained"
+        )
         figure.set_label(f"{title}\n{' '.join([*words, *below])}")
         figure.suptitle(title, fontsize=12)
         for number, (name, panel) in enumerate(panels.items()):
@@ -91,8 +100,12 @@ def _scales(axes: Axes, marks: Sequence[Mark], heights: Sequence[float]) -> None
     decades = SymmetricalLogLocator(base=10, linthresh=least)
     decades.set_params(numticks=8)
     axes.yaxis.set_major_locator(decades)
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: power_of_ten(round(log10(y))) if y > 0 else "0"))
-    axes.xaxis.set_major_locator(LogLocator(numticks=4) if high > WIDE * low else LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(
+        FuncFormatter(lambda y, _: power_of_ten(round(log10(y))) if y > 0 else "0")
+    )
+    axes.xaxis.set_major_locator(
+        LogLocator(numticks=4) if high > WIDE * low else LogLocator(subs=(1.0, 2.0, 5.0))
+    )
     axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.grid(color="#dddddd", linewidth=0.6)
@@ -103,7 +116,14 @@ def _curve(axes: Axes, curve: Curve) -> None:
     color = curve.style["color"]
     x, y = ([getattr(mark, name) for mark in curve.marks] for name in "xy")
     axes.plot(x, y, label=curve.name, linewidth=1.3, markersize=6, zorder=4, **curve.style)
-    axes.hlines(y, [m.least for m in curve.marks], [m.most for m in curve.marks], color=color, linewidth=0.8, zorder=2)
+    axes.hlines(
+        y,
+        [m.least for m in curve.marks],
+        [m.most for m in curve.marks],
+        color=color,
+        linewidth=0.8,
+        zorder=2,
+    )
     for mark in curve.marks:
         axes.annotate(mark.label, (mark.x, mark.y), xytext=(5, 5), textcoords="offset points", fontsize=7.5,
                       color=color, zorder=5)  # fmt: skip

@@ -15,7 +15,9 @@ def markdown(rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def page(*blocks: str | Iterable[str]) -> str:
-    """A Markdown page: paragraphs, headings, and tables and lists as their lines, with blank lines between them."""
+    """A Markdown page: paragraphs, headings, and tables and lists as their lines, with blank lines
+    between them.
+    """
     texts = (block if isinstance(block, str) else "\n".join(block) for block in blocks)
     return "\n\n".join(text.strip("\n") for text in texts if text) + "\n"
 

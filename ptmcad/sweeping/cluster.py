@@ -1,11 +1,12 @@
 """The workers of a Dask scheduler, on this machine or on others.
 
-Guarantee: members go to the scheduler a few more at a time than there are threads to compute them. A worker that dies
-costs what it was computing: Dask gives it to another one, and what kills several workers is that member's failure.
+Guarantee: members go to the scheduler a few more at a time than there are threads to compute them.
+A worker that dies costs what it was computing: Dask gives it to another one, and what kills several
+workers is that member's failure.
 
-Dask spends milliseconds on a task, whatever it is; so quick members are put together, and given again one by one where
-something goes wrong with them. The results come back through the scheduler, so that the workers need no file system in
-common with this process.
+Dask spends milliseconds on a task, whatever it is; so quick members are put together, and given
+again one by one where something goes wrong with them. The results come back through the scheduler,
+so that the workers need no file system in common with this process.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ from ptmcad.sweeping.tasks import Answer, Task
 
 CONNECT_SECONDS = 15
 _LOOK_SECONDS = 2.0
-"""Between two looks at the scheduler: whether it is there, and how many threads its workers have."""
+"""Between two looks at the scheduler: whether it is there, and how many threads its workers have.
+"""
 _AHEAD = 2
 """Tasks for each thread: one that is computed and one that waits at the worker."""
 _TASK_SECONDS, _MAX_TOGETHER = 4.0, 64
@@ -50,7 +52,9 @@ class Cluster:
             self.client: Any = client(address, timeout=CONNECT_SECONDS, set_as_default=False)
         except (OSError, ValueError) as error:
             reason = shown(" ".join(str(error).split()), 200)
-            raise ConfigError(f"no Dask scheduler answers at {address}: {reason}", key="--scheduler") from error
+            raise ConfigError(
+                f"no Dask scheduler answers at {address}: {reason}", key="--scheduler"
+            ) from error
         # what it says of a scheduler that is gone is said by this program, once, as an error
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         self._answers: SimpleQueue[tuple[tuple[int, ...], Any]] = SimpleQueue()
@@ -83,7 +87,9 @@ class Cluster:
         self._send_gathered()
         found: list[Answer] = []
         try:
-            numbers, done = self._answers.get(timeout=_LOOK_SECONDS if seconds is None else min(seconds, _LOOK_SECONDS))
+            numbers, done = self._answers.get(
+                timeout=_LOOK_SECONDS if seconds is None else min(seconds, _LOOK_SECONDS)
+            )
             found += self._taken(numbers, done)
             while True:
                 numbers, done = self._answers.get_nowait()
@@ -143,6 +149,8 @@ def _why(done: Any) -> str:
     if done.status != "error":
         return f"the cluster gave it up ({done.status})"
     error = done.exception()
-    if type(error).__name__ == "KilledWorker":  # whose text names the task, which is another one in each run
+    if (
+        type(error).__name__ == "KilledWorker"
+    ):  # whose text names the task, which is another one in each run
         return "its process ended on one worker of the cluster after another"
     return shown(f"{type(error).__name__}: {error}")

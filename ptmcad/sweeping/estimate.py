@@ -1,6 +1,7 @@
 """What a sweep will cost, from the time that some of its members take.
 
-Guarantee: nothing is said of sweeps whose members take long; what is said is an estimate and no bound.
+Guarantee: nothing is said of sweeps whose members take long; what is said is an estimate and no
+bound.
 """
 
 from __future__ import annotations
@@ -14,7 +15,9 @@ from ptmcad.sweeping.member import Failed, Wanted, Work, compute
 from ptmcad.sweeping.run import axes_of, processors
 
 MAX_SOLUTIONS = 8
-"""Complex solutions of a member that is computed for its time: with more of them it may take minutes."""
+"""Complex solutions of a member that is computed for its time: with more of them it may take
+minutes.
+"""
 MEMBERS = 4
 """That are computed for their time, ..."""
 ENOUGH = 1.0
@@ -24,23 +27,35 @@ ENOUGH = 1.0
 def sweep_text(question: Sweeping, first: CheckedSlice) -> Iterator[str]:
     """The number of members and the time that they take here, as lines of text."""
     yield f"{'sweep':<12}{len(question)} members over {', '.join(question.sweep.names)}; above is the first member"
-    if first.engine != "exact" or first.complex_solutions is None or first.complex_solutions > MAX_SOLUTIONS:
+    if (
+        first.engine != "exact"
+        or first.complex_solutions is None
+        or first.complex_solutions > MAX_SOLUTIONS
+    ):
         yield f"{'time':<12}{len(question)} times that of a member, on {_these_processors()}: see cost"
         return
     taken = _seconds(question)
     whole = sum(taken) / len(taken) * len(question) / processors()
     low, high = (f"{seconds:.2g}" for seconds in (min(taken), max(taken)))
-    each = f"a member took {high} s" if len(taken) == 1 else f"{len(taken)} members took {low} to {high} s"
+    each = (
+        f"a member took {high} s"
+        if len(taken) == 1
+        else f"{len(taken)} members took {low} to {high} s"
+    )
     yield f"{'time':<12}about {_duration(whole)} on {_these_processors()}: {each} with ranges"
 
 
 def _seconds(question: Sweeping) -> list[float]:
-    """What members here and there take; a sweep's middle, and its corners, are often slices that are easier."""
+    """What members here and there take; a sweep's middle, and its corners, are often slices that
+    are easier.
+    """
     wanted = Work(question, Wanted(along=axes_of(question)[0]))
     taken: list[float] = []
     for number in Random(0).sample(range(len(question)), min(MEMBERS, len(question))):
         outcome = compute(wanted, number)
-        if isinstance(outcome, Failed):  # of another version or a time limit, of which there is neither
+        if isinstance(
+            outcome, Failed
+        ):  # of another version or a time limit, of which there is neither
             raise AssertionError(outcome.error)
         taken.append(outcome.seconds)
         if sum(taken) > ENOUGH:

@@ -1,13 +1,15 @@
 """The folder of a sweep: an index in SQLite, and below it the members' results, one JSON file each.
 
-Guarantee: whatever ends the process (``kill -9`` at any moment included), the index can be opened again, and each row
-that says *done* has its whole file: the file is on disk and in place before the row is written. One process at a time
-uses a folder. Rows are never removed; what is written of a member does not depend on when or by whom it was computed,
-but for the columns ``seconds`` and ``attempts``. Nothing is read or written through a link that leads out of the
-folder, or under a name that is not made of the member's number; a result that is not the one that was computed is
+Guarantee: whatever ends the process (``kill -9`` at any moment included), the index can be opened
+again, and each row that says *done* has its whole file: the file is on disk and in place before the
+row is written. One process at a time uses a folder. Rows are never removed; what is written of a
+member does not depend on when or by whom it was computed, but for the columns ``seconds`` and
+``attempts``. Nothing is read or written through a link that leads out of the folder, or under a
+name that is not made of the member's number; a result that is not the one that was computed is
 neither used nor written over.
 
-Not guaranteed: that rows of the last moments survive a machine that loses power; then those members are computed again.
+Not guaranteed: that rows of the last moments survive a machine that loses power; then those members
+are computed again.
 """
 
 from __future__ import annotations
@@ -78,7 +80,8 @@ class Index:
         self.rows.executescript(_TABLES)
 
     def claim(self, facts: dict[str, str], asked: str) -> None:
-        """Say of which question this is the index, or find that it is the same one, whichever version began it.
+        """Say of which question this is the index, or find that it is the same one, whichever
+        version began it.
 
         Raises
         ------
@@ -88,8 +91,14 @@ class Index:
         known = dict(self.rows.execute("SELECT key, value FROM sweep"))
         wanted = {"format": FORMAT, "asked": asked, **facts}
         if known and any(known.get(key) != wanted[key] for key in ("format", "asked")):
-            what = "another version of ptmcad" if known.get("asked") == asked else "another record, or other options"
-            raise ConfigError(f"{self.folder} holds the sweep of {what}: choose another folder", key="--out")
+            what = (
+                "another version of ptmcad"
+                if known.get("asked") == asked
+                else "another record, or other options"
+            )
+            raise ConfigError(
+                f"{self.folder} holds the sweep of {what}: choose another folder", key="--out"
+            )
         with self.transaction():
             self.rows.executemany("INSERT OR IGNORE INTO sweep VALUES (?, ?)", wanted.items())
 
@@ -104,8 +113,12 @@ class Index:
             raise
         self.rows.execute("COMMIT")
 
-    def plan(self, number: int, parameters: dict[str, str], slice: bytes | None, refused: str = "") -> bool:
-        """Enter a member; whether it is to be computed: one whose slice another one has shares that one's result."""
+    def plan(
+        self, number: int, parameters: dict[str, str], slice: bytes | None, refused: str = ""
+    ) -> bool:
+        """Enter a member; whether it is to be computed: one whose slice another one has shares that
+        one's result.
+        """
         same = None
         if slice is not None:
             found = self.rows.execute(
@@ -114,7 +127,14 @@ class Index:
             same = found and found[0]
         self.rows.execute(
             "INSERT INTO members (number, parameters, slice, same_as, state, error) VALUES (?, ?, ?, ?, ?, ?)",
-            (number, json.dumps(parameters), slice, same, "refused" if refused else "waiting", refused),
+            (
+                number,
+                json.dumps(parameters),
+                slice,
+                same,
+                "refused" if refused else "waiting",
+                refused,
+            ),
         )
         return same is None and not refused
 
@@ -128,7 +148,8 @@ class Index:
         return int(self.rows.execute(f"SELECT COUNT(*) FROM members WHERE {_TO_DO}").fetchone()[0])
 
     def waiting(self, below: int) -> Iterator[int]:
-        """The members with numbers below a bound that are to be computed, in their order, each once.
+        """The members with numbers below a bound that are to be computed, in their order, each
+        once.
 
         What is recorded meanwhile does not matter. Those that have failed before are among them.
         """
@@ -141,7 +162,8 @@ class Index:
             last = found[-1][0]
 
     def check(self, names: Sequence[str]) -> None:
-        """Have members computed again whose file is not there, and remove what killed runs have left beside the files.
+        """Have members computed again whose file is not there, and remove what killed runs have
+        left beside the files.
 
         Raises
         ------
@@ -234,7 +256,10 @@ def _inside(folder: Path, path: Path) -> Path:
     ConfigError
     """
     if not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
-        raise ConfigError("is or lies behind a link that leads out of the sweep's folder: remove it", file=str(path))
+        raise ConfigError(
+            "is or lies behind a link that leads out of the sweep's folder: remove it",
+            file=str(path),
+        )
     return path
 
 
@@ -251,7 +276,9 @@ def opened(folder: Path) -> Iterator[Index]:
         _inside(folder, folder / RESULTS)
         for path in folder.glob(f"{INDEX}*"):  # with SQLite's own beside it
             if not _inside(folder, path).is_file():
-                raise ConfigError("is no file, so it is no index of a sweep: remove it", file=str(path))
+                raise ConfigError(
+                    "is no file, so it is no index of a sweep: remove it", file=str(path)
+                )
         (folder / RESULTS).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"the folder {folder} cannot be written to: {reason(error)}") from error
@@ -279,7 +306,9 @@ def _undamaged(folder: Path, what: str) -> Iterator[None]:
     try:
         yield
     except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
-        raise ConfigError(f"{what} is damaged ({error}): {_REMEDY}", file=str(folder / INDEX)) from error
+        raise ConfigError(
+            f"{what} is damaged ({error}): {_REMEDY}", file=str(folder / INDEX)
+        ) from error
 
 
 @contextmanager
@@ -305,10 +334,14 @@ def read_sweep(folder: Path) -> Sweep:
     with _reading(folder) as rows:
         known = dict(rows.execute("SELECT key, value FROM sweep"))
         if known.get("format") != FORMAT:
-            raise ConfigError(f"is no index of a sweep of the form {FORMAT}", file=str(folder / INDEX))
+            raise ConfigError(
+                f"is no index of a sweep of the form {FORMAT}", file=str(folder / INDEX)
+            )
         states = _states(rows)
         with _undamaged(folder, "what it says of the sweep"):
-            states[State.WAITING] = int(known["members"]) - sum(n for s, n in states.items() if s is not State.WAITING)
+            states[State.WAITING] = int(known["members"]) - sum(
+                n for s, n in states.items() if s is not State.WAITING
+            )
             names = tuple(json.loads(known["names"]))
             return Sweep(known["name"], folder, names, {s: n for s, n in states.items() if n})
 
@@ -319,7 +352,8 @@ def _states(rows: sqlite3.Connection) -> dict[State, int]:
 
 
 def members(sweep: Sweep, numbers: Iterable[int] | None = None) -> Iterator[Member]:
-    """Members of a sweep as far as they were entered, all in their order or those with these numbers.
+    """Members of a sweep as far as they were entered, all in their order or those with these
+    numbers.
 
     Raises
     ------
@@ -332,7 +366,9 @@ def members(sweep: Sweep, numbers: Iterable[int] | None = None) -> Iterator[Memb
                 yield _member(sweep.folder, sweep.names, row)
             return
         for number in numbers:
-            row = rows.execute(f"SELECT {_MEMBER} FROM members WHERE number = ?", (number,)).fetchone()
+            row = rows.execute(
+                f"SELECT {_MEMBER} FROM members WHERE number = ?", (number,)
+            ).fetchone()
             if row is None:
                 raise IndexError(f"there is no member {number} yet")
             yield _member(sweep.folder, sweep.names, row)
@@ -346,7 +382,20 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
     ConfigError
         When it is none that this program has written.
     """
-    number, parameters, same_as, seconds, attempts, state, status, cells, regions, open_share, areas, widest = row[:12]
+    (
+        number,
+        parameters,
+        same_as,
+        seconds,
+        attempts,
+        state,
+        status,
+        cells,
+        regions,
+        open_share,
+        areas,
+        widest,
+    ) = row[:12]
     error, file, digest, _ = row[12:]
     summary = None
     with _undamaged(folder, f"the row of member {number}"):
@@ -362,7 +411,9 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
             if error:
                 raise ValueError("it has a result, and says why it has none")
         _ = [fraction_of(text) for text in exact]
-        return Member(number, values, State(state), summary, same_as, error, file, digest, seconds, attempts)
+        return Member(
+            number, values, State(state), summary, same_as, error, file, digest, seconds, attempts
+        )
 
 
 def member_map(sweep: Sweep, member: Member) -> RegionMap:
@@ -374,12 +425,16 @@ def member_map(sweep: Sweep, member: Member) -> RegionMap:
         When it has none, or the file is not the one that the index names.
     """
     if member.state is not State.DONE:
-        raise ConfigError(f"member {member.number} has no result: {member.error or member.state.value}")
+        raise ConfigError(
+            f"member {member.number} has no result: {member.error or member.state.value}"
+        )
     data = _result(sweep.folder, member)
     try:
         return RegionMap.from_json(data.decode())
     except ValueError as error:
-        raise ConfigError(f"is damaged or no region map: {error}", file=str(sweep.folder / member.file)) from error
+        raise ConfigError(
+            f"is damaged or no region map: {error}", file=str(sweep.folder / member.file)
+        ) from error
 
 
 def _result(folder: Path, member: Member) -> bytes:

@@ -1,7 +1,7 @@
 """One member of a sweep, from its number to its result's text and what an index holds of it.
 
-Guarantee: `compute` is the only way to a member's result, in this process, another one or on a cluster; the text is
-that of the member classified alone, timings left out.
+Guarantee: `compute` is the only way to a member's result, in this process, another one or on a
+cluster; the text is that of the member classified alone, timings left out.
 """
 
 from __future__ import annotations
@@ -102,7 +102,9 @@ class Failed:
 Outcome = Found | Refused | Failed
 
 _ONE_AT_A_TIME = threading.Lock()
-"""FLINT's precision belongs to the process: a cluster's worker with several threads computes one member at a time."""
+"""FLINT's precision belongs to the process: a cluster's worker with several threads computes one
+member at a time.
+"""
 
 
 def compute(work: Work, number: int) -> Outcome:
@@ -111,7 +113,9 @@ def compute(work: Work, number: int) -> Outcome:
     Errors that are no answer about the member (a bug, memory) are raised.
     """
     if work.version != __version__:
-        return Failed(f"this process has ptmcad {__version__}, and the sweep was asked with {work.version}")
+        return Failed(
+            f"this process has ptmcad {__version__}, and the sweep was asked with {work.version}"
+        )
     with _ONE_AT_A_TIME:
         started = perf_counter()
         try:
@@ -196,7 +200,9 @@ def _width(maxima: tuple[Maximum, ...]) -> Bounds:
 
 
 def _width_from(*values: Any) -> Widest:
-    """A width; an index that was written before attainment was told says of limits that they are attained."""
+    """A width; an index that was written before attainment was told says of limits that they are
+    attained.
+    """
     found = Widest(*values)
     return found if len(values) > 5 or not found.proof else replace(found, proof=found.attainment)
 

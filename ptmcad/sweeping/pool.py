@@ -1,11 +1,12 @@
-"""This machine's worker processes: each computes one member after another in one interpreter, and may die.
+"""This machine's worker processes: each computes one member after another in one interpreter, and
+may die.
 
-A pool of the standard library does not say which task a worker has died of: all that are under way fail together, and a
-member that is innocent would be blamed. Here each worker has a connection of its own, so that its death is the failure
-of the one member that it had.
+A pool of the standard library does not say which task a worker has died of: all that are under way
+fail together, and a member that is innocent would be blamed. Here each worker has a connection of
+its own, so that its death is the failure of the one member that it had.
 
-Guarantee: a worker that dies is replaced; when this process ends, in whatever way, its workers end too. A worker is
-started when there is a member for it.
+Guarantee: a worker that dies is replaced; when this process ends, in whatever way, its workers end
+too. A worker is started when there is a member for it.
 """
 
 from __future__ import annotations
@@ -25,10 +26,14 @@ from ptmcad.sweeping.member import Failed, out_of_time
 from ptmcad.sweeping.tasks import Answer, Task
 
 _OVERRUN = 1.0
-"""Seconds by which a member may overrun its time limit before its process is killed; it looks at the clock itself."""
+"""Seconds by which a member may overrun its time limit before its process is killed; it looks at
+the clock itself.
+"""
 _PROGRAM = "import sys; sys.path[:] = sys.argv[4:]; from ptmcad.sweeping.worker import main; main(sys.argv[1:4])"
 _AHEAD = 1
-"""Members that a worker has beside the one that it computes, so that it need not wait for this process."""
+"""Members that a worker has beside the one that it computes, so that it need not wait for this
+process.
+"""
 
 
 @dataclass(slots=True)
@@ -58,7 +63,9 @@ class Pool:
 
     @property
     def room(self) -> bool:
-        return len(self._workers) < self.jobs or any(len(w.numbers) <= _AHEAD for w in self._workers)
+        return len(self._workers) < self.jobs or any(
+            len(w.numbers) <= _AHEAD for w in self._workers
+        )
 
     @property
     def busy(self) -> bool:
@@ -99,7 +106,14 @@ class Pool:
         ends = map(str, (theirs.fileno(), lifeline[0], os.getpid()))
         try:
             process = subprocess.Popen(
-                [sys.executable, "-P", "-c", _PROGRAM, *ends, *sys.path],  # so that it finds what this process finds
+                [
+                    sys.executable,
+                    "-P",
+                    "-c",
+                    _PROGRAM,
+                    *ends,
+                    *sys.path,
+                ],  # so that it finds what this process finds
                 pass_fds=(theirs.fileno(), lifeline[0]),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,

@@ -1,8 +1,10 @@
-"""A sweep from its record to its folder: what is to be computed is planned, computed in any order, and recorded.
+"""A sweep from its record to its folder: what is to be computed is planned, computed in any order,
+and recorded.
 
-Guarantee: when `sweep` returns, each member is done, refused, or has failed as often as it was to be tried. Stopped in
-any way it leaves a folder with which the same call goes on, computing no member again that is done. The index is the
-same whatever the order, the processes and the interruptions, seconds and attempts aside.
+Guarantee: when `sweep` returns, each member is done, refused, or has failed as often as it was to
+be tried. Stopped in any way it leaves a folder with which the same call goes on, computing no
+member again that is done. The index is the same whatever the order, the processes and the
+interruptions, seconds and attempts aside.
 """
 
 from __future__ import annotations
@@ -62,10 +64,11 @@ def sweep(
     config : the file of a record with the key ``sweep``, or a mapping like it.
     folder : where the index and the results go; ``NAME-sweep`` when None.
     jobs : number of worker processes on this machine; all processors when None.
-    scheduler : address of a Dask scheduler, such as ``tcp://host:8786``, whose workers compute instead; with the extra
-        ``distributed``.
-    wanted : the engine's options, and the axis of operation ranges, as `Wanted` or some of its fields by name, such as
-        ``{"areas": False, "along": ""}``; without ``along`` ranges are along the first axis.
+    scheduler : address of a Dask scheduler, such as ``tcp://host:8786``, whose workers compute
+        instead; with the extra ``distributed``.
+    wanted : the engine's options, and the axis of operation ranges, as `Wanted` or some of its
+        fields by name, such as ``{"areas": False, "along": ""}``; without ``along`` ranges are
+        along the first axis.
     retries : how often a member is tried again whose process died, or which a limit stopped.
     timeout : seconds after which `LimitReached` is raised.
     progress : called as progress(stage, done, total).
@@ -96,7 +99,9 @@ def sweep(
         try:
             run.all(_workers(work, jobs, scheduler))
         except (LimitReached, OutputError) as stopped:
-            raise type(stopped)(f"{stopped}; {_left(index, question)}; the same command goes on") from stopped
+            raise type(stopped)(
+                f"{stopped}; {_left(index, question)}; the same command goes on"
+            ) from stopped
         finally:
             index.share()
     return read_sweep(place)
@@ -107,9 +112,12 @@ def _wanted(fields: Mapping[str, Any]) -> Wanted:
     for name in fields:
         if name not in known:
             raise ConfigError(
-                f"there is no option {name[:40]!r}; the options are {', '.join(sorted(known))}", key="wanted"
+                f"there is no option {name[:40]!r}; the options are {', '.join(sorted(known))}",
+                key="wanted",
             )
-    shares = {name: share_for(name, fields[name]) for name in _SHARES if fields.get(name) is not None}
+    shares = {
+        name: share_for(name, fields[name]) for name in _SHARES if fields.get(name) is not None
+    }
     return Wanted(**{**fields, **shares})
 
 
@@ -127,7 +135,10 @@ def checked(question: Sweeping, wanted: Wanted) -> Wanted:
     """
     _ = wanted.options  # which refuses an engine that there is not
     if wanted.along and wanted.along not in axes_of(question):
-        raise ConfigError(f"{wanted.along[:40]} is no axis: choose {' or '.join(axes_of(question))}", key="--along")
+        raise ConfigError(
+            f"{wanted.along[:40]} is no axis: choose {' or '.join(axes_of(question))}",
+            key="--along",
+        )
     return wanted
 
 
@@ -136,13 +147,17 @@ def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[]
     if scheduler is None:
 
         def pool() -> Workers:
-            prepare(work.question.slice(0), work.wanted.options)  # compiles once for all, where that is needed
+            prepare(
+                work.question.slice(0), work.wanted.options
+            )  # compiles once for all, where that is needed
             return Pool(work, jobs or processors())
 
         return pool
     from ptmcad.sweeping.cluster import Cluster
 
-    require(Extra.distributed, key="--scheduler")  # whether or not there is anything left to compute
+    require(
+        Extra.distributed, key="--scheduler"
+    )  # whether or not there is anything left to compute
     return lambda: Cluster(work, scheduler)
 
 
@@ -166,7 +181,9 @@ def _asked(question: Sweeping, wanted: Wanted) -> str:
     """A digest of all that results depend on."""
     record, sweep = question.record, question.sweep
     first = _slice_data(question.slice(0))
-    values = [[[name, *_values_data(v)] for name, v in product.items()] for product in sweep.products]
+    values = [
+        [[name, *_values_data(v)] for name, v in product.items()] for product in sweep.products
+    ]
     texts = {name: scalar.text for name, scalar in record.values.items()}
     options = [None if value is None else str(value) for value in dataclasses.astuple(wanted)]
     return hashlib.sha256(json.dumps([first, values, texts, options]).encode()).hexdigest()
@@ -195,7 +212,12 @@ class _Run:
     """One run over the members that are not done."""
 
     def __init__(
-        self, work: Work, index: Index, retries: int, progress: Progress | None, timeout: float | None
+        self,
+        work: Work,
+        index: Index,
+        retries: int,
+        progress: Progress | None,
+        timeout: float | None,
     ) -> None:
         self.work, self.index, self.retries = work, index, retries
         self.progress, self.timeout = progress, timeout
@@ -264,7 +286,9 @@ class _Run:
         question = self.work.question
         for low in range(self.planned, self.total, _AT_ONCE):
             self._patience()
-            entered = [self._entry(question, k) for k in range(low, min(low + _AT_ONCE, self.total))]
+            entered = [
+                self._entry(question, k) for k in range(low, min(low + _AT_ONCE, self.total))
+            ]
             with self.index.transaction():
                 fresh = [self.index.plan(*entry) for entry in entered]
             for entry, is_fresh in zip(entered, fresh, strict=True):
@@ -273,7 +297,9 @@ class _Run:
                 else:
                     self._count()
 
-    def _entry(self, question: Sweeping, number: int) -> tuple[int, dict[str, str], bytes | None, str]:
+    def _entry(
+        self, question: Sweeping, number: int
+    ) -> tuple[int, dict[str, str], bytes | None, str]:
         """A member's number, its values, a digest of its slice, and why there is no slice."""
         values: dict[str, Fraction] = question.sweep[number]
         parameters = {name: text_of(value) for name, value in values.items()}

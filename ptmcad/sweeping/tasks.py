@@ -1,6 +1,8 @@
-"""What answers members one after another, seen from the process that asks: this machine's workers, or a cluster's.
+"""What answers members one after another, seen from the process that asks: this machine's workers,
+or a cluster's.
 
-Guarantee: of each member that was submitted one outcome is returned, in any order; the death of a process is one.
+Guarantee: of each member that was submitted one outcome is returned, in any order; the death of a
+process is one.
 """
 
 from __future__ import annotations
@@ -9,7 +11,9 @@ from collections.abc import Sequence
 from typing import Any, Protocol
 
 Answer = tuple[int, Any]
-"""A member's number and what became of it: what the task returned, or a `ptmcad.sweeping.member.Failed`."""
+"""A member's number and what became of it: what the task returned, or a
+`ptmcad.sweeping.member.Failed`.
+"""
 
 
 class Task(Protocol):

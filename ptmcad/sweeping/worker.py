@@ -1,8 +1,8 @@
 """A worker process, which `ptmcad.sweeping.pool` starts.
 
-Guarantee: it computes the members that it is told, one after another, and ends with the process that has started it.
-An error that is no answer about a member is told as that member's failure, and ends the process: nothing of its state
-is trusted afterwards.
+Guarantee: it computes the members that it is told, one after another, and ends with the process
+that has started it. An error that is no answer about a member is told as that member's failure, and
+ends the process: nothing of its state is trusted afterwards.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ def main(arguments: list[str]) -> None:
 
     Parameters
     ----------
-    arguments : the descriptors of the connection and of the lifeline, and the other process's number.
+    arguments : the descriptors of the connection and of the lifeline, and the other process's
+        number.
     """
     connection, lifeline, parent = map(int, arguments)
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,6 +1,7 @@
 """From Arb's balls to enclosures in decimals.
 
-Guarantee: the enclosure contains the ball, has decimal ends, and settles the digits that were asked for.
+Guarantee: the enclosure contains the ball, has decimal ends, and settles the digits that were asked
+for.
 """
 
 from __future__ import annotations
@@ -19,14 +20,21 @@ _GUARD = 6
 
 
 def enclosed(ball: arb, digits: int) -> Enclosure | None:
-    """An enclosure that settles ``digits`` digits of any number in the ball; None when the ball is too wide.
+    """An enclosure that settles ``digits`` digits of any number in the ball; None when the ball is
+    too wide.
 
     >>> enclosed(arb(1) / 4, 10) == Enclosure(Fraction(1, 4), Fraction(1, 4)), enclosed(arb(0, 1), 10) is None
     (True, True)
     """
-    if ball.is_exact() and ball.is_finite():  # no wider enclosure of a short decimal settles its digits
+    if (
+        ball.is_exact() and ball.is_finite()
+    ):  # no wider enclosure of a short decimal settles its digits
         return Enclosure(exact(ball), exact(ball))
-    if not ball.is_finite() or ball.contains(0) or 10 * ball.rel_accuracy_bits() < 33 * (digits + _GUARD - 2):
+    if (
+        not ball.is_finite()
+        or ball.contains(0)
+        or 10 * ball.rel_accuracy_bits() < 33 * (digits + _GUARD - 2)
+    ):
         return None  # the test of the radius below would say so too; most balls that are too wide end here
     mantissa, exponent = (int(n) for n in ball.mid().man_exp())
     radius, scale = (int(n) for n in ball.rad().man_exp())
@@ -43,13 +51,17 @@ def enclosed(ball: arb, digits: int) -> Enclosure | None:
         center -= rest == 0 and center % 2  # half a unit goes to the even one
         # within half a unit of the middle's modulus, so within a unit of each number's
         if _settles(center - 1, center + 1, digits):
-            near, far = (Fraction(n * 10 ** max(place, 0), 10 ** max(-place, 0)) for n in (center - 1, center + 1))
+            near, far = (
+                Fraction(n * 10 ** max(place, 0), 10 ** max(-place, 0))
+                for n in (center - 1, center + 1)
+            )
             return Enclosure(near, far) if mantissa > 0 else Enclosure(-far, -near)
         guard *= 2
 
 
 def bounded(ball: arb) -> Enclosure | None:
-    """All of a ball; where it holds zero, up to a power of ten on either side. None of a ball that is not finite.
+    """All of a ball; where it holds zero, up to a power of ten on either side. None of a ball that
+    is not finite.
 
     >>> bounded(arb(0, "2e-31")) == Enclosure(-Fraction(1, 10**30), Fraction(1, 10**30))
     True
@@ -63,7 +75,9 @@ def bounded(ball: arb) -> Enclosure | None:
 
 
 def _in_units(mantissa: int, exponent: int, place: int) -> tuple[int, int]:
-    """m 2^e divided by 10^place, as numerator and denominator: integers, as no fraction need be reduced."""
+    """m 2^e divided by 10^place, as numerator and denominator: integers, as no fraction need be
+    reduced.
+    """
     return (
         (mantissa << max(exponent, 0)) * 10 ** max(-place, 0),
         10 ** max(place, 0) << max(-exponent, 0),
@@ -71,8 +85,12 @@ def _in_units(mantissa: int, exponent: int, place: int) -> tuple[int, int]:
 
 
 def _settles(near: int, far: int, digits: int) -> bool:
-    """What `Enclosure.settles` says of two positive multiples of a power of ten, given by their factors."""
-    unit = 10 ** max(len(str(near)) - digits, 0)  # of the last digit; less than one where all digits are whole
+    """What `Enclosure.settles` says of two positive multiples of a power of ten, given by their
+    factors.
+    """
+    unit = 10 ** max(
+        len(str(near)) - digits, 0
+    )  # of the last digit; less than one where all digits are whole
     return len(str(near)) > digits and near > 0 and settled(-(-2 * near // unit), 2 * far // unit)
 
 
@@ -91,7 +109,9 @@ def enclosure_of(ball: arb) -> Enclosure:
     return Enclosure(exact(ball.lower()), exact(ball.upper()))
 
 
-def rational_bounds(function: Callable[[arb], arb], value: Fraction, bits: int = 128) -> tuple[Fraction, Fraction]:
+def rational_bounds(
+    function: Callable[[arb], arb], value: Fraction, bits: int = 128
+) -> tuple[Fraction, Fraction]:
     """Bounds of a function's value at a rational number.
 
     Parameters

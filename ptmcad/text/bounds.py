@@ -1,6 +1,7 @@
 """Certified bounds and shares as text, the same in every table, picture and page.
 
-Guarantee: every digit of a number is certified within one unit of the last; bounds are rounded outwards.
+Guarantee: every digit of a number is certified within one unit of the last; bounds are rounded
+outwards.
 """
 
 from __future__ import annotations
@@ -11,7 +12,9 @@ from ptmcad.text.numerals import decimal, magnitude
 
 
 def nearest_multiple(bounds: tuple[Fraction, Fraction], unit: Fraction) -> int | None:
-    """The multiple of the unit next to the middle, where no number between the bounds is more than a unit from it."""
+    """The multiple of the unit next to the middle, where no number between the bounds is more than
+    a unit from it.
+    """
     low, high = bounds
     digits = round((low + high) / 2 / unit)
     return digits if high - digits * unit <= unit and digits * unit - low <= unit else None
@@ -27,9 +30,11 @@ def rounded(value: Fraction, unit: Fraction, up: bool) -> Fraction:
 
 
 def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
-    """The longest decimal, of at most ``most`` digits, that is within one unit of its last digit of both bounds.
+    """The longest decimal, of at most ``most`` digits, that is within one unit of its last digit of
+    both bounds.
 
-    Two decimals, joined by "to", when not even two digits are certain (or the one that is asked for).
+    Two decimals, joined by "to", when not even two digits are certain (or the one that is asked
+    for).
     """
     low, high = bounds
     if high == 0:
@@ -44,7 +49,8 @@ def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
 
 
 def interval_text(bounds: tuple[Fraction, Fraction]) -> str:
-    """Both bounds, rounded outwards by a hundredth of their distance at most, each in two digits at least.
+    """Both bounds, rounded outwards by a hundredth of their distance at most, each in two digits at
+    least.
 
     >>> interval_text((Fraction("1.69822"), Fraction("1.75450"))), interval_text((Fraction(0), Fraction(2)))
     ('1.6982 to 1.7545', '0 to 2')

@@ -1,8 +1,9 @@
-"""Codecs: how a value is written into a JSON document, how it is read, and the JSON Schema of what is written.
+"""Codecs: how a value is written into a JSON document, how it is read, and the JSON Schema of what
+is written.
 
-Guarantee: all three come of one description, which is the class's annotations where nothing else is said. What a codec
-reads from what it has written is equal to what was written; every fault names its place. Records are read by codecs
-too (`part`, `reading`).
+Guarantee: all three come of one description, which is the class's annotations where nothing else is
+said. What a codec reads from what it has written is equal to what was written; every fault names
+its place. Records are read by codecs too (`part`, `reading`).
 """
 
 from __future__ import annotations
@@ -27,14 +28,18 @@ Schema = Mapping[str, Any]
 
 
 class Codec(NamedTuple, Generic[T]):
-    """From a value to what `json` writes, from a place in a document to the value, and the schema of what is there."""
+    """From a value to what `json` writes, from a place in a document to the value, and the schema
+    of what is there.
+    """
 
     write: Callable[[T], Any]
     read: Callable[[Node], T]
     schema: Schema = MappingProxyType({})
 
     def narrowed(self, **keywords: Any) -> Codec[T]:
-        """The same with further keywords of the schema: of what is written, where a reader need not ask for it."""
+        """The same with further keywords of the schema: of what is written, where a reader need not
+        ask for it.
+        """
         return self._replace(schema={**self.schema, **keywords})
 
 
@@ -72,7 +77,9 @@ def line(most: int) -> Codec[str]:
     return Codec(_itself, lambda node: node.line(most), {"type": "string", "maxLength": most})
 
 
-def choice(kind: type[Choice], word: Callable[[Choice], str] = attrgetter("value")) -> Codec[Choice]:
+def choice(
+    kind: type[Choice], word: Callable[[Choice], str] = attrgetter("value")
+) -> Codec[Choice]:
     """A member of an enumeration, by its value or by another word."""
     members = {word(member): member for member in kind}
     return Codec(word, lambda node: node.choice(members), {"enum": [*members]})
@@ -86,7 +93,9 @@ def by_name(member: Enum) -> str:
 def optional(codec: Codec[T]) -> Codec[T | None]:
     """The same or None."""
     convert = codec.write
-    write = _itself if convert is _itself else lambda value: None if value is None else convert(value)
+    write = (
+        _itself if convert is _itself else lambda value: None if value is None else convert(value)
+    )
     return Codec(
         write,
         lambda node: None if node.value is None else codec.read(node),
@@ -97,23 +106,37 @@ def optional(codec: Codec[T]) -> Codec[T | None]:
 COUNT = optional(NATURAL)
 
 
-def listed(codec: Codec[T], length: int | None = None, most: int | None = None, like: str = "") -> Codec[tuple[T, ...]]:
-    """Several of the same, so many or at most so many; ``like`` is an example for a record's message."""
+def listed(
+    codec: Codec[T], length: int | None = None, most: int | None = None, like: str = ""
+) -> Codec[tuple[T, ...]]:
+    """Several of the same, so many or at most so many; ``like`` is an example for a record's
+    message.
+    """
     convert = codec.write
     write = _itself if convert is _itself else lambda values: [convert(v) for v in values]
     size = {} if length is None else {"minItems": length, "maxItems": length}
-    schema = {"type": "array", "items": codec.schema, **size, **({"maxItems": most} if most else {})}
+    schema = {
+        "type": "array",
+        "items": codec.schema,
+        **size,
+        **({"maxItems": most} if most else {}),
+    }
     return Codec(write, lambda node: node.each(codec.read, length, most, like), schema)
 
 
 def named(
-    codec: Codec[T], name: Callable[[Node, str], str] = lambda _, key: key, most: int | None = None, like: str = ""
+    codec: Codec[T],
+    name: Callable[[Node, str], str] = lambda _, key: key,
+    most: int | None = None,
+    like: str = "",
 ) -> Codec[Mapping[str, T]]:
     """Several of the same by at most so many names; ``name`` reads one, and may refuse it."""
 
     def read(node: Node) -> Mapping[str, T]:
         parts = node.mapping(most, like).items()
-        return dict(node.gathered(lambda part: (name(part[1], part[0]), codec.read(part[1])), parts))
+        return dict(
+            node.gathered(lambda part: (name(part[1], part[0]), codec.read(part[1])), parts)
+        )
 
     return Codec(
         lambda values: {name: codec.write(v) for name, v in values.items()}, read,
@@ -121,7 +144,9 @@ def named(
     )  # fmt: skip
 
 
-def either(key: str, is_first: Callable[[T], bool], first: Codec[Any], other: Codec[Any]) -> Codec[T]:
+def either(
+    key: str, is_first: Callable[[T], bool], first: Codec[Any], other: Codec[Any]
+) -> Codec[T]:
     """One of two records, of which only the first has this key."""
     return Codec(
         lambda value: (first if is_first(value) else other).write(value),
@@ -137,7 +162,11 @@ def in_words(text: Callable[[Any], str | None], codec: Codec[Any] = TEXT) -> Cod
 
 def converted(codec: Codec[S], get: Callable[[T], S], make: Callable[[S], T]) -> Codec[T]:
     """What is written as another value; what ``make`` refuses is wrong with that place."""
-    return Codec(lambda value: codec.write(get(value)), lambda node: node.made(make, codec.read(node)), codec.schema)
+    return Codec(
+        lambda value: codec.write(get(value)),
+        lambda node: node.made(make, codec.read(node)),
+        codec.schema,
+    )
 
 
 class Key(NamedTuple):
@@ -146,15 +175,19 @@ class Key(NamedTuple):
     Attributes
     ----------
     codec : that of the field's annotation when None (`record_of`).
-    field : the attribute that is written, and the argument that is read; named like the key when empty.
+    field : the attribute that is written, and the argument that is read; named like the key when
+        empty.
     get : what is written, of the record's object; the attribute when None.
     default : is read where the key is missing; it is written only ``always``.
     made : whether what is read is handed to what makes the object.
-    checked : whether what is read has to be what the object, once it is made, gives; not in a document that lacks one
-        of the keys that are checked, as an earlier version wrote it.
-    beside : where it is not empty, the codec writes an object with some of these keys, which stand beside the others.
-    instead : of a record, what is taken where the key is wrong or missing; without it nothing is read of the object.
-    entry_of : the field, a mapping, in which the key has its entry; in there is none where it is null.
+    checked : whether what is read has to be what the object, once it is made, gives; not in a
+        document that lacks one of the keys that are checked, as an earlier version wrote it.
+    beside : where it is not empty, the codec writes an object with some of these keys, which stand
+        beside the others.
+    instead : of a record, what is taken where the key is wrong or missing; without it nothing is
+        read of the object.
+    entry_of : the field, a mapping, in which the key has its entry; in there is none where it is
+        null.
     """
 
     codec: Codec[Any] | None = None
@@ -173,21 +206,35 @@ _DEFAULT = object()
 
 
 def part(
-    codec: Codec[Any], help: str = "", default: object = ..., instead: object = _DEFAULT, shown: object = ...
+    codec: Codec[Any],
+    help: str = "",
+    default: object = ...,
+    instead: object = _DEFAULT,
+    shown: object = ...,
 ) -> Key:
-    """A key of what a person writes; ``help`` is what it means, and ``shown`` its default, for people."""
+    """A key of what a person writes; ``help`` is what it means, and ``shown`` its default, for
+    people.
+    """
     said = {"description": help, "default": shown}
-    told = codec.narrowed(**{keyword: value for keyword, value in said.items() if value not in ("", ...)})
-    return Key(told, None, default, always=True, instead=default if instead is _DEFAULT else instead)
+    told = codec.narrowed(
+        **{keyword: value for keyword, value in said.items() if value not in ("", ...)}
+    )
+    return Key(
+        told, None, default, always=True, instead=default if instead is _DEFAULT else instead
+    )
 
 
 def reading(read: Callable[[Node], T], **schema: Any) -> Codec[T]:
-    """What a person writes and the program only reads; ``schema`` has the keywords of what is valid."""
+    """What a person writes and the program only reads; ``schema`` has the keywords of what is
+    valid.
+    """
     return Codec(_itself, read, schema)
 
 
 def derived(get: Callable[[Any], Any], codec: Codec[Any] = TEXT, default: object = ...) -> Key:
-    """A key that says for people what others say exactly; a document in which they differ is refused."""
+    """A key that says for people what others say exactly; a document in which they differ is
+    refused.
+    """
     return Key(codec, get, default, always=True, made=False, checked=True)
 
 
@@ -202,7 +249,9 @@ def record(make: Callable[..., T], like: str = "", /, **keys: Codec[Any] | Key) 
     entries = {name: key if isinstance(key, Key) else Key(key) for name, key in keys.items()}
     known = [name for key, entry in entries.items() for name in entry.beside or (key,)]
     needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
-    parts = [(n, key, _codec(key), key.get or _getter(n, key), key.default) for n, key in entries.items()]
+    parts = [
+        (n, key, _codec(key), key.get or _getter(n, key), key.default) for n, key in entries.items()
+    ]
     within = {name: key.entry_of for name, key in entries.items() if key.entry_of}
     checked = {name: (get, codec) for name, key, codec, get, _ in parts if key.checked}
 
@@ -274,7 +323,8 @@ _KNOWN: Known = {str: TEXT, bool: TRUTH, int: NATURAL, float: SECONDS, Fraction:
 
 
 def codec_of(hint: Any, known: Known = _ALIKE) -> Codec[Any]:
-    """The codec of a type: of text, numbers, enumerations, tuples, mappings, and of classes of such fields.
+    """The codec of a type: of text, numbers, enumerations, tuples, mappings, and of classes of such
+    fields.
 
     Parameters
     ----------
@@ -284,7 +334,9 @@ def codec_of(hint: Any, known: Known = _ALIKE) -> Codec[Any]:
         return found
     kind, parts = get_origin(hint), get_args(hint)
     if NoneType in parts:
-        return optional(codec_of(reduce(or_, (part for part in parts if part is not NoneType)), known))
+        return optional(
+            codec_of(reduce(or_, (part for part in parts if part is not NoneType)), known)
+        )
     if kind is tuple:
         return listed(codec_of(parts[0], known), None if parts[-1] is ... else len(parts))
     if kind is Mapping:
@@ -318,14 +370,22 @@ def record_of(
 
 
 def row_of(kind: type[T], make: Callable[..., T] | None = None) -> Codec[T]:
-    """A list of the fields of a dataclass, in their order; those with a default may be missing at its end."""
+    """A list of the fields of a dataclass, in their order; those with a default may be missing at
+    its end.
+    """
     names = tuple(field.name for field in _fields(kind))
     codecs = [codec_of(hint) for hint in _hints(cast(Hashable, kind), names).values()]
 
     def read(node: Node) -> T:
-        return node.made(make or kind, *(c.read(p) for c, p in zip(codecs, node.items(most=len(names)), strict=False)))
+        return node.made(
+            make or kind,
+            *(c.read(p) for c, p in zip(codecs, node.items(most=len(names)), strict=False)),
+        )
 
-    return Codec(lambda value: [c.write(v) for c, v in zip(codecs, attrgetter(*names)(value), strict=True)], read)
+    return Codec(
+        lambda value: [c.write(v) for c, v in zip(codecs, attrgetter(*names)(value), strict=True)],
+        read,
+    )
 
 
 def unless_default(kind: type, *names: str, known: Known = _ALIKE) -> dict[str, Key]:
@@ -335,7 +395,11 @@ def unless_default(kind: type, *names: str, known: Known = _ALIKE) -> dict[str, 
         if field.name in names:
             hint = hints[field.name]
             default = field.default if field.default_factory is MISSING else field.default_factory()
-            given = [part for part in get_args(hint) if part is not NoneType] if default is None else [hint]
+            given = (
+                [part for part in get_args(hint) if part is not NoneType]
+                if default is None
+                else [hint]
+            )
             keys[field.name] = Key(codec_of(given[0], known), default=default)
     return keys
 
@@ -348,7 +412,11 @@ def _fields(kind: Any) -> tuple[Field[Any], ...]:
 def _hints(kind: Any, names: tuple[str, ...]) -> dict[str, Any]:
     """The types of some fields: of others a module need not have the names while it runs."""
     written = {field.name: field.type for field in _fields(kind)}
-    some = type(kind.__name__, (), {"__annotations__": {n: written[n] for n in names}, "__module__": kind.__module__})
+    some = type(
+        kind.__name__,
+        (),
+        {"__annotations__": {n: written[n] for n in names}, "__module__": kind.__module__},
+    )
     return get_type_hints(some)
 
 
@@ -356,7 +424,8 @@ def _hints(kind: Any, names: tuple[str, ...]) -> dict[str, Any]:
 
 
 def document_text(format: str, data: Mapping[str, Any], further: tuple[str, ...] = ()) -> str:
-    """A document as JSON text: a key a line, and of lists of objects each on a line, so that differences stay small.
+    """A document as JSON text: a key a line, and of lists of objects each on a line, so that
+    differences stay small.
 
     Parameters
     ----------
@@ -377,13 +446,21 @@ _CLASS = "$class"
 
 
 def document_schema(format: str, schema: Schema) -> dict[str, Any]:
-    """The JSON Schema of a document, without its prose; what a class has in several places is defined apart."""
+    """The JSON Schema of a document, without its prose; what a class has in several places is
+    defined apart.
+    """
     forms: dict[str, list[Schema]] = {}
     for found in _of_classes(schema):
         forms.setdefault(found[_CLASS], []).append(found)
-    shared = {name for name, found in forms.items() if len(found) > 1 and all(form == found[0] for form in found)}
+    shared = {
+        name
+        for name, found in forms.items()
+        if len(found) > 1 and all(form == found[0] for form in found)
+    }
     whole = _without(schema, shared)
-    definitions = {name: _without({**forms[name][0], _CLASS: ""}, shared) for name in sorted(shared)}
+    definitions = {
+        name: _without({**forms[name][0], _CLASS: ""}, shared) for name in sorted(shared)
+    }
     return {
         **whole,
         "properties": {"format": {"const": format}, **whole["properties"]},

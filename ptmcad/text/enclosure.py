@@ -1,7 +1,8 @@
 """Enclosures of real numbers, and real algebraic numbers: what certified answers are made of.
 
-Guarantee: an `Enclosure` contains the number it stands for, and each digit of its `text` is right: the text is the
-number rounded to nearest, or a middle and a bound of what the number differs from it. An `AlgebraicNumber` is exact.
+Guarantee: an `Enclosure` contains the number it stands for, and each digit of its `text` is right:
+the text is the number rounded to nearest, or a middle and a bound of what the number differs from
+it. An `AlgebraicNumber` is exact.
 """
 
 from __future__ import annotations
@@ -14,14 +15,17 @@ from ptmcad.text.numerals import decimal_places, integer_text, magnitude, pointe
 DIGITS = 10
 """Significant digits of a text unless another number is asked for."""
 _MAX_PLAIN_ZEROS = 6
-"""Zeros after the point, or places before it beyond the digits, from which the form with an exponent is used."""
+"""Zeros after the point, or places before it beyond the digits, from which the form with an
+exponent is used.
+"""
 
 
 def settled(first: int, last: int) -> bool:
-    """Whether two ends settle the digits of what lies between, by the first and the last multiple of half a unit there.
+    """Whether two ends settle the digits of what lies between, by the first and the last multiple
+    of half a unit there.
 
-    The unit is that of the last digit. A multiple of half of it may be there if it is no number halfway between two
-    texts: an even one.
+    The unit is that of the last digit. A multiple of half of it may be there if it is no number
+    halfway between two texts: an even one.
     """
     return first > last or (first == last and first % 2 == 0)
 
@@ -63,8 +67,9 @@ class Enclosure:
     def settles(self, digits: int = DIGITS) -> bool:
         """Whether the enclosure determines its number rounded to ``digits`` significant digits.
 
-        It does when it is exact, or when it contains neither zero nor a number that lies halfway between two texts of
-        so many digits. A number that is not exactly known must therefore not be one, as no irrational number is.
+        It does when it is exact, or when it contains neither zero nor a number that lies halfway
+        between two texts of so many digits. A number that is not exactly known must therefore not
+        be one, as no irrational number is.
 
         >>> near = Fraction(1, 10**30)
         >>> around = Enclosure(Fraction(5, 2) - near, Fraction(5, 2) + near)
@@ -80,20 +85,23 @@ class Enclosure:
         return settled(-(-near // half), far // half)
 
     def told_digits(self, digits: int = DIGITS) -> int | None:
-        """The fewest digits, from so many on, that the enclosure settles: what `text` writes; None of a wider one.
+        """The fewest digits, from so many on, that the enclosure settles: what `text` writes; None
+        of a wider one.
 
-        A number halfway between two texts of so many digits, which is known closely and not exactly, has one more.
+        A number halfway between two texts of so many digits, which is known closely and not
+        exactly, has one more.
         """
         return next((n for n in range(digits, digits + DIGITS) if self.settles(n)), None)
 
     def text(self, digits: int = DIGITS) -> str:
         """The number rounded to nearest, with ``digits`` significant digits.
 
-        Of an enclosure that does not determine so few, with the fewest more that it does: of what may be 2.5 and is not
-        known exactly, no single digit is nearest. Zeros at the end are left out only where the text is the number
-        exactly; an exact number halfway between two texts goes to the even one. Exact zero is ``0``; very small and
-        very large numbers are written as ``1.5e-7``. An enclosure that settles no digits, as of what may be zero, is
-        written as a middle and a bound of the difference.
+        Of an enclosure that does not determine so few, with the fewest more that it does: of what
+        may be 2.5 and is not known exactly, no single digit is nearest. Zeros at the end are left
+        out only where the text is the number exactly; an exact number halfway between two texts
+        goes to the even one. Exact zero is ``0``; very small and very large numbers are written as
+        ``1.5e-7``. An enclosure that settles no digits, as of what may be zero, is written as a
+        middle and a bound of the difference.
 
         >>> Enclosure(Fraction(1, 3), Fraction(1, 3)).text(4), Enclosure(Fraction(1, 4), Fraction(1, 4)).text()
         ('0.3333', '0.25')
@@ -114,7 +122,9 @@ class Enclosure:
         return ("-" if value < 0 else "") + _decimal(mantissa, exponent, digits, exact)
 
     def _with_error(self) -> str:
-        """A middle, to the place of the radius' first digit, and what the number differs from it at most."""
+        """A middle, to the place of the radius' first digit, and what the number differs from it at
+        most.
+        """
         unit = Fraction(10) ** magnitude(self.radius)
         middle = round(self.center / unit) * unit
         error = -(-max(self.high - middle, middle - self.low) // unit) * unit
@@ -135,14 +145,18 @@ def exact_text(value: Fraction) -> str:
 
 
 def _rounded(value: Fraction, digits: int) -> tuple[int, int]:
-    """The pair (m, e) of which m 10^e is the positive value rounded to nearest, m having so many digits."""
+    """The pair (m, e) of which m 10^e is the positive value rounded to nearest, m having so many
+    digits.
+    """
     exponent = magnitude(value) + 1 - digits
     mantissa = round(value / Fraction(10) ** exponent)
     return (mantissa // 10, exponent + 1) if mantissa == 10**digits else (mantissa, exponent)
 
 
 def _decimal(mantissa: int, exponent: int, digits: int, shorten: bool) -> str:
-    """m 10^e as text, m having so many digits; zeros at the end of the decimals are dropped when asked for."""
+    """m 10^e as text, m having so many digits; zeros at the end of the decimals are dropped when
+    asked for.
+    """
     written = integer_text(mantissa)
     point = digits + exponent  # where the point comes, counted from the first digit
     most = digits + _MAX_PLAIN_ZEROS if shorten else digits
@@ -173,10 +187,15 @@ class AlgebraicNumber:
     @classmethod
     def of(cls, value: Fraction | AlgebraicNumber) -> AlgebraicNumber:
         """A rational number as a root of its polynomial; another number as it is."""
-        return cls((-value.numerator, value.denominator), value, value) if isinstance(value, Fraction) else value
+        return (
+            cls((-value.numerator, value.denominator), value, value)
+            if isinstance(value, Fraction)
+            else value
+        )
 
     def __repr__(self) -> str:
-        # by so many bisections and no more: of a number that is read from a damaged file nothing has been proved yet
+        # by so many bisections and no more: of a number that is read from a damaged file nothing
+        # has been proved yet
         number = self.refined(max(abs(self.low), abs(self.high)) / 2**_SHOWN_BITS)
         found = Enclosure(number.low, number.high)
         shown = found.text(DIGITS) if found.settles(DIGITS) else "not settled by its interval"
@@ -209,7 +228,9 @@ class AlgebraicNumber:
         if (exact := self.exact) is not None:
             return AlgebraicNumber(self.polynomial, exact, exact)
         low, high = self.low, self.high
-        at_low = self._sign(low)  # not zero: an irreducible polynomial of higher degree has no rational root
+        at_low = self._sign(
+            low
+        )  # not zero: an irreducible polynomial of higher degree has no rational root
         while high - low > width:
             middle = _dyadic_between(low, high)
             if self._sign(middle) == at_low:
@@ -240,7 +261,9 @@ class AlgebraicNumber:
 
 
 def _dyadic_between(low: Fraction, high: Fraction) -> Fraction:
-    """A number in the middle third of the interval with a short binary expansion, so that bisection stays cheap."""
+    """A number in the middle third of the interval with a short binary expansion, so that bisection
+    stays cheap.
+    """
     width = high - low
     bits = max(0, width.denominator.bit_length() - width.numerator.bit_length() + 3)
     return Fraction(round((low + high) / 2 * 2**bits), 2**bits)

@@ -1,4 +1,5 @@
-"""What a record says, as a tree that knows where each part stands: of YAML's text (`yamltree`) or of Python's objects.
+"""What a record says, as a tree that knows where each part stands: of YAML's text (`yamltree`) or
+of Python's objects.
 
 Guarantee: scalars keep the text that was written, and numbers are exact.
 """
@@ -52,9 +53,13 @@ Written = Scalar | Sequence | Tree
 
 
 def from_python(
-    value: object, place: Place, convert: Callable[[object], object] = lambda value: value, depth: int = 0
+    value: object,
+    place: Place,
+    convert: Callable[[object], object] = lambda value: value,
+    depth: int = 0,
 ) -> Written:
-    """The same tree from Python data: mappings, lists, tuples, str, bool, None, and numbers, as `exactly` takes them.
+    """The same tree from Python data: mappings, lists, tuples, str, bool, None, and numbers, as
+    `exactly` takes them.
 
     Parameters
     ----------
@@ -62,9 +67,8 @@ def from_python(
 
     Raises
     ------
-    ConfigError
-        For any other type, for a float that is no number, and for data that is nested deeper than a file may be, as
-        what contains itself is.
+    ConfigError For any other type, for a float that is no number, and for data that is nested
+        deeper than a file may be, as what contains itself is.
     """
     if depth > MAX_DEPTH:
         raise place.error(f"more than {MAX_DEPTH} levels of nesting, or data that contains itself")
@@ -80,7 +84,10 @@ def from_python(
             entries[key] = from_python(entry, place.below(key), convert, depth + 1)
         return Tree(entries, place)
     if isinstance(value, list | tuple):
-        parts = (from_python(item, place.below(str(n)), convert, depth + 1) for n, item in enumerate(value, 1))
+        parts = (
+            from_python(item, place.below(str(n)), convert, depth + 1)
+            for n, item in enumerate(value, 1)
+        )
         return Sequence(tuple(parts), place)
     if value is None or isinstance(value, bool):
         return Scalar({None: "null", True: "true", False: "false"}[value], place)
@@ -95,7 +102,9 @@ def from_python(
 
 
 def place_at(node: Written, key: str) -> Place:
-    """Where a key below a part stands, such as ``springs.2.k``; below the nearest above it that is there."""
+    """Where a key below a part stands, such as ``springs.2.k``; below the nearest above it that is
+    there.
+    """
     inner = dict(node.entries) if isinstance(node, Tree) else {}
     if isinstance(node, Sequence):
         inner = {str(n): item for n, item in enumerate(node.items, 1)}
@@ -109,12 +118,20 @@ def scalars(node: Written) -> Iterator[Scalar]:
     """Those in a tree, in the order in which they are written."""
     if isinstance(node, Scalar):
         yield node
-    for part in node.entries.values() if isinstance(node, Tree) else node.items if isinstance(node, Sequence) else ():
+    for part in (
+        node.entries.values()
+        if isinstance(node, Tree)
+        else node.items
+        if isinstance(node, Sequence)
+        else ()
+    ):
         yield from scalars(part)
 
 
 def plain_data(node: Written) -> Any:
-    """The tree as Python data: dict, list, int for plain integers, bool, None; every other scalar stays text."""
+    """The tree as Python data: dict, list, int for plain integers, bool, None; every other scalar
+    stays text.
+    """
     if isinstance(node, Tree):
         return {key: plain_data(entry) for key, entry in node.entries.items()}
     if isinstance(node, Sequence):
@@ -137,4 +154,10 @@ def as_written(value: object) -> str:
         return f"the yes-or-no value '{str(value).lower()}'"
     if isinstance(value, list | tuple):
         return "a list"
-    return "a mapping" if isinstance(value, Mapping) else quoted(value) if isinstance(value, str) else f"{value!r:.60}"
+    return (
+        "a mapping"
+        if isinstance(value, Mapping)
+        else quoted(value)
+        if isinstance(value, str)
+        else f"{value!r:.60}"
+    )

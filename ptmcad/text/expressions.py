@@ -26,14 +26,16 @@ ONE: tuple[Term, ...] = ((0, 0, Fraction(1)),)
 
 @dataclass(frozen=True, slots=True)
 class Expression:
-    """A rational function numerator/denominator in Q(x, y), x and y being the two axes in their order.
+    """A rational function numerator/denominator in Q(x, y), x and y being the two axes in their
+    order.
 
-    Guarantee: terms are sorted by exponents, without zero coefficients; the denominator is not zero; common monomials
-    are cancelled; a denominator that divides the numerator is gone; a constant denominator is 1 and any other is a
-    primitive integer polynomial with positive last coefficient.
+    Guarantee: terms are sorted by exponents, without zero coefficients; the denominator is not
+    zero; common monomials are cancelled; a denominator that divides the numerator is gone; a
+    constant denominator is 1 and any other is a primitive integer polynomial with positive last
+    coefficient.
 
-    Not guaranteed: that every common factor is cancelled. Two equal functions whose denominators share no more than a
-    part with their numerators may compare unequal.
+    Not guaranteed: that every common factor is cancelled. Two equal functions whose denominators
+    share no more than a part with their numerators may compare unequal.
 
     Attributes
     ----------
@@ -111,7 +113,11 @@ class Expression:
             return self if self.numerator else other
         if self.denominator == other.denominator:
             total = _sum(dict_of(self.numerator), other.numerator)
-            return Expression(terms_of(total)) if self.is_polynomial else _reduced(total, dict_of(self.denominator))
+            return (
+                Expression(terms_of(total))
+                if self.is_polynomial
+                else _reduced(total, dict_of(self.denominator))
+            )
         left = _product(self.numerator, other.denominator)
         right = _product(other.numerator, self.denominator)
         return _reduced(_sum(left, terms_of(right)), _product(self.denominator, other.denominator))
@@ -135,7 +141,9 @@ class Expression:
         other = _as_expression(other)
         if not other.numerator:
             raise ExpressionError("division by zero")
-        return _reduced(_product(self.numerator, other.denominator), _product(self.denominator, other.numerator))
+        return _reduced(
+            _product(self.numerator, other.denominator), _product(self.denominator, other.numerator)
+        )
 
     def __pow__(self, exponent: int) -> Expression:
         if self.is_constant:
@@ -167,7 +175,9 @@ Expressions = Mapping[str, Expression]
 """Functions of the axes by the names of the parameters that they are."""
 
 
-def values_at(parameters: Expressions, x: Fraction, y: Fraction = Fraction(0)) -> dict[str, Fraction]:
+def values_at(
+    parameters: Expressions, x: Fraction, y: Fraction = Fraction(0)
+) -> dict[str, Fraction]:
     """The exact values of parameters at a point; of those on a line it has no second coordinate.
 
     Raises
@@ -253,14 +263,20 @@ def _reduced(numerator: _Polynomial, denominator: _Polynomial) -> Expression:
 
 
 def _unit(polynomial: _Polynomial) -> Fraction:
-    """The rational u for which polynomial/u is primitive over the integers with positive last coefficient."""
+    """The rational u for which polynomial/u is primitive over the integers with positive last
+    coefficient.
+    """
     coefficients = polynomial.values()
-    content = Fraction(gcd(*(c.numerator for c in coefficients)), lcm(*(c.denominator for c in coefficients)))
+    content = Fraction(
+        gcd(*(c.numerator for c in coefficients)), lcm(*(c.denominator for c in coefficients))
+    )
     return content if polynomial[max(polynomial)] > 0 else -content
 
 
 def _exact_quotient(numerator: _Polynomial, divisor: _Polynomial) -> _Polynomial | None:
-    """numerator/divisor when it is a polynomial, else None. Division by the leading term in graded order."""
+    """numerator/divisor when it is a polynomial, else None. Division by the leading term in graded
+    order.
+    """
 
     def graded(power: tuple[int, int]) -> tuple[int, int]:
         return (power[0] + power[1], power[0])

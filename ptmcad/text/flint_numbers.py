@@ -1,4 +1,6 @@
-"""FLINT's rational numbers as Python's fractions and back, for all that computes and all that checks."""
+"""FLINT's rational numbers as Python's fractions and back, for all that computes and all that
+checks.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,9 @@ def interval_of(ends: Ends) -> tuple[fmpq, fmpq]:
 
 
 def simplest_between(low: fmpq, high: fmpq) -> fmpq:
-    """The rational with the smallest denominator strictly between low and high, the one nearest to zero of these."""
+    """The rational with the smallest denominator strictly between low and high, the one nearest to
+    zero of these.
+    """
     if low < 0 < high:
         return fmpq(0)
     if high <= 0:

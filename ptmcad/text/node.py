@@ -1,8 +1,9 @@
 """A value of a JSON document or of a record together with its place, read as one type or refused.
 
-Guarantee: every reading method either returns a value of its type within the limits below, or raises what names the
-place of the fault: of a document ValueError, with a place such as ``cells[3].sample``, at the first fault; of a record
-`ConfigError`, with file, line and a key such as ``springs.2.k``, where all faults are noted and work goes on behind.
+Guarantee: every reading method either returns a value of its type within the limits below, or
+raises what names the place of the fault: of a document ValueError, with a place such as
+``cells[3].sample``, at the first fault; of a record `ConfigError`, with file, line and a key such
+as ``springs.2.k``, where all faults are noted and work goes on behind.
 """
 
 from __future__ import annotations
@@ -23,9 +24,13 @@ MAX_ITEMS = 100_000
 MAX_NUMBER = 10**6
 """Of cells, regions, equilibria."""
 MAX_CHARACTERS = 40_000
-"""Of a coordinate. A record's numbers have 2000 digits at most, and coordinates in its result a few times as many."""
+"""Of a coordinate. A record's numbers have 2000 digits at most, and coordinates in its result a few
+times as many.
+"""
 MAX_ENTRIES = 400
-"""Of any list or mapping in a description, so that what is read is read, and proved, in a fraction of a second."""
+"""Of any list or mapping in a description, so that what is read is read, and proved, in a fraction
+of a second.
+"""
 
 Item = TypeVar("Item")
 Part = TypeVar("Part")
@@ -74,7 +79,13 @@ class Node(NamedTuple):
     def _inside(self) -> Any:
         """The entries of a list or mapping."""
         value = self.value
-        return value.entries if isinstance(value, Tree) else value.items if isinstance(value, Sequence) else value
+        return (
+            value.entries
+            if isinstance(value, Tree)
+            else value.items
+            if isinstance(value, Sequence)
+            else value
+        )
 
     def fault(self, problem: str) -> Exception:
         """What is raised of a problem: after a document's place, or as the message of a record's."""
@@ -95,7 +106,9 @@ class Node(NamedTuple):
         return self.faults.found[-1]
 
     def made(self, make: Callable[..., Item], *values: Any, **entries: Any) -> Item:
-        """What a function makes of values that were read here; what it refuses is wrong with this part."""
+        """What a function makes of values that were read here; what it refuses is wrong with this
+        part.
+        """
         if self.faults is not None:
             return make(*values, **entries)
         try:
@@ -111,7 +124,9 @@ class Node(NamedTuple):
             return Node.of(value, self.faults, step)
         return Node(value, self.place.below(str(step)), self.faults, step)
 
-    def mapping(self, most: int | None = None, like: str = "", expected: str = "") -> dict[str, Node]:
+    def mapping(
+        self, most: int | None = None, like: str = "", expected: str = ""
+    ) -> dict[str, Node]:
         """The entries of a mapping of at most so many.
 
         Parameters
@@ -159,7 +174,9 @@ class Node(NamedTuple):
         return self.fault(expected or f"expected {shape}{like and f', such as {like}'}")
 
     def _empty(self, like: str = "") -> Exception:
-        return self.fault(f"has no value: write one{like and f', such as {like}'}, or leave the key out")
+        return self.fault(
+            f"has no value: write one{like and f', such as {like}'}, or leave the key out"
+        )
 
     def _check_size(self, size: int, most: int | None, what: str) -> None:
         limit = most or (MAX_ITEMS if self.faults is None else MAX_ENTRIES)
@@ -170,7 +187,9 @@ class Node(NamedTuple):
     def record(
         self, known: Collection[str], needed: Iterable[str] = (), like: str = "", expected: str = ""
     ) -> dict[str, Node]:
-        """The entries of a mapping; every key that is not known, and every one that is missing, is a fault."""
+        """The entries of a mapping; every key that is not known, and every one that is missing, is
+        a fault.
+        """
         found = self.mapping(like=like, expected=expected)
         if found.keys() >= {*needed} and found.keys() <= {*known}:
             return found
@@ -201,9 +220,15 @@ class Node(NamedTuple):
         return values[key]
 
     def each(
-        self, read: Callable[[Node], Item], length: int | None = None, most: int | None = None, like: str = ""
+        self,
+        read: Callable[[Node], Item],
+        length: int | None = None,
+        most: int | None = None,
+        like: str = "",
     ) -> tuple[Item, ...]:
-        """What is read of the entries of a list; of a record without those that are wrong, which are noted."""
+        """What is read of the entries of a list; of a record without those that are wrong, which
+        are noted.
+        """
         return tuple(self.gathered(read, self.items(length, most, like)))
 
     def attempt(self, read: Callable[[Part], Item], part: Part, instead: Any) -> Any:
@@ -222,7 +247,9 @@ class Node(NamedTuple):
     # ------------------------------------------------------------------------------------- values of JSON's documents
 
     def text(self) -> str:
-        """A text that can be shown as it is, on a terminal or in a page; in an expression, tabs are blanks."""
+        """A text that can be shown as it is, on a terminal or in a page; in an expression, tabs are
+        blanks.
+        """
         if not isinstance(self.value, str):
             raise self.fault("is not a text")
         if not self.value.isprintable() and not self.value.replace("\t", " ").isprintable():
@@ -294,16 +321,19 @@ class Node(NamedTuple):
             return members[word]
         if self.faults is None:
             raise self.fault(f"is {word[:40]!r}, not one of {', '.join(members)}")
-        raise self.fault(f"{as_written(word)} is none of {', '.join(members)}{did_you_mean(str(word), members)}")
+        raise self.fault(
+            f"{as_written(word)} is none of {', '.join(members)}{did_you_mean(str(word), members)}"
+        )
 
 
 def opened(text: str, expected: str, longest: int, command: str) -> Node:
-    """The root of a JSON document of the expected format, without it; ``command`` makes such a document anew.
+    """The root of a JSON document of the expected format, without it; ``command`` makes such a
+    document anew.
 
     Raises
     ------
-    ValueError
-        For text that is too long, no JSON or nested too deeply, for a key that occurs twice, and for another format.
+    ValueError For text that is too long, no JSON or nested too deeply, for a key that occurs twice,
+        and for another format.
     """
     if len(text) > longest:
         raise ValueError(f"the document has {len(text)} characters, more than {longest}")
@@ -346,9 +376,11 @@ def _is_control(c: str) -> bool:
 
 
 def unstorable(data: Any) -> str | None:
-    """A character that a result has no place for, in the texts and keys of a reference; None when there is none.
+    """A character that a result has no place for, in the texts and keys of a reference; None when
+    there is none.
 
-    Those are control characters, but for line breaks and tabs, and halves of surrogate pairs, which are not in UTF-8.
+    Those are control characters, but for line breaks and tabs, and halves of surrogate pairs, which
+    are not in UTF-8.
     """
     if isinstance(data, str):
         return next(filter(_is_control, data), None)

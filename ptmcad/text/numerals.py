@@ -1,8 +1,8 @@
 """Exact numbers as text, of any length, and back.
 
-Guarantee: what `text_of` writes `fraction_of` reads back exactly; decimals made by `decimal` bound the value from the
-side that was asked for. Python's own conversion refuses integers of more than 4300 digits, which coefficients of a
-discriminant can have; here they are split at powers of ten.
+Guarantee: what `text_of` writes `fraction_of` reads back exactly; decimals made by `decimal` bound
+the value from the side that was asked for. Python's own conversion refuses integers of more than
+4300 digits, which coefficients of a discriminant can have; here they are split at powers of ten.
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ Numbers = Mapping[str, Fraction]
 MAX_DIGITS = 200_000
 """Of a numerator, a denominator or a decimal: longer ones are refused when reading."""
 MAX_EXPONENT = 20_000
-FINITE = "all values are finite: write a large number, or make the reciprocal the parameter or the axis"
+FINITE = (
+    "all values are finite: write a large number, or make the reciprocal the parameter or the axis"
+)
 _PIECE = 4000
 
 _NUMBER = re.compile(r"(-?)([0-9]+)(?:/([0-9]+)|(?:\.([0-9]+))?(?:e(-?[0-9]{1,6}))?)", re.ASCII)
@@ -64,7 +66,8 @@ def pointed(digits: str, exponent: int) -> str:
 def exactly(number: object) -> Fraction:
     """The value of a number: an integer, a rational of any library's, or a float.
 
-    A float is the shortest decimal that rounds to it, which is what it is printed as and what a record would say.
+    A float is the shortest decimal that rounds to it, which is what it is printed as and what a
+    record would say.
 
     >>> exactly(0.5), exactly(-0.1)
     (Fraction(1, 2), Fraction(-1, 10))
@@ -92,9 +95,15 @@ def exactly(number: object) -> Fraction:
         raise TypeError(_no_number(number))
     try:
         # numerator and denominator of a Fraction made from numpy's integers are such
-        return Fraction(str(number)) if isinstance(number, float) or kind == "f" else Fraction(*map(int, ratio()))
+        return (
+            Fraction(str(number))
+            if isinstance(number, float) or kind == "f"
+            else Fraction(*map(int, ratio()))
+        )
     except (ValueError, OverflowError) as error:
-        raise ValueError(f"{number!r} is not a number that can be computed with; {FINITE}") from error
+        raise ValueError(
+            f"{number!r} is not a number that can be computed with; {FINITE}"
+        ) from error
 
 
 def _no_number(value: object) -> str:
@@ -116,7 +125,9 @@ def decimal_places(value: Fraction) -> int | None:
     """
     twos = (value.denominator & -value.denominator).bit_length() - 1
     rest = value.denominator >> twos
-    fives = rest.bit_length() * 43067655807 // 10**11  # divided by the logarithm of 5 to base 2, so off by one at most
+    fives = (
+        rest.bit_length() * 43067655807 // 10**11
+    )  # divided by the logarithm of 5 to base 2, so off by one at most
     return next((max(twos, k) for k in range(max(0, fives - 1), fives + 2) if 5**k == rest), None)
 
 
@@ -206,7 +217,8 @@ def magnitude(value: Fraction) -> int:
     """
     if value <= 0:
         raise ValueError("only positive numbers have a magnitude")
-    # log10(2) to twelve digits: at most a few steps remain, of which each is expensive for numbers of many digits
+    # log10(2) to twelve digits: at most a few steps remain, of which each is expensive for numbers
+    # of many digits
     e = (value.numerator.bit_length() - value.denominator.bit_length()) * 301_029_995_664 // 10**12
     while value >= Fraction(10) ** (e + 1):
         e += 1
@@ -216,7 +228,8 @@ def magnitude(value: Fraction) -> int:
 
 
 def decimal(value: Fraction, up: bool, digits: int = 18) -> str:
-    """A decimal text with ``digits`` significant digits that bounds a value from the side asked for.
+    """A decimal text with ``digits`` significant digits that bounds a value from the side asked
+    for.
 
     >>> decimal(Fraction(-1, 3), up=True, digits=2), decimal(Fraction(2, 3), up=True, digits=2)
     ('-0.33', '0.67')
@@ -227,7 +240,11 @@ def decimal(value: Fraction, up: bool, digits: int = 18) -> str:
         return f"-{decimal(-value, not up, digits)}"
     exponent = magnitude(value) + 1 - digits
     scaled = value / Fraction(10) ** exponent
-    mantissa = -((-scaled.numerator) // scaled.denominator) if up else scaled.numerator // scaled.denominator
+    mantissa = (
+        -((-scaled.numerator) // scaled.denominator)
+        if up
+        else scaled.numerator // scaled.denominator
+    )
     text = str(mantissa)
     point = len(text) + exponent
     if -7 < point <= max(21, len(text) - 1):

@@ -1,8 +1,9 @@
 """What a text means: a rational function in the two axes of a slice, or a number.
 
-Guarantee: every coefficient is exact (``0.1`` is 1/10, ``1e-30`` is 10^-30); nothing is rounded, nothing is evaluated
-as Python. Any text is answered within a fraction of a second, by an `Expression` or by an `ExpressionError`:
-the limits of `ptmcad.text.syntax` and those below bound the work.
+Guarantee: every coefficient is exact (``0.1`` is 1/10, ``1e-30`` is 10^-30); nothing is rounded,
+nothing is evaluated as Python. Any text is answered within a fraction of a second, by an
+`Expression` or by an `ExpressionError`: the limits of `ptmcad.text.syntax` and those below bound
+the work.
 
 >>> from ptmcad.text.expressions import axis
 >>> rho, force = axis(0), axis(1)
@@ -34,25 +35,32 @@ MAX_TERMS = 300
 MAX_BITS = 13_000  # under 4300 decimal digits, so that Python prints it
 MAX_WORK = 100_000
 
-_OPERATION: dict[str, Callable[[Expression, Expression], Expression]] = {"+": add, "-": sub, "*": mul, "/": truediv}
+_OPERATION: dict[str, Callable[[Expression, Expression], Expression]] = {
+    "+": add,
+    "-": sub,
+    "*": mul,
+    "/": truediv,
+}
 
 
 def parse(text: object, names: Expressions | None = None) -> Expression:
-    """Read an arithmetic expression: numbers, names, ``+ - * /``, integer powers ``^`` or ``**``, parentheses.
+    """Read an arithmetic expression: numbers, names, ``+ - * /``, integer powers ``^`` or ``**``,
+    parentheses.
 
-    ``^`` binds tighter than a sign on its left and groups to the right, as in mathematics: ``-x^2`` is -(x^2).
+    ``^`` binds tighter than a sign on its left and groups to the right, as in mathematics: ``-x^2``
+    is -(x^2).
 
     Parameters
     ----------
-    text : the expression, or a number: an int, a Fraction, a float (its shortest decimal), a Decimal, or one of
-        numpy's.
+    text : the expression, or a number: an int, a Fraction, a float (its shortest decimal), a
+        Decimal, or one of numpy's.
     names : what each name stands for.
 
     Raises
     ------
-    ExpressionError
-        With the position of the offending character: not arithmetic, an unknown name, a division by zero, or one of
-        the limits (length, depth, digits, exponent, degree, number of terms, size of numbers).
+    ExpressionError With the position of the offending character: not arithmetic, an unknown name, a
+        division by zero, or one of the limits (length, depth, digits, exponent, degree, number of
+        terms, size of numbers).
     """
     if isinstance(text, str | Decimal):  # a Decimal's exponent may be huge: a text has limits
         return interpret(tree_of(str(text)), _InTheAxes(names or {}))
@@ -78,7 +86,8 @@ def value_in_axes(tree: Tree, names: Expressions) -> Expression:
 
 
 def rational(text: object) -> Fraction:
-    """Read an exact rational number: a text such as ``3/4``, ``-0.1`` or ``1e-30``, or a number as `parse` takes it.
+    """Read an exact rational number: a text such as ``3/4``, ``-0.1`` or ``1e-30``, or a number as
+    `parse` takes it.
 
     >>> rational("-0.1") == rational(-0.1)
     True
@@ -120,7 +129,9 @@ def share_for(key: str, value: object) -> Fraction:
 
 
 class _InTheAxes:
-    """The interpretation of a text as a rational function of the axes, with a budget for the arithmetic."""
+    """The interpretation of a text as a rational function of the axes, with a budget for the
+    arithmetic.
+    """
 
     def __init__(self, names: Expressions):
         self.names = names
@@ -136,7 +147,9 @@ class _InTheAxes:
 
     def call(self, call: Call) -> Expression:
         if call.function in self.names:
-            raise ExpressionError(f"'{call.function}' is no function here: is an operator missing?", call.position)
+            raise ExpressionError(
+                f"'{call.function}' is no function here: is an operator missing?", call.position
+            )
         raise unknown_name(call.function, call.position, self.names)
 
     def negative(self, value: Expression) -> Expression:
@@ -145,7 +158,9 @@ class _InTheAxes:
     def joined(self, left: Expression, step: Step, right: Expression) -> Expression:
         if step.operator == "/" and not right.numerator:
             raise ExpressionError("division by zero", step.position)
-        spread = (len(left.numerator) + len(left.denominator)) * (len(right.numerator) + len(right.denominator))
+        spread = (len(left.numerator) + len(left.denominator)) * (
+            len(right.numerator) + len(right.denominator)
+        )
         self.spend(spread * (1 + (_bits(left) + _bits(right)) // 512), step.position)
         degrees = (left.degree, right.degree)
         adds_up = step.operator in "*/" or not (left.is_polynomial and right.is_polynomial)
@@ -166,7 +181,9 @@ class _InTheAxes:
                 n = n % 2 if n <= 0 else 2 - n % 2
         else:
             if abs(n) > MAX_EXPONENT:
-                raise ExpressionError(f"an exponent of a name is at most {MAX_EXPONENT}", power.position)
+                raise ExpressionError(
+                    f"an exponent of a name is at most {MAX_EXPONENT}", power.position
+                )
             terms = max(len(base.numerator), len(base.denominator))
             if abs(n) * base.degree > MAX_DEGREE or abs(n) * _bits(base) > MAX_BITS:
                 raise ExpressionError(
@@ -188,7 +205,9 @@ class _InTheAxes:
         if max(len(value.numerator), len(value.denominator)) > MAX_TERMS:
             raise ExpressionError(f"the expression has more than {MAX_TERMS} terms", position)
         if _bits(value) > MAX_BITS:
-            raise ExpressionError(f"a number in the expression has more than {MAX_BITS} bits", position)
+            raise ExpressionError(
+                f"a number in the expression has more than {MAX_BITS} bits", position
+            )
         return value
 
 

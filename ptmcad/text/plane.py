@@ -1,7 +1,7 @@
 """A polynomial in the two axes, with integer coefficients, independent of any engine.
 
-Guarantee: terms are sorted by exponents, coefficients are nonzero and without common factor, the first one positive,
-so two polynomials that are equal up to a constant are equal objects.
+Guarantee: terms are sorted by exponents, coefficients are nonzero and without common factor, the
+first one positive, so two polynomials that are equal up to a constant are equal objects.
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ from ptmcad.text.terms import terms_text
 
 @dataclass(frozen=True, slots=True)
 class PlanePolynomial:
-    """A primitive polynomial in Z[x, y]; ``terms`` holds ``(i, j, c)`` for c x^i y^j, highest exponents first."""
+    """A primitive polynomial in Z[x, y]; ``terms`` holds ``(i, j, c)`` for c x^i y^j, highest
+    exponents first.
+    """
 
     terms: tuple[tuple[int, int, int], ...]
 
@@ -39,7 +41,10 @@ class PlanePolynomial:
     @property
     def degrees(self) -> tuple[int, int]:
         """The degree in each axis."""
-        return (max((i for i, _, _ in self.terms), default=0), max((j for _, j, _ in self.terms), default=0))
+        return (
+            max((i for i, _, _ in self.terms), default=0),
+            max((j for _, j, _ in self.terms), default=0),
+        )
 
     @property
     def total_degree(self) -> int:
@@ -87,7 +92,9 @@ class PlanePolynomial:
             terms.append((powers[0], powers[1], -coefficient if sign == "-" else coefficient))
         result = cls.of(terms)
         if result.text(names) != text:
-            raise ValueError(f"not a primitive polynomial in {names[0]} and {names[1]}: {text[:60]}")
+            raise ValueError(
+                f"not a primitive polynomial in {names[0]} and {names[1]}: {text[:60]}"
+            )
         return result
 
 

@@ -1,8 +1,9 @@
-"""Arithmetic as text is read as a `Tree` that knows where each of its parts stands; nothing is evaluated here.
+"""Arithmetic as text is read as a `Tree` that knows where each of its parts stands; nothing is
+evaluated here.
 
-Guarantee: numbers are exact (``0.1`` is 1/10). Any text is answered within a fraction of a second, by a tree or by an
-`ExpressionError` with the position of the offending character; a tree is at most `MAX_DEPTH` levels deep, however many
-terms a sum in it has.
+Guarantee: numbers are exact (``0.1`` is 1/10). Any text is answered within a fraction of a second,
+by a tree or by an `ExpressionError` with the position of the offending character; a tree is at most
+`MAX_DEPTH` levels deep, however many terms a sum in it has.
 
 >>> from ptmcad.text.tree import names_of, to_text
 >>> tree = parse("rho - L2*cos(th2)")
@@ -81,15 +82,16 @@ class _Token(NamedTuple):
 
 
 def parse(text: str) -> Tree:
-    """Read an arithmetic expression: numbers, names, ``+ - * /``, powers ``^`` or ``**``, parentheses, `FUNCTIONS`.
+    """Read an arithmetic expression: numbers, names, ``+ - * /``, powers ``^`` or ``**``,
+    parentheses, `FUNCTIONS`.
 
-    ``^`` binds tighter than a sign on its left and groups to the right, as in mathematics: ``-x^2`` is -(x^2).
+    ``^`` binds tighter than a sign on its left and groups to the right, as in mathematics: ``-x^2``
+    is -(x^2).
 
     Raises
     ------
-    ExpressionError
-        With the position of the offending character: not arithmetic, or one of the limits of this module (length,
-        depth, digits, decimal exponent).
+    ExpressionError With the position of the offending character: not arithmetic, or one of the
+        limits of this module (length, depth, digits, decimal exponent).
     """
     return _Parser(text).run()
 
@@ -106,7 +108,8 @@ def names_in(text: str) -> tuple[str, ...]:
 
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str = "", between: str = ", ") -> str:
-    """``"; did you mean 'rho'?"``, what to write in place of a name such as ``sqrt``, or the names that there are.
+    """``"; did you mean 'rho'?"``, what to write in place of a name such as ``sqrt``, or the names
+    that there are.
 
     Parameters
     ----------
@@ -128,7 +131,9 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str = "", between: 
 def unknown_name(name: str, position: int, known: Iterable[str]) -> ExpressionError:
     """The error for a name that has no meaning."""
     if name.lower() in NOT_NUMBERS:
-        return ExpressionError(f"'{name}' is not a number that can be computed with; {FINITE}", position)
+        return ExpressionError(
+            f"'{name}' is not a number that can be computed with; {FINITE}", position
+        )
     return ExpressionError(f"unknown name '{_short(name)}'{did_you_mean(name, known)}", position)
 
 
@@ -181,8 +186,14 @@ def _bad_character(text: str, position: int) -> ExpressionError:
 
 
 def _with_unit(unit: str, position: int) -> ExpressionError:
-    remedy = _OF_ANGLES if unit[:3] in ("rad", "deg") else "write all lengths in one unit, and all forces in one"
-    return ExpressionError(f"a number has no unit: leave '{unit}' out, or write * before a name; {remedy}", position)
+    remedy = (
+        _OF_ANGLES
+        if unit[:3] in ("rad", "deg")
+        else "write all lengths in one unit, and all forces in one"
+    )
+    return ExpressionError(
+        f"a number has no unit: leave '{unit}' out, or write * before a name; {remedy}", position
+    )
 
 
 def _short(text: str) -> str:
@@ -206,8 +217,12 @@ class _Parser:
         before = self.tokens[self.index - 1]
         if token.text == "(" and before.kind == "name":
             hint = did_you_mean(before.text, FUNCTIONS) or ": is an operator missing?"
-            raise ExpressionError(f"'{_short(before.text)}' is no function here{hint}", token.position)
-        raise ExpressionError(f"'{_short(token.text)}' is not expected here: is an operator missing?", token.position)
+            raise ExpressionError(
+                f"'{_short(before.text)}' is no function here{hint}", token.position
+            )
+        raise ExpressionError(
+            f"'{_short(token.text)}' is not expected here: is an operator missing?", token.position
+        )
 
     def next(self) -> _Token:
         token = self.tokens[self.index]
@@ -238,7 +253,9 @@ class _Parser:
         tree: Tree
         if token.kind == "number":
             tree = Number(_number(token), token.position)
-        elif token.kind == "name" and token.text in FUNCTIONS and self.tokens[self.index].text == "(":
+        elif (
+            token.kind == "name" and token.text in FUNCTIONS and self.tokens[self.index].text == "("
+        ):
             tree = Call(token.text, self.enclosed(self.next(), depth), token.position)
         elif token.kind == "name":
             tree = Name(token.text, token.position)
@@ -248,7 +265,10 @@ class _Parser:
             raise ExpressionError("the expression is empty" if self.index == 0 else "the expression ends too early",
                                   token.position)  # fmt: skip
         else:
-            raise ExpressionError(f"'{token.text}' is not expected here: a number or a name is missing", token.position)
+            raise ExpressionError(
+                f"'{token.text}' is not expected here: a number or a name is missing",
+                token.position,
+            )
         operator = self.tokens[self.index]
         if operator.text in ("^", "**"):
             self.next()
@@ -269,8 +289,12 @@ def _number(token: _Token) -> Fraction:
     if len(digits) > MAX_DIGITS:
         raise ExpressionError(f"a number has more than {MAX_DIGITS} digits", token.position)
     if len(exponent) > 6 or abs(int(exponent or "0")) > MAX_DECIMAL_EXPONENT:
-        raise ExpressionError(f"a decimal exponent is at most {MAX_DECIMAL_EXPONENT}", token.position)
+        raise ExpressionError(
+            f"a decimal exponent is at most {MAX_DECIMAL_EXPONENT}", token.position
+        )
     whole, _, decimals = digits.partition(".")
     if len(whole) > 1 and whole.startswith("0"):
-        raise ExpressionError(f"'{_short(token.text)}' starts with 0: drop the leading zeros", token.position)
+        raise ExpressionError(
+            f"'{_short(token.text)}' starts with 0: drop the leading zeros", token.position
+        )
     return of_digits(whole, decimals, int(exponent or "0"))

@@ -19,7 +19,8 @@ def signed_terms(
     times: str = "*",
     number: Callable[[Any], str] = integer_text,
 ) -> Iterator[str]:
-    """Each term with its sign and a blank; the first one without the blank, and without a sign that is positive.
+    """Each term with its sign and a blank; the first one without the blank, and without a sign that
+    is positive.
 
     Parameters
     ----------
@@ -28,7 +29,9 @@ def signed_terms(
     number : the text of a positive coefficient.
     """
     for n, (exponents, c) in enumerate(terms):
-        factors = [power.format(s, e) if e > 1 else s for s, e in zip(names, exponents, strict=True) if e]
+        factors = [
+            power.format(s, e) if e > 1 else s for s, e in zip(names, exponents, strict=True) if e
+        ]
         if abs(c) != 1 or not factors:
             factors.insert(0, number(abs(c)))
         sign = ("-" if c < 0 else "") if n == 0 else ("- " if c < 0 else "+ ")

@@ -1,8 +1,9 @@
 """The text of a file that someone hands to the program.
 
-Guarantee: only regular files are read, and of them no more than a stated number of bytes, so that reading ends in
-bounded time and memory: a device, a named pipe without a writer or a file of a terabyte is refused at once. Nothing is
-executed. Every refusal is a `ConfigError` that names the file.
+Guarantee: only regular files are read, and of them no more than a stated number of bytes, so that
+reading ends in bounded time and memory: a device, a named pipe without a writer or a file of a
+terabyte is refused at once. Nothing is executed. Every refusal is a `ConfigError` that names the
+file.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ from ptmcad.errors import ConfigError
 T = TypeVar("T")
 
 MAX_UNNAMED = 1_000_000
-"""Characters of a JSON text that does not begin with its format: in memory its data may take fifty times as much."""
+"""Characters of a JSON text that does not begin with its format: in memory its data may take fifty
+times as much.
+"""
 MAX_PARTS = 3_000_000
 """Lists and objects in a JSON text: more than a map has with as many slanted pieces as are read."""
 _FORMAT = re.compile(r'\s*\{\s*"format"\s*:\s*"(ptmcad-[a-z-]{1,40}/[0-9]{1,9})"')
@@ -43,7 +46,9 @@ def read_bytes(path: str | Path, most: int, what: str) -> bytes:
     try:
         with open(descriptor, "rb") as stream:
             data: bytes | None = stream.read(most + 1)
-            if data is None:  # a file that would keep its reader waiting, such as a log of the kernel
+            if (
+                data is None
+            ):  # a file that would keep its reader waiting, such as a log of the kernel
                 raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
     except OSError as error:
         raise _unreadable(path, error) from error
@@ -53,17 +58,22 @@ def read_bytes(path: str | Path, most: int, what: str) -> bytes:
 
 
 def read_text(path: str | Path, most: int, what: str) -> str:
-    """The same as UTF-8 text, without a byte order mark; the line of a byte that is not UTF-8 is named."""
+    """The same as UTF-8 text, without a byte order mark; the line of a byte that is not UTF-8 is
+    named.
+    """
     data = read_bytes(path, most, what)
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise ConfigError("is not UTF-8 text: save it as UTF-8", file=str(path), line=line) from error
+        raise ConfigError(
+            "is not UTF-8 text: save it as UTF-8", file=str(path), line=line
+        ) from error
 
 
 def read_as(path: str | Path, most: int, kind: str, decode: Callable[[str], T]) -> T:
-    """What ``decode`` makes of a file's text; where that raises a ValueError, the file is said to be no ``kind`` file.
+    """What ``decode`` makes of a file's text; where that raises a ValueError, the file is said to
+    be no ``kind`` file.
 
     Raises
     ------
@@ -88,7 +98,8 @@ def format_named(text: str) -> str:
 
 
 def json_data(text: str, **hooks: Any) -> Any:
-    """The data of a JSON text, in bounded memory: a long one that is no document of this program is not read.
+    """The data of a JSON text, in bounded memory: a long one that is no document of this program is
+    not read.
 
     Parameters
     ----------
@@ -100,7 +111,9 @@ def json_data(text: str, **hooks: Any) -> Any:
         For such a text, for no JSON, and for what is nested too deeply.
     """
     if len(text) > MAX_UNNAMED and not format_named(text):
-        raise ValueError(f"it has more than {MAX_UNNAMED} characters and does not begin with a format of ptmcad")
+        raise ValueError(
+            f"it has more than {MAX_UNNAMED} characters and does not begin with a format of ptmcad"
+        )
     if text.count("[") + text.count("{") > MAX_PARTS:
         raise ValueError(f"it has more than {MAX_PARTS} lists and objects")
     try:
@@ -110,7 +123,8 @@ def json_data(text: str, **hooks: Any) -> Any:
 
 
 def lines_of(path: str | Path, longest: int, what: str) -> Iterator[str]:
-    """The lines of a regular UTF-8 file of any size, with their ends (a line feed, or carriage return and line feed).
+    """The lines of a regular UTF-8 file of any size, with their ends (a line feed, or carriage
+    return and line feed).
 
     Raises
     ------
@@ -124,18 +138,27 @@ def lines_of(path: str | Path, longest: int, what: str) -> Iterator[str]:
             while line := stream.readline(longest + 1):
                 number += 1
                 if len(line) > longest:
-                    raise ConfigError(f"the line has more than {longest} bytes", file=str(path), line=number)
+                    raise ConfigError(
+                        f"the line has more than {longest} bytes", file=str(path), line=number
+                    )
                 yield line.decode("utf-8-sig" if number == 1 else "utf-8")
     except OSError as error:
         raise _unreadable(path, error) from error
     except UnicodeDecodeError as error:
-        raise ConfigError("is not UTF-8 text: save it as UTF-8", file=str(path), line=number) from error
+        raise ConfigError(
+            "is not UTF-8 text: save it as UTF-8", file=str(path), line=number
+        ) from error
 
 
 def _open(path: str | Path, what: str) -> int:
     """A descriptor of a regular file, opened without waiting for anyone at the other end."""
     # a pipe without a writer would hold a plain open() for ever
-    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+    flags = (
+        os.O_RDONLY
+        | getattr(os, "O_NONBLOCK", 0)
+        | getattr(os, "O_BINARY", 0)
+        | getattr(os, "O_CLOEXEC", 0)
+    )
     try:
         descriptor = os.open(path, flags)
     except FileNotFoundError as error:

@@ -1,9 +1,10 @@
-"""Arithmetic as a tree: numbers, names, sums, products, powers and functions, each with its position in a text.
+"""Arithmetic as a tree: numbers, names, sums, products, powers and functions, each with its
+position in a text.
 
 Guarantee: `to_text` writes a tree that was read in a form that is read as the same tree.
 
-What a tree means is said by an `Interpretation`: rational functions of two axes in `ptmcad.text.parsing`, the elements
-of any ring in `ptmcad.model.evaluate`.
+What a tree means is said by an `Interpretation`: rational functions of two axes in
+`ptmcad.text.parsing`, the elements of any ring in `ptmcad.model.evaluate`.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ SUM, PRODUCT, TIGHTER = 1, 2, 3
 BINDING = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT}
 """How tightly operators bind, below signs and powers."""
 
-# Named tuples: they are defined in a seventh of a dataclass's time, and every command pays for that when it starts.
+# Named tuples: they are defined in a seventh of a dataclass's time, and every command pays for that
+# when it starts.
 
 
 class Number(NamedTuple):
@@ -47,7 +49,9 @@ class Negative(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One more operand of a `Chain`: how it is joined to what stands before it, at its operator's position."""
+    """One more operand of a `Chain`: how it is joined to what stands before it, at its operator's
+    position.
+    """
 
     operator: str
     operand: Tree
@@ -88,8 +92,8 @@ Value = TypeVar("Value")
 class Interpretation(Protocol[Value]):
     """What the parts of a tree mean, in values of one type.
 
-    `interpret` asks from left to right: operands before what joins them. A method may raise `ExpressionError` with the
-    position of the part that has no meaning.
+    `interpret` asks from left to right: operands before what joins them. A method may raise
+    `ExpressionError` with the position of the part that has no meaning.
     """
 
     def number(self, number: Number) -> Value: ...
@@ -97,7 +101,9 @@ class Interpretation(Protocol[Value]):
     def name(self, name: Name) -> Value: ...
 
     def call(self, call: Call) -> Value:
-        """A function; the argument is handed over as a tree, for it may be of another kind than the value."""
+        """A function; the argument is handed over as a tree, for it may be of another kind than the
+        value.
+        """
 
     def negative(self, value: Value) -> Value: ...
 
@@ -108,19 +114,25 @@ class Interpretation(Protocol[Value]):
 
 
 def interpret(
-    tree: Tree, interpretation: Interpretation[Value], known: dict[int, tuple[Tree, Value]] | None = None
+    tree: Tree,
+    interpretation: Interpretation[Value],
+    known: dict[int, tuple[Tree, Value]] | None = None,
 ) -> Value:
     """The value of a tree.
 
     Parameters
     ----------
-    known : keeps the values of parts, by their identity, for other trees in the same interpretation that share them.
+    known : keeps the values of parts, by their identity, for other trees in the same interpretation
+        that share them.
     """
     if known is not None and id(tree) in known:
         return known[id(tree)][1]
     value = _interpreted(tree, interpretation, known)
     if known is not None:
-        known[id(tree)] = tree, value  # with the tree, whose identity nothing else has while it is kept
+        known[id(tree)] = (
+            tree,
+            value,
+        )  # with the tree, whose identity nothing else has while it is kept
     return value
 
 
@@ -135,10 +147,14 @@ def _interpreted(
         case Chain(first, steps):
             value = interpret(first, interpretation, known)
             for step in steps:
-                value = interpretation.joined(value, step, interpret(step.operand, interpretation, known))
+                value = interpretation.joined(
+                    value, step, interpret(step.operand, interpretation, known)
+                )
             return value
         case Power(base, exponent):
-            of_base, of_exponent = (interpret(part, interpretation, known) for part in (base, exponent))
+            of_base, of_exponent = (
+                interpret(part, interpretation, known) for part in (base, exponent)
+            )
             return interpretation.power(of_base, tree, of_exponent)
         case Call():
             return interpretation.call(tree)
@@ -164,12 +180,17 @@ def names_of(tree: Tree) -> tuple[str, ...]:
 
 
 def mapped(tree: Tree, change: Callable[[Tree], Tree | None]) -> Tree:
-    """A tree with others in place of parts: ``change`` gives them; None for a part of which the parts are looked at."""
+    """A tree with others in place of parts: ``change`` gives them; None for a part of which the
+    parts are looked at.
+    """
     if (found := change(tree)) is not None:
         return found
     match tree:
         case Chain(first, steps):
-            return Chain(mapped(first, change), tuple(s._replace(operand=mapped(s.operand, change)) for s in steps))
+            return Chain(
+                mapped(first, change),
+                tuple(s._replace(operand=mapped(s.operand, change)) for s in steps),
+            )
         case Power(base, exponent, position):
             return Power(mapped(base, change), mapped(exponent, change), position)
         case Negative(operand, position):
@@ -193,7 +214,8 @@ _MAX_PLACES = 20
 def to_text(tree: Tree) -> str:
     """A tree as text; one that was read is read again as the same tree, but for positions.
 
-    A number without a finite decimal form, which no text has as one number, is written as a quotient.
+    A number without a finite decimal form, which no text has as one number, is written as a
+    quotient.
     """
     match tree:
         case Name(name):
@@ -208,7 +230,11 @@ def to_text(tree: Tree) -> str:
                 text += operator + _within(step.operand, lowest)
             return text
         case Power(base, exponent):
-            inner = f"({to_text(base)})" if isinstance(base, Power | Negative) else _within(base, TIGHTER)
+            inner = (
+                f"({to_text(base)})"
+                if isinstance(base, Power | Negative)
+                else _within(base, TIGHTER)
+            )
             return f"{inner}^{_within(exponent, TIGHTER)}"
         case Negative(operand):
             return f"-{_within(operand, TIGHTER)}"
@@ -217,7 +243,9 @@ def to_text(tree: Tree) -> str:
 
 
 def _within(tree: Tree, lowest: int) -> str:
-    """A tree as a part of another: in parentheses when it is a chain that binds less tightly than `lowest`."""
+    """A tree as a part of another: in parentheses when it is a chain that binds less tightly than
+    `lowest`.
+    """
     text = to_text(tree)
     if isinstance(tree, Chain):
         return text if (SUM if tree.is_sum else PRODUCT) >= lowest else f"({text})"

@@ -1,8 +1,10 @@
-"""A YAML text as a tree whose every scalar and key knows the file, the line and the key path it stands at.
+"""A YAML text as a tree whose every scalar and key knows the file, the line and the key path it
+stands at.
 
-Guarantee: scalars keep the text that was written (``0.1`` stays ``0.1``, never a float); no tag, anchor, alias or
-second document is accepted, no key occurs twice, and bytes, depth, number of values and length of keys are bounded, so
-that reading ends in a fraction of a second and bounded memory. Every refusal is a `ConfigError` that names the place.
+Guarantee: scalars keep the text that was written (``0.1`` stays ``0.1``, never a float); no tag,
+anchor, alias or second document is accepted, no key occurs twice, and bytes, depth, number of
+values and length of keys are bounded, so that reading ends in a fraction of a second and bounded
+memory. Every refusal is a `ConfigError` that names the place.
 """
 
 from __future__ import annotations
@@ -31,11 +33,12 @@ def read_file(path: str | Path) -> Tree:
 
     Raises
     ------
-    ConfigError
-        If the file is missing, is no regular file, cannot be read, is larger than `MAX_BYTES`, is not UTF-8 text, is
-        not YAML, or uses what the module's docstring excludes.
+    ConfigError If the file is missing, is no regular file, cannot be read, is larger than
+        `MAX_BYTES`, is not UTF-8 text, is not YAML, or uses what the module's docstring excludes.
     """
-    return read_text(textfile.read_text(path, MAX_BYTES, "a problem record (a YAML file)"), str(path))
+    return read_text(
+        textfile.read_text(path, MAX_BYTES, "a problem record (a YAML file)"), str(path)
+    )
 
 
 def read_text(text: str, file: str | None = None) -> Tree:
@@ -57,19 +60,28 @@ def read_text(text: str, file: str | None = None) -> Tree:
             raise Place(file=file, line=mark.line + 1 if mark else None).error(
                 f"more than {MAX_DEPTH} levels of nesting"
             ) from error
-        raise ConfigError(f"is not YAML: {problem}", file=file, line=mark.line + 1 if mark else None) from error
+        raise ConfigError(
+            f"is not YAML: {problem}", file=file, line=mark.line + 1 if mark else None
+        ) from error
     except yaml.YAMLError as error:
         raise ConfigError(
-            "is not YAML: it has a character that text does not have (is it a binary file?)", file=file
+            "is not YAML: it has a character that text does not have (is it a binary file?)",
+            file=file,
         ) from error
     if not isinstance(node, Tree):
-        found = "is empty" if isinstance(node, Scalar) and node.is_null else "is not a mapping of keys to values"
+        found = (
+            "is empty"
+            if isinstance(node, Scalar) and node.is_null
+            else "is not a mapping of keys to values"
+        )
         raise ConfigError(f"{found}: a problem record has lines such as 'count: stable'", file=file)
     return node
 
 
 def _cannot_start(text: str, mark: Any) -> str:
-    """What is said where a text cannot go on so, in words of a character that has a name; else empty."""
+    """What is said where a text cannot go on so, in words of a character that has a name; else
+    empty.
+    """
     lines = text.splitlines()
     line = lines[mark.line] if mark.line < len(lines) else ""
     character = line[mark.column : mark.column + 1]
@@ -90,7 +102,9 @@ def _document(events: Iterator[Any], root: Place) -> Written:
         if isinstance(event, yaml.DocumentStartEvent):
             documents += 1
             if documents > 1:
-                raise root._replace(line=_line(event)).error("a second document starts here: one record a file")
+                raise root._replace(line=_line(event)).error(
+                    "a second document starts here: one record a file"
+                )
         elif isinstance(event, yaml.NodeEvent):
             node = _node(event, events, root, 0)
     return node
@@ -102,7 +116,9 @@ def _counted(events: Iterator[Any], root: Place) -> Iterator[Any]:
     for event in events:
         values += isinstance(event, yaml.NodeEvent)
         if values > MAX_VALUES:
-            raise root._replace(line=_line(event)).error(f"more than {MAX_VALUES} values: this is not a problem record")
+            raise root._replace(line=_line(event)).error(
+                f"more than {MAX_VALUES} values: this is not a problem record"
+            )
         yield event
 
 
@@ -111,7 +127,9 @@ def _node(event: Any, events: Iterator[Any], place: Place, depth: int) -> Writte
     here = Place(place.key, place.file, _line(event))
     key_line = place.line or here.line  # where a block begins is below its key
     if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
-        raise here.error("anchors (&) and aliases (*) are not accepted: write the value out, or quote the text")
+        raise here.error(
+            "anchors (&) and aliases (*) are not accepted: write the value out, or quote the text"
+        )
     if event.tag is not None:
         raise here.error(f"the tag {shown(event.tag, 80)} is not accepted: leave it out")
     if depth > MAX_DEPTH:

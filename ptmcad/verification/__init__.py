@@ -1,8 +1,8 @@
 """Verification of a stored region map by methods that share no code with the one that made it.
 
-Guarantee: nothing here imports the engines (`algebra`, `exact`, `certified`); a contract in pyproject.toml holds
-that. Common to both are FLINT, the text of numbers, descriptions,
-the slice with its table of counts, and the result's data classes.
+Guarantee: nothing here imports the engines (`algebra`, `exact`, `certified`); a contract in
+pyproject.toml holds that. Common to both are FLINT, the text of numbers, descriptions, the slice
+with its table of counts, and the result's data classes.
 """
 
 from __future__ import annotations

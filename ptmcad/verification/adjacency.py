@@ -1,26 +1,31 @@
-"""Checks of adjacency: the pairs of cells that share an open arc, those that do not, and that none is missing.
+"""Checks of adjacency: the pairs of cells that share an open arc, those that do not, and that none
+is missing.
 
-Guarantee: every stored segment joins its cells and meets no curve; every free interval between the curves over a
-critical value belongs to a stored pair; every record of cells that are not adjacent holds, and there is one wherever
-order alone would allow another pair.
+Guarantee: every stored segment joins its cells and meets no curve; every free interval between the
+curves over a critical value belongs to a stored pair; every record of cells that are not adjacent
+holds, and there is one wherever order alone would allow another pair.
 
-Why no pair is missing. Let the line over a critical value cross the open window, and take away the points of the curves
-on it, which are finitely many (no curve contains the line). The open intervals that are left are its *free intervals*:
-at least one, whatever the curves do. Each of them lies in the closure of exactly one cell on either side, so two cells
-are adjacent across the line exactly when they have a free interval in common. A stored segment crosses the line in a
-free interval and shows its pair. The segments cut the line into parts: between two of them, or between one and the
-window's edge. Into a part run as many half-branches as the levels of its ends differ by, on both sides together; an
-isolated point of the curves changes no pair. A part contains no pair but those of the segments at its ends, if
+Why no pair is missing. Let the line over a critical value cross the open window, and take away the
+points of the curves on it, which are finitely many (no curve contains the line). The open intervals
+that are left are its *free intervals*: at least one, whatever the curves do. Each of them lies in
+the closure of exactly one cell on either side, so two cells are adjacent across the line exactly
+when they have a free interval in common. A stored segment crosses the line in a free interval and
+shows its pair. The segments cut the line into parts: between two of them, or between one and the
+window's edge. Into a part run as many half-branches as the levels of its ends differ by, on both
+sides together; an isolated point of the curves changes no pair. A part contains no pair but those
+of the segments at its ends, if
 
-* no half-branch runs into it, and there is a segment at one of its ends at least: all its free intervals have that
-  segment's pair. (Between the two edges of the window, with no segment, the pair of all of them would be stored
-  nowhere);
-* two half-branches run into a part between two segments: through each point inside the window runs an even number of
-  half-branches, so both end in one point, and the free intervals on either side of it have the segments' pairs;
-* a single half-branch runs into a part between a segment and the window's edge: being alone, it ends on the edge, so
-  that all free intervals have the segment's pair.
+* no half-branch runs into it, and there is a segment at one of its ends at least: all its free
+  intervals have that segment's pair. (Between the two edges of the window, with no segment, the
+  pair of all of them would be stored nowhere);
+* two half-branches run into a part between two segments: through each point inside the window runs
+  an even number of half-branches, so both end in one point, and the free intervals on either side
+  of it have the segments' pairs;
+* a single half-branch runs into a part between a segment and the window's edge: being alone, it
+  ends on the edge, so that all free intervals have the segment's pair.
 
-Any other part is settled by a free segment built in each of its free intervals, whose pair has to be stored.
+Any other part is settled by a free segment built in each of its free intervals, whose pair has to
+be stored.
 """
 
 from __future__ import annotations
@@ -67,12 +72,16 @@ def check_adjacencies(claims: Claims) -> str:
     for stack in result.stacks:
         for one, two in pairwise(stack.cells):
             if (one, two) not in vertical:
-                raise Violation(f"the adjacency of cells {one} and {two}, neighbours in a stack, is missing")
+                raise Violation(
+                    f"the adjacency of cells {one} and {two}, neighbours in a stack, is missing"
+                )
     return f"{len(vertical)} inside stacks, {len(across)} segments"
 
 
 def _stack(cell: Cell) -> int:
-    assert cell.stack is not None  # `ptmcad.verification.merging.check_shape` has compared it with the stacks
+    assert (
+        cell.stack is not None
+    )  # `ptmcad.verification.merging.check_shape` has compared it with the stacks
     return cell.stack
 
 
@@ -81,7 +90,9 @@ def _check_segment(claims: Claims, number: int, a: Adjacency) -> None:
     assert a.segment is not None
     first, second = result.cells[a.first], result.cells[a.second]
     if _stack(second) != _stack(first) + 1:
-        raise Violation(f"adjacency {number}: cells {a.first} and {a.second} are not in neighbouring stacks")
+        raise Violation(
+            f"adjacency {number}: cells {a.first} and {a.second} are not in neighbouring stacks"
+        )
     _check_free(claims, f"adjacency {number}", a.segment, (a.first, first), (a.second, second))
     value = result.critical_values[_stack(first)]
     line = next((c.number for c in claims.lines if is_root(c.in_v[0], value)), None)
@@ -91,16 +102,25 @@ def _check_segment(claims: Claims, number: int, a: Adjacency) -> None:
         )
 
 
-def _check_free(claims: Claims, what: str, segment: Segment, first: tuple[int, Cell], second: tuple[int, Cell]) -> None:
+def _check_free(
+    claims: Claims, what: str, segment: Segment, first: tuple[int, Cell], second: tuple[int, Cell]
+) -> None:
     """A segment joins two cells of neighbouring stacks and meets no curve."""
     low, high, v = (from_fraction(q) for q in segment)
-    if not (inside_stack(claims, low, _stack(first[1])) and inside_stack(claims, high, _stack(second[1]))):
-        raise Violation(f"{what}: the segment from {short(low)} to {short(high)} does not join the cells' stacks")
+    if not (
+        inside_stack(claims, low, _stack(first[1]))
+        and inside_stack(claims, high, _stack(second[1]))
+    ):
+        raise Violation(
+            f"{what}: the segment from {short(low)} to {short(high)} does not join the cells' stacks"
+        )
     if not claims.height[0] < v < claims.height[1]:
         raise Violation(f"{what}: the segment's height {short(v)} is outside the window")
     hit = claims.free(low, high, v)
     if hit is not None:
-        raise Violation(f"{what}: component {hit.number} meets the segment [{low}, {high}] at height {v}")
+        raise Violation(
+            f"{what}: component {hit.number} meets the segment [{low}, {high}] at height {v}"
+        )
     for (n, cell), u in ((first, low), (second, high)):
         if (level := claims.level(u, v)) != cell.level:
             raise Violation(
@@ -109,8 +129,8 @@ def _check_free(claims: Claims, what: str, segment: Segment, first: tuple[int, C
 
 
 _SETTLED = ((0, 2), (0, 1), ())
-"""Numbers of half-branches with which a part has no further pair: between two segments, a segment and an edge, two
-edges. See the module's text."""
+"""Numbers of half-branches with which a part has no further pair: between two segments, a segment
+and an edge, two edges. See the module's text."""
 
 
 def check_no_adjacency_missing(claims: Claims) -> str:
@@ -120,7 +140,11 @@ def check_no_adjacency_missing(claims: Claims) -> str:
     for s in range(len(result.stacks) - 1):
         left, right = result.stacks[s], result.stacks[s + 1]
         stored = sorted(
-            (a for a in result.adjacencies if a.segment is not None and result.cells[a.first].stack == s),
+            (
+                a
+                for a in result.adjacencies
+                if a.segment is not None and result.cells[a.first].stack == s
+            ),
             key=lambda a: (result.cells[a.first].level, result.cells[a.second].level),
         )
         pairs = {(result.cells[a.first].level, result.cells[a.second].level) for a in stored}
@@ -128,24 +152,30 @@ def check_no_adjacency_missing(claims: Claims) -> str:
         for a in stored:
             assert a.segment is not None
             marks.append(
-                (from_fraction(a.segment[2]), result.cells[a.first].level, result.cells[a.second].level, False)
+                (
+                    from_fraction(a.segment[2]),
+                    result.cells[a.first].level,
+                    result.cells[a.second].level,
+                    False,
+                )
             )
         marks.append((claims.height[1], len(left.walls), len(right.walls), True))
         marks.sort(key=lambda m: fmpq(m[0]))
         for (bottom, l0, r0, edge0), (top, l1, r1, edge1) in pairwise(marks):
-            # half-branches that settle the part, by the number of its ends that are the window's edges
+            # half-branches that settle the part, by the number of its ends that are the window's
+            # edges
             if (l1 - l0) + (r1 - r0) in _SETTLED[edge0 + edge1]:
                 by_parity += 1
                 continue
             _search(claims, s, bottom, top, pairs)
             by_points += 1
-    return (
-        f"{by_parity} gaps by parity of half-branches, {by_points} by all points of the curves over the critical value"
-    )
+    return f"{by_parity} gaps by parity of half-branches, {by_points} by all points of the curves over the critical value"
 
 
 def check_non_adjacencies(claims: Claims) -> str:
-    """Every pair of cells that order would allow to be adjacent, and that is not, has a record that proves it."""
+    """Every pair of cells that order would allow to be adjacent, and that is not, has a record that
+    proves it.
+    """
     result = claims.result
     expected = set()
     for s in range(len(result.stacks) - 1):
@@ -178,7 +208,11 @@ def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
     for segment, n, m in ((a.below, a.left[0], a.right[0]), (a.above, a.left[-1], a.right[-1])):
         if segment is not None:
             _check_free(claims, what, segment, (n, result.cells[n]), (m, result.cells[m]))
-    at_edges = [height for height, segment in zip(claims.height, (a.below, a.above), strict=True) if segment is None]
+    at_edges = [
+        height
+        for height, segment in zip(claims.height, (a.below, a.above), strict=True)
+        if segment is None
+    ]
     whole = (a.left[0], a.right[0]) == (
         result.stacks[a.critical_value].cells[0],
         result.stacks[a.critical_value + 1].cells[0],
@@ -188,7 +222,9 @@ def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
         result.stacks[a.critical_value + 1].cells[-1],
     )
     if (a.below is None and not whole) or (a.above is None and not top):
-        raise Violation(f"{what}: a segment is missing, and the cells do not reach the window's edge")
+        raise Violation(
+            f"{what}: a segment is missing, and the cells do not reach the window's edge"
+        )
     branches = len(a.left) + len(a.right) - 2
     if a.reason is Reason.PAIR:
         holds = branches == 2 and not at_edges

@@ -1,7 +1,8 @@
-"""The algebra Q[x]/(equations) of finitely many solutions: standard monomials and tables of multiplication.
+"""The algebra Q[x]/(equations) of finitely many solutions: standard monomials and tables of
+multiplication.
 
-Guarantee: exact. FLINT's own Buchberger algorithm gives the Groebner basis, in graded reverse lexicographic order with
-the last variable first.
+Guarantee: exact. FLINT's own Buchberger algorithm gives the Groebner basis, in graded reverse
+lexicographic order with the last variable first.
 """
 
 from __future__ import annotations
@@ -18,18 +19,27 @@ class NotFinite(ArithmeticError):
     """The equations have infinitely many complex solutions at the point."""
 
 
-def algebra(equations: list[fmpq_mpoly], variables: int) -> tuple[tuple[Monomial, ...], tuple[fmpq_mat, ...]]:
+def algebra(
+    equations: list[fmpq_mpoly], variables: int
+) -> tuple[tuple[Monomial, ...], tuple[fmpq_mat, ...]]:
     """The standard monomials, and the matrix of multiplication by each variable, last to first."""
     rules = _reduced_basis(equations, variables)
     width = range(variables)
     if not all(any(sum(lead) == lead[k] for lead in rules) for k in width):
         raise NotFinite
     bounds = [
-        next(lead[k] for lead in rules if sum(lead) == lead[k]) if (0,) * variables not in rules else 0 for k in width
+        next(lead[k] for lead in rules if sum(lead) == lead[k])
+        if (0,) * variables not in rules
+        else 0
+        for k in width
     ]
     basis = tuple(
         sorted(
-            (m for m in product(*map(range, bounds)) if not any(_divides(lead, m) for lead in rules)),
+            (
+                m
+                for m in product(*map(range, bounds))
+                if not any(_divides(lead, m) for lead in rules)
+            ),
             key=lambda m: (sum(m), m),
         )
     )
@@ -55,19 +65,29 @@ def algebra(equations: list[fmpq_mpoly], variables: int) -> tuple[tuple[Monomial
     tables = []
     for k in width:
         columns = [normal(tuple(e + (i == k) for i, e in enumerate(m))) for m in basis]
-        tables.append(fmpq_mat(len(basis), len(basis), [column[i] for i in range(len(basis)) for column in columns]))
+        tables.append(
+            fmpq_mat(
+                len(basis), len(basis), [column[i] for i in range(len(basis)) for column in columns]
+            )
+        )
     return basis, tuple(tables)
 
 
-def _reduced_basis(equations: list[fmpq_mpoly], variables: int) -> dict[Monomial, dict[Monomial, fmpq]]:
+def _reduced_basis(
+    equations: list[fmpq_mpoly], variables: int
+) -> dict[Monomial, dict[Monomial, fmpq]]:
     """A Groebner basis as rules: leading monomial -> what it is modulo the ideal."""
-    ring: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(tuple(f"x{k}" for k in range(variables)), Ordering.degrevlex)
+    ring: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(
+        tuple(f"x{k}" for k in range(variables)), Ordering.degrevlex
+    )
     integral = []
     for e in equations:
         scale = 1
         for c in e.coeffs():
             scale = scale * int(c.q)
-        integral.append(ring.from_dict({m[::-1]: int((c * scale).p) for m, c in e.to_dict().items()}))
+        integral.append(
+            ring.from_dict({m[::-1]: int((c * scale).p) for m, c in e.to_dict().items()})
+        )
     vector = fmpz_mpoly_vec([p.primitive()[1] for p in integral], ring)
     rules: dict[Monomial, dict[Monomial, fmpq]] = {}
     for p in vector.buchberger_naive().autoreduction():

@@ -1,11 +1,13 @@
-"""Checks of the areas: another enclosure of each region's area, which has to lie within the stored bounds.
+"""Checks of the areas: another enclosure of each region's area, which has to lie within the stored
+bounds.
 
-Each wall between two regions is integrated over panels by `ptmcad.verification.branches`, which are halved towards
-critical values, where branches are not analytic; narrow strips around critical
+Each wall between two regions is integrated over panels by `ptmcad.verification.branches`, which are
+halved towards critical values, where branches are not analytic; narrow strips around critical
 values that are not rational count as error.
 
-Guarantee: the enclosures are proved (ball arithmetic of Arb, rational panels). They are refined until each is within
-its stored bounds or outside of them; where bounds are too narrow for that, they are listed as not checked.
+Guarantee: the enclosures are proved (ball arithmetic of Arb, rational panels). They are refined
+until each is within its stored bounds or outside of them; where bounds are too narrow for that,
+they are listed as not checked.
 """
 
 from __future__ import annotations
@@ -27,7 +29,9 @@ from ptmcad.verification.disks import BallsTooWide
 from ptmcad.verification.report import Unchecked, Violation
 
 NARROWEST = 10**60
-"""Of bounds that are relatively narrower than the inverse of this, it is tried whether they are off by so much."""
+"""Of bounds that are relatively narrower than the inverse of this, it is tried whether they are off
+by so much.
+"""
 CROWDED_PANELS = 100
 """Panels for each stack beyond which polynomials of higher degree are worth their cost."""
 ATTEMPTS = 7
@@ -94,7 +98,9 @@ def _doublings(scale: Fraction) -> int:
 
 
 def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None:
-    """None when every enclosure is within its bounds; else which one could not be made narrow enough."""
+    """None when every enclosure is within its bounds; else which one could not be made narrow
+    enough.
+    """
     result = claims.result
     (start, stop), (low, high) = claims.base, claims.height
     width = stop - start
@@ -105,7 +111,9 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
     bounds = [(ball_of(r.area[0]), ball_of(r.area[1])) for r in result.regions]
     number = max(1, sum(len(s.walls) for s in result.stacks))
     shares = [ball_of(_width(r)).mid() * margin / number for r in result.regions]
-    effort = PanelEffort(min(shares), width / 2**5, width / 2 ** (bits // 3), (low, high), (2,), (start, stop))
+    effort = PanelEffort(
+        min(shares), width / 2**5, width / 2 ** (bits // 3), (low, high), (2,), (start, stop)
+    )
     whole = [arb(0) for _ in result.regions]
     panels: list[_WallPanel] = []
     for s, stack in enumerate(result.stacks):
@@ -113,8 +121,13 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
         right = stop if s == len(brackets) else brackets[s][0]
         whole[result.cells[stack.cells[-1]].region] += arb((right - left) * (high - low))
         for below, above, branch in _borders(claims, s):
-            there = replace(effort, share=min(shares[below], shares[above]), points=(points[s], points[s + 1]))
-            panels += [_WallPanel(branch, below, above, there, p) for p in integrals_over(branch, left, right, there)]
+            there = replace(
+                effort, share=min(shares[below], shares[above]), points=(points[s], points[s + 1])
+            )
+            panels += [
+                _WallPanel(branch, below, above, there, p)
+                for p in integrals_over(branch, left, right, there)
+            ]
     while True:
         areas = list(whole)
         for p in panels:
@@ -124,10 +137,15 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
         for n, (area, (a, b)) in enumerate(zip(areas, bounds, strict=True)):
             enclosure = area + arb(0).union(arb(lost))
             if enclosure < a or enclosure > b:
-                raise Violation(f"region {n}: its area is {enclosure.str(15)}, not {_between(result.regions[n])}")
-            # a region's area is less than the window's and more than nothing, whatever rounding adds
+                raise Violation(
+                    f"region {n}: its area is {enclosure.str(15)}, not {_between(result.regions[n])}"
+                )
+            # a region's area is less than the window's and more than nothing, whatever rounding
+            # adds
             reaches = result.regions[n].area
-            if not ((enclosure >= a or reaches[0] == 0) and (enclosure <= b or reaches[1] >= window)):
+            if not (
+                (enclosure >= a or reaches[0] == 0) and (enclosure <= b or reaches[1] >= window)
+            ):
                 open_regions.add(n)
         if not open_regions:
             return None
@@ -163,8 +181,12 @@ def _between(region: Region) -> str:
     return f"between {approximate_text(region.area[0])} and {approximate_text(region.area[1])}"
 
 
-def _halved(panels: Sequence[_WallPanel], regions: set[int], effort: PanelEffort) -> list[_WallPanel] | None:
-    """The panels of the given regions, the worst ones halved or tried for the first time; None when too narrow."""
+def _halved(
+    panels: Sequence[_WallPanel], regions: set[int], effort: PanelEffort
+) -> list[_WallPanel] | None:
+    """The panels of the given regions, the worst ones halved or tried for the first time; None when
+    too narrow.
+    """
     concerned = [p for p in panels if regions & {p.below, p.above}]
     worst = max((p.part.integral.rad() for p in concerned), default=arb(0))
     if not worst > effort.share:

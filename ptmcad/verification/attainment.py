@@ -1,9 +1,11 @@
-"""Checks of where ranges are longest, and whether that is attained, on lines of the slice by themselves.
+"""Checks of where ranges are longest, and whether that is attained, on lines of the slice by
+themselves.
 
-Guarantee: what passes holds at the rational values that were looked at: those that the claims name, the window's edges,
-random ones in an interval, and all at which the whole line is exceptional: counts can change there on every line across
-it, so that it is a common critical value of some random ones. On a line with degenerate solutions points with another
-count are sought that leave no room for the range.
+Guarantee: what passes holds at the rational values that were looked at: those that the claims name,
+the window's edges, random ones in an interval, and all at which the whole line is exceptional:
+counts can change there on every line across it, so that it is a common critical value of some
+random ones. On a line with degenerate solutions points with another count are sought that leave no
+room for the range.
 
 Not guaranteed: anything at irrational values, and of places that are enclosed.
 """
@@ -33,7 +35,9 @@ INSIDE = 5
 """Random values in an interval."""
 _POINTS = 40
 _NEAR = Fraction(1, 2**100)
-"""How far from a value a limit is looked at, as a share of the window; and what of it is there at least."""
+"""How far from a value a limit is looked at, as a share of the window; and what of it is there at
+least.
+"""
 _LEFT = Fraction(99, 100)
 
 
@@ -55,12 +59,17 @@ class SliceLines:
     working: int
 
     def has(self, value: End, width: Fraction) -> bool | None:
-        """Whether the longest range on a line is at least so long; None where that was not found out."""
+        """Whether the longest range on a line is at least so long; None where that was not found
+        out.
+        """
         if not isinstance(value, Fraction):
             return None
         line = self.at(value)
         try:
-            return max((span.width.high for span in line.ranges(self.working)), default=Fraction(0)) >= width
+            return (
+                max((span.width.high for span in line.ranges(self.working)), default=Fraction(0))
+                >= width
+            )
         except NotKnown:
             others = [line.low, line.high]
         for _ in range(_POINTS):
@@ -118,14 +127,23 @@ def check_maxima(lines: SliceLines, maxima: Sequence[Maximum]) -> str:
     for m in maxima:
         known = len(claims)
         if m.place is Place.PLATEAU:
-            inside = [*_between(m.at.low, m.at.high, INSIDE), *(v for v in special if m.at.low <= v <= m.at.high)]
-            claims += [(v, m.width.low, True) for v in inside if v not in (*m.exceptions, *m.doubtful)]
+            inside = [
+                *_between(m.at.low, m.at.high, INSIDE),
+                *(v for v in special if m.at.low <= v <= m.at.high),
+            ]
+            claims += [
+                (v, m.width.low, True) for v in inside if v not in (*m.exceptions, *m.doubtful)
+            ]
             claims += [(v, m.width.low, False) for v in m.exceptions]
         elif m.at.exact is not None and m.attained is not None:
             claims.append((m.at.exact, m.width.low, m.attained))
-            sides = [v for v in (m.at.exact - reach, m.at.exact + reach) if over.low < v < over.high]
+            sides = [
+                v for v in (m.at.exact - reach, m.at.exact + reach) if over.low < v < over.high
+            ]
             if not m.attained and all(lines.has(v, m.width.low * _LEFT) is False for v in sides):
-                raise Violation(f"beside {over.name} = {shortest_text(m.at.exact)} no range comes near the longest one")
+                raise Violation(
+                    f"beside {over.name} = {shortest_text(m.at.exact)} no range comes near the longest one"
+                )
         unknown += len(claims) == known
     for value, width, expected in claims:
         found = lines.has(value, width)

@@ -1,17 +1,19 @@
 """Branches of curves over panels: enclosures of their integrals.
 
-A branch is a power series in a disk that is proved by `ptmcad.verification.disks`. With coefficients of at most r / R^n
-there (Cauchy), what lies beyond the term of order N contributes at most 2 h r (h/R)^N / ((N+1) (1 - (h/R)^2)) to the
-integral over a panel of half width h < R. Where R is too small for the panel, its middle part is proved for which it is
-large enough. Where no R does, the panel is halved or the branch is shut in between two heights at which the curve does
-not meet the panel.
+A branch is a power series in a disk that is proved by `ptmcad.verification.disks`. With
+coefficients of at most r / R^n there (Cauchy), what lies beyond the term of order N contributes at
+most 2 h r (h/R)^N / ((N+1) (1 - (h/R)^2)) to the integral over a panel of half width h < R. Where R
+is too small for the panel, its middle part is proved for which it is large enough. Where no R does,
+the panel is halved or the branch is shut in between two heights at which the curve does not meet
+the panel.
 
-Beside a turning point, a node or a cusp of the curve at (U, V) the branch is V + a s^k + s^j t, with s^k the distance
-from U, and t a simple root of p(U +- s^k, V + a s^k + s^j t)/s^e (`_Meeting`; e is j times the number of branches).
-This is a polynomial in s and t but for some terms with negative powers of s, which are nothing at the point itself, and
-little where U, V and a are approximations. For each real s from some sigma on they are numbers, times powers of t, that
-are at most as large as at sigma. So what a disk proves of all polynomials with such numbers in their place, whatever
-they are, holds of t at each such s.
+Beside a turning point, a node or a cusp of the curve at (U, V) the branch is V + a s^k + s^j t,
+with s^k the distance from U, and t a simple root of p(U +- s^k, V + a s^k + s^j t)/s^e (`_Meeting`;
+e is j times the number of branches). This is a polynomial in s and t but for some terms with
+negative powers of s, which are nothing at the point itself, and little where U, V and a are
+approximations. For each real s from some sigma on they are numbers, times powers of t, that are at
+most as large as at sigma. So what a disk proves of all polynomials with such numbers in their
+place, whatever they are, holds of t at each such s.
 
 Guarantee: what is returned contains the integral of the branch that was asked for.
 """
@@ -31,7 +33,9 @@ from ptmcad.verification.roots import numbered_root
 
 @dataclass(frozen=True)
 class WallBranch:
-    """A wall: the curve, the number of its root, and the curve's coefficients, in Z[u] and in Z[v], for balls."""
+    """A wall: the curve, the number of its root, and the curve's coefficients, in Z[u] and in Z[v],
+    for balls.
+    """
 
     curve: PlaneCurve
     root: int
@@ -40,7 +44,9 @@ class WallBranch:
 
     @classmethod
     def of(cls, curve: PlaneCurve, root: int) -> WallBranch:
-        return cls(curve, root, [arb_poly(c) for c in curve.in_v], [arb_poly(c) for c in curve.in_u])
+        return cls(
+            curve, root, [arb_poly(c) for c in curve.in_v], [arb_poly(c) for c in curve.in_u]
+        )
 
     def height(self, u: fmpq, low: fmpq, high: fmpq) -> arb | None:
         """The branch over u; None when there are not so many roots between the heights."""
@@ -57,8 +63,10 @@ class PanelEffort:
     shut : panels narrower than this are shut in between heights.
     narrowest : panels narrower than this are not halved at this precision.
     heights : the window's edges.
-    points : approximations of the critical values, or the window's edges, at the ends of the branch's stack.
-    degrees : of the polynomials that a branch is compared with; the closer the next branch, the better it has to be.
+    points : approximations of the critical values, or the window's edges, at the ends of the
+        branch's stack.
+    degrees : of the polynomials that a branch is compared with; the closer the next branch, the
+        better it has to be.
     """
 
     share: arb
@@ -74,9 +82,10 @@ class PanelPart(NamedTuple):
 
     Attributes
     ----------
-    tried : whether this part has been the whole of what was tried; else it is what was left of something longer, and
-        its integral is known by two heights only.
-    run : of what was left how often, one time after the other, it was left at the same end: negative at the left one.
+    tried : whether this part has been the whole of what was tried; else it is what was left of
+        something longer, and its integral is known by two heights only.
+    run : of what was left how often, one time after the other, it was left at the same end:
+        negative at the left one.
     """
 
     left: fmpq
@@ -86,20 +95,24 @@ class PanelPart(NamedTuple):
     run: int = 0
 
 
-def integrals_over(branch: WallBranch, left: fmpq, right: fmpq, effort: PanelEffort, run: int = 0) -> list[PanelPart]:
+def integrals_over(
+    branch: WallBranch, left: fmpq, right: fmpq, effort: PanelEffort, run: int = 0
+) -> list[PanelPart]:
     """The integral of the branch over a panel, in parts: the best enclosures at hand.
 
     Parameters
     ----------
-    run : as `PanelPart` has it. Where a branch was not proved at an end it is likely to meet another one there, so this
-        is tried twice.
+    run : as `PanelPart` has it. Where a branch was not proved at an end it is likely to meet
+        another one there, so this is tried twice.
 
     Raises
     ------
     PrecisionTooLow
     """
     if run and abs(run) <= 2:
-        meeting = _beside(branch, effort.points[run > 0], (left, right) if run < 0 else (right, left), effort)
+        meeting = _beside(
+            branch, effort.points[run > 0], (left, right) if run < 0 else (right, left), effort
+        )
         if meeting is not None:
             return meeting
     low, high = effort.heights
@@ -114,7 +127,9 @@ def integrals_over(branch: WallBranch, left: fmpq, right: fmpq, effort: PanelEff
     if found is None:
         return [_known_by_edges(left, right, effort, True, within)]
     sides = (left, middle - proved, min(run, 0) - 1), (middle + proved, right, max(run, 0) + 1)
-    rest = [_known_by_edges(a, b, effort, False, within)._replace(run=k) for a, b, k in sides if a < b]
+    rest = [
+        _known_by_edges(a, b, effort, False, within)._replace(run=k) for a, b, k in sides if a < b
+    ]
     return [PanelPart(middle - proved, middle + proved, found[0] - low * (2 * proved), True), *rest]
 
 
@@ -140,22 +155,31 @@ def _more_precisely(
 
 
 def _known_by_edges(
-    left: fmpq, right: fmpq, effort: PanelEffort, tried: bool, within: tuple[fmpq, fmpq] | None = None
+    left: fmpq,
+    right: fmpq,
+    effort: PanelEffort,
+    tried: bool,
+    within: tuple[fmpq, fmpq] | None = None,
 ) -> PanelPart:
-    """A part of which nothing is known but two heights that it lies between, the window's edges or closer ones."""
+    """A part of which nothing is known but two heights that it lies between, the window's edges or
+    closer ones.
+    """
     low = effort.heights[0]
     bottom, top = within or effort.heights
     return PanelPart(left, right, arb(bottom - low).union(arb(top - low)) * (right - left), tried)
 
 
 _POOR = 4
-"""A polynomial of higher degree is worth its cost where so small a share of a panel is proved, or none."""
+"""A polynomial of higher degree is worth its cost where so small a share of a panel is proved, or
+none.
+"""
 
 
 def _by_series(
     branch: WallBranch, middle: fmpq, half: fmpq, height: arb, effort: PanelEffort
 ) -> tuple[arb, fmpq] | None:
-    """The integral of the branch over a panel's middle part, by its power series, and half that part's width.
+    """The integral of the branch over a panel's middle part, by its power series, and half that
+    part's width.
 
     None when no disk of convergence is proved.
 
@@ -186,13 +210,18 @@ def _along(
     for k in range(0, len(coefficients), 2):
         total += coefficients[k] * power * fmpq(2, k + 1)
         power = power * found.proved * found.proved
-    if total.rad() > effort.share and total.rad() * 2**_ROUNDED_BITS > arb(found.proved) * found.reach:
+    if (
+        total.rad() > effort.share
+        and total.rad() * 2**_ROUNDED_BITS > arb(found.proved) * found.reach
+    ):
         raise BallsTooWide  # the disk alone says nearly as much as the series
     return total + arb(0).union(2 * tail) - tail, found.proved
 
 
 def _terms(found: Disk, share: arb) -> tuple[list[arb], arb]:
-    """A disk's power series to an order at which the tail is negligible, and a bound of the tail's integral."""
+    """A disk's power series to an order at which the tail is negligible, and a bound of the tail's
+    integral.
+    """
     ratio, order = 1 / arb(found.factor), 4
     while True:
         tail = 2 * arb(found.proved) * found.reach * ratio**order / ((order + 1) * (1 - ratio))
@@ -209,8 +238,11 @@ _NEAREST = 2**40
 """Part of a panel beside a critical value that is a rational number: so much is left out."""
 
 
-def _beside(branch: WallBranch, at: fmpq, ends: tuple[fmpq, fmpq], effort: PanelEffort) -> list[PanelPart] | None:
-    """The parts of a panel beside a critical value at which the branch meets another one; None where it is not proved.
+def _beside(
+    branch: WallBranch, at: fmpq, ends: tuple[fmpq, fmpq], effort: PanelEffort
+) -> list[PanelPart] | None:
+    """The parts of a panel beside a critical value at which the branch meets another one; None
+    where it is not proved.
 
     Parameters
     ----------
@@ -231,9 +263,13 @@ def _beside(branch: WallBranch, at: fmpq, ends: tuple[fmpq, fmpq], effort: Panel
             place = _meeting_place(over, multiplicity, height, abs(near - at))
             if place is None:
                 continue
-            rows = recentered([row(arb_poly([at, 1 if far > at else -1])) for row in branch.value], place)
+            rows = recentered(
+                [row(arb_poly([at, 1 if far > at else -1])) for row in branch.value], place
+            )
             for meeting in (m for m in _MEETINGS if m.multiplicity == multiplicity):
-                found = _from_point(rows, meeting, abs(near - at), abs(far - at), height - place, effort)
+                found = _from_point(
+                    rows, meeting, abs(near - at), abs(far - at), height - place, effort
+                )
                 if found is not None:
                     total, length = found
                     end = at + length if far > at else at - length
@@ -248,7 +284,8 @@ def _beside(branch: WallBranch, at: fmpq, ends: tuple[fmpq, fmpq], effort: Panel
 
 
 class _Meeting(NamedTuple):
-    """How branches meet: at the distance s^k they have the heights slope s^k + s^j t, with different t for s = 0.
+    """How branches meet: at the distance s^k they have the heights slope s^k + s^j t, with
+    different t for s = 0.
 
     Attributes
     ----------
@@ -271,7 +308,9 @@ _MEETINGS = (
 
 
 def _meeting_place(over: arb_poly, multiplicity: int, height: arb, away: fmpq) -> arb | None:
-    """A height that is nearly a root so often, near a branch's height at a short distance; None where none is seen."""
+    """A height that is nearly a root so often, near a branch's height at a short distance; None
+    where none is seen.
+    """
     derivatives = [over]
     for _ in range(multiplicity):
         derivatives.append(derivatives[-1].derivative())
@@ -290,9 +329,15 @@ def _between(one: fmpq, other: fmpq, effort: PanelEffort, run: int = 0) -> list[
 
 
 def _from_point(
-    rows: Sequence[arb_poly], meeting: _Meeting, near: fmpq, far: fmpq, height: arb, effort: PanelEffort
+    rows: Sequence[arb_poly],
+    meeting: _Meeting,
+    near: fmpq,
+    far: fmpq,
+    height: arb,
+    effort: PanelEffort,
 ) -> tuple[arb, fmpq] | None:
-    """The integral of the height over distances from `near` on, and up to where; None when no disk is proved.
+    """The integral of the height over distances from `near` on, and up to where; None when no disk
+    is proved.
 
     Parameters
     ----------
@@ -316,7 +361,9 @@ def _from_point(
     except BallsTooWide:
         return None  # halved panels may do with what precision there is
     # the branch is that of the disk over the nearest place, and so over all others
-    if found is None or not (root.rad() < found.reach and abs(there - found.center - found.along(sigma)) < found.reach):
+    if found is None or not (
+        root.rad() < found.reach and abs(there - found.center - found.along(sigma)) < found.reach
+    ):
         return None
     coefficients, tail = _terms(found, effort.share)
     h, total = arb(found.proved), arb(0)
@@ -328,7 +375,9 @@ def _from_point(
 
 
 def _simple_root(p: arb_poly, t: arb) -> arb | None:
-    """A ball near t in which each polynomial of a ball of polynomials has one root; None where it is not proved."""
+    """A ball near t in which each polynomial of a ball of polynomials has one root; None where it
+    is not proved.
+    """
     slope = p.derivative()
     for _ in range(_NEWTON):
         t = (t - p(t) / slope(t)).mid()
@@ -341,7 +390,9 @@ def _simple_root(p: arb_poly, t: arb) -> arb | None:
 
 
 def _divided(row: arb_poly, k: int, height: int, order: int, sigma: arb) -> arb_poly:
-    """A coefficient in s^k of s^height, divided by s^order; with balls for negative powers of s >= sigma."""
+    """A coefficient in s^k of s^height, divided by s^order; with balls for negative powers of
+    s >= sigma.
+    """
     found = [arb(0)] * (k * len(row.coeffs()) + height)
     for i, c in enumerate(row.coeffs()):
         power = k * i + height - order
@@ -353,7 +404,9 @@ _ROUNDED_BITS = 20
 """By so many bits is a series to be better known than by the disk's size."""
 
 
-def _enclosed(branch: WallBranch, middle: fmpq, half: fmpq, height: arb, effort: PanelEffort) -> tuple[fmpq, fmpq]:
+def _enclosed(
+    branch: WallBranch, middle: fmpq, half: fmpq, height: arb, effort: PanelEffort
+) -> tuple[fmpq, fmpq]:
     """Heights below and above the branch at which the curve does not meet the panel."""
     low, high = effort.heights
     center = height.mid().fmpq()
@@ -361,8 +414,8 @@ def _enclosed(branch: WallBranch, middle: fmpq, half: fmpq, height: arb, effort:
     bounds = []
     for edge, direction in ((low, -1), (high, 1)):
         best, tried, leap = edge, 0, 1
-        # doublings of the margin; longer and longer leaps, as nobody knows the branch's extent in a large window,
-        # and shorter ones back when a height was found
+        # doublings of the margin; longer and longer leaps, as nobody knows the branch's extent in a
+        # large window, and shorter ones back when a height was found
         while leap and start * 2**tried < direction * (edge - center):
             margin = start * 2**tried
             candidate = simple(center + direction * margin, margin / 8)

@@ -1,12 +1,14 @@
-"""Checks of where a family changes: members are classified once more, each alone and over either axis, and compared.
+"""Checks of where a family changes: members are classified once more, each alone and over either
+axis, and compared.
 
-Guarantee: a change that is listed is one, within a stated distance of its value; between changes the members that were
-looked at, at random values, have the arrangement that is listed. That none is missing between those is not checked.
+Guarantee: a change that is listed is one, within a stated distance of its value; between changes
+the members that were looked at, at random values, have the arrangement that is listed. That none is
+missing between those is not checked.
 
-A member's arrangement is read off two maps, one over each axis: regions, counts and neighbours off both, and the order
-along two sides off each, where the map's stacks begin and end. The program that finds changes counts once for all cells
-that are joined, with the basis that the members have in common, and finds the order along the other sides in another
-way.
+A member's arrangement is read off two maps, one over each axis: regions, counts and neighbours off
+both, and the order along two sides off each, where the map's stacks begin and end. The program that
+finds changes counts once for all cells that are joined, with the basis that the members have in
+common, and finds the order along the other sides in another way.
 """
 
 from __future__ import annotations
@@ -41,8 +43,8 @@ _DIGITS = 10**3
 
 Maps = tuple[RegionMap, RegionMap]
 MapsAt = Callable[[Fraction], Maps]
-"""The maps of a member, over the first axis and over the second one, without areas; raises `HypothesisError` where it
-has none."""
+"""The maps of a member, over the first axis and over the second one, without areas; raises
+`HypothesisError` where it has none."""
 
 
 def verify_changes(
@@ -83,7 +85,9 @@ class _Members:
             self.progress("changes", self.done, self.total)
         self.done += 1
         listed = self.found.arrangements[part]
-        return all(_is_seen(listed, result, side) for side, result in enumerate(self.maps_at(value)))
+        return all(
+            _is_seen(listed, result, side) for side, result in enumerate(self.maps_at(value))
+        )
 
     def expect(self, value: Fraction, part: int, where: str) -> None:
         """The member at a value has the arrangement of a part between changes.
@@ -140,13 +144,21 @@ def _check_numbers(numbers: Sequence[AlgebraicNumber | Enclosure]) -> None:
 
 
 def _gaps(found: Changes) -> list[Fraction]:
-    """How far from each change members are looked at: less where another change or an end of the range is near."""
+    """How far from each change members are looked at: less where another change or an end of the
+    range is near.
+    """
     free = found.free
-    ends = [free.low, *(end for change in found.changes for end in (change.value.low, change.value.high)), free.high]
+    ends = [
+        free.low,
+        *(end for change in found.changes for end in (change.value.low, change.value.high)),
+        free.high,
+    ]
     rooms = [high - low for low, high in zip(ends[::2], ends[1::2], strict=True)]
     sides = [(rooms[k], rooms[k + 1]) for k in range(len(found.changes))]
     # enclosures have members at their ends, and neighbouring ones may have one in common
-    if min(rooms) < 0 or any(change.is_exact and min(s) == 0 for change, s in zip(found.changes, sides, strict=True)):
+    if min(rooms) < 0 or any(
+        change.is_exact and min(s) == 0 for change, s in zip(found.changes, sides, strict=True)
+    ):
         raise Violation("the changes are not in increasing order within the range")
     return [min(NEAR * (free.high - free.low), below / 3, above / 3) for below, above in sides]
 
@@ -155,7 +167,10 @@ def _beside(value: AlgebraicNumber | Enclosure, gap: Fraction) -> tuple[Fraction
     """Values below and above a change; the ends of an enclosure, which are members."""
     if isinstance(value, AlgebraicNumber):
         near = value.refined(gap / 4)
-        places = ((near.low - gap * 3 / 4, near.low - gap / 2), (near.high + gap / 2, near.high + gap * 3 / 4))
+        places = (
+            (near.low - gap * 3 / 4, near.low - gap / 2),
+            (near.high + gap / 2, near.high + gap * 3 / 4),
+        )
         return simple_between(*places[0]), simple_between(*places[1])
     return value.low, value.high
 
@@ -166,8 +181,12 @@ def _place(source: random.Random) -> tuple[Fraction, Fraction]:
     return Fraction(first, _DIGITS), Fraction(first, _DIGITS) + Fraction(1, 2 * _DIGITS)
 
 
-def _check_instant(members: _Members, value: AlgebraicNumber | Enclosure, part: int, name: str) -> None:
-    """On both sides of a value the arrangement is the same: then that at the value itself is another one."""
+def _check_instant(
+    members: _Members, value: AlgebraicNumber | Enclosure, part: int, name: str
+) -> None:
+    """On both sides of a value the arrangement is the same: then that at the value itself is
+    another one.
+    """
     exact = value.exact if isinstance(value, AlgebraicNumber) else None
     if exact is None:
         raise Violation(f"{name} is none: on both sides of it the arrangement is the same")
@@ -176,7 +195,9 @@ def _check_instant(members: _Members, value: AlgebraicNumber | Enclosure, part: 
     except HypothesisError:
         return
     if same:
-        raise Violation(f"{name} is none: there and on both sides of it the arrangement is the same")
+        raise Violation(
+            f"{name} is none: there and on both sides of it the arrangement is the same"
+        )
 
 
 def _parts(found: Changes) -> list[tuple[Fraction, Fraction]]:
@@ -207,7 +228,8 @@ def _arrangement(result: RegionMap, base: int) -> Arrangement:
     pairs = {
         (min(ends), max(ends))
         for a in result.adjacencies
-        if a.merge is Merge.SEPARATED and len(ends := {region_of[a.first], region_of[a.second]}) == 2
+        if a.merge is Merge.SEPARATED
+        and len(ends := {region_of[a.first], region_of[a.second]}) == 2
     }
     below, above = (_runs([region_of[stack.cells[k]] for stack in result.stacks]) for k in (0, -1))
     sides = ((), (), below, above) if base == 0 else (below, above, (), ())
@@ -221,4 +243,6 @@ def _runs(regions: Sequence[int]) -> tuple[int, ...]:
 
 
 def _fingerprint(found: Changes) -> str:
-    return sha256(repr((found.free, found.changes, found.between, found.arrangements)).encode()).hexdigest()
+    return sha256(
+        repr((found.free, found.changes, found.between, found.arrangements)).encode()
+    ).hexdigest()

@@ -10,7 +10,11 @@ from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import A_MAP, expect
 from ptmcad.options import Progress
-from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
+from ptmcad.verification.adjacency import (
+    check_adjacencies,
+    check_no_adjacency_missing,
+    check_non_adjacencies,
+)
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.certified.checks import verify_certified
 from ptmcad.verification.certified.parameters import check_domain
@@ -30,12 +34,20 @@ from ptmcad.verification.variety import check_conditions, check_irreducible, che
 from ptmcad.verification.window import check_left_out
 
 NOT_CHECKED = (
-    ("plan without trace", "predicted costs; whether savings were made that leave no trace in this file"),
-    ("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),
+    (
+        "plan without trace",
+        "predicted costs; whether savings were made that leave no trace in this file",
+    ),
+    (
+        "provenance",
+        "name, title, reference, versions, precision, timings: no claims about the regions",
+    ),
 )
 
 CheckOf = tuple[str, str, Callable[[Claims], str]]
-"""The name of a check, its method, and the function that raises `Violation` or says what it checked."""
+"""The name of a check, its method, and the function that raises `Violation` or says what it
+checked.
+"""
 
 _SINCE_VARIETY: tuple[CheckOf, ...] = (
     ("critical values", "discriminants, resultants, Sturm", check_critical_values),
@@ -62,12 +74,15 @@ def verify(
 
     Parameters
     ----------
-    seed : of the random points at which the variety is compared with the norm of det H, or of the random boxes of a
-        certified map; drawn from a hash of the claims when None, so that nobody can fit claims to the points.
-    boxes : number of random boxes of a certified map, `ptmcad.verification.certified.checks.BOXES` when None.
+    seed : of the random points at which the variety is compared with the norm of det H, or of the
+        random boxes of a certified map; drawn from a hash of the claims when None, so that nobody
+        can fit claims to the points.
+    boxes : number of random boxes of a certified map, `ptmcad.verification.certified.checks.BOXES`
+        when None.
     progress : called as progress(what, done, total), with numbers that never fall.
-    effort : how much of a certified map's free area is to be proved free of critical curves: 0 none of it, each number
-        more four times as many boxes, 10 all; `ptmcad.verification.exclusion.check.EFFORT` when None.
+    effort : how much of a certified map's free area is to be proved free of critical curves: 0 none
+        of it, each number more four times as many boxes, 10 all;
+        `ptmcad.verification.exclusion.check.EFFORT` when None.
 
     Raises
     ------
@@ -76,8 +91,9 @@ def verify(
 
     Guarantee
     ---------
-    When the report is ``ok``, every claim in its table holds; the variety's completeness up to an error probability
-    below 1e-10 (`ptmcad.verification.variety`). Of a partial result, what it has is checked.
+    When the report is ``ok``, every claim in its table holds; the variety's completeness up to an
+    error probability below 1e-10 (`ptmcad.verification.variety`). Of a partial result, what it has
+    is checked.
 
     Not guaranteed
     --------------
@@ -102,7 +118,8 @@ def verify(
 
 
 def checks_of(result: RegionMap, seed: int | None) -> tuple[CheckOf, ...]:
-    """The checks of an exact map, in the order in which one rests on another: name, method and function.
+    """The checks of an exact map, in the order in which one rests on another: name, method and
+    function.
 
     Parameters
     ----------

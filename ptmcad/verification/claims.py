@@ -1,6 +1,7 @@
 """A stored region map as the checks see it: its polynomials in FLINT, seen from the base axis.
 
-Guarantee: only the result's own data are used. ``u`` is the coordinate on the base axis, ``v`` the other one.
+Guarantee: only the result's own data are used. ``u`` is the coordinate on the base axis, ``v`` the
+other one.
 """
 
 from __future__ import annotations
@@ -21,7 +22,13 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.algebra import NotFinite
-from ptmcad.verification.derivation import Derivation, SignMeaning, derivation_at, derivation_of, meaning_of
+from ptmcad.verification.derivation import (
+    Derivation,
+    SignMeaning,
+    derivation_at,
+    derivation_of,
+    meaning_of,
+)
 from ptmcad.verification.fibre import FibreAlgebra, fibre_over
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
@@ -47,7 +54,9 @@ class PlaneCurve:
 
     def _coefficients(self, kept: int) -> list[fmpz_poly]:
         """Coefficients, each in the other variable, of the powers of variable ``kept``."""
-        rows: list[list[int]] = [[0] * (self.degrees[1 - kept] + 1) for _ in range(self.degrees[kept] + 1)]
+        rows: list[list[int]] = [
+            [0] * (self.degrees[1 - kept] + 1) for _ in range(self.degrees[kept] + 1)
+        ]
         for term in self.terms:
             rows[term[kept]][term[1 - kept]] = term[2]
         return [fmpz_poly(row) for row in rows]
@@ -106,7 +115,9 @@ class Claims:
 
     @property
     def derivation(self) -> Derivation:
-        """What solutions satisfy, in all parameters, with what the count asks of stable ones besides."""
+        """What solutions satisfy, in all parameters, with what the count asks of stable ones
+        besides.
+        """
         return kind_of(self.result.slice.count).with_margins(derivation_of(self.model))
 
     @cached_property
@@ -181,7 +192,9 @@ class Claims:
 
 
 def fingerprint(result: RegionMap, further: Iterable[str]) -> str:
-    """A hash of the slice's parameters and of further claims, from which random points are drawn: so none fit them."""
+    """A hash of the slice's parameters and of further claims, from which random points are drawn:
+    so none fit them.
+    """
     names = result.slice.axis_names
     claims = [f"{n}={e.to_text(names)}" for n, e in sorted(result.slice.parameters.items())]
     return sha256("\n".join([*claims, *further]).encode()).hexdigest()[:16]
@@ -193,7 +206,9 @@ def polynomial(value: CriticalValue) -> fmpz_poly:
 
 
 def side(u: fmpq, value: CriticalValue) -> int:
-    """The sign of u minus the critical value, by a change of sign, or a count of roots where there is none."""
+    """The sign of u minus the critical value, by a change of sign, or a count of roots where there
+    is none.
+    """
     low, high = from_fraction(value.low), from_fraction(value.high)
     if u < low or u > high:
         return -1 if u < low else 1
@@ -217,7 +232,10 @@ def is_root(f: fmpz_poly, value: CriticalValue) -> bool:
     common = f.gcd(whole)
     if common.degree() == whole.degree():
         return True
-    return common.degree() > 0 and roots_within(common, from_fraction(value.low), from_fraction(value.high)) > 0
+    return (
+        common.degree() > 0
+        and roots_within(common, from_fraction(value.low), from_fraction(value.high)) > 0
+    )
 
 
 def bracket(value: CriticalValue, width: fmpq) -> tuple[fmpq, fmpq]:
@@ -231,7 +249,9 @@ def bracket(value: CriticalValue, width: fmpq) -> tuple[fmpq, fmpq]:
         with ctx.workprec(bits):
             root = numbered_root(p, low, high, 0)
         if root is None:
-            raise Violation(f"the polynomial of a critical value has no root between {short(low)} and {short(high)}")
+            raise Violation(
+                f"the polynomial of a critical value has no root between {short(low)} and {short(high)}"
+            )
         first, last = ends_of(root)
         low, high, bits = max(low, first), min(high, last), 2 * bits
     return low, high

@@ -1,6 +1,8 @@
-"""Polynomials over Q in the coordinates of a model's unknowns and in its parameters, and trees of descriptions as such.
+"""Polynomials over Q in the coordinates of a model's unknowns and in its parameters, and trees of
+descriptions as such.
 
-Guarantee: exact. Trees are read by a walk of its own; the coordinates of an angle are its cosine and its sine.
+Guarantee: exact. Trees are read by a walk of its own; the coordinates of an angle are its cosine
+and its sine.
 """
 
 from __future__ import annotations
@@ -33,7 +35,8 @@ class CoordinateRing:
 
     Attributes
     ----------
-    names : of the variables, in lexicographic order: of the angles the `circle_names`, of all else their own.
+    names : of the variables, in lexicographic order: of the angles the `circle_names`, of all else
+        their own.
     angles : those of which coordinates are variables.
     numbers : of parameters in the place of variables.
     """
@@ -79,7 +82,10 @@ class CoordinateRing:
         if unknown in self.names:
             slope += p.derivative(self.names.index(unknown))
         if unknown in self.angles:
-            (c, s), (across, up) = self.circles[unknown], map(self.names.index, circle_names(unknown))
+            (c, s), (across, up) = (
+                self.circles[unknown],
+                map(self.names.index, circle_names(unknown)),
+            )
             slope += c * p.derivative(up) - s * p.derivative(across)
         return slope
 
@@ -90,7 +96,9 @@ class CoordinateRing:
     def taken(self, p: fmpq_mpoly, ring: CoordinateRing) -> fmpq_mpoly:
         """A polynomial of another ring, of which this one has all variables that are in it."""
         nothing = self.context.constant(0)
-        return p.compose(*(self.elements.get(name, nothing) for name in ring.names), ctx=self.context)
+        return p.compose(
+            *(self.elements.get(name, nothing) for name in ring.names), ctx=self.context
+        )
 
     def text(self, p: fmpq_mpoly) -> str:
         """The beginning of a polynomial's text."""
@@ -129,7 +137,9 @@ class CoordinateRing:
         found = self.context.constant(1), self.context.constant(0)
         for angle, multiple in _multiples(argument).items():
             if multiple.denominator != 1 or (multiple and not angle):
-                raise NotImplementedError("the checker knows sums of whole multiples of angles, such as 2*a - b, only")
+                raise NotImplementedError(
+                    "the checker knows sums of whole multiples of angles, such as 2*a - b, only"
+                )
             if angle:
                 found = turned(found, self.circles[angle], int(multiple))
         return found
@@ -140,12 +150,17 @@ def turned(circle: Circle, by: Circle, times: int, product: Product = fmpq_mpoly
     (cosine, sine), (c, s) = circle, by
     for _ in range(abs(times)):
         up = s if times > 0 else -s
-        cosine, sine = product(cosine, c) - product(sine, up), product(sine, c) + product(cosine, up)
+        cosine, sine = (
+            product(cosine, c) - product(sine, up),
+            product(sine, c) + product(cosine, up),
+        )
     return cosine, sine
 
 
 def _multiples(tree: Tree) -> dict[str, Fraction]:
-    """The angles of a sum, each with its factor; what is no multiple of an angle has the empty name."""
+    """The angles of a sum, each with its factor; what is no multiple of an angle has the empty
+    name.
+    """
     match tree:
         case Number(number):
             return {"": number}
@@ -164,10 +179,14 @@ def _multiples(tree: Tree) -> dict[str, Fraction]:
             raise NotImplementedError("the checker knows no angle that is a cosine or sine")
 
 
-def _joined(left: dict[str, Fraction], operator: str, right: dict[str, Fraction]) -> dict[str, Fraction]:
+def _joined(
+    left: dict[str, Fraction], operator: str, right: dict[str, Fraction]
+) -> dict[str, Fraction]:
     if operator in "+-":
         sign = 1 if operator == "+" else -1
-        return left | {name: left.get(name, Fraction(0)) + sign * multiple for name, multiple in right.items()}
+        return left | {
+            name: left.get(name, Fraction(0)) + sign * multiple for name, multiple in right.items()
+        }
     if operator == "*" and left.keys() == {""}:
         left, right = right, left
     factor = _number(right) if operator == "*" else 1 / _number(right)

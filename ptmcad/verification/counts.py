@@ -1,7 +1,7 @@
 """Checks of the counts: at every cell's sample, by signatures of trace forms.
 
-Guarantee: exact at the samples; that the counts hold in the whole cells follows from the checks of the variety and of
-the decomposition.
+Guarantee: exact at the samples; that the counts hold in the whole cells follows from the checks of
+the variety and of the decomposition.
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ from ptmcad.verification.report import Violation
 
 
 def check_counts(claims: Claims) -> str:
-    """Total, stable and index of every cell; on a torus the sum of the signs; lengths and stiffnesses positive."""
+    """Total, stable and index of every cell; on a torus the sum of the signs; lengths and
+    stiffnesses positive.
+    """
     model, name = claims.model, claims.result.slice.count.value
     kind = kind_of(claims.result.slice.count)
     for n, cell in enumerate(claims.result.cells):
@@ -34,14 +36,20 @@ def check_counts(claims: Claims) -> str:
             raise Violation(f"the Euler sum of {_text(counts)} at {where} in cell {n} is not zero")
         stored = Counts(cell.total or 0, cell.stable, cell.index)
         if cell.total is None or stored != counts:
-            raise Violation(f"cell {n} is said to have {_text(stored)}; at {where} there are {_text(counts)}")
+            raise Violation(
+                f"cell {n} is said to have {_text(stored)}; at {where} there are {_text(counts)}"
+            )
         if kind.is_predicate and cell.further != (true := {name: fibre.number_held()}):
-            raise Violation(f"cell {n} is said to have {_further(cell.further)}; at {where} there are {_further(true)}")
+            raise Violation(
+                f"cell {n} is said to have {_further(cell.further)}; at {where} there are {_further(true)}"
+            )
     return f"{len(claims.result.cells)} samples"
 
 
 def _euler_sum(fibre: FibreAlgebra, counts: Counts) -> int:
-    """The sum of the signs of the Jacobian's determinant, which is zero on a torus (Poincare and Hopf)."""
+    """The sum of the signs of the Jacobian's determinant, which is zero on a torus (Poincare and
+    Hopf).
+    """
     if counts.index is None:
         return fibre.balance()
     return euler_sum(counts.index)

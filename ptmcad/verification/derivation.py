@@ -1,8 +1,10 @@
-"""What solutions of a model satisfy, derived here once more from its description: all that the checks know of a model.
+"""What solutions of a model satisfy, derived here once more from its description: all that the
+checks know of a model.
 
-Guarantee: exact. Nothing is taken from what the engines derive: points, springs, loads and equations of the description
-are read by `coordinates`, and polynomials are differentiated here. Springs have no free length in energy and equations;
-`SpringVector` says what each takes off the energy with one.
+Guarantee: exact. Nothing is taken from what the engines derive: points, springs, loads and
+equations of the description are read by `coordinates`, and polynomials are differentiated here.
+Springs have no free length in energy and equations; `SpringVector` says what each takes off the
+energy with one.
 """
 
 from __future__ import annotations
@@ -29,7 +31,9 @@ Vector = tuple[fmpq_mpoly, fmpq_mpoly]
 
 
 def parameters_of(model: Model) -> tuple[str, ...]:
-    """The parameters of a model's polynomials: no free lengths of springs, which would bring in roots."""
+    """The parameters of a model's polynomials: no free lengths of springs, which would bring in
+    roots.
+    """
     return model.variables if model.whole is None else model.without_free_lengths
 
 
@@ -39,8 +43,13 @@ def shorthands_of(model: Model) -> tuple[str, ...]:
 
 
 def coordinates_of(model: Model) -> tuple[str, ...]:
-    """The coordinates of the unknowns, as the exact engine names them: those of the angles come first."""
-    return tuple(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin")) + model.reals
+    """The coordinates of the unknowns, as the exact engine names them: those of the angles come
+    first.
+    """
+    return (
+        tuple(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin"))
+        + model.reals
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +72,12 @@ class SignMeaning:
     equation: str = "equation {}"
     entry: str = "Jacobian's entry {},{}"
     determinant: str = "the Jacobian's determinant"
-    in_box: str = "the list of conditions for stability at the solution in it has the signs {!r}, not {!r}"
-    at_solution: str = "the conditions for stability at the solution {} have the signs {!r}, not {!r}"
+    in_box: str = (
+        "the list of conditions for stability at the solution in it has the signs {!r}, not {!r}"
+    )
+    at_solution: str = (
+        "the conditions for stability at the solution {} have the signs {!r}, not {!r}"
+    )
 
     def place(self, row: int, column: int) -> tuple[int, int]:
         """Which of the equal entries of the Jacobian stands for one."""
@@ -103,10 +116,14 @@ def of_eigenvalues(unknowns: int) -> SignMeaning:
 
 
 def meaning_of(model: Model) -> SignMeaning:
-    """What is known of a model's solutions: by an index where they are critical points, near each of a function."""
+    """What is known of a model's solutions: by an index where they are critical points, near each
+    of a function.
+    """
     mechanism = model.whole
     if mechanism is not None and (mechanism.closing or mechanism.xjoints):
-        return SignMeaning((Count.TOTAL, Count.STABLE))  # conditions for stability stand in the place of a Hessian
+        return SignMeaning(
+            (Count.TOTAL, Count.STABLE)
+        )  # conditions for stability stand in the place of a Hessian
     if mechanism is not None:
         has_index = not _has_moments_apart(mechanism)
     else:
@@ -120,16 +137,21 @@ def meaning_of(model: Model) -> SignMeaning:
 def _has_moments_apart(mechanism: Mechanism) -> bool:
     """Whether some moment depends on another unknown than its own.
 
-    Others are slopes of a function; with such a one nothing may be stored of indices and of what is stable.
+    Others are slopes of a function; with such a one nothing may be stored of indices and of what is
+    stable.
     """
     unknowns = {*mechanism.angles, *mechanism.reals}
-    return any(unknowns.intersection(names_of(tree)) - {unknown} for unknown, tree in mechanism.work.items())
+    return any(
+        unknowns.intersection(names_of(tree)) - {unknown}
+        for unknown, tree in mechanism.work.items()
+    )
 
 
 class SpringVector(NamedTuple):
     """A spring of the description, and what it does: all that the checks know of its law.
 
-    Its energy is that without a free length, less pull times |vector|, and what it has without a length.
+    Its energy is that without a free length, less pull times |vector|, and what it has without a
+    length.
     """
 
     name: str
@@ -159,7 +181,9 @@ class SpringVector(NamedTuple):
 
 
 class Required(NamedTuple):
-    """What has to be positive, or at least not negative, in words and as a polynomial in parameters."""
+    """What has to be positive, or at least not negative, in words and as a polynomial in
+    parameters.
+    """
 
     what: str
     value: fmpq_mpoly
@@ -173,22 +197,28 @@ def squared(vector: Vector) -> fmpq_mpoly:
 
 @dataclass(frozen=True)
 class Derivation:
-    """What solutions of a model satisfy, as polynomials in the coordinates, and in parameters without numbers.
+    """What solutions of a model satisfy, as polynomials in the coordinates, and in parameters
+    without numbers.
 
     Attributes
     ----------
     unknowns : the angles first; by them all that follows is in order.
     meaning : of the signs at a solution.
-    energy : of a mechanism's springs, without free lengths, and its loads, or a potential; None where there is none.
-    moments : generalised forces by the unknown on which they work; they may depend on others (`apart`).
+    energy : of a mechanism's springs, without free lengths, and its loads, or a potential; None
+        where there is none.
+    moments : generalised forces by the unknown on which they work; they may depend on others
+        (`apart`).
     moved : whether there is any.
     equations : each zero at a solution.
     inequalities, stability : positive at a solution that counts, and at a stable one.
-    from_energy : whether the equations are the slopes of the energy less the moments: they are not with closed loops.
-    springs : of a mechanism; with X-joints in a ring that has the second bars' coordinates as last variables.
-    required : what has to be positive, or not negative, at all parameters, in words that say what it is.
-    apart : whether a moment depends on another unknown than its own, so that there is no function of which moments are
-        the slopes.
+    from_energy : whether the equations are the slopes of the energy less the moments: they are not
+        with closed loops.
+    springs : of a mechanism; with X-joints in a ring that has the second bars' coordinates as last
+        variables.
+    required : what has to be positive, or not negative, at all parameters, in words that say what
+        it is.
+    apart : whether a moment depends on another unknown than its own, so that there is no function
+        of which moments are the slopes.
     closing : what bars that close loops keep zero.
     """
 
@@ -209,7 +239,9 @@ class Derivation:
 
     @cached_property
     def jacobian(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
-        """The equations' derivatives by the unknowns; where solutions are critical points a Hessian."""
+        """The equations' derivatives by the unknowns; where solutions are critical points a
+        Hessian.
+        """
         return tuple(self.ring.gradient(e, self.unknowns) for e in self.equations)
 
     @property
@@ -230,7 +262,11 @@ class Derivation:
     @property
     def has_minima(self) -> bool:
         """Whether the equations are the slopes of a function on a torus, or there is one alone."""
-        if self.inequalities or (self.from_energy and self.moved) or len(self.ring.angles) < len(self.unknowns):
+        if (
+            self.inequalities
+            or (self.from_energy and self.moved)
+            or len(self.ring.angles) < len(self.unknowns)
+        ):
             return False
         return self.is_gradient or len(self.unknowns) == 1
 
@@ -248,7 +284,9 @@ class Derivation:
     def _loops(self) -> Loops:
         return Loops(self.ring, self.unknowns, self.closing)
 
-    def stretched(self, ring: CoordinateRing, length: Callable[[fmpq_mpoly], fmpq_mpoly]) -> fmpq_mpoly:
+    def stretched(
+        self, ring: CoordinateRing, length: Callable[[fmpq_mpoly], fmpq_mpoly]
+    ) -> fmpq_mpoly:
         """The energy in a larger ring, of springs with their free lengths.
 
         Parameters
@@ -266,8 +304,8 @@ class Derivation:
 
     @property
     def decisive(self) -> range:
-        """The numbers of the conditions for stability off whose zeros no solution loses it: of those for a matrix to be
-        definite the last one, its determinant."""
+        """The numbers of the conditions for stability off whose zeros no solution loses it: of
+        those for a matrix to be definite the last one, its determinant."""
         is_definite, number = self.energy is not None and not self.from_energy, len(self.stability)
         return range(max(number - 1, 0) if is_definite else 0, number)
 
@@ -306,17 +344,28 @@ def _derived(model: Model, numbers: Mapping[str, fmpq]) -> Derivation:
     assert isinstance(model, System)
     energy = None if model.potential is None else ring.value(model.potential)
     equations, inequalities, stability = (
-        tuple(map(ring.value, trees)) for trees in (model.equations, model.inequalities, model.stability)
+        tuple(map(ring.value, trees))
+        for trees in (model.equations, model.inequalities, model.stability)
     )
     moments = dict.fromkeys(unknowns, ring.context.constant(0))
     if energy is not None:
         equations = ring.gradient(energy, unknowns)
     return Derivation(
-        ring, unknowns, meaning_of(model), energy, moments, equations, inequalities, stability, energy is not None
+        ring,
+        unknowns,
+        meaning_of(model),
+        energy,
+        moments,
+        equations,
+        inequalities,
+        stability,
+        energy is not None,
     )
 
 
-def _of_mechanism(model: Model, mechanism: Mechanism, ring: CoordinateRing, unknowns: tuple[str, ...]) -> Derivation:
+def _of_mechanism(
+    model: Model, mechanism: Mechanism, ring: CoordinateRing, unknowns: tuple[str, ...]
+) -> Derivation:
     parts = _Parts.of(mechanism, ring)
     moments, kept = dict.fromkeys(unknowns, ring.context.constant(0)), parts.closing
     moments |= {unknown: ring.value(tree) for unknown, tree in mechanism.work.items()}
@@ -335,7 +384,10 @@ def _of_mechanism(model: Model, mechanism: Mechanism, ring: CoordinateRing, unkn
         apart=_has_moments_apart(mechanism),
     )
     if mechanism.xjoints:
-        joints = [CrossedBars(j.angle, j.other, ring.value(j.length), ring.value(j.bars)) for j in mechanism.xjoints]
+        joints = [
+            CrossedBars(j.angle, j.other, ring.value(j.length), ring.value(j.bars))
+            for j in mechanism.xjoints
+        ]
         equations, distances, stability = xjoints.conditions(
             ring, unknowns, joints, _degrees(mechanism), (parts.energy, parts.ring), forces
         )
@@ -348,7 +400,9 @@ def _of_mechanism(model: Model, mechanism: Mechanism, ring: CoordinateRing, unkn
 
 
 class _Parts(NamedTuple):
-    """What a mechanism's description has in a ring, to which the coordinates of X-joints' second bars are added."""
+    """What a mechanism's description has in a ring, to which the coordinates of X-joints' second
+    bars are added.
+    """
 
     ring: CoordinateRing
     energy: fmpq_mpoly
@@ -361,7 +415,11 @@ class _Parts(NamedTuple):
         """The springs, the energy and what is kept zero."""
         followers = tuple(mechanism.followers)
         more = (name for angle in followers for name in circle_names(angle))
-        ring = CoordinateRing((*base.names, *more), base.angles + followers, base.numbers) if followers else base
+        ring = (
+            CoordinateRing((*base.names, *more), base.angles + followers, base.numbers)
+            if followers
+            else base
+        )
         points = {name: (ring.value(x), ring.value(y)) for name, (x, y) in mechanism.points.items()}
 
         def between(start: str, end: str) -> Vector:
@@ -369,20 +427,29 @@ class _Parts(NamedTuple):
             return c - a, d - b
 
         springs = tuple(
-            SpringVector(s.name, ring.value(s.stiffness), ring.value(s.free), between(s.start, s.end))
+            SpringVector(
+                s.name, ring.value(s.stiffness), ring.value(s.free), between(s.start, s.end)
+            )
             for s in mechanism.springs
         )
         energy = sum((s.energy for s in springs), ring.context.constant(0))
         for point, x, y in mechanism.loads:
             energy -= points[point][0] * ring.value(x) + points[point][1] * ring.value(y)
-        required = [Required(f"the stiffness of spring {s.name}", s.stiffness, True) for s in springs]
-        required += [Required(f"the free length of spring {s.name}", s.free, False) for s in springs]
+        required = [
+            Required(f"the stiffness of spring {s.name}", s.stiffness, True) for s in springs
+        ]
+        required += [
+            Required(f"the free length of spring {s.name}", s.free, False) for s in springs
+        ]
         for number, torsion in enumerate(mechanism.torsion, 1):
             stiffness, rest = ring.value(torsion.stiffness), tuple(map(from_fraction, torsion.rest))
             cosine, sine = ring.circle(torsion.angle)
             energy += stiffness * (1 - cosine * rest[0] - sine * rest[1])
             required.append(Required(f"the stiffness of torsion spring {number}", stiffness, True))
-        closing = tuple(squared(between(bar.start, bar.end)) - ring.value(bar.length) ** 2 for bar in mechanism.closing)
+        closing = tuple(
+            squared(between(bar.start, bar.end)) - ring.value(bar.length) ** 2
+            for bar in mechanism.closing
+        )
         return cls(ring, energy, springs, tuple(required), closing)
 
 
@@ -390,4 +457,6 @@ class _Parts(NamedTuple):
 def _degrees(mechanism: Mechanism) -> tuple[int, ...]:
     """Of the energy in the coordinates of each second bar, whatever the parameters are."""
     parts = _Parts.of(mechanism, _ring_of(mechanism, {}))
-    return tuple(xjoints.degree(parts.ring, joint.other, parts.energy) for joint in mechanism.xjoints)
+    return tuple(
+        xjoints.degree(parts.ring, joint.other, parts.energy) for joint in mechanism.xjoints
+    )

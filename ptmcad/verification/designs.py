@@ -1,7 +1,8 @@
-"""Checks of the best design: that boxes cover the bounds, and ranges of the designs that were evaluated.
+"""Checks of the best design: that boxes cover the bounds, and ranges of the designs that were
+evaluated.
 
-Guarantee: what passes as "boxes" and "values" holds. Of the bound samples are checked: no range is longer than the
-bound of the design's box at a random design of each box.
+Guarantee: what passes as "boxes" and "values" holds. Of the bound samples are checked: no range is
+longer than the bound of the design's box at a random design of each box.
 
 Not guaranteed: the bound of designs that were not drawn, and values of aims but a range.
 """
@@ -30,7 +31,14 @@ from ptmcad.text.syntax import names_in
 from ptmcad.verification.attainment import SliceLines, check_maxima
 from ptmcad.verification.derivation import parameters_of
 from ptmcad.verification.line import NotKnown, ParameterLine
-from ptmcad.verification.report import Check, CheckProgress, Unchecked, VerifyReport, Violation, checked
+from ptmcad.verification.report import (
+    Check,
+    CheckProgress,
+    Unchecked,
+    VerifyReport,
+    Violation,
+    checked,
+)
 from ptmcad.verification.signs import Sign, is_in_domain
 
 DESIGNS = 12
@@ -48,7 +56,8 @@ class _DesignLines:
     found: BestDesign
 
     def ranges(self, design: Mapping[str, Fraction]) -> list[Span]:
-        """All ranges with the wanted count, by their own ends; none where the conditions are not satisfied.
+        """All ranges with the wanted count, by their own ends; none where the conditions are not
+        satisfied.
 
         Raises
         ------
@@ -71,13 +80,19 @@ class _DesignLines:
 
         def value_of(name: str, chain: tuple[str, ...] = ()) -> Expression:
             if name not in known:
-                text = texts.get(name) or (model.parameters[name].default if name in model.parameters else "")
+                text = texts.get(name) or (
+                    model.parameters[name].default if name in model.parameters else ""
+                )
                 if not text or name in chain:
                     raise Violation(f"nothing says what {name[:40]!r} is")
                 try:
-                    known[name] = parse(text, {n: value_of(n, (*chain, name)) for n in names_in(text)})
+                    known[name] = parse(
+                        text, {n: value_of(n, (*chain, name)) for n in names_in(text)}
+                    )
                 except ExpressionError as error:
-                    raise Violation(f"the text kept for {name[:40]!r} is no expression: {error}") from error
+                    raise Violation(
+                        f"the text kept for {name[:40]!r} is no expression: {error}"
+                    ) from error
             return known[name]
 
         return {name: value_of(name) for name in parameters_of(model)}
@@ -102,14 +117,19 @@ class _DesignLines:
 
     def holds(self, design: Mapping[str, Fraction]) -> bool:
         """Whether a design satisfies the conditions."""
-        return all(e.constant() <= 0 for e in self.excesses({name: constant(at) for name, at in design.items()}))
+        return all(
+            e.constant() <= 0
+            for e in self.excesses({name: constant(at) for name, at in design.items()})
+        )
 
     def named(self, at: Sequence[Fraction]) -> dict[str, Fraction]:
         """A design by its numbers."""
         return dict(zip((axis.name for axis in self.found.over), at, strict=True))
 
 
-def verify_design(found: BestDesign, seed: int | None = None, progress: Progress | None = None) -> VerifyReport:
+def verify_design(
+    found: BestDesign, seed: int | None = None, progress: Progress | None = None
+) -> VerifyReport:
     """Check a stored design without the code that made it.
 
     Parameters
@@ -122,12 +142,23 @@ def verify_design(found: BestDesign, seed: int | None = None, progress: Progress
     steps: tuple[tuple[str, str, Callable[[_DesignLines], str]], ...] = (
         ("form", "comparison", _check_form),
         ("boxes", "disjoint; what is left, halved", _check_boxes),
-        ("values", "ranges of each design by itself", partial(_check_values, within=headway.within)),
+        (
+            "values",
+            "ranges of each design by itself",
+            partial(_check_values, within=headway.within),
+        ),
         ("bound", "ranges of random designs", partial(_check_bound, seed=drawn)),
         ("extremes", "ranges on the lines themselves", _check_extremes),
     )
     checks = checked(_DesignLines(found), steps, (), headway)
-    checks.append(Check("bound of every design", "", None, "that no design exceeds its box's bound, beyond samples"))
+    checks.append(
+        Check(
+            "bound of every design",
+            "",
+            None,
+            "that no design exceeds its box's bound, beyond samples",
+        )
+    )
     return VerifyReport(tuple(checks))
 
 
@@ -135,7 +166,9 @@ def _check_form(lines: _DesignLines) -> str:
     """What entries say of one another."""
     found = lines.found
     of_range = found.maximise == "range"
-    if of_range != (found.along is not None) or (found.maximise == "area") != (len(found.fixed) == 2):
+    if of_range != (found.along is not None) or (found.maximise == "area") != (
+        len(found.fixed) == 2
+    ):
         raise Violation(f"the aim {found.maximise[:40]!r} does not go with the window")
     if (found.span is not None) != (of_range and found.value is not None and found.value.high > 0):
         raise Violation("a span is of a range that there is, and of no other aim")
@@ -145,8 +178,14 @@ def _check_form(lines: _DesignLines) -> str:
     if len({point.at for point in found.points}) < len(found.points):
         raise Violation("a design is listed twice among those that were evaluated")
     if found.boxes:
-        number = f"{len(found.boxes)} boxes of designs" if len(found.boxes) != 1 else "one box of designs"
-        if found.reason not in (f"by branch and bound, {how} {number}" for how in ("over", "which was stopped at")):
+        number = (
+            f"{len(found.boxes)} boxes of designs"
+            if len(found.boxes) != 1
+            else "one box of designs"
+        )
+        if found.reason not in (
+            f"by branch and bound, {how} {number}" for how in ("over", "which was stopped at")
+        ):
             raise Violation(f"the reason names another number of boxes than {len(found.boxes)}")
     best = None if found.value is None else found.value.high
     for point in found.points:
@@ -154,7 +193,9 @@ def _check_form(lines: _DesignLines) -> str:
             raise Violation("a design has not as many numbers as there are parameters")
         design = lines.named(point.at)
         where = f"the design {_named(design)}"
-        if not all(axis.low <= at <= axis.high for axis, at in zip(found.over, point.at, strict=True)):
+        if not all(
+            axis.low <= at <= axis.high for axis, at in zip(found.over, point.at, strict=True)
+        ):
             raise Violation(f"{where} is not within the bounds")
         if design == found.best and point.value != found.value:
             raise Violation("the best design is listed with another value")
@@ -186,7 +227,9 @@ def _check_boxes(lines: _DesignLines) -> str:
         met = tuple(
             box
             for box in boxes
-            if all(low < b and a < high for (a, b), (low, high) in zip(part, box.ranges, strict=True))
+            if all(
+                low < b and a < high for (a, b), (low, high) in zip(part, box.ranges, strict=True)
+            )
         )
         cuts = [
             (k, cut)
@@ -203,15 +246,22 @@ def _check_boxes(lines: _DesignLines) -> str:
             if halvings == _HALVINGS:
                 open_ += 1
                 continue
-            shares = [(high - low) / (axis.high - axis.low) for axis, (low, high) in zip(found.over, part, strict=True)]
+            shares = [
+                (high - low) / (axis.high - axis.low)
+                for axis, (low, high) in zip(found.over, part, strict=True)
+            ]
             k = shares.index(max(shares))
             cuts, halvings = [(k, sum(part[k], Fraction(0)) / 2)], halvings + 1
         k, cut = cuts[0]
         for ends in ((part[k][0], cut), (cut, part[k][1])):
             waiting.append(((*part[:k], ends, *part[k + 1 :]), met, halvings))
     if open_:
-        return Unchecked(f"it was not decided whether a condition fails all over {open_} parts that no box holds")
-    return f"{len(found.boxes)} boxes cover the bounds" + (", where the conditions hold" if found.conditions else "")
+        return Unchecked(
+            f"it was not decided whether a condition fails all over {open_} parts that no box holds"
+        )
+    return f"{len(found.boxes)} boxes cover the bounds" + (
+        ", where the conditions hold" if found.conditions else ""
+    )
 
 
 def _fails_all_over(lines: _DesignLines, part: Sequence[tuple[Fraction, Fraction]]) -> bool:
@@ -246,7 +296,9 @@ def _check_values(lines: _DesignLines, within: Callable[[int, int], None]) -> st
         except NotKnown:
             unknown += 1
             continue
-        longest = max((span.width for span in ranges), key=lambda width: width.low, default=_NOTHING)
+        longest = max(
+            (span.width for span in ranges), key=lambda width: width.low, default=_NOTHING
+        )
         if (point.value is None) == lines.holds(design):
             raise Violation(
                 f"the design {_named(design)} has {'no' if point.value is None else 'a'} value, but "
@@ -259,12 +311,18 @@ def _check_values(lines: _DesignLines, within: Callable[[int, int], None]) -> st
             )
         if design == found.best and found.span is not None:
             low, high = found.span
-            if not any(_meet(_enclosed(r.low), low) and _meet(_enclosed(r.high), high) for r in ranges):
+            if not any(
+                _meet(_enclosed(r.low), low) and _meet(_enclosed(r.high), high) for r in ranges
+            ):
                 raise Violation("the best design has no range with the ends of its span")
-            if found.value is None or not _meet(found.value, Enclosure(high.low - low.high, high.high - low.low)):
+            if found.value is None or not _meet(
+                found.value, Enclosure(high.low - low.high, high.high - low.low)
+            ):
                 raise Violation("the value is not the distance of the range's two ends")
     if unknown:
-        return Unchecked(f"{len(found.points) - unknown} designs; of {unknown} more nothing was found out")
+        return Unchecked(
+            f"{len(found.points) - unknown} designs; of {unknown} more nothing was found out"
+        )
     return f"{len(found.points)} designs"
 
 
@@ -276,7 +334,10 @@ def _check_bound(lines: _DesignLines, seed: str) -> str:
         raise Violation("the best design has more than the bound")
     source = random.Random(f"{seed} lines")
     everywhere = BoundedBox(tuple((axis.low, axis.high) for axis in found.over), found.bound)
-    boxes = [*found.boxes, *source.choices(found.boxes or [everywhere], k=max(0, DESIGNS - len(found.boxes)))]
+    boxes = [
+        *found.boxes,
+        *source.choices(found.boxes or [everywhere], k=max(0, DESIGNS - len(found.boxes))),
+    ]
     settled = 0
     for box in boxes:
         if box.bound > found.bound:
@@ -289,7 +350,9 @@ def _check_bound(lines: _DesignLines, seed: str) -> str:
         settled += 1
         for span in ranges:
             if span.width.low > box.bound:
-                raise Violation(f"the design {_named(design)} has a range longer than the bound of its box")
+                raise Violation(
+                    f"the design {_named(design)} has a range longer than the bound of its box"
+                )
     if not settled:
         return Unchecked(f"of {len(boxes)} random designs nothing was found out")
     return f"at {settled} random designs no range is longer than the bound of their box"
@@ -299,10 +362,16 @@ def _check_extremes(lines: _DesignLines) -> str:
     found = lines.found
     if not found.maxima or found.along is None:
         in_words = found.reason.startswith("by exact critical values")
-        return Unchecked("what the reason alone says of critical values" if in_words else "none is claimed")
+        return Unchecked(
+            "what the reason alone says of critical values" if in_words else "none is claimed"
+        )
     along, over = found.along, found.over[0]
     words = "; ".join(m.words(over.name) for m in found.maxima)
-    if found.reason != f"by exact critical values: {words}" or len(found.over) > 1 or found.conditions:
+    if (
+        found.reason != f"by exact critical values: {words}"
+        or len(found.over) > 1
+        or found.conditions
+    ):
         raise Violation("the reason does not say what the extremes do")
     if found.bound != max(m.width.high for m in found.maxima):
         raise Violation("the bound is not the largest of the extremes")
@@ -336,7 +405,9 @@ def _is_in(box: BoundedBox, at: tuple[Fraction, ...]) -> bool:
 
 
 def _text(box: BoundedBox) -> str:
-    return "the box " + " x ".join(f"[{shortest_text(low)}, {shortest_text(high)}]" for low, high in box.ranges)
+    return "the box " + " x ".join(
+        f"[{shortest_text(low)}, {shortest_text(high)}]" for low, high in box.ranges
+    )
 
 
 def _named(design: Mapping[str, Fraction]) -> str:

@@ -1,17 +1,18 @@
 """Disks on which a branch of a curve is analytic.
 
-Beside u0 the branch is z(s) + t(s), s = u - u0, with a polynomial z that has nearly its first Taylor coefficients. If
-for some R and r
+Beside u0 the branch is z(s) + t(s), s = u - u0, with a polynomial z that has nearly its first
+Taylor coefficients. If for some R and r
 
     sum of |d_ij| R^i r^j over all (i, j) other than (0, 1)  <  |d_01| r,
     p(u0 + s, z(s) + t) = sum of d_ij s^i t^j,
 
-then by Rouche's theorem p has for every complex |s| <= R exactly one root |t| < r; so t is analytic there and its
-coefficients are at most r / R^n (Cauchy). (Without z, two branches that run close together along a slope or a bend
-would need disks as small as they are close.)
+then by Rouche's theorem p has for every complex |s| <= R exactly one root |t| < r; so t is analytic
+there and its coefficients are at most r / R^n (Cauchy). (Without z, two branches that run close
+together along a slope or a bend would need disks as small as they are close.)
 
-What is compared is p times a polynomial g(s) that makes the coefficient of t nearly constant. Whatever g is, the
-condition for g p says that g is not zero there, and that p has one root: with it R may be several times as large.
+What is compared is p times a polynomial g(s) that makes the coefficient of t nearly constant.
+Whatever g is, the condition for g p says that g is not zero there, and that p has one root: with it
+R may be several times as large.
 
 Guarantee: a disk that is returned is proved, in ball arithmetic.
 """
@@ -30,13 +31,25 @@ class BallsTooWide(Exception):
 
 
 _FAR, _NEAR = fmpq(4), fmpq(3, 2)
-"""Radii of disks that prove a part of a panel, in halves of it: the larger, the fewer terms of the series."""
-_PROVED = (fmpq(1), fmpq(3, 4), fmpq(1, 2), fmpq(3, 8), fmpq(1, 4), fmpq(3, 16), fmpq(1, 8), fmpq(1, 16))
+"""Radii of disks that prove a part of a panel, in halves of it: the larger, the fewer terms of the
+series.
+"""
+_PROVED = (
+    fmpq(1),
+    fmpq(3, 4),
+    fmpq(1, 2),
+    fmpq(3, 8),
+    fmpq(1, 4),
+    fmpq(3, 16),
+    fmpq(1, 8),
+    fmpq(1, 16),
+)
 """Shares of a panel that are proved where no disk reaches beyond all of it: longest first."""
 
 
 class Disk(NamedTuple):
-    """A disk on which a branch is analytic, as the module's text says: center + z(s) + t(s), |t| < reach.
+    """A disk on which a branch is analytic, as the module's text says: center + z(s) + t(s),
+    |t| < reach.
 
     Attributes
     ----------
@@ -64,7 +77,8 @@ class Disk(NamedTuple):
 
 
 def disk(rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int) -> Disk | None:
-    """A disk about s = 0 that is larger than the longest part of (-half, half) for which one is proved.
+    """A disk about s = 0 that is larger than the longest part of (-half, half) for which one is
+    proved.
 
     Parameters
     ----------
@@ -80,19 +94,27 @@ def disk(rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int) -> Disk |
     rows = recentered(rows, center)
     start = arb_series([root - center], prec=length)
     polynomial = arb_poly(
-        [arb(0), *(c.mid() for c in _series([row.truncate(length) for row in rows], start, length)[1:])]
+        [
+            arb(0),
+            *(c.mid() for c in _series([row.truncate(length) for row in rows], start, length)[1:]),
+        ]
     )
     d = shifted(rows, polynomial, _SHIFTED)
     even = _evening(d[1])
     d = [row * even for row in d]
     steepness = abs(d[1][0])
-    # the polynomial follows the branch to its degree, so but for rounding the first coefficients are zero
+    # the polynomial follows the branch to its degree, so but for rounding the first coefficients
+    # are zero
     rounded = sum((c.rad() * half**i for i, c in enumerate(d[0].coeffs())), arb(0))
     blur = _size(d[0].truncate(length), arb(half)) + rounded
     if len(d) > 2 and not blur * _size(d[2], arb(half)) * 2**20 < steepness * steepness:
         raise BallsTooWide  # rounding blurs the branch nearly as far as the next one
     absolute, slope = [_absolute(row) for row in d], _absolute(polynomial)
-    for proved, factor in ((half, _FAR), (half, fmpq(2)), *((half * share, _NEAR) for share in _PROVED)):
+    for proved, factor in (
+        (half, _FAR),
+        (half, fmpq(2)),
+        *((half * share, _NEAR) for share in _PROVED),
+    ):
         radius = arb(proved * factor)
         slack = slope(radius)
         reach = _reach([row(radius) for row in absolute], steepness, slack)
@@ -102,9 +124,12 @@ def disk(rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int) -> Disk |
 
 
 def recentered(rows: Sequence[arb_poly], center: arb) -> list[arb_poly]:
-    """Coefficients in s of the powers of t in p(s, center + t), given those of the powers of v in p(s, v)."""
+    """Coefficients in s of the powers of t in p(s, center + t), given those of the powers of v in
+    p(s, v).
+    """
     columns = [
-        arb_poly([row[i] for row in rows])(arb_poly([center, 1])) for i in range(max(len(row.coeffs()) for row in rows))
+        arb_poly([row[i] for row in rows])(arb_poly([center, 1]))
+        for i in range(max(len(row.coeffs()) for row in rows))
     ]
     return [arb_poly([column[j] for column in columns]) for j in range(len(rows))]
 
@@ -113,9 +138,11 @@ _SHIFTED = 3
 
 
 def shifted(rows: Sequence[arb_poly], by: arb_poly, number: int) -> list[arb_poly]:
-    """Coefficients of the powers of t in p(s, by(s) + t), so many, given those of the powers of v in p(s, v).
+    """Coefficients of the powers of t in p(s, by(s) + t), so many, given those of the powers of v
+    in p(s, v).
 
-    The others that are returned are those of powers of v in q, where t^number q(s, by(s) + t) is the rest of the sum.
+    The others that are returned are those of powers of v in q, where t^number q(s, by(s) + t) is
+    the rest of the sum.
     """
     found = list(rows)
     for start in range(min(number, len(found) - 1)):
@@ -129,9 +156,11 @@ _EVENED = 12
 
 
 def _evening(steepness: arb_poly) -> arb_poly:
-    """A polynomial g in s, 1 at s = 0, whose product with a given one is nearly constant on a larger disk.
+    """A polynomial g in s, 1 at s = 0, whose product with a given one is nearly constant on a
+    larger disk.
 
-    Whatever g is: by Rouche's condition g p has one root over each s, so g is not zero there, and the root is p's.
+    Whatever g is: by Rouche's condition g p has one root over each s, so g is not zero there, and
+    the root is p's.
     """
     cap = ctx.cap
     ctx.cap = _EVENED
@@ -161,9 +190,13 @@ def _reach(sizes: list[arb], steepness: arb, slack: arb) -> arb | None:
     ----------
     sizes : bounds on the disk |s| <= R for the rows that `shifted` returns. The second one
         contains |d_01| itself, which belongs on the other side.
-    slack : a bound there for the polynomial by which they were shifted, so that |v| <= slack + r in the others.
+    slack : a bound there for the polynomial by which they were shifted, so that |v| <= slack + r in
+        the others.
     """
-    low, high = arb_poly([sizes[0], sizes[1] - steepness, *sizes[2:_SHIFTED]]), arb_poly(sizes[_SHIFTED:])
+    low, high = (
+        arb_poly([sizes[0], sizes[1] - steepness, *sizes[2:_SHIFTED]]),
+        arb_poly(sizes[_SHIFTED:]),
+    )
     first = (sizes[0] / steepness).upper()
     for multiple in (fmpq(5, 4), fmpq(2), fmpq(4)):
         reach = (first * multiple).upper() if first > 0 else arb(1) / 2**64
@@ -173,7 +206,8 @@ def _reach(sizes: list[arb], steepness: arb, slack: arb) -> arb | None:
 
 
 def _series(d: Sequence[arb_poly], start: arb_series, order: int) -> list[arb]:
-    """Enclosures of the first coefficients of t(s), whose constant one ``start`` encloses, by Newton's method.
+    """Enclosures of the first coefficients of t(s), whose constant one ``start`` encloses, by
+    Newton's method.
 
     Raises
     ------

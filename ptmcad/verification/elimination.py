@@ -1,10 +1,12 @@
-"""Discriminants and resultants with respect to v of polynomials in Z[u, v], from their values at integers u.
+"""Discriminants and resultants with respect to v of polynomials in Z[u, v], from their values at
+integers u.
 
-Guarantee: exact. With a weight w >= 0 for v, a Sylvester determinant of polynomials of weighted degrees a, b and of
-degrees n, m in v has degree at most a m + b n - w n m in u: v = u^w z scales row by row and column by column. The
-smallest of these bounds over the slopes between two exponents is taken, and modulo each prime one value more than it is
-computed. Coefficients are at most the largest absolute value on the unit circle, which Hadamard's inequality bounds;
-primes are taken until their product is more than twice that.
+Guarantee: exact. With a weight w >= 0 for v, a Sylvester determinant of polynomials of weighted
+degrees a, b and of degrees n, m in v has degree at most a m + b n - w n m in u: v = u^w z scales
+row by row and column by column. The smallest of these bounds over the slopes between two exponents
+is taken, and modulo each prime one value more than it is computed. Coefficients are at most the
+largest absolute value on the unit circle, which Hadamard's inequality bounds; primes are taken
+until their product is more than twice that.
 """
 
 from __future__ import annotations
@@ -44,7 +46,10 @@ def resultant(p: Terms, q: Terms) -> fmpz_poly:
     left, right = _highest(p), _highest(q)
     slopes = _slopes(left) | _slopes(right)
     bound = min(floor(_weight(left, w) * m + _weight(right, w) * n - w * n * m) for w in slopes)
-    over = [(fmpz_poly([c(u) for c in rows_p]), fmpz_poly([c(u) for c in rows_q])) for u in range(bound + 1)]
+    over = [
+        (fmpz_poly([c(u) for c in rows_p]), fmpz_poly([c(u) for c in rows_q]))
+        for u in range(bound + 1)
+    ]
     found, modulus = fmpz_poly([0]), fmpz(1)
     for prime in _primes(1 + (_square(p) ** m * _square(q) ** n).bit_length() // 2 + 1):
         residue = _interpolated([_modulo(prime, *pair, n, m) for pair in over], prime)
@@ -61,7 +66,12 @@ def _modulo(prime: int, p: fmpz_poly, q: fmpz_poly, n: int, m: int) -> nmod:
     if short_left and short_right:
         return nmod(0, prime)
     # a determinant perhaps with leading zeros in one polynomial
-    found: nmod = left.resultant(right) * right[m] ** short_left * left[n] ** short_right * (-1) ** (m * short_left)
+    found: nmod = (
+        left.resultant(right)
+        * right[m] ** short_left
+        * left[n] ** short_right
+        * (-1) ** (m * short_left)
+    )
     return found
 
 
@@ -109,9 +119,14 @@ def _slopes(highest: dict[int, int]) -> set[Fraction]:
 
 
 def _interpolated(values: list[nmod], prime: int) -> nmod_poly:
-    """The polynomial of least degree with these values at 0, 1, ..., modulo a prime, put together by a tree."""
+    """The polynomial of least degree with these values at 0, 1, ..., modulo a prime, put together
+    by a tree.
+    """
     factorials = [*accumulate(range(1, len(values)), lambda a, k: a * k, initial=nmod(1, prime))]
-    weights = [(-1) ** k * a * b for k, (a, b) in enumerate(zip(factorials, reversed(factorials), strict=True))]
+    weights = [
+        (-1) ** k * a * b
+        for k, (a, b) in enumerate(zip(factorials, reversed(factorials), strict=True))
+    ]
     sign = (-1) ** (len(values) - 1)
     # sums of numbers over linear factors, with their common denominators
     parts = [
@@ -119,6 +134,8 @@ def _interpolated(values: list[nmod], prime: int) -> nmod_poly:
         for u, (value, weight) in enumerate(zip(values, weights, strict=True))
     ]
     while len(parts) > 1:
-        joined = [(a * d + c * b, b * d) for (a, b), (c, d) in zip(parts[::2], parts[1::2], strict=False)]
+        joined = [
+            (a * d + c * b, b * d) for (a, b), (c, d) in zip(parts[::2], parts[1::2], strict=False)
+        ]
         parts = joined + parts[len(parts) - len(parts) % 2 :]
     return parts[0][0]

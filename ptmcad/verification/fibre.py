@@ -1,14 +1,17 @@
-"""The solutions over one rational point, by a route of its own: geometry, Groebner basis at the point, trace forms.
+"""The solutions over one rational point, by a route of its own: geometry, Groebner basis at the
+point, trace forms.
 
 Guarantee: exact.
 
-The order is graded reverse lexicographic with the last unknown first, FLINT's own Buchberger algorithm runs at the
-point itself, and counts come from signatures of trace forms: another elimination than the one over Q(x, y) in
-`ptmcad.exact.variety` and another count than the root isolation in `ptmcad.exact.counting`.
+The order is graded reverse lexicographic with the last unknown first, FLINT's own Buchberger
+algorithm runs at the point itself, and counts come from signatures of trace forms: another
+elimination than the one over Q(x, y) in `ptmcad.exact.variety` and another count than the root
+isolation in `ptmcad.exact.counting`.
 
-The number of negative eigenvalues of a Hessian is that of the changes of sign in the sequence of its leading principal
-minors (Jacobi), in a basis in which none of them vanishes; the sums of the signs of their products over the real
-solutions tell how many solutions have which signs (Tarski queries).
+The number of negative eigenvalues of a Hessian is that of the changes of sign in the sequence of
+its leading principal minors (Jacobi), in a basis in which none of them vanishes; the sums of the
+signs of their products over the real solutions tell how many solutions have which signs (Tarski
+queries).
 """
 
 from __future__ import annotations
@@ -38,9 +41,10 @@ class FibreAlgebra:
     Attributes
     ----------
     basis : the standard monomials.
-    tables : the matrix of multiplication by each variable, last to first; columns are images of the basis.
-    saturated : whether solutions at which an inequality's polynomial vanishes, which do not count, are left out; then
-        the last variable is the inverse of the inequalities' product.
+    tables : the matrix of multiplication by each variable, last to first; columns are images of the
+        basis.
+    saturated : whether solutions at which an inequality's polynomial vanishes, which do not count,
+        are left out; then the last variable is the inverse of the inequalities' product.
     """
 
     basis: tuple[Monomial, ...]
@@ -101,8 +105,8 @@ class FibreAlgebra:
     def signature(self, weight: fmpq_mat) -> tuple[int, int]:
         """Numbers of positive and negative squares of the trace form (f, g) -> trace(weight f g).
 
-        Their difference is the sum of the weight's signs over the real solutions; their sum is the number of
-        different complex solutions where the weight is not zero.
+        Their difference is the sum of the weight's signs over the real solutions; their sum is the
+        number of different complex solutions where the weight is not zero.
         """
         powers = self._powers
         n = self.dimension
@@ -127,7 +131,9 @@ class FibreAlgebra:
         return result
 
     def counts(self) -> Counts | None:
-        """Numbers of the real solutions that count, by index and stability; None when some solution is degenerate."""
+        """Numbers of the real solutions that count, by index and stability; None when some solution
+        is degenerate.
+        """
         if self.norm() == 0:
             return None
         required = [self.matrix(p) for p in self.point.inequalities]
@@ -140,11 +146,16 @@ class FibreAlgebra:
         return Counts(total, self._number(wanted), None)
 
     def number_held(self) -> int:
-        """The number of the minima that count at which all conditions for stability are positive: a count's margins."""
+        """The number of the minima that count at which all conditions for stability are positive: a
+        count's margins.
+        """
         return self._index([self.matrix(p) for p in self.conditions])[0]
 
-    def within(self, center: Sequence[Fraction], radius: Fraction, *, counted: bool) -> tuple[int, list[fmpq_mat]]:
-        """The number of the real solutions in an open box, and functions that are all positive at these and no others.
+    def within(
+        self, center: Sequence[Fraction], radius: Fraction, *, counted: bool
+    ) -> tuple[int, list[fmpq_mat]]:
+        """The number of the real solutions in an open box, and functions that are all positive at
+        these and no others.
 
         Parameters
         ----------
@@ -162,13 +173,15 @@ class FibreAlgebra:
         return number, positive
 
     def signs(self, positive: Sequence[fmpq_mat]) -> str:
-        """Of the only real solution at which functions are positive: those of the Hessian's eigenvalues, positive ones
-        first, or of the conditions for stability.
+        """Of the only real solution at which functions are positive: those of the Hessian's
+        eigenvalues, positive ones first, or of the conditions for stability.
         """
         if index := self._index(positive):
             negative = index.index(1)
             return "+" * (len(index) - 1 - negative) + "-" * negative
-        return "".join("0+-"[self._sum_of_signs(positive, self.matrix(p))] for p in self.point.stability)
+        return "".join(
+            "0+-"[self._sum_of_signs(positive, self.matrix(p))] for p in self.point.stability
+        )
 
     def number_of_real_solutions(self) -> int:
         """Of different ones that count, degenerate ones among them."""
@@ -176,7 +189,10 @@ class FibreAlgebra:
 
     def number_of_zeros(self, p: fmpq_mpoly) -> int:
         """Of the real solutions that count, the number of those at which a polynomial is zero."""
-        required, square = [self.matrix(q) for q in self.point.inequalities], self.matrix(p) * self.matrix(p)
+        required, square = (
+            [self.matrix(q) for q in self.point.inequalities],
+            self.matrix(p) * self.matrix(p),
+        )
         return self.number_of_real_solutions() - self._sum_of_signs(required, square)
 
     def balance(self) -> int:
@@ -189,10 +205,11 @@ class FibreAlgebra:
         return self._sum_of_signs(positive, _identity(self.dimension))
 
     def _sum_of_signs(self, positive: Sequence[fmpq_mat], weight: fmpq_mat) -> int:
-        """The sum of the weight's signs over the real solutions at which all of some functions are positive.
+        """The sum of the weight's signs over the real solutions at which all of some functions are
+        positive.
 
-        For the number 1 where a function is positive, and 0 elsewhere, stands half the sum of the signs of the function
-        and of its square.
+        For the number 1 where a function is positive, and 0 elsewhere, stands half the sum of the
+        signs of the function and of its square.
         """
         total = 0
         for exponents in product((1, 2), repeat=len(positive)):
@@ -205,8 +222,8 @@ class FibreAlgebra:
         return total >> len(positive)
 
     def _index(self, required: Sequence[fmpq_mat]) -> tuple[int, ...]:
-        """Numbers of the critical points that count by the number of negative eigenvalues, where none is zero; nothing
-        of other solutions."""
+        """Numbers of the critical points that count by the number of negative eigenvalues, where
+        none is zero; nothing of other solutions."""
         if not self.point.hessian:
             return ()
         minors = self._minors()
@@ -220,7 +237,8 @@ class FibreAlgebra:
         index = [0] * (n + 1)
         for signs in product((1, -1), repeat=n):
             number = sum(
-                value * prod(s for s, c in zip(signs, chosen, strict=True) if c) for chosen, value in sums.items()
+                value * prod(s for s, c in zip(signs, chosen, strict=True) if c)
+                for chosen, value in sums.items()
             )
             index[negative_eigenvalues(signs)] += number >> n
         return tuple(index)
@@ -239,7 +257,8 @@ class FibreAlgebra:
         matrix = fmpq_mat(self.dimension, self.dimension)
         for c, table in zip(reversed(form), self._own, strict=True):
             matrix = matrix + table * fmpq(c)
-        # Newton's identities: powers of the matrix would have entries of many more digits than their traces
+        # Newton's identities: powers of the matrix would have entries of many more digits than
+        # their traces
         coefficients = [fmpq(c) for c in reversed(matrix.charpoly().coeffs())]
         traces: list[fmpq] = []
         for k in range(1, self.dimension + 1):
@@ -258,8 +277,8 @@ def fibre(model: Model, values: Mapping[str, Fraction]) -> FibreAlgebra:
 def fibre_over(point: Derivation) -> FibreAlgebra:
     """The algebra of the solutions at rational values of the parameters.
 
-    Where some solution is degenerate, or an inequality's polynomial vanishes at one, it is that of the solutions at
-    which no inequality's polynomial does.
+    Where some solution is degenerate, or an inequality's polynomial vanishes at one, it is that of
+    the solutions at which no inequality's polynomial does.
 
     Raises
     ------
@@ -294,9 +313,12 @@ def _identity(n: int) -> fmpq_mat:
 def _traces_of_products(first: Sequence[fmpq_mat], second: Sequence[fmpq_mat]) -> fmpq_mat:
     """The traces of f g for all f of the first and g of the second matrices.
 
-    A trace is the sum of the products of the entries of f and of the transposed g, so all of them are one product.
+    A trace is the sum of the products of the entries of f and of the transposed g, so all of them
+    are one product.
     """
-    size = sum(len(f.entries()) for f in first[:1])  # there is no matrix where there are no solutions
+    size = sum(
+        len(f.entries()) for f in first[:1]
+    )  # there is no matrix where there are no solutions
     rows = fmpq_mat(len(first), size, [c for f in first for c in f.entries()])
     columns = fmpq_mat(len(second), size, [c for g in second for c in g.transpose().entries()])
     return rows * columns.transpose()

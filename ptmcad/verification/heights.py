@@ -2,15 +2,17 @@
 
 Guarantee: counts are exact, every point counted once.
 
-Let P(u, v) be the product of the curves' polynomials and a the critical value. Where deg_v P is the same at a, the
-Sturm sequence of P(a, v) is computed with balls for the coefficients: remainder by remainder, each of the degree before
-less one, until a linear one is left whose leading coefficient is certainly not zero. The next remainder would be a
-constant. It is zero exactly when P(a, v) has a multiple root, which is when a is a root of a curve's discriminant or of
-the resultant of two: that is decided in integers. Either way the sequence is known to its end, and its changes of sign
-count the different real roots (Sturm; for the multiple root all terms are divided by their last one).
+Let P(u, v) be the product of the curves' polynomials and a the critical value. Where deg_v P is the
+same at a, the Sturm sequence of P(a, v) is computed with balls for the coefficients: remainder by
+remainder, each of the degree before less one, until a linear one is left whose leading coefficient
+is certainly not zero. The next remainder would be a constant. It is zero exactly when P(a, v) has a
+multiple root, which is when a is a root of a curve's discriminant or of the resultant of two: that
+is decided in integers. Either way the sequence is known to its end, and its changes of sign count
+the different real roots (Sturm; for the multiple root all terms are divided by their last one).
 
-Otherwise, where several roots are multiple, roots are counted of the polynomials in v among whose roots all points are
-(`structure.points_over`), but for those that balls show to be on no curve; this takes long for values of high degree.
+Otherwise, where several roots are multiple, roots are counted of the polynomials in v among whose
+roots all points are (`structure.points_over`), but for those that balls show to be on no curve;
+this takes long for values of high degree.
 """
 
 from __future__ import annotations
@@ -31,7 +33,9 @@ from ptmcad.verification.sturm import ball_chain, ends_of, isolated, parting, re
 
 _BITS = (256, 1024, 4096)
 _FINEST = 512
-"""Bits of candidates that are compared with the curves, besides twice those of their polynomial's coefficients."""
+"""Bits of candidates that are compared with the curves, besides twice those of their polynomial's
+coefficients.
+"""
 
 
 class _Undecided(ArithmeticError):
@@ -46,19 +50,24 @@ class Heights:
     value: CriticalValue
 
     def between(self, low: fmpq, high: fmpq) -> int:
-        """The number of points, or of what may be points, with heights in the open interval (low, high)."""
+        """The number of points, or of what may be points, with heights in the open interval (low,
+        high).
+        """
         if low >= high or not self.curves:
             return 0
         for bits in _BITS:
             try:
                 with ctx.workprec(bits):
-                    return self._changes(low, bits) - self._changes(high, bits) - self._is_point(high)
+                    return (
+                        self._changes(low, bits) - self._changes(high, bits) - self._is_point(high)
+                    )
             except _Undecided:
                 continue
         return self._candidates_between(low, high)
 
     def _candidates_between(self, low: fmpq, high: fmpq) -> int:
-        """The number of roots of the polynomial in v at which balls do not tell that no curve is there.
+        """The number of roots of the polynomial in v at which balls do not tell that no curve is
+        there.
 
         It has the points over the conjugates of the critical value among its roots as well.
         """
@@ -70,7 +79,9 @@ class Heights:
                 first, last = ends_of(v)
                 if last < low or high < first or any(first <= end <= last for end in ends):
                     continue
-                number += any(arb_poly([c(value) for c in curve.in_v])(v).contains(0) for curve in self.curves)
+                number += any(
+                    arb_poly([c(value) for c in curve.in_v])(v).contains(0) for curve in self.curves
+                )
         return number
 
     def separated(self, low: fmpq, high: fmpq) -> list[fmpq]:
@@ -108,16 +119,23 @@ class Heights:
         return found
 
     def _made(self, bits: int) -> list[arb_poly] | None:
-        """The Sturm sequence, without its last term where that is zero; None where the precision is too low."""
+        """The Sturm sequence, without its last term where that is zero; None where the precision is
+        too low.
+        """
         value = ball(self.value, fmpq(1, 1 << bits))
-        product = prod((arb_poly([c(value) for c in curve.in_v]) for curve in self.curves), start=arb_poly([1]))
-        return ball_chain(product, sum(curve.degrees[1] for curve in self.curves), int(self._has_multiple_root))
+        product = prod(
+            (arb_poly([c(value) for c in curve.in_v]) for curve in self.curves), start=arb_poly([1])
+        )
+        return ball_chain(
+            product, sum(curve.degrees[1] for curve in self.curves), int(self._has_multiple_root)
+        )
 
     @cached_property
     def _has_multiple_root(self) -> bool:
         """Whether one of the curves has a multiple root over the value, or two have one in common."""
         return any(is_root(discriminant(c.terms), self.value) for c in self.curves) or any(
-            is_root(resultant(c.terms, d.terms), self.value) for c, d in combinations(self.curves, 2)
+            is_root(resultant(c.terms, d.terms), self.value)
+            for c, d in combinations(self.curves, 2)
         )
 
     @cached_property

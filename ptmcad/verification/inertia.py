@@ -1,12 +1,14 @@
-"""The inertia of symmetric matrices, by leading principal minors (Jacobi) or by elementary symmetric functions.
+"""The inertia of symmetric matrices, by leading principal minors (Jacobi) or by elementary
+symmetric functions.
 
-Guarantee: where no leading principal minor is zero, the number of negative eigenvalues is that of the changes of sign
-in the sequence that starts with 1 and goes on with the minors. `bases` gives others in which that is so: it is in
-almost every one. Entries may be matrices of multiplication, which commute.
+Guarantee: where no leading principal minor is zero, the number of negative eigenvalues is that of
+the changes of sign in the sequence that starts with 1 and goes on with the minors. `bases` gives
+others in which that is so: it is in almost every one. Entries may be matrices of multiplication,
+which commute.
 
-Of balls the elementary symmetric functions, the sums of all principal minors of one size, are in their place: the
-characteristic polynomial has real roots only, so that Descartes' rule counts them exactly (`inertia`). What is said
-holds for every matrix within the balls.
+Of balls the elementary symmetric functions, the sums of all principal minors of one size, are in
+their place: the characteristic polynomial has real roots only, so that Descartes' rule counts them
+exactly (`inertia`). What is said holds for every matrix within the balls.
 """
 
 from __future__ import annotations
@@ -23,13 +25,17 @@ Rows = Sequence[Sequence[Any]]
 
 
 def bases(size: int) -> Iterator[list[list[int]]]:
-    """Bases without end, the given one first: unipotent lower triangular matrices, whose columns are the vectors.
+    """Bases without end, the given one first: unipotent lower triangular matrices, whose columns
+    are the vectors.
 
     Upper triangular ones would have the same leading principal minors.
     """
     for k in range(10**9):
         yield [
-            [int(i == j) if i <= j else k and 1 + (k - 1) * (3 * i + 5 * j + i * j * k) for j in range(size)]
+            [
+                int(i == j) if i <= j else k and 1 + (k - 1) * (3 * i + 5 * j + i * j * k)
+                for j in range(size)
+            ]
             for i in range(size)
         ]
 
@@ -80,7 +86,9 @@ def negative_eigenvalues(signs: Iterable[int]) -> int:
 
 
 def inertia(h: Sequence[Sequence[arb]]) -> str | None:
-    """The signs of the eigenvalues of all symmetric matrices in the balls, positive ones first; None when undecided."""
+    """The signs of the eigenvalues of all symmetric matrices in the balls, positive ones first;
+    None when undecided.
+    """
     n = len(h)
     functions = [total(_principal_minors(h, size)) for size in range(1, n + 1)]
     if functions[-1].contains(0):

@@ -1,6 +1,8 @@
-"""The kinds of count as the checker knows them: of which models, and what is asked of stable solutions besides.
+"""The kinds of count as the checker knows them: of which models, and what is asked of stable
+solutions besides.
 
-Guarantee: margins are derived here from descriptions, as polynomials; a kind without a row in this table is refused.
+Guarantee: margins are derived here from descriptions, as polynomials; a kind without a row in this
+table is refused.
 """
 
 from __future__ import annotations
@@ -23,7 +25,8 @@ class CheckedMargin(NamedTuple):
     Attributes
     ----------
     value : a polynomial in coordinates and parameters.
-    spring : the value is its squared length less the square of its free length; None of another one.
+    spring : the value is its squared length less the square of its free length; None of another
+        one.
     """
 
     value: fmpq_mpoly
@@ -36,7 +39,8 @@ class CheckedKind(NamedTuple):
     Attributes
     ----------
     is_of : whether a model has solutions that may be counted so.
-    margins : of a model with or without numbers in the place of parameters; no free length is negative.
+    margins : of a model with or without numbers in the place of parameters; no free length is
+        negative.
     boundary : the name of the curves on which they vanish.
     undecided : said where one of them may be zero.
     has_exact_maps : whether margins say something where no spring has a free length.
@@ -66,7 +70,9 @@ class CheckedKind(NamedTuple):
         if not (self.is_predicate and self.has_exact_maps):
             return point
         if point.stability:
-            raise Violation("where conditions say what is stable there are no exact maps by a predicate")
+            raise Violation(
+                "where conditions say what is stable there are no exact maps by a predicate"
+            )
         return replace(point, stability=tuple(margin.value for margin in self.margins(point)))
 
 
@@ -77,7 +83,9 @@ def _is_told(count: Count) -> Callable[[Model], bool]:
 def _is_of_springs(model: Model) -> bool:
     """Whether margins may be asked of its points: those of X-joints are not in its unknowns alone."""
     mechanism = model.whole
-    return mechanism is not None and not mechanism.xjoints and Count.STABLE in meaning_of(model).kinds
+    return (
+        mechanism is not None and not mechanism.xjoints and Count.STABLE in meaning_of(model).kinds
+    )
 
 
 def _longer_than_free(point: Derivation) -> Iterator[CheckedMargin]:
@@ -114,5 +122,7 @@ def kind_of(count: Count) -> CheckedKind:
 
 
 def numbers_for(count: Count, meaning: SignMeaning) -> Set[str]:
-    """The names of the counts that a certified map has; without an index all solutions, or stable ones alone."""
+    """The names of the counts that a certified map has; without an index all solutions, or stable
+    ones alone.
+    """
     return {"stable", count.value} if kind_of(count).is_of_stable else meaning.with_all

@@ -1,11 +1,13 @@
-"""Solutions along one parameter: the values at which counts can change, read off one fibre, and counts between.
+"""Solutions along one parameter: the values at which counts can change, read off one fibre, and
+counts between.
 
-The norms of the Jacobian's determinant and of all conditions, and a sum of traces, whose poles are where solutions
-leave every bounded set, are rational functions of the parameter. The digits of its value over a large integer are the
-coefficients of each (`ptmcad.verification.fibre`), where it has the right values over further integers, too.
+The norms of the Jacobian's determinant and of all conditions, and a sum of traces, whose poles are
+where solutions leave every bounded set, are rational functions of the parameter. The digits of its
+value over a large integer are the coefficients of each (`ptmcad.verification.fibre`), where it has
+the right values over further integers, too.
 
-Guarantee: counts at a point are exact. That no change is missing holds but for the probability that a wrong rational
-function has the right values at `FRESH` random points.
+Guarantee: counts at a point are exact. That no change is missing holds but for the probability that
+a wrong rational function has the right values at `FRESH` random points.
 """
 
 from __future__ import annotations
@@ -60,7 +62,9 @@ class LineGap(Span):
 
 @dataclass(frozen=True)
 class ParameterLine:
-    """A model whose parameters are rational functions of one variable, the first axis, and a range of that."""
+    """A model whose parameters are rational functions of one variable, the first axis, and a range
+    of that.
+    """
 
     model: Model
     parameters: Mapping[str, Expression]
@@ -68,7 +72,8 @@ class ParameterLine:
     high: Fraction
 
     def counts_at(self, value: Fraction) -> Counts | None:
-        """The counts at a point; None where a solution is degenerate, and where parameters have no meaning.
+        """The counts at a point; None where a solution is degenerate, and where parameters have no
+        meaning.
 
         Raises
         ------
@@ -77,7 +82,11 @@ class ParameterLine:
         """
         values = self.values_at(value)
         try:
-            return None if not_positive(self.model, values) is not None else fibre(self.model, values).counts()
+            return (
+                None
+                if not_positive(self.model, values) is not None
+                else fibre(self.model, values).counts()
+            )
         except NotFinite:
             raise NotKnown("there are infinitely many solutions") from None
 
@@ -107,8 +116,17 @@ class ParameterLine:
         for bits in BITS:
             base = source.getrandbits(bits) | 1 << bits
             pairs = [(_read(v.p, base), _read(v.q, base)) for v in self._functions(base)]
-            if all(p(at) == v * q(at) for at, row in fresh for (p, q), v in zip(pairs, row, strict=True)):
-                terms = [part for e in self.parameters.values() for part in (e.numerator, e.denominator) if part]
+            if all(
+                p(at) == v * q(at)
+                for at, row in fresh
+                for (p, q), v in zip(pairs, row, strict=True)
+            ):
+                terms = [
+                    part
+                    for e in self.parameters.values()
+                    for part in (e.numerator, e.denominator)
+                    if part
+                ]
                 product = fmpz_poly([1])
                 for part in filter(None, (*(p for pair in pairs for p in pair), *map(_row, terms))):
                     product = squarefree(product * squarefree(part))
@@ -131,7 +149,9 @@ class ParameterLine:
             raise NotKnown("there is a degenerate solution at random points")
         if self.model.reals:
             form = random.Random("form")
-            traces = found.form_traces([form.getrandbits(10) for _ in range(found.point.coordinates)])
+            traces = found.form_traces(
+                [form.getrandbits(10) for _ in range(found.point.coordinates)]
+            )
             norms.append(sum((t * form.getrandbits(10) for t in traces), fmpq(0)))
         return norms
 
@@ -143,9 +163,14 @@ class ParameterLine:
         NotKnown
         """
         coefficients = tuple(int(c) for c in self.critical.coeffs())
-        roots = isolating_intervals(self.critical, from_fraction(self.low), from_fraction(self.high))
+        roots = isolating_intervals(
+            self.critical, from_fraction(self.low), from_fraction(self.high)
+        )
         width = (self.high - self.low) / _NARROW
-        inner = (AlgebraicNumber(coefficients, to_fraction(a), to_fraction(b)).refined(width) for a, b in roots)
+        inner = (
+            AlgebraicNumber(coefficients, to_fraction(a), to_fraction(b)).refined(width)
+            for a, b in roots
+        )
         ends: list[End] = [self.low, *inner, self.high]
         found = []
         for a, b in pairwise(ends):
@@ -153,18 +178,27 @@ class ParameterLine:
             sample = simple_between(upper(a) + third, lower(b) - third)
             counts = self.counts_at(sample)
             if counts is None:
-                raise NotKnown("a solution is degenerate between critical values, or a parameter has no meaning")
+                raise NotKnown(
+                    "a solution is degenerate between critical values, or a parameter has no meaning"
+                )
             found.append(LineGap(a, b, counts, sample))
         return found
 
     def ranges(self, working: int) -> list[Span]:
-        """Where there are so many stable solutions: neighbours that differ in others only are one range."""
-        groups = ((inside, list(group)) for inside, group in groupby(self.gaps(), lambda g: g.working == working))
+        """Where there are so many stable solutions: neighbours that differ in others only are one
+        range.
+        """
+        groups = (
+            (inside, list(group))
+            for inside, group in groupby(self.gaps(), lambda g: g.working == working)
+        )
         return [Span(group[0].low, group[-1].high) for inside, group in groups if inside]
 
 
 def _read(value: fmpz, base: int) -> fmpz_poly:
-    """The integer polynomial with small coefficients that has a value, times `_SPARE`, at a large number."""
+    """The integer polynomial with small coefficients that has a value, times `_SPARE`, at a large
+    number.
+    """
     rest, row = int(value) * _SPARE, []
     while rest:
         digit = (rest + base // 2) % base - base // 2
@@ -181,7 +215,9 @@ def _row(terms: Sequence[tuple[int, int, Fraction]]) -> fmpz_poly:
 
 
 def simple_between(low: Fraction, high: Fraction) -> Fraction:
-    """A number of few digits between two others, or one of them: a fibre's numbers get long with its digits."""
+    """A number of few digits between two others, or one of them: a fibre's numbers get long with
+    its digits.
+    """
     middle, most = (low + high) / 2, 1
     while not low <= (found := middle.limit_denominator(most)) <= high:
         most *= 2

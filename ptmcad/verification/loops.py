@@ -1,9 +1,10 @@
 """What equilibria of a mechanism with closed loops satisfy.
 
-Guarantee: nothing is taken from `ptmcad.model.loops`, which has the same as formulas of one graph. With g the squared
-distances that closing bars keep, less the squares of these, and U the energy, an equilibrium is a zero of g and of E,
-the determinant of the gradients of g and U; it is stable where the determinant of the gradients of g and E is positive.
-Where several degrees of freedom are left, each bar's tension is one more unknown.
+Guarantee: nothing is taken from `ptmcad.model.loops`, which has the same as formulas of one graph.
+With g the squared distances that closing bars keep, less the squares of these, and U the energy, an
+equilibrium is a zero of g and of E, the determinant of the gradients of g and U; it is stable where
+the determinant of the gradients of g and E is positive. Where several degrees of freedom are left,
+each bar's tension is one more unknown.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ class Loops(NamedTuple):
 
     def along(self, slopes: Sequence[fmpq_mpoly]) -> fmpq_mpoly:
         """The derivative along loops with one degree of freedom of what has these slopes."""
-        found: fmpq_mpoly = determinant([*(self.ring.gradient(g, self.unknowns) for g in self.kept), slopes])
+        found: fmpq_mpoly = determinant(
+            [*(self.ring.gradient(g, self.unknowns) for g in self.kept), slopes]
+        )
         return found
 
     def conditions(self, slopes: Sequence[fmpq_mpoly]) -> Conditions:
@@ -53,9 +56,9 @@ class Loops(NamedTuple):
     def _with_tensions(self, slopes: Sequence[fmpq_mpoly]) -> Conditions:
         """Where several degrees of freedom are left: the last unknowns are the bars' tensions.
 
-        The equations are the derivatives of the energy plus half of each tension times what its bar keeps. With s added
-        to the unknowns' own second derivatives the determinant of the bordered matrix is a polynomial in s; its
-        coefficients, with one sign, are all positive at a minimum.
+        The equations are the derivatives of the energy plus half of each tension times what its bar
+        keeps. With s added to the unknowns' own second derivatives the determinant of the bordered
+        matrix is a polynomial in s; its coefficients, with one sign, are all positive at a minimum.
         """
         ring, count, bars = self.ring, len(self.unknowns), len(self.kept)
         tensions = (ring.elements[name] * fmpq(1, 2) for name in self.unknowns[-bars:])
@@ -66,8 +69,13 @@ class Loops(NamedTuple):
 
         def minors(size: int) -> fmpq_mpoly:
             """The sum of the principal minors without so many of the unknowns that are no tensions."""
-            chosen = ([k for k in range(count) if k not in out] for out in combinations(range(count - bars), size))
-            found: fmpq_mpoly = total(determinant([[rows[i][j] for j in of] for i in of]) for of in chosen)
+            chosen = (
+                [k for k in range(count) if k not in out]
+                for out in combinations(range(count - bars), size)
+            )
+            found: fmpq_mpoly = total(
+                determinant([[rows[i][j] for j in of] for i in of]) for of in chosen
+            )
             return found * sign
 
         return equations, tuple(minors(size) for size in reversed(range(count - 2 * bars)))

@@ -1,7 +1,7 @@
 """Checks of the map's shape, of merges and of regions, from the stored tables alone.
 
-Guarantee: cells, stacks and regions refer to each other consistently; the regions are the connected components of the
-joined adjacencies, found by breadth-first search.
+Guarantee: cells, stacks and regions refer to each other consistently; the regions are the connected
+components of the joined adjacencies, found by breadth-first search.
 """
 
 from __future__ import annotations
@@ -22,7 +22,9 @@ def check_shape(claims: Claims) -> str:
     """Numbers refer to what exists, in order."""
     r = claims.result
     if r.status not in (Status.EXACT, Status.PARTIAL):
-        raise Violation(f"the status {r.status.value!r} cannot be checked: only exact and partial results can")
+        raise Violation(
+            f"the status {r.status.value!r} cannot be checked: only exact and partial results can"
+        )
     if r.undetermined != (0 if r.stacks else 1):
         raise Violation(
             f"{approximate_text(r.undetermined)} of the window is said to be undetermined, but "
@@ -31,18 +33,29 @@ def check_shape(claims: Claims) -> str:
     model = r.slice.model
     named = set(r.slice.parameters) - set(shorthands_of(model))
     if not model.unknowns or named != set(parameters_of(model)):
-        raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
+        raise Violation(
+            f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others"
+        )
     if any(a.low >= a.high for a in r.slice.axes) or r.base not in (0, 1):
         raise Violation("the window is empty")
     _check_count(claims)
     if not r.stacks:
-        if r.status is Status.EXACT or r.critical_values or r.cells or r.adjacencies or r.non_adjacencies or r.regions:
+        if (
+            r.status is Status.EXACT
+            or r.critical_values
+            or r.cells
+            or r.adjacencies
+            or r.non_adjacencies
+            or r.regions
+        ):
             raise Violation("there are no stacks")
         if any(c.separates for c in r.components):
             raise Violation("a component is said to separate regions, but there are none")
         return "no stacks yet"
     if len(r.critical_values) != len(r.stacks) - 1:
-        raise Violation(f"{len(r.critical_values)} critical values do not part {len(r.stacks)} stacks")
+        raise Violation(
+            f"{len(r.critical_values)} critical values do not part {len(r.stacks)} stacks"
+        )
     number = 0
     for s, stack in enumerate(r.stacks):
         ends = (s - 1 if s else None, s if s < len(r.stacks) - 1 else None)
@@ -55,8 +68,13 @@ def check_shape(claims: Claims) -> str:
         if stack.cells != expected:
             raise Violation(f"stack {s} has cells {stack.cells}, not {expected}")
         for wall in stack.walls:
-            if not _is_index(wall.component, len(r.components)) or r.components[wall.component].left_out:
-                raise Violation(f"a wall of stack {s} is on component {wall.component}, which is not used")
+            if (
+                not _is_index(wall.component, len(r.components))
+                or r.components[wall.component].left_out
+            ):
+                raise Violation(
+                    f"a wall of stack {s} is on component {wall.component}, which is not used"
+                )
         for level, n in enumerate(expected):
             if n >= len(r.cells) or (r.cells[n].stack, r.cells[n].level) != (s, level):
                 raise Violation(f"cell {n} is not the one at level {level} of stack {s}")
@@ -65,7 +83,9 @@ def check_shape(claims: Claims) -> str:
         raise Violation(f"{len(r.cells)} cells are stored, the stacks have {number}")
     for k, a in enumerate(r.adjacencies):
         if not (_is_index(a.first, number) and _is_index(a.second, number)):
-            raise Violation(f"adjacency {k} joins cells {a.first} and {a.second}, which are not both there")
+            raise Violation(
+                f"adjacency {k} joins cells {a.first} and {a.second}, which are not both there"
+            )
         if a.component is not None and not _is_index(a.component, len(r.components)):
             raise Violation(f"adjacency {k} names component {a.component}, which is not there")
     for n, cell in enumerate(r.cells):
@@ -79,9 +99,13 @@ def _check_count(claims: Claims) -> None:
     r, count = claims.result, claims.result.slice.count
     kind = kind_of(count)
     if not kind.has_exact_maps or (kind.is_predicate and not claims.meaning.order):
-        raise Violation(f"an exact map has no {count.value} counts by which its regions could be distinguished")
+        raise Violation(
+            f"an exact map has no {count.value} counts by which its regions could be distinguished"
+        )
     if not kind.is_of(claims.model):
-        raise Violation(f"{claims.model.name} has no {count.value} counts by which regions could be distinguished")
+        raise Violation(
+            f"{claims.model.name} has no {count.value} counts by which regions could be distinguished"
+        )
     known = {count.value} if kind.is_predicate else set()
     if further := {name for item in (*r.cells, *r.regions) for name in item.further} - known:
         raise Violation(f"an exact map has counts of {further.pop()} equilibria")
@@ -93,7 +117,9 @@ def _is_index(value: object, length: int) -> bool:
 
 def _counts(cell: Cell) -> object:
     """All that is counted, in few words."""
-    return ((cell.total, cell.stable) if cell.index is None else cell.index) + (*cell.further.values(),)
+    return ((cell.total, cell.stable) if cell.index is None else cell.index) + (
+        *cell.further.values(),
+    )
 
 
 def check_merges(claims: Claims) -> str:
@@ -115,10 +141,14 @@ def check_merges(claims: Claims) -> str:
         if kind is Merge.SEPARATED:
             separating.add(a.component)
         if a.merge is not kind:
-            raise Violation(f"adjacency {k} of cells {a.first} and {a.second} is {kind.value!r}, not {a.merge.value!r}")
+            raise Violation(
+                f"adjacency {k} of cells {a.first} and {a.second} is {kind.value!r}, not {a.merge.value!r}"
+            )
     for n, c in enumerate(r.components):
         if c.separates != (n in separating):
-            raise Violation(f"component {n} is said to {'' if c.separates else 'not '}separate two regions")
+            raise Violation(
+                f"component {n} is said to {'' if c.separates else 'not '}separate two regions"
+            )
     return f"{len(r.adjacencies)} adjacencies"
 
 
@@ -155,6 +185,8 @@ def check_regions(claims: Claims) -> str:
     for number, region in enumerate(r.regions):
         members = {n for n, cell in enumerate(r.cells) if cell.region == number}
         if members not in found or tuple(sorted(members)) != region.cells:
-            raise Violation(f"region {number} is said to have cells {region.cells}, not {tuple(sorted(members))}")
+            raise Violation(
+                f"region {number} is said to have cells {region.cells}, not {tuple(sorted(members))}"
+            )
         check_region(r, number, members)
     return f"{len(found)} regions"

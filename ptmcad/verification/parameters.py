@@ -1,8 +1,10 @@
-"""Checks of the parameters: as they were written, and the curves that bound the domain of the slice.
+"""Checks of the parameters: as they were written, and the curves that bound the domain of the
+slice.
 
-Guarantee: BOUNDARY components are exactly the irreducible factors of the parameters' denominators, of lengths and
-stiffnesses that vary, of what is common to all coefficients of an equation, and, as far as they are not critical, of
-the norms of conditions (these up to the probability of `ptmcad.verification.variety`).
+Guarantee: BOUNDARY components are exactly the irreducible factors of the parameters' denominators,
+of lengths and stiffnesses that vary, of what is common to all coefficients of an equation, and, as
+far as they are not critical, of the norms of conditions (these up to the probability of
+`ptmcad.verification.variety`).
 """
 
 from __future__ import annotations
@@ -28,18 +30,24 @@ from ptmcad.verification.variety import BITS, check_identity, condition_exponent
 def auxiliary(model: Model) -> tuple[str, ...]:
     """Names that may be kept as texts alone, because other texts name them.
 
-    They are shorthands, which are no parameters of the mechanism, free lengths that are zero, and parameters that only
-    a record's own expressions use.
+    They are shorthands, which are no parameters of the mechanism, free lengths that are zero, and
+    parameters that only a record's own expressions use.
     """
     return (*model.shorthands, *model.free_lengths, *model.idle)
 
 
 def check_text(claims: Claims) -> str:
-    """Each parameter as the user wrote it is the one that was computed with, and an axis stands for itself."""
+    """Each parameter as the user wrote it is the one that was computed with, and an axis stands for
+    itself.
+    """
     slice, model = claims.result.slice, claims.result.slice.model
     alone = slice.text.keys() - slice.parameters.keys()
-    if slice.parameters.keys() - slice.text.keys() or not alone <= {*auxiliary(model)} - {*slice.axis_names}:
-        raise Violation("a parameter lacks the text that it was written as, or a text its parameter")
+    if slice.parameters.keys() - slice.text.keys() or not alone <= {*auxiliary(model)} - {
+        *slice.axis_names
+    }:
+        raise Violation(
+            "a parameter lacks the text that it was written as, or a text its parameter"
+        )
     for index, name in enumerate(slice.axis_names):
         if name in slice.parameters and (slice.parameters[name] - axis(index)).numerator:
             raise Violation(f"{name} is an axis, but the parameter {name} is {_shown(slice, name)}")
@@ -48,9 +56,13 @@ def check_text(claims: Claims) -> str:
             raise Violation(f"the parameter {name} is stored, but nothing depends on it")
     for name, expression in written(slice).items():
         if name in slice.parameters and (expression - slice.parameters[name]).numerator:
-            raise Violation(f"{name} was written as {slice.text[name][:60]!r}, but is {_shown(slice, name)}")
+            raise Violation(
+                f"{name} was written as {slice.text[name][:60]!r}, but is {_shown(slice, name)}"
+            )
         if name in alone and name in model.free_lengths and expression.numerator:
-            raise Violation(f"{name} was written as {slice.text[name][:60]!r}, but is left out as if it were zero")
+            raise Violation(
+                f"{name} was written as {slice.text[name][:60]!r}, but is left out as if it were zero"
+            )
     return f"{len(slice.text)} parameters"
 
 
@@ -69,12 +81,16 @@ def written(slice: Slice) -> dict[str, Expression]:
         # one whose names are all known by now, so that nothing is explained by itself
         ready = next((n for n, text in waiting.items() if _names(n, text) <= known.keys()), None)
         if ready is None:
-            raise Violation(f"the texts kept for {', '.join(sorted(waiting))[:80]} name what is not explained")
+            raise Violation(
+                f"the texts kept for {', '.join(sorted(waiting))[:80]} name what is not explained"
+            )
         name, text = ready, waiting.pop(ready)
         try:
             found[name] = parse(text, known)
         except ExpressionError as error:
-            raise Violation(f"the text kept for {name}, {text[:40]!r}, is no expression: {error}") from error
+            raise Violation(
+                f"the text kept for {name}, {text[:40]!r}, is no expression: {error}"
+            ) from error
         known.setdefault(name, found[name])
     return found
 
@@ -87,7 +103,9 @@ def _names(name: str, text: str) -> set[str]:
     try:
         return set(names_in(text))
     except ExpressionError as error:
-        raise Violation(f"the text kept for {name[:40]!r}, {text[:40]!r}, is no expression: {error}") from error
+        raise Violation(
+            f"the text kept for {name[:40]!r}, {text[:40]!r}, is no expression: {error}"
+        ) from error
 
 
 def check_boundary(claims: Claims, seed: str) -> str:
@@ -101,26 +119,34 @@ def check_boundary(claims: Claims, seed: str) -> str:
         if factor not in stored:
             raise Violation(f"{factor.text(names)} = 0 is not stored, but {why}")
         if stored[factor].kind is not Kind.BOUNDARY:
-            raise Violation(f"{factor.text(names)} = 0 is stored as {stored[factor].kind.value}, but {why}")
+            raise Violation(
+                f"{factor.text(names)} = 0 is stored as {stored[factor].kind.value}, but {why}"
+            )
     for n, c in enumerate(claims.result.components):
         if c.kind is Kind.BOUNDARY and c.polynomial not in needed:
-            raise Violation(f"component {n} is stored as boundary, but bounds nothing: {c.polynomial.text(names)[:60]}")
+            raise Violation(
+                f"component {n} is stored as boundary, but bounds nothing: {c.polynomial.text(names)[:60]}"
+            )
         if c.continuum is Continuum.PROVED:
             _check_continuum(claims, n, c.polynomial)
     return f"{len(needed)} factors of parameters and equations"
 
 
 def _check_continuum(claims: Claims, number: int, curve: PlanePolynomial) -> None:
-    """On a component on which an equation vanishes, or a sum of some, that is where some angles turn together.
+    """On a component on which an equation vanishes, or a sum of some, that is where some angles
+    turn together.
 
-    There are some where the equations are the slopes of a function on a torus, or there is no other.
+    There are some where the equations are the slopes of a function on a torus, or there is no
+    other.
     """
     model = claims.result.slice.model
     true = derivation_of(model)
     weights = [row for row in product((-1, 0, 1), repeat=len(model.unknowns)) if any(row)]
     vanishes = any(curve in factors(common) for common in equation_factors(claims, weights))
     if not (vanishes and true.has_minima):
-        raise Violation(f"component {number} is said to have infinitely many solutions, which is not proved")
+        raise Violation(
+            f"component {number} is said to have infinitely many solutions, which is not proved"
+        )
 
 
 def _needed(claims: Claims) -> dict[PlanePolynomial, str]:
@@ -141,7 +167,9 @@ def _needed(claims: Claims) -> dict[PlanePolynomial, str]:
 
 
 def _of_conditions(claims: Claims, seed: str) -> dict[PlanePolynomial, str]:
-    """The components on which a condition's norm vanishes, but not that of det H, each with the reason."""
+    """The components on which a condition's norm vanishes, but not that of det H, each with the
+    reason.
+    """
     found: dict[PlanePolynomial, str] = {}
     conditions = condition_exponents(claims, seed)
     if not conditions:

@@ -1,11 +1,11 @@
 """Check of the plan: what it says was computed and left out is what the result shows.
 
-Guarantee: the steps are those that the slice's parameters and the stored components ask for, in their order, with every
-saving made; what a saving leaves out is not in the result.
+Guarantee: the steps are those that the slice's parameters and the stored components ask for, in
+their order, with every saving made; what a saving leaves out is not in the result.
 
-Not guaranteed: what leaves no trace in a result. These are the predicted costs by which the base axis was chosen;
-whether the savings "imports" and "equal-counts" were made, and areas are those on one half of the window; and that a
-harmless curve that is used could not have been left out.
+Not guaranteed: what leaves no trace in a result. These are the predicted costs by which the base
+axis was chosen; whether the savings "imports" and "equal-counts" were made, and areas are those on
+one half of the window; and that a harmless curve that is used could not have been left out.
 """
 
 from __future__ import annotations
@@ -27,7 +27,11 @@ _COST = r"([0-9]+(?:\.[0-9]+)?(?:e\+[0-9]+)?)"
 _CHOICE = re.compile(rf"predicted cost {_COST} against {_COST}", re.ASCII)
 _SAME_COST = "both orders are predicted to cost the same"
 _GENERAL = (
-    ("imports", "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),
+    (
+        "imports",
+        "imports of numpy, matplotlib, sympy and numba",
+        "nothing needs them before it asks",
+    ),
     ("", "terms of {zero}", "they are zero on this slice"),
     ("sign-curve", "projection of H11 = 0", "where it vanishes off the critical curves, det H < 0"),
     (
@@ -46,7 +50,9 @@ _GENERAL = (
         "near them det H stays away from 0 at every solution, and real ones are bounded",
     ),
 )
-"""Names, subjects and reasons of the savings that are made on every slice, and of what needs no saving."""
+"""Names, subjects and reasons of the savings that are made on every slice, and of what needs no
+saving.
+"""
 
 
 _NO_SIGN_CHANGE = "no eigenvalue of H changes its sign off the critical curves"
@@ -55,7 +61,8 @@ _HALF = "areas on one half of the window"
 
 
 def refuse_ablation(result: RegionMap) -> None:
-    """Refuse a map that was made without some saving: it serves to measure what the saving is worth.
+    """Refuse a map that was made without some saving: it serves to measure what the saving is
+    worth.
 
     Raises
     ------
@@ -78,7 +85,9 @@ def check_plan(claims: Claims) -> str:
         raise Violation(f"the plan has {len(plan)} steps, not {len(expected)}")
     for n, (step, other) in enumerate(zip(plan, expected, strict=True)):
         same = (step.what, step.done, step.saving) == (other.what, other.done, other.saving)
-        if not same or not (step.reason == other.reason if other.reason else _is_choice(step.reason)):
+        if not same or not (
+            step.reason == other.reason if other.reason else _is_choice(step.reason)
+        ):
             done = "computed" if other.done else "left out"
             raise Violation(
                 f"step {n} of the plan is not {str(step)[:100]!r}, but {other.what!r}, {done}: "
@@ -151,7 +160,9 @@ def _check_left_out(claims: Claims) -> None:
     result = claims.result
     for n, c in enumerate(result.components):
         if c.kind is Kind.AUXILIARY:
-            raise Violation(f"component {n} is auxiliary, but no saving was switched off that leaves it out")
+            raise Violation(
+                f"component {n} is auxiliary, but no saving was switched off that leaves it out"
+            )
         if not c.left_out and plainly_outside(PlaneCurve.of(n, c.polynomial, result.base), claims):
             raise Violation(
                 f"component {n} is used, but it has no point in the window, and the plan does not say "
@@ -160,5 +171,7 @@ def _check_left_out(claims: Claims) -> None:
     if _NO_AREAS in result.plan:
         x, y = result.slice.axes
         window = (x.high - x.low) * (y.high - y.low)
-        if any(low != 0 or high < window for low, high in (region.area for region in result.regions)):
+        if any(
+            low != 0 or high < window for low, high in (region.area for region in result.regions)
+        ):
             raise Violation("areas are known, but the plan says that they were not asked for")

@@ -1,9 +1,11 @@
-"""Checks of the poses at a point: none is missing or stored twice, in each box is one, with its index and stability.
+"""Checks of the poses at a point: none is missing or stored twice, in each box is one, with its
+index and stability.
 
-They are those of a map's cell (`ptmcad.verification.solutions`, and with free lengths `certified.points`): a window of
-two axes on which nothing depends has the point as its sample.
+They are those of a map's cell (`ptmcad.verification.solutions`, and with free lengths
+`certified.points`): a window of two axes on which nothing depends has the point as its sample.
 
-Guarantee: that of these checks. Where a pose is degenerate, the number of different ones alone is checked.
+Guarantee: that of these checks. Where a pose is degenerate, the number of different ones alone is
+checked.
 """
 
 from __future__ import annotations
@@ -32,7 +34,13 @@ _EXACT = Fraction(1, 2**100)
 def verify_poses(found: Poses, progress: Progress | None = None) -> VerifyReport:
     """Check stored poses without the code that made them."""
     claims = CertifiedClaims(_map_of(found))
-    steps = (("poses", "signatures and interval Newton, or a search in balls", partial(_check_poses, found=found)),)
+    steps = (
+        (
+            "poses",
+            "signatures and interval Newton, or a search in balls",
+            partial(_check_poses, found=found),
+        ),
+    )
     return VerifyReport(tuple(checked(claims, steps, (), CheckProgress(progress))))
 
 
@@ -48,7 +56,11 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
                 number = check_listed(claims, counting_of(claims), cell)
                 return Unchecked(f"whether there are more than the {number} listed, which hold")
             number = check_cell(claims, counting_of(claims), cell)
-            untold = "" if cell.stable == found.stable else ", of whose stability nothing is checked here"
+            untold = (
+                ""
+                if cell.stable == found.stable
+                else ", of whose stability nothing is checked here"
+            )
             return f"{number} poses{untold}"
         except Unproved as reason:
             return Unchecked(str(reason))
@@ -59,7 +71,9 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
     if found.status is Status.UNDECIDED and not found.equilibria:
         return Unchecked("nothing is said of them")
     if number != len(found.equilibria):
-        raise Violation(f"{len(found.equilibria)} poses are listed; there are {max(number, 0) or 'infinitely many'}")
+        raise Violation(
+            f"{len(found.equilibria)} poses are listed; there are {max(number, 0) or 'infinitely many'}"
+        )
     check_disjoint(0, cell, model)
     regular = [
         (k, pose, box)
@@ -75,7 +89,9 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
         if (index, stable) != (pose.index, pose.stable):
             raise Violation(f"pose {k + 1} has index {index}, and that it is stable is {stable}")
     if len(regular) < number:
-        return Unchecked(f"{number} different poses; {number - len(regular)} of them are degenerate")
+        return Unchecked(
+            f"{number} different poses; {number - len(regular)} of them are degenerate"
+        )
     return f"{number} poses"
 
 
@@ -100,13 +116,26 @@ def _map_of(found: Poses) -> RegionMap:
     boxes = tuple(_box(pose, slice.has_free_lengths) for pose in found.equilibria)
     meaning = meaning_of(found.model)
     index = meaning.indices([pose.index for pose in found.equilibria])
-    # a map of all counts with a cover has no stable ones where conditions say which are; each pose is asked below
-    stable = meaning.about_stability(found.stable) if meaning.order or not slice.has_free_lengths else None
+    # a map of all counts with a cover has no stable ones where conditions say which are; each pose
+    # is asked below
+    stable = (
+        meaning.about_stability(found.stable)
+        if meaning.order or not slice.has_free_lengths
+        else None
+    )
     sample = Point(slice.axis_names, Fraction(1, 2), Fraction(1, 2))
-    return map_of(slice, (Cell(None, 0, sample, 0, len(boxes), stable, index, boxes),), found.status)
+    return map_of(
+        slice, (Cell(None, 0, sample, 0, len(boxes), stable, index, boxes),), found.status
+    )
 
 
 def _box(pose: Pose, in_angles: bool) -> Solution:
     numbers = (pose.angles if in_angles else pose.cosines_sines) + pose.reals
-    signs = "" if pose.index is None else "+" * (len(pose.eigenvalues) - pose.index) + "-" * pose.index
-    return Solution(tuple(x.center for x in numbers), max((x.radius for x in numbers), default=_EXACT) or _EXACT, signs)
+    signs = (
+        "" if pose.index is None else "+" * (len(pose.eigenvalues) - pose.index) + "-" * pose.index
+    )
+    return Solution(
+        tuple(x.center for x in numbers),
+        max((x.radius for x in numbers), default=_EXACT) or _EXACT,
+        signs,
+    )

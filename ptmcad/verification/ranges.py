@@ -1,7 +1,9 @@
-"""Checks of the counts along lines: the ends of intervals are values at which counts can change, and none is missing.
+"""Checks of the counts along lines: the ends of intervals are values at which counts can change,
+and none is missing.
 
-Guarantee: of exact intervals that of `ptmcad.verification.line`. Of enclosed ones, with free lengths, counts are those
-that are stored at the samples and next to both ends; that nothing changes between these points is not checked.
+Guarantee: of exact intervals that of `ptmcad.verification.line`. Of enclosed ones, with free
+lengths, counts are those that are stored at the samples and next to both ends; that nothing changes
+between these points is not checked.
 """
 
 from __future__ import annotations
@@ -33,7 +35,14 @@ from ptmcad.verification.derivation import parameters_of
 from ptmcad.verification.line import NotKnown, ParameterLine
 from ptmcad.verification.parameters import check_text
 from ptmcad.verification.poses import map_of
-from ptmcad.verification.report import Check, CheckProgress, Unchecked, VerifyReport, Violation, checked
+from ptmcad.verification.report import (
+    Check,
+    CheckProgress,
+    Unchecked,
+    VerifyReport,
+    Violation,
+    checked,
+)
 from ptmcad.verification.sturm import roots_within
 
 _NEAR = 2**7
@@ -42,13 +51,19 @@ UNCHECKED = {
     "path": ("paths", "that poses are joined as it is said, and where a mechanism snaps to"),
     "critical": ("critical free lengths", "that they are all"),
     "branches": ("branches", "the points of the curves"),
-    "enclosed": ("changes", "that nothing changes between the points that were looked at, and which curves are met"),
+    "enclosed": (
+        "changes",
+        "that nothing changes between the points that were looked at, and which curves are met",
+    ),
     "bands": ("bands", "the ranges at each value of the other axis"),
 }
 
 
 def verify_range(
-    data: Mapping[str, Any], slice: Slice, progress: Progress | None = None, maxima: Sequence[Maximum] = ()
+    data: Mapping[str, Any],
+    slice: Slice,
+    progress: Progress | None = None,
+    maxima: Sequence[Maximum] = (),
 ) -> VerifyReport:
     """Check the document of ``ptmcad range`` without the code that made it.
 
@@ -67,13 +82,25 @@ def verify_range(
         for part, name, method, check in (
             ("line", "intervals of the line", "norms read off one fibre, signatures", _check_line),
             ("over", "intervals of the rows", "norms read off one fibre, signatures", _check_rows),
-            ("over", "extremes", "ranges on the lines themselves", partial(_check_extremes, maxima=maxima)),
-            ("enclosed", "intervals of the enclosed line", "Krawczyk's test and exclusion in balls", _check_enclosed),
+            (
+                "over",
+                "extremes",
+                "ranges on the lines themselves",
+                partial(_check_extremes, maxima=maxima),
+            ),
+            (
+                "enclosed",
+                "intervals of the enclosed line",
+                "Krawczyk's test and exclusion in balls",
+                _check_enclosed,
+            ),
         )
         if part in data
     ]
     checks = checked((data, slice), steps, (), CheckProgress(progress))
-    checks += [Check(name, "", None, words) for part, (name, words) in UNCHECKED.items() if part in data]
+    checks += [
+        Check(name, "", None, words) for part, (name, words) in UNCHECKED.items() if part in data
+    ]
     return VerifyReport(tuple(checks))
 
 
@@ -83,9 +110,16 @@ _Asked = tuple[Mapping[str, Any], Slice]
 def _line(slice: Slice, along: Mapping[str, Any], value: Fraction) -> ParameterLine:
     """The line along one axis at a value of the other one."""
     low, high = map(fraction_of, along["window"])
-    known = {name: axis(0) if name == along["name"] else constant(value) for name in slice.axis_names}
-    texts = {name: slice.parameters[name].to_text(slice.axis_names) for name in parameters_of(slice.model)}
-    return ParameterLine(slice.model, {name: parse(text, known) for name, text in texts.items()}, low, high)
+    known = {
+        name: axis(0) if name == along["name"] else constant(value) for name in slice.axis_names
+    }
+    texts = {
+        name: slice.parameters[name].to_text(slice.axis_names)
+        for name in parameters_of(slice.model)
+    }
+    return ParameterLine(
+        slice.model, {name: parse(text, known) for name, text in texts.items()}, low, high
+    )
 
 
 def _check_line(asked: _Asked) -> str:
@@ -113,7 +147,9 @@ def _check_rows(asked: _Asked) -> str:
         except NotKnown:
             unknown += 1
     if unknown:
-        return Unchecked(f"{len(found['rows']) - unknown} rows; of {unknown} more nothing was found out")
+        return Unchecked(
+            f"{len(found['rows']) - unknown} rows; of {unknown} more nothing was found out"
+        )
     return f"{len(found['rows'])} rows"
 
 
@@ -122,9 +158,15 @@ def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
     found = data["over"]
     if "stable" not in found:
         return Unchecked("an earlier version made it: attainment is not told")
-    along, over = (next(a for a in slice.axes if a.name == found[key]["name"]) for key in ("along", "over"))
+    along, over = (
+        next(a for a in slice.axes if a.name == found[key]["name"]) for key in ("along", "over")
+    )
     lines = SliceLines(
-        partial(_line, slice, found["along"]), partial(_line, slice, found["over"]), along, over, found["stable"]
+        partial(_line, slice, found["along"]),
+        partial(_line, slice, found["over"]),
+        along,
+        over,
+        found["stable"],
     )
     try:
         return check_maxima(lines, maxima)
@@ -132,7 +174,9 @@ def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
         return Unchecked(str(reason))
 
 
-def _check_intervals(line: ParameterLine, entries: Sequence[Mapping[str, Any]], working: int | None) -> None:
+def _check_intervals(
+    line: ParameterLine, entries: Sequence[Mapping[str, Any]], working: int | None
+) -> None:
     """The intervals are those between changes: all of them, or those with so many stable solutions.
 
     Raises
@@ -148,11 +192,19 @@ def _check_intervals(line: ParameterLine, entries: Sequence[Mapping[str, Any]], 
         ]
         where, there = f"at {shortest_text(gap.sample)}", gap.counts
         if len(inside) != (working is None or gap.working == working):
-            raise Violation(f"{len(inside)} of the intervals are {where}, where there are {there.total} solutions")
+            raise Violation(
+                f"{len(inside)} of the intervals are {where}, where there are {there.total} solutions"
+            )
         for entry in inside:
             index = None if there.index is None else [*there.index]
-            if (entry["total"], entry["stable"], entry["index"]) != (there.total, there.stable, index):
-                raise Violation(f"{entry['total']} solutions are said to be {where}, where there are {there}")
+            if (entry["total"], entry["stable"], entry["index"]) != (
+                there.total,
+                there.stable,
+                index,
+            ):
+                raise Violation(
+                    f"{entry['total']} solutions are said to be {where}, where there are {there}"
+                )
 
 
 def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
@@ -161,10 +213,16 @@ def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
         if (edge := fraction_of(data["window"])) not in (line.low, line.high):
             raise Violation(f"{shortest_text(edge)} is no end of the window")
         return edge
-    polynomial = fmpz_poly([integer_of(c.removeprefix("-")) * (-1 if c[:1] == "-" else 1) for c in data["polynomial"]])
-    number = AlgebraicNumber(tuple(map(int, polynomial)), fraction_of(data["low"]), fraction_of(data["high"]))
+    polynomial = fmpz_poly(
+        [integer_of(c.removeprefix("-")) * (-1 if c[:1] == "-" else 1) for c in data["polynomial"]]
+    )
+    number = AlgebraicNumber(
+        tuple(map(int, polynomial)), fraction_of(data["low"]), fraction_of(data["high"])
+    )
     if roots_within(polynomial, from_fraction(number.low), from_fraction(number.high)) != 1:
-        raise Violation(f"an end near {float(number):.10g} is not the only root of its polynomial there")
+        raise Violation(
+            f"an end near {float(number):.10g} is not the only root of its polynomial there"
+        )
     if polynomial.degree() < 1 or bool(line.critical % polynomial):
         raise Violation(f"counts cannot change at the end near {float(number):.10g}")
     return number
@@ -187,16 +245,27 @@ def _check_enclosed(asked: _Asked) -> str:
         if not low < fraction_of(entry["sample"]) < high:
             raise Violation(f"the sample {entry['sample']} is not in its interval")
         for at in (fraction_of(entry["sample"]), low + near, high - near):
-            point = (at, fraction_of(value)) if other == slice.axis_names[1] else (fraction_of(value), at)
+            point = (
+                (at, fraction_of(value))
+                if other == slice.axis_names[1]
+                else (fraction_of(value), at)
+            )
             try:
                 there = counting.at(claims, *Point(slice.axis_names, *point)).counts
             except Unproved:
                 unknown += 1
                 continue
             said = (entry["total"], entry["stable"], entry["index"] and tuple(entry["index"]))
-            number, unknown = (number, unknown + 1) if said == (None, None, None) else (number + 1, unknown)
-            if any(a not in (None, b) for a, b in zip(said, (there.total, there.stable, there.index), strict=True)):
+            number, unknown = (
+                (number, unknown + 1) if said == (None, None, None) else (number + 1, unknown)
+            )
+            if any(
+                a not in (None, b)
+                for a, b in zip(said, (there.total, there.stable, there.index), strict=True)
+            ):
                 raise Violation(
                     f"(total, stable, index) {said} are said to be at {shortest_text(at)}; there are {there}"
                 )
-    return Unchecked(f"{number} points; {unknown} were not decided") if unknown else f"{number} points"
+    return (
+        Unchecked(f"{number} points; {unknown} were not decided") if unknown else f"{number} points"
+    )

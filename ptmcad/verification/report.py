@@ -1,6 +1,7 @@
 """What a verification found: one line for each claim, with the method that checked it.
 
-Guarantee: `VerifyReport.ok` is True only when no check failed; a claim that was not checked is listed as such.
+Guarantee: `VerifyReport.ok` is True only when no check failed; a claim that was not checked is
+listed as such.
 """
 
 from __future__ import annotations
@@ -49,7 +50,13 @@ class Check:
         answer = {True: "ok", False: "FALSE", None: "not checked"}[self.passed]
         head = f"{answer:<13}{self.name:<{width}}  "
         text = f"{self.detail} ({self.method})" if self.method else self.detail
-        return fill(text, COLUMNS, initial_indent=head, subsequent_indent=" " * len(head), break_on_hyphens=False)
+        return fill(
+            text,
+            COLUMNS,
+            initial_indent=head,
+            subsequent_indent=" " * len(head),
+            break_on_hyphens=False,
+        )
 
 
 class Unchecked(str):
@@ -60,7 +67,9 @@ class Unchecked(str):
 
 @dataclass(frozen=True, slots=True)
 class VerifyReport:
-    """The checks in their order; those after a failed one, or one that a limit stopped, are not reached."""
+    """The checks in their order; those after a failed one, or one that a limit stopped, are not
+    reached.
+    """
 
     checks: tuple[Check, ...]
 
@@ -90,16 +99,23 @@ class VerifyReport:
         >>> VerifyReport((Check("a", "", True, ""), Check("b", "", None, ""))).verdict
         '1 claim holds, 1 not checked'
         """
-        held, false, open_ = (sum(c.passed is answer for c in self.checks) for answer in (True, False, None))
+        held, false, open_ = (
+            sum(c.passed is answer for c in self.checks) for answer in (True, False, None)
+        )
         parts = (
             [f"{held} claim{'s hold' if held != 1 else ' holds'}"]
             if not false
-            else [f"{false} claim{'s are' if false != 1 else ' is'} false", f"{held} hold{'s' * (held == 1)}"]
+            else [
+                f"{false} claim{'s are' if false != 1 else ' is'} false",
+                f"{held} hold{'s' * (held == 1)}",
+            ]
         )
         return ", ".join(parts + [f"{open_} not checked"] * (open_ > 0))
 
     def table(self) -> str:
-        """A row of at most 80 columns for each check: the answer, the claim, the detail and the method; the verdict."""
+        """A row of at most 80 columns for each check: the answer, the claim, the detail and the
+        method; the verdict.
+        """
         width = max([len(c.name) for c in self.checks], default=0)
         return "\n".join([heading(width), *(c.row(width) for c in self.checks), self.verdict])
 
@@ -120,24 +136,31 @@ def check_anew(stored: Any, found: Any, finer: Callable[[], Any] = lambda: None)
 
     Parameters
     ----------
-    finer : asked where they differ, gives the document with more digits. An enclosure that has the one in there holds,
-        whatever the one found now is; of one that only meets it nothing is said.
+    finer : asked where they differ, gives the document with more digits. An enclosure that has the
+        one in there holds, whatever the one found now is; of one that only meets it nothing is
+        said.
     """
     name, method = "all entries", "answered anew, and compared"
-    versions = [part.get("versions") if isinstance(part, dict) else None for part in (stored, found)]
+    versions = [
+        part.get("versions") if isinstance(part, dict) else None for part in (stored, found)
+    ]
     earlier = versions[0] != versions[1]
     if next(_differences(stored, found, None, earlier), None) is None:
         return Check(name, method, True, "the answer is the same now")
     places = list(_differences(stored, found, finer(), earlier))
     if not places:
-        return Check(name, method, True, "the answer is the same now; enclosures have those with more digits")
+        return Check(
+            name, method, True, "the answer is the same now; enclosures have those with more digits"
+        )
     if earlier:
         return Check(name, method, None, f"another version made it; now {places[0]}")
     false = next((place for place in places if not isinstance(place, Unchecked)), None)
     return Check(name, method, None if false is None else False, shown(false or places[0]))
 
 
-def _differences(stored: Any, found: Any, finer: Any, earlier: bool, place: str = "") -> Iterator[str]:
+def _differences(
+    stored: Any, found: Any, finer: Any, earlier: bool, place: str = ""
+) -> Iterator[str]:
     if stored != found and _is_enclosure(stored) and _is_enclosure(finer):
         (low, high), (least, most) = _ends(stored), _ends(finer)
         is_rounded = _is_decimal_of(stored["decimal"], (least, most))
@@ -150,9 +173,13 @@ def _differences(stored: Any, found: Any, finer: Any, earlier: bool, place: str 
     if fits and (stored.keys() == found.keys() or (place and earlier)):
         for key in sorted(stored.keys() - {"versions"}):
             part = finer.get(key) if isinstance(finer, dict) else None
-            yield from _differences(stored[key], found[key], part, earlier, f"{place}.{key}".lstrip("."))
+            yield from _differences(
+                stored[key], found[key], part, earlier, f"{place}.{key}".lstrip(".")
+            )
     elif isinstance(stored, list) and isinstance(found, list) and len(stored) == len(found):
-        parts = finer if isinstance(finer, list) and len(finer) == len(found) else [None] * len(found)
+        parts = (
+            finer if isinstance(finer, list) and len(finer) == len(found) else [None] * len(found)
+        )
         for k, (one, other, part) in enumerate(zip(stored, found, parts, strict=True)):
             yield from _differences(one, other, part, earlier, f"{place}[{k}]")
     elif (type(stored), stored) != (type(found), found):
@@ -181,7 +208,9 @@ PARTS = 100
 
 @dataclass(slots=True)
 class CheckProgress:
-    """How far a verification is, for whoever watches: told as progress(words, done, total), which only grows."""
+    """How far a verification is, for whoever watches: told as progress(words, done, total), which
+    only grows.
+    """
 
     progress: Progress | None
     number: int = 0
@@ -208,7 +237,9 @@ def checked(
     missing: Collection[str] = (),
     headway: CheckProgress | None = None,
 ) -> list[Check]:
-    """Run checks, given as name, method and function, in their order; none after a failed one, none of the missing."""
+    """Run checks, given as name, method and function, in their order; none after a failed one, none
+    of the missing.
+    """
     checks: list[Check] = []
     ended, finished = "", FINISHED.get()
     within = FINISHED.set(lambda _check: None)  # of the checks inside of these

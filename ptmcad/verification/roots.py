@@ -1,6 +1,7 @@
 """One real root of a polynomial, by its number among those between two heights.
 
-Guarantee: the ball that is returned contains that root and, if precision allows, is about as narrow as it allows.
+Guarantee: the ball that is returned contains that root and, if precision allows, is about as narrow
+as it allows.
 """
 
 from __future__ import annotations
@@ -14,7 +15,9 @@ from ptmcad.verification.sturm import changes_of
 
 
 def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | None:
-    """A root in the open interval (low, high), by its number from below; None where there are not so many."""
+    """A root in the open interval (low, high), by its number from below; None where there are not
+    so many.
+    """
     # halving a window would take one step for each doubling of it
     bound = _bound(p)
     low, high = max(low, -bound), min(high, bound)
@@ -27,8 +30,13 @@ def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | Non
         return None
     while True:
         if first == wanted == last + 1:
-            # where an end is a root, too, signs do not tell on which side of a number the wanted one is
-            found = _alone(p, low, high) if p(low) * p(high) < 0 else _refined(p, arb(low).union(arb(high)))
+            # where an end is a root, too, signs do not tell on which side of a number the wanted
+            # one is
+            found = (
+                _alone(p, low, high)
+                if p(low) * p(high) < 0
+                else _refined(p, arb(low).union(arb(high)))
+            )
             if found is not None:
                 return found
         middle = (low + high) / 2
@@ -43,7 +51,9 @@ def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | Non
 
 @lru_cache(maxsize=64)
 def _changes_of(coefficients: tuple[int, ...]) -> Callable[[fmpq], int]:
-    """`changes_of`, for walls over the same abscissa, whose roots are told apart at the same heights."""
+    """`changes_of`, for walls over the same abscissa, whose roots are told apart at the same
+    heights.
+    """
     return cache(changes_of(fmpz_poly(list(coefficients))))
 
 
@@ -71,7 +81,8 @@ def _alone(p: fmpz_poly, low: fmpq, high: fmpq) -> arb:
 
 
 def _refined(p: fmpz_poly, root: arb) -> arb | None:
-    """A ball for the only root of p in a given one, narrowed by interval Newton steps as far as precision allows.
+    """A ball for the only root of p in a given one, narrowed by interval Newton steps as far as
+    precision allows.
 
     None where the given one is so wide that the first step does not narrow it much.
     """

@@ -1,12 +1,14 @@
-"""The sign of a rational function over the open window, proved once more: Sturm counts between critical abscissae.
+"""The sign of a rational function over the open window, proved once more: Sturm counts between
+critical abscissae.
 
-Guarantee: `Sign.PROVED` and `Sign.WRONG` are theorems. `Sign.UNCHECKED` is answered where a function of both axes has
-a degree over `MAX_DEGREE`, or may be zero at an isolated point.
+Guarantee: `Sign.PROVED` and `Sign.WRONG` are theorems. `Sign.UNCHECKED` is answered where a
+function of both axes has a degree over `MAX_DEGREE`, or may be zero at an isolated point.
 
-It shares nothing with what the engines ask (`ptmcad.question.positivity`): no Bernstein coefficients, no halving of
-boxes, no isolation by Descartes' rule, another elimination. A polynomial changes sign in the open window where one of
-its irreducible factors of odd multiplicity does; and between the roots of such a factor's discriminant and of its
-values on two edges, the number of its roots in a fibre, all of them simple, is that over one sample (`window`).
+It shares nothing with what the engines ask (`ptmcad.question.positivity`): no Bernstein
+coefficients, no halving of boxes, no isolation by Descartes' rule, another elimination. A
+polynomial changes sign in the open window where one of its irreducible factors of odd multiplicity
+does; and between the roots of such a factor's discriminant and of its values on two edges, the
+number of its roots in a fibre, all of them simple, is that over one sample (`window`).
 """
 
 from __future__ import annotations
@@ -56,7 +58,9 @@ def _side(p: fmpq_mpoly, window: Window) -> int:
 
 def _sign(p: fmpq_mpoly, window: Window, strict: bool) -> Sign:
     """Whether a polynomial that is not zero is positive, or not negative, in the open window."""
-    relevant = [PlaneCurve.of(0, f, 0) for f, multiplicity in factored(p) if strict or multiplicity % 2]
+    relevant = [
+        PlaneCurve.of(0, f, 0) for f, multiplicity in factored(p) if strict or multiplicity % 2
+    ]
     if any(min(f.degrees) > 0 and sum(f.degrees) > MAX_DEGREE for f in relevant):
         (u0, u1), (v0, v1) = window
         grid = [fmpq(k, 32) for k in range(1, 32)]

@@ -1,15 +1,17 @@
 """Checks of the solutions: each stored box contains a solution that counts, with the stored signs.
 
-Each stored box, in the coordinates of the unknowns, is tested by Krawczyk's image (`certified.narrow`). Where it has
-one solution, the signs of the Hessian's eigenvalues, of inequalities and of conditions for stability are those on a
-narrower box, or precision is doubled. Where that shows nothing, as of a box much larger than the distance over which
-the equations bend, trace forms count the solutions in the box, and tell the signs.
+Each stored box, in the coordinates of the unknowns, is tested by Krawczyk's image
+(`certified.narrow`). Where it has one solution, the signs of the Hessian's eigenvalues, of
+inequalities and of conditions for stability are those on a narrower box, or precision is doubled.
+Where that shows nothing, as of a box much larger than the distance over which the equations bend,
+trace forms count the solutions in the box, and tell the signs.
 
-Guarantee: boxes that pass are disjoint and contain at least one solution each. As their number is the total that the
-signatures of `ptmcad.verification.counts` give, each contains exactly one and together they contain all. No box has a
-real solution that does not count: it has one real solution by the test, or trace forms count one; where neither tells,
-that is listed as not checked. Conditions for stability that are said to be zero are so: trace forms give
-the number of solutions at which one is, and in the other boxes it is not. A box is refused on such a count alone.
+Guarantee: boxes that pass are disjoint and contain at least one solution each. As their number is
+the total that the signatures of `ptmcad.verification.counts` give, each contains exactly one and
+together they contain all. No box has a real solution that does not count: it has one real solution
+by the test, or trace forms count one; where neither tells, that is listed as not checked.
+Conditions for stability that are said to be zero are so: trace forms give the number of solutions
+at which one is, and in the other boxes it is not. A box is refused on such a count alone.
 """
 
 from __future__ import annotations
@@ -39,7 +41,9 @@ def check_solutions(claims: Claims) -> str:
     number = undecided = 0
     for n, cell in enumerate(claims.result.cells):
         if len(cell.solutions) != cell.total:
-            raise Violation(f"cell {n} has {len(cell.solutions)} boxes of solutions, but {cell.total} equilibria")
+            raise Violation(
+                f"cell {n} has {len(cell.solutions)} boxes of solutions, but {cell.total} equilibria"
+            )
         check_disjoint(n, cell, claims.model)
         for k, solution in enumerate(cell.solutions):
             try:
@@ -47,7 +51,9 @@ def check_solutions(claims: Claims) -> str:
             except Violation as violation:
                 center = ", ".join(map(approximate_text, solution.center))
                 radius = approximate_text(solution.radius)
-                raise Violation(f"box {k} of cell {n} around ({center}), radius {radius}: {violation}") from None
+                raise Violation(
+                    f"box {k} of cell {n} around ({center}), radius {radius}: {violation}"
+                ) from None
             number += 1
         _check_zeros(claims, n, cell)
         _check_index(claims, n, cell)
@@ -59,7 +65,8 @@ def check_solutions(claims: Claims) -> str:
 
 
 def _check_signs(claims: Claims, cell: Cell, solution: Solution) -> bool:
-    """The box holds a solution that counts with these signs; whether it is proved that no other real one is in it.
+    """The box holds a solution that counts with these signs; whether it is proved that no other
+    real one is in it.
 
     Raises
     ------
@@ -83,7 +90,9 @@ def signs_of(claims: Claims, cell: Cell, solution: Solution) -> str:
 
 
 def _signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool]:
-    """The same by a test of the box, else by trace forms; and whether no other real solution is in it."""
+    """The same by a test of the box, else by trace forms; and whether no other real solution is in
+    it.
+    """
     fibre = claims.fibre_at(*cell.sample)
     for bits in precisions(solution):
         with ctx.workprec(bits):
@@ -94,7 +103,9 @@ def _signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool
     if number != 1:
         raise Violation(f"{number or 'no'} solution{'s' * (number > 1)} found in it")
     if not fibre.point.inequalities:
-        return fibre.signs(place), True  # all real solutions count, and have as many boxes that do not meet
+        return fibre.signs(
+            place
+        ), True  # all real solutions count, and have as many boxes that do not meet
     real, _ = fibre.within(solution.center, solution.radius, counted=False)
     if real > 1:
         raise Violation(f"{real} real solutions are in it")
@@ -102,7 +113,9 @@ def _signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool
 
 
 def _check_index(claims: Claims, n: int, cell: Cell) -> None:
-    index = claims.meaning.indices([claims.meaning.index(solution.signs) for solution in cell.solutions])
+    index = claims.meaning.indices(
+        [claims.meaning.index(solution.signs) for solution in cell.solutions]
+    )
     if index != cell.index:
         raise Violation(f"cell {n}: the solutions have index {index}, the cell {cell.index}")
 
@@ -132,10 +145,11 @@ def check_disjoint(n: int, cell: Cell, model: Model) -> None:
 
 
 def _tested(point: Derivation, solution: Solution) -> str | None:
-    """The signs at the only solution in a box, which counts; None where that is not proved at this precision.
+    """The signs at the only solution in a box, which counts; None where that is not proved at this
+    precision.
 
-    Those of the Hessian's eigenvalues, or of the conditions for stability; where one of these is said to be zero it is
-    left to `_check_zeros`.
+    Those of the Hessian's eigenvalues, or of the conditions for stability; where one of these is
+    said to be zero it is left to `_check_zeros`.
     """
     system = (*point.equations, *point.ring.relations)
     slopes = [[p.derivative(k) for k in range(point.coordinates)] for p in system]

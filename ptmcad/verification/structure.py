@@ -1,7 +1,8 @@
 """Checks of the decomposition: critical values, stacks, walls and samples.
 
-Guarantee: over each stack the curves' roots between the window's edges are constant in number and order (discriminants,
-resultants and edge values have no root there but the stored ones); over its sample they are the stored walls.
+Guarantee: over each stack the curves' roots between the window's edges are constant in number and
+order (discriminants, resultants and edge values have no root there but the stored ones); over its
+sample they are the stored walls.
 
 Roots are counted by Sturm sequences; the decomposition isolates them by Descartes' rule.
 """
@@ -25,7 +26,8 @@ from ptmcad.verification.sturm import isolating_intervals, roots_between, roots_
 
 
 def projection_of_one(curve: PlaneCurve, height: tuple[fmpq, fmpq]) -> list[tuple[fmpz_poly, str]]:
-    """Irreducible polynomials outside whose roots the curve's roots in the open interval are constant in number.
+    """Irreducible polynomials outside whose roots the curve's roots in the open interval are
+    constant in number.
 
     Each with its origin, in the words of `ptmcad.answer.regionmap.CriticalValue`.
     """
@@ -33,14 +35,18 @@ def projection_of_one(curve: PlaneCurve, height: tuple[fmpq, fmpq]) -> list[tupl
     name = f"component {curve.number}"
     found = [(curve.along(edge), f"{name}: crosses the window's edge") for edge in height]
     if curve.degrees[1] > m:
-        found.append((discriminant(curve.deflated(k, m)).inflate(k), f"{name}: turning or singular point"))
+        found.append(
+            (discriminant(curve.deflated(k, m)).inflate(k), f"{name}: turning or singular point")
+        )
     if m > 1 and height[0] < 0 < height[1]:
         found.append((curve.in_v[0], f"{name}: turning point on the axis"))
     return [(f, origin) for p, origin in found for f in _factors(p)]
 
 
 def points_over(curve: PlaneCurve, value: CriticalValue) -> fmpz_poly:
-    """A squarefree polynomial in v among whose roots are all points of the curve over a critical value."""
+    """A squarefree polynomial in v among whose roots are all points of the curve over a critical
+    value.
+    """
     q = polynomial(value)
     if value.low == value.high:
         q = fmpz_poly([-value.low.numerator, value.low.denominator])
@@ -94,7 +100,9 @@ def check_critical_values(claims: Claims) -> str:
         interval = f"[{text_of(value.low)}, {text_of(value.high)}]"
         p = polynomial(value)
         if not previous < low <= high < claims.base[1]:
-            raise Violation(f"critical value {n} in {interval} is not above the one before it and in the window")
+            raise Violation(
+                f"critical value {n} in {interval} is not above the one before it and in the window"
+            )
         if (roots := roots_within(p, low, high)) != 1:
             raise Violation(f"critical value {n}: its polynomial has {roots} roots in {interval}")
         previous = high
@@ -135,13 +143,17 @@ def inside_stack(claims: Claims, u: fmpq, stack: int) -> bool:
 
 
 def check_stacks(claims: Claims) -> str:
-    """Stacks tile the base; over each sample the stored walls are all roots, in order, and part the cells' samples."""
+    """Stacks tile the base; over each sample the stored walls are all roots, in order, and part the
+    cells' samples.
+    """
     result = claims.result
     walls = 0
     for s, stack in enumerate(result.stacks):
         u = from_fraction(stack.sample)
         if not inside_stack(claims, u, s):
-            raise Violation(f"the sample {text_of(stack.sample)} of stack {s} is not between its ends")
+            raise Violation(
+                f"the sample {text_of(stack.sample)} of stack {s} is not between its ends"
+            )
         heights = [from_fraction(result.cells[n].sample[1 - result.base]) for n in stack.cells]
         levels = [claims.height[0], *heights, claims.height[1]]
         if any(a >= b for a, b in pairwise(levels)):
@@ -156,7 +168,8 @@ def check_stacks(claims: Claims) -> str:
         found = dict.fromkeys(over, 0)
         for gap, (low, high) in enumerate(pairwise(levels)):
             here = {k: roots for k, p in over.items() if (roots := roots_between(p, low, high))}
-            # below the first and above the last sample nothing may lie; between two samples exactly one wall
+            # below the first and above the last sample nothing may lie; between two samples exactly
+            # one wall
             expected = {} if gap in (0, len(heights)) else {stack.walls[gap - 1].component: 1}
             if here != expected:
                 raise Violation(

@@ -1,13 +1,15 @@
-"""Real roots of integer polynomials, counted by Sturm sequences: of short polynomials exact ones, of others in balls.
+"""Real roots of integer polynomials, counted by Sturm sequences: of short polynomials exact ones,
+of others in balls.
 
-In balls a sequence takes the time of as many short divisions, where exact ones have coefficients as long as the
-polynomial's discriminant. It is one of the polynomial wherever each leading coefficient is proved not to be zero, so
-that each degree is one less than that before. Where that fails at every precision tried (the sequence has a gap, or
-ends before a constant), long polynomials are left to FLINT's isolation of all complex roots, in disjoint balls of
-which the real ones are known to be real.
+In balls a sequence takes the time of as many short divisions, where exact ones have coefficients as
+long as the polynomial's discriminant. It is one of the polynomial wherever each leading coefficient
+is proved not to be zero, so that each degree is one less than that before. Where that fails at
+every precision tried (the sequence has a gap, or ends before a constant), long polynomials are left
+to FLINT's isolation of all complex roots, in disjoint balls of which the real ones are known to be
+real.
 
-Guarantee: exact, multiple roots counted once. (The decomposition itself isolates by Descartes' rule; see
-`ptmcad.algebra.real_roots`, which is not used here.)
+Guarantee: exact, multiple roots counted once. (The decomposition itself isolates by Descartes'
+rule; see `ptmcad.algebra.real_roots`, which is not used here.)
 """
 
 from __future__ import annotations
@@ -71,7 +73,9 @@ def roots_between(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
 
 
 def _by_ball_chain(coefficients: tuple[int, ...], low: fmpq, high: fmpq) -> int | None:
-    """The number of different roots in (low, high), from a Sturm sequence in balls; None where none is found."""
+    """The number of different roots in (low, high), from a Sturm sequence in balls; None where none
+    is found.
+    """
     p = fmpz_poly(list(coefficients))
     counts = [_changes(p, coefficients, end) for end in (low, high)]
     if counts[0] is None or counts[1] is None:
@@ -80,7 +84,9 @@ def _by_ball_chain(coefficients: tuple[int, ...], low: fmpq, high: fmpq) -> int 
 
 
 def changes_of(p: fmpz_poly) -> Callable[[fmpq], int]:
-    """A function f for which f(a) - f(b) is the number of different roots in (a, b], of a polynomial not constant."""
+    """A function f for which f(a) - f(b) is the number of different roots in (a, b], of a
+    polynomial not constant.
+    """
     coefficients = tuple(int(c) for c in p.coeffs())
 
     def changes(at: fmpq) -> int:
@@ -92,7 +98,9 @@ def changes_of(p: fmpz_poly) -> Callable[[fmpq], int]:
 
 
 def _changes(p: fmpz_poly, coefficients: tuple[int, ...], at: fmpq) -> int | None:
-    """Changes of sign in the Sturm sequence, at the least precision that tells them; None where none does."""
+    """Changes of sign in the Sturm sequence, at the least precision that tells them; None where
+    none does.
+    """
     bits, most = 256, 8 * p.height_bits() + 64 * len(coefficients)
     while bits < 2 * most:
         chain = _ball_chain(coefficients, bits)
@@ -109,7 +117,9 @@ def _changes(p: fmpz_poly, coefficients: tuple[int, ...], at: fmpq) -> int | Non
 
 @lru_cache(maxsize=1024)
 def _ball_chain(coefficients: tuple[int, ...], bits: int) -> tuple[arb_poly, ...] | None:
-    """The sequence after the polynomial itself; empty where the precision is too low, None for multiple roots."""
+    """The sequence after the polynomial itself; empty where the precision is too low, None for
+    multiple roots.
+    """
     p = fmpz_poly(list(coefficients))
     if p.gcd(p.derivative()).degree() > 0:
         return None
@@ -119,7 +129,8 @@ def _ball_chain(coefficients: tuple[int, ...], bits: int) -> tuple[arb_poly, ...
 
 
 def ball_chain(p: arb_poly, degree: int, last: int) -> list[arb_poly] | None:
-    """A Sturm sequence in balls, each of the degree before less one, down to the last; None where one may be less.
+    """A Sturm sequence in balls, each of the degree before less one, down to the last; None where
+    one may be less.
 
     Parameters
     ----------
@@ -140,7 +151,9 @@ def ball_chain(p: arb_poly, degree: int, last: int) -> list[arb_poly] | None:
 
 
 def _ball_variations(p: fmpz_poly, chain: Sequence[arb_poly], at: fmpq) -> int | None:
-    """Changes of sign at a point, of the polynomial and its sequence; None where a sign is not known."""
+    """Changes of sign at a point, of the polynomial and its sequence; None where a sign is not
+    known.
+    """
     values = [q(arb(at)) for q in chain]
     if any(value.contains(0) and not value.is_zero() for value in values):
         return None
@@ -150,7 +163,9 @@ def _ball_variations(p: fmpz_poly, chain: Sequence[arb_poly], at: fmpq) -> int |
     return sum(a != b for a, b in pairwise(signs))
 
 
-def _balls_between(coefficients: tuple[int, ...], low: fmpq, high: fmpq, ends: Sequence[fmpq]) -> int:
+def _balls_between(
+    coefficients: tuple[int, ...], low: fmpq, high: fmpq, ends: Sequence[fmpq]
+) -> int:
     """The number of roots in (low, high), of whose ends some are roots."""
     bits = 64
     while True:
@@ -171,14 +186,17 @@ def _balls_between(coefficients: tuple[int, ...], low: fmpq, high: fmpq, ends: S
 def real_roots(coefficients: tuple[int, ...], bits: int) -> tuple[arb, ...]:
     """Disjoint balls with one real root each, of so many bits."""
     with ctx.workprec(bits):
-        pairs: Any = squarefree(fmpz_poly(list(coefficients))).complex_roots()  # FLINT's stub says otherwise
+        pairs: Any = squarefree(
+            fmpz_poly(list(coefficients))
+        ).complex_roots()  # FLINT's stub says otherwise
         return tuple(root.real for root, _ in pairs if root.imag == 0)
 
 
 def ends_of(ball: arb) -> tuple[fmpq, fmpq]:
     """The least and the greatest number in a ball, to be compared with rational numbers.
 
-    A ball itself compares with a rational number rounded to the working precision, which may be far coarser than it is.
+    A ball itself compares with a rational number rounded to the working precision, which may be far
+    coarser than it is.
     """
     middle, radius = ball.mid().fmpq(), ball.rad().fmpq()
     return middle - radius, middle + radius
@@ -199,7 +217,8 @@ def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq,
 def isolated(
     count: Callable[[fmpq, fmpq], int], is_root: Callable[[fmpq], bool], low: fmpq, high: fmpq
 ) -> list[tuple[fmpq, fmpq]]:
-    """Disjoint open intervals, strictly inside (low, high), with one root each of what a function counts.
+    """Disjoint open intervals, strictly inside (low, high), with one root each of what a function
+    counts.
 
     Parameters
     ----------
@@ -228,7 +247,9 @@ def separated_points(p: fmpz_poly, low: fmpq, high: fmpq) -> list[fmpq]:
 
 
 def parting(roots: Sequence[tuple[fmpq, fmpq]], low: fmpq, high: fmpq) -> list[fmpq]:
-    """A rational point in each open interval that is left of (low, high), given the roots' isolating intervals."""
+    """A rational point in each open interval that is left of (low, high), given the roots'
+    isolating intervals.
+    """
     if not roots:
         return [(low + high) / 2]
     return [roots[0][0], *(b for _, b in roots)]

@@ -1,8 +1,10 @@
-"""The check of a family's surfaces: cut at a random value they are the critical curves of the member there.
+"""The check of a family's surfaces: cut at a random value they are the critical curves of the
+member there.
 
-Guarantee: where the stored polynomials, at that value of the free parameter, have other irreducible factors than the
-member's curves on which solutions meet, they are not those of the family, but for finitely many values, of which a
-random one is none by accident. The member is classified alone, without what the members have in common.
+Guarantee: where the stored polynomials, at that value of the free parameter, have other irreducible
+factors than the member's curves on which solutions meet, they are not those of the family, but for
+finitely many values, of which a random one is none by accident. The member is classified alone,
+without what the members have in common.
 """
 
 from __future__ import annotations
@@ -27,12 +29,15 @@ _SHARES = 1009
 """A prime: random values are such shares of the range."""
 
 
-def verify_surfaces(found: FamilyMap, map_at: Callable[[Fraction], RegionMap], seed: int | None = None) -> Check:
+def verify_surfaces(
+    found: FamilyMap, map_at: Callable[[Fraction], RegionMap], seed: int | None = None
+) -> Check:
     """Check the polynomials of the surfaces on which solutions meet.
 
     Parameters
     ----------
-    map_at : classifies a member, without what the members have in common; raises `HypothesisError` where it has no map.
+    map_at : classifies a member, without what the members have in common; raises `HypothesisError`
+        where it has no map.
     seed : of the random value; drawn from a hash of the claims when None.
     """
     if not found.surfaces:
@@ -40,7 +45,9 @@ def verify_surfaces(found: FamilyMap, map_at: Callable[[Fraction], RegionMap], s
     name, method = "surfaces", "a member alone, factored"
     source = random.Random(_fingerprint(found) if seed is None else str(seed))
     for _ in range(_DRAWN):
-        value = found.free.low + (found.free.high - found.free.low) * Fraction(source.randrange(1, _SHARES), _SHARES)
+        value = found.free.low + (found.free.high - found.free.low) * Fraction(
+            source.randrange(1, _SHARES), _SHARES
+        )
         try:
             alone = map_at(value)
         except HypothesisError:  # a value at which nothing is said of the family
@@ -63,12 +70,16 @@ def _difference(found: FamilyMap, alone: RegionMap, value: Fraction) -> str:
         return f"has no curve {curve.text(names)[:60]} = 0, as the surfaces have"
     for c in alone.components:
         if c.kind is Kind.CRITICAL and c.polynomial not in cut:
-            return f"has a critical curve {c.polynomial.text(names)[:60]} = 0 that lies on no surface"
+            return (
+                f"has a critical curve {c.polynomial.text(names)[:60]} = 0 that lies on no surface"
+            )
     return ""
 
 
 def _cut(terms: SpaceTerms, value: Fraction) -> list[PlanePolynomial]:
-    """The irreducible factors of a polynomial at a value of the third variable that are not constant."""
+    """The irreducible factors of a polynomial at a value of the third variable that are not
+    constant.
+    """
     degree = max(powers[2] for powers, _ in terms)
     plane: dict[tuple[int, int], int] = defaultdict(int)
     for (i, j, k), c in terms:

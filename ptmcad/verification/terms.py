@@ -1,7 +1,8 @@
 """Polynomials in parameters and their values; powers of balls.
 
-Guarantee: values are exact for exact numbers and functions; balls contain the value for each number in the balls given.
-A power is no product of balls that have nothing to do with one another, which would enclose it poorly.
+Guarantee: values are exact for exact numbers and functions; balls contain the value for each number
+in the balls given. A power is no product of balls that have nothing to do with one another, which
+would enclose it poorly.
 """
 
 from __future__ import annotations
@@ -19,7 +20,9 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 _ZERO, _ONE = arb(0), arb(1)
 
 
-def monomials(p: fmpq_mpoly, names: Sequence[str] = ()) -> Iterator[tuple[fmpq, list[tuple[str, int]]]]:
+def monomials(
+    p: fmpq_mpoly, names: Sequence[str] = ()
+) -> Iterator[tuple[fmpq, list[tuple[str, int]]]]:
     """The coefficients of a polynomial, each with the names of what it is next to and their powers.
 
     Parameters
@@ -32,12 +35,16 @@ def monomials(p: fmpq_mpoly, names: Sequence[str] = ()) -> Iterator[tuple[fmpq, 
 
 
 def evaluated(p: fmpq_mpoly, values: Mapping[str, Any], names: Sequence[str] = ()) -> Any:
-    """The value of a polynomial for exact numbers, functions or balls; of one without names a fraction, or 0."""
+    """The value of a polynomial for exact numbers, functions or balls; of one without names a
+    fraction, or 0.
+    """
     total: Any = 0
     number = Fraction(0)  # exact: a quotient of integers would be a double
     for c, factors in monomials(p, names):
         if factors:
-            term = prod([_raised(values[name], exponent) for name, exponent in factors], start=int(c.p))
+            term = prod(
+                [_raised(values[name], exponent) for name, exponent in factors], start=int(c.p)
+            )
             total = total + (term / int(c.q) if c.q != 1 else term)
         else:
             number = to_fraction(c)
@@ -67,7 +74,9 @@ def ball_at(x: Sequence[arb]) -> Callable[[fmpq_mpoly], arb]:
         total = _ZERO
         for powers, c in p.terms():
             if powers not in known:
-                known[powers] = prod((power(b, int(k)) for b, k in zip(x, powers, strict=True) if k), start=_ONE)
+                known[powers] = prod(
+                    (power(b, int(k)) for b, k in zip(x, powers, strict=True) if k), start=_ONE
+                )
             total += known[powers] * c
         return total
 

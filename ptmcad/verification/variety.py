@@ -1,24 +1,28 @@
 """Checks of the discriminant variety: nothing is missing, nothing is foreign.
 
-The norm N of det H, the determinant of the Hessian or of another Jacobian, is compared with the product of the stored
-components at random integer points, of 48 bits in each coordinate. If N = c A_1^e1 ... / B_1^f1 ..., its exponents
-follow from its values at a few of these points (`_exponent`) and the identity is checked at the others. A false
-identity of degree d agrees at one random point with probability under d/2^47. So are the norms of inequalities and of
-conditions for stability, over those solutions at which they are not zero all over the slice.
+The norm N of det H, the determinant of the Hessian or of another Jacobian, is compared with the
+product of the stored components at random integer points, of 48 bits in each coordinate. If N = c
+A_1^e1 ... / B_1^f1 ..., its exponents follow from its values at a few of these points (`_exponent`)
+and the identity is checked at the others. A false identity of degree d agrees at one random point
+with probability under d/2^47. So are the norms of inequalities and of conditions for stability,
+over those solutions at which they are not zero all over the slice.
 
-The points are drawn from a hash of the claims themselves, so that no one can choose claims to fit the points. They lie
-on no stored component: a point on one, where the fibre degenerates, is drawn again.
+The points are drawn from a hash of the claims themselves, so that no one can choose claims to fit
+the points. They lie on no stored component: a point on one, where the fibre degenerates, is drawn
+again.
 
-Guarantee: up to that probability, every CRITICAL component is a factor of N, and no other curve is a factor of it but
-BOUNDARY components; every curve on which a condition's norm vanishes is stored; the poles of the unknowns'
-characteristic polynomials lie on stored components, and every INFINITY component consists of such poles. Where one is
-left out as harmless, all unknowns are angles, and the values of det H and of all conditions at the solutions stay away
-from 0 near almost all of its points.
+Guarantee: up to that probability, every CRITICAL component is a factor of N, and no other curve is
+a factor of it but BOUNDARY components; every curve on which a condition's norm vanishes is stored;
+the poles of the unknowns' characteristic polynomials lie on stored components, and every INFINITY
+component consists of such poles. Where one is left out as harmless, all unknowns are angles, and
+the values of det H and of all conditions at the solutions stay away from 0 near almost all of its
+points.
 
-Conversely, whatever the points are, no true claim about N is rejected: each rejection is a contradiction between exact
-values. Claims about poles, which are recognised by the primes that values have in common, are decided by half of the
-bits of a value of at least 200 bits; a true one is rejected, or a false one accepted, when primes that make up 100 of
-these bits divide further values too, which has a probability near 2^-100.
+Conversely, whatever the points are, no true claim about N is rejected: each rejection is a
+contradiction between exact values. Claims about poles, which are recognised by the primes that
+values have in common, are decided by half of the bits of a value of at least 200 bits; a true one
+is rejected, or a false one accepted, when primes that make up 100 of these bits divide further
+values too, which has a probability near 2^-100.
 """
 
 from __future__ import annotations
@@ -60,7 +64,9 @@ def check_irreducible(claims: Claims) -> str:
         if c.polynomial.total_degree < 1:
             raise Violation(f"component {n} is a constant: {text}")
         if PlanePolynomial.of(c.polynomial.terms) != c.polynomial:
-            raise Violation(f"component {n} is not primitive with a positive first coefficient: {text}")
+            raise Violation(
+                f"component {n} is not primitive with a positive first coefficient: {text}"
+            )
         if factors(polynomial(c.polynomial.terms)) != [c.polynomial]:
             raise Violation(f"component {n} is not irreducible: {text}")
         if c.polynomial in seen:
@@ -99,15 +105,21 @@ class FibrePoint:
         return lcm(*(int(t.q) for t in self.fibre.form_traces(self.form)))
 
     def own(self, k: int, *others: int) -> int:
-        """The value of component k without the primes of the other components' values here, and of other numbers."""
-        return _without(abs(self.values[k]), prod(v for j, v in enumerate(self.values) if j != k) * prod(others))
+        """The value of component k without the primes of the other components' values here, and of
+        other numbers.
+        """
+        return _without(
+            abs(self.values[k]), prod(v for j, v in enumerate(self.values) if j != k) * prod(others)
+        )
 
 
 def random_points(claims: Claims, seed: str, bits: int) -> Iterator[FibrePoint]:
-    """Random points, without end, of components that `check_irreducible` has accepted: of others there may be none.
+    """Random points, without end, of components that `check_irreducible` has accepted: of others
+    there may be none.
 
-    Components vanish on a share of at most (sum of degrees)/2^bits of the points, and on a point where one does,
-    nothing can be concluded: it is drawn again from one bit more, so that a point is found whatever the degrees are.
+    Components vanish on a share of at most (sum of degrees)/2^bits of the points, and on a point
+    where one does, nothing can be concluded: it is drawn again from one bit more, so that a point
+    is found whatever the degrees are.
     """
     source, forms = random.Random(f"{bits} {seed}"), random.Random(f"form {bits} {seed}")
     components = [polynomial(c.polynomial.terms) for c in claims.result.components]
@@ -119,7 +131,9 @@ def random_points(claims: Claims, seed: str, bits: int) -> Iterator[FibrePoint]:
             bits += 1
         else:
             form = tuple(1 + forms.getrandbits(16) for _ in range(width))
-            yield FibrePoint(Fraction(x), Fraction(y), values, form, claims.fibre_at(Fraction(x), Fraction(y)))
+            yield FibrePoint(
+                Fraction(x), Fraction(y), values, form, claims.fibre_at(Fraction(x), Fraction(y))
+            )
 
 
 def check_norm(claims: Claims, seed: str) -> str:
@@ -141,7 +155,9 @@ def check_identity(claims: Claims, points: Iterator[FibrePoint]) -> tuple[int, l
             )
         norm = point.norm()
         if norm == 0:
-            raise Violation(f"det H vanishes at {_at(claims, point)}, which is on no stored component")
+            raise Violation(
+                f"det H vanishes at {_at(claims, point)}, which is on no stored component"
+            )
         return norm
 
     norms, exponents = _product_of_powers(claims, points, norm_at, "det H")
@@ -167,7 +183,8 @@ def check_conditions(claims: Claims, seed: str) -> str:
 
 
 def condition_exponents(claims: Claims, seed: str) -> list[list[int]]:
-    """For each inequality and each condition for stability, how often each component divides its norm.
+    """For each inequality and each condition for stability, how often each component divides its
+    norm.
 
     Raises
     ------
@@ -175,7 +192,9 @@ def condition_exponents(claims: Claims, seed: str) -> list[list[int]]:
         When one is no product of components.
     """
     return [
-        _product_of_powers(claims, random_points(claims, seed, BITS), partial(FibrePoint.condition_norm, k=k), name)[1]
+        _product_of_powers(
+            claims, random_points(claims, seed, BITS), partial(FibrePoint.condition_norm, k=k), name
+        )[1]
         for k, name in _conditions(claims).items()
     ]
 
@@ -183,8 +202,9 @@ def condition_exponents(claims: Claims, seed: str) -> list[list[int]]:
 def _conditions(claims: Claims) -> dict[int, str]:
     """The numbers of inequalities and of conditions for stability, with their names.
 
-    With closed loops or X-joints the conditions for stability are those for a matrix to be definite, the last of them
-    its determinant: where that is not zero the matrix does not stop or begin to be definite.
+    With closed loops or X-joints the conditions for stability are those for a matrix to be
+    definite, the last of them its determinant: where that is not zero the matrix does not stop or
+    begin to be definite.
     """
     true = claims.derivation
     inequalities = len(true.inequalities)
@@ -198,9 +218,13 @@ _Norm = tuple[FibrePoint, Fraction]
 
 
 def _product_of_powers(
-    claims: Claims, points: Iterator[FibrePoint], norm_at: Callable[[FibrePoint], Fraction], what: str
+    claims: Claims,
+    points: Iterator[FibrePoint],
+    norm_at: Callable[[FibrePoint], Fraction],
+    what: str,
 ) -> tuple[list[_Norm], list[int]]:
-    """A norm at points, and the exponents with which it is a constant times a product of the components.
+    """A norm at points, and the exponents with which it is a constant times a product of the
+    components.
 
     Raises
     ------
@@ -221,7 +245,10 @@ def _product_of_powers(
         exponents.append(_exponent(claims, k, *pair, what))
     for _ in range(max(POINTS - len(norms), FRESH_POINTS)):
         draw()
-    constants = [n / prod(Fraction(v) ** e for v, e in zip(p.values, exponents, strict=True)) for p, n in norms]
+    constants = [
+        n / prod(Fraction(v) ** e for v, e in zip(p.values, exponents, strict=True))
+        for p, n in norms
+    ]
     for (point, _), constant in zip(norms, constants, strict=True):
         if constant != constants[0]:
             raise Violation(
@@ -235,11 +262,12 @@ _Pair = tuple[_Norm, _Norm, int]
 
 
 def _separating_points(k: int, norms: Sequence[_Norm]) -> _Pair | None:
-    """Two points that tell component k's exponent: its value at the first has primes that divide no other value at
-    either, which are returned as their product with multiplicities. None when there are no such points yet.
+    """Two points that tell component k's exponent: its value at the first has primes that divide no
+    other value at either, which are returned as their product with multiplicities. None when there
+    are no such points yet.
 
-    Irreducible polynomials that differ have large primes in common only by accident, so few points are needed; which
-    ones is decided by the components alone.
+    Irreducible polynomials that differ have large primes in common only by accident, so few points
+    are needed; which ones is decided by the components alone.
     """
     for first, second in permutations(norms, 2):
         own = first[0].own(k, *second[0].values)
@@ -251,8 +279,9 @@ def _separating_points(k: int, norms: Sequence[_Norm]) -> _Pair | None:
 def _exponent(claims: Claims, k: int, first: _Norm, second: _Norm, own: int, what: str) -> int:
     """The exponent e of component k, if the norm is a constant times powers of the components.
 
-    The norms' quotient at the two points is free of the constant, and its part with primes of ``own`` is own^e: these
-    primes divide no other value. Where it is no power of ``own``, the norm is no such product.
+    The norms' quotient at the two points is free of the constant, and its part with primes of
+    ``own`` is own^e: these primes divide no other value. Where it is no power of ``own``, the norm
+    is no such product.
 
     Raises
     ------
@@ -285,18 +314,27 @@ def _check_poles(claims: Claims, points: Iterator[FibrePoint]) -> None:
             asked.append((_has_poles, "at infinity, but solutions have no pole on it"))
         if c.left_out == HARMLESS:
             if claims.result.slice.model.reals:
-                raise Violation(f"component {k} is left out, but real solutions may leave every bounded set on it")
+                raise Violation(
+                    f"component {k} is left out, but real solutions may leave every bounded set on it"
+                )
             asked.append((_is_harmless, "harmless, but det H may vanish at solutions near it"))
         for holds, message in asked:
-            while len(clear := [p for p in far if _far_part(k, p).bit_length() > CLEAR_BITS]) < FAR_POINTS:
+            while (
+                len(clear := [p for p in far if _far_part(k, p).bit_length() > CLEAR_BITS])
+                < FAR_POINTS
+            ):
                 far.append(next(points))
             if not any(holds(k, point) for point in clear):
                 text = c.polynomial.text(result.slice.axis_names)[:60]
                 raise Violation(f"component {k} is said to be {message}: {text}")
     foreign = [_foreign_poles(point) for point in far]
     # constant factors of denominators have their primes at every point, but for accidents
-    own = [_without(f, prod(g for j, g in enumerate(foreign) if j != i)) for i, f in enumerate(foreign)]
-    if all(f.bit_length() > CLEAR_BITS for f in own):  # a curve that is missing has values of some hundred bits
+    own = [
+        _without(f, prod(g for j, g in enumerate(foreign) if j != i)) for i, f in enumerate(foreign)
+    ]
+    if all(
+        f.bit_length() > CLEAR_BITS for f in own
+    ):  # a curve that is missing has values of some hundred bits
         raise Violation("solutions have a pole on no stored component")
 
 
@@ -315,7 +353,8 @@ def _far_part(k: int, point: FibrePoint) -> int:
 
 
 def _has_poles(k: int, point: FibrePoint) -> bool:
-    """Whether most of component k's own part of its value consists of primes in denominators of traces.
+    """Whether most of component k's own part of its value consists of primes in denominators of
+    traces.
 
     For a curve without poles it would have to consist of primes of constants.
     """
@@ -326,9 +365,10 @@ def _has_poles(k: int, point: FibrePoint) -> bool:
 def _is_harmless(k: int, point: FibrePoint) -> bool:
     """Whether det H and all conditions stay away from 0 at the solutions near component k.
 
-    A function does where most of the component's own part is no divisor of the constant coefficient of its
-    characteristic polynomial, which is made integral and primitive first. On a curve that divides that coefficient as a
-    polynomial in the axes, all primes of the curve's values divide it.
+    A function does where most of the component's own part is no divisor of the constant coefficient
+    of its characteristic polynomial, which is made integral and primitive first. On a curve that
+    divides that coefficient as a polynomial in the axes, all primes of the curve's values divide
+    it.
     """
     own = _far_part(k, point)
     functions = [point.fibre.jacobian, *(point.fibre.matrix(p) for p in point.fibre.conditions)]

@@ -1,4 +1,6 @@
-"""The work of moments, which a stored potential lacks: told by its slopes, so that no moment is integrated."""
+"""The work of moments, which a stored potential lacks: told by its slopes, so that no moment is
+integrated.
+"""
 
 from __future__ import annotations
 
@@ -19,12 +21,13 @@ def fault_in_work(
     *,
     varying: bool = False,
 ) -> str:
-    """The unknown by which work has not the slope that is the moment on it, or `START`; empty where nothing is wrong.
+    """The unknown by which work has not the slope that is the moment on it, or `START`; empty where
+    nothing is wrong.
 
     Parameters
     ----------
-    varying : whether it is the work of the moments without their constant parts: of a force along a line that is the
-        one without the unknown.
+    varying : whether it is the work of the moments without their constant parts: of a force along a
+        line that is the one without the unknown.
     """
     coordinates = _coordinates(ring, moments)
     places = [k for k, name in enumerate(ring.names) if name in coordinates]
@@ -37,7 +40,9 @@ def fault_in_work(
             right = steady and not any(missing.degrees()[k] > 0 for k in places)
         if not right:
             return unknown
-    zeros: dict[str | int, int | fmpz | fmpq] = {ring.names.index(name): value for name, value in coordinates.items()}
+    zeros: dict[str | int, int | fmpz | fmpq] = {
+        ring.names.index(name): value for name, value in coordinates.items()
+    }
     return "" if work.subs(zeros).is_zero() else START
 
 

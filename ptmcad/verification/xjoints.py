@@ -1,9 +1,10 @@
 """What equilibria of a mechanism with X-joints satisfy, in the coordinates of the first bars alone.
 
-Guarantee: nothing is taken from `ptmcad.model.crossed`, which replaces cosines and sines by quotients. The crossed
-branch of a joint is w (L - b z) = L z - b with the units z = exp(i th) and w = exp(i psi) of its two bars. So w is e/D
-with e = (L z - b)(L - b/z) and D = (L - b z)(L - b/z), and cos psi and sin psi are real and imaginary part of that. The
-energy is a polynomial in them, of some degree p for each joint: times D^p it is one in the first bars' coordinates.
+Guarantee: nothing is taken from `ptmcad.model.crossed`, which replaces cosines and sines by
+quotients. The crossed branch of a joint is w (L - b z) = L z - b with the units z = exp(i th) and
+w = exp(i psi) of its two bars. So w is e/D with e = (L z - b)(L - b/z) and D = (L - b z)(L - b/z),
+and cos psi and sin psi are real and imaginary part of that. The energy is a polynomial in them, of
+some degree p for each joint: times D^p it is one in the first bars' coordinates.
 """
 
 from __future__ import annotations
@@ -43,7 +44,10 @@ def places(wide: CoordinateRing, angle: str) -> list[int]:
 
 def degree(wide: CoordinateRing, angle: str, p: fmpq_mpoly) -> int:
     """That of a polynomial in an angle's coordinates; that of its normal form is the least."""
-    return max((sum(powers[k] for k in places(wide, angle)) for powers in wide.normal(p).monoms()), default=0)
+    return max(
+        (sum(powers[k] for k in places(wide, angle)) for powers in wide.normal(p).monoms()),
+        default=0,
+    )
 
 
 Conditions = tuple[tuple[fmpq_mpoly, ...], tuple[fmpq_mpoly, ...], tuple[fmpq_mpoly, ...]]
@@ -57,7 +61,8 @@ def conditions(
     energy: tuple[fmpq_mpoly, CoordinateRing],
     moments: Sequence[fmpq_mpoly],
 ) -> Conditions:
-    """Equations, each zero at an equilibrium, what is not zero there, and what is positive at a stable one.
+    """Equations, each zero at an equilibrium, what is not zero there, and what is positive at a
+    stable one.
 
     Parameters
     ----------
@@ -66,7 +71,10 @@ def conditions(
     """
     bars = [joint.second_bar(ring) for joint in joints]
     whole = _without_second_bars(ring, joints, degrees, energy)
-    below = prod((far**p for (_, _, far), p in zip(bars, degrees, strict=True)), start=ring.context.constant(1))
+    below = prod(
+        (far**p for (_, _, far), p in zip(bars, degrees, strict=True)),
+        start=ring.context.constant(1),
+    )
     equations = []
     for unknown, moment in zip(unknowns, moments, strict=True):
         equation = ring.by(whole, unknown) - moment * below
@@ -89,7 +97,9 @@ def _without_second_bars(
     p, wide = energy
     parts: dict[tuple[tuple[int, int], ...], dict[tuple[int, ...], fmpq]] = {}
     for powers, c in wide.normal(p).terms():
-        key = tuple((powers[i], powers[j]) for i, j in (places(wide, joint.second) for joint in joints))
+        key = tuple(
+            (powers[i], powers[j]) for i, j in (places(wide, joint.second) for joint in joints)
+        )
         parts.setdefault(key, {})[powers[: len(ring.names)]] = c
     whole = ring.context.constant(0)
     for key, terms in parts.items():

@@ -1,4 +1,6 @@
-"""A basis from msolve is used after a proof only: fake programs that lose a root, add one, crash, hang or babble."""
+"""A basis from msolve is used after a proof only: fake programs that lose a root, add one, crash,
+hang or babble.
+"""
 
 from __future__ import annotations
 
@@ -33,11 +35,15 @@ Fake = Callable[[str], None]
 
 @pytest.fixture
 def fake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Fake:
-    """Puts a program named msolve on the PATH, which runs these lines of Python; FILE is where its answer goes."""
+    """Puts a program named msolve on the PATH, which runs these lines of Python; FILE is where its
+    answer goes.
+    """
 
     def install(lines: str) -> None:
         program = tmp_path / "msolve"
-        program.write_text(f"#!{sys.executable}\nimport os, sys, time\nFILE = sys.argv[-1]\n{lines}\n")
+        program.write_text(
+            f"#!{sys.executable}\nimport os, sys, time\nFILE = sys.argv[-1]\n{lines}\n"
+        )
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
         monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
 
@@ -79,7 +85,9 @@ WRONG = {
 
 
 @pytest.mark.parametrize("what", WRONG)
-def test_a_wrong_answer_is_refused_and_survived(fake: Fake, monkeypatch: pytest.MonkeyPatch, what: str) -> None:
+def test_a_wrong_answer_is_refused_and_survived(
+    fake: Fake, monkeypatch: pytest.MonkeyPatch, what: str
+) -> None:
     lines, why = WRONG[what]
     fake(lines)
     with pytest.raises(MsolveError, match=why):
@@ -159,7 +167,18 @@ def test_what_is_no_list_of_polynomials_is_refused() -> None:
         {(2, 1): fmpq(-2, 3), (0, 1): fmpq(5)},
         {(0, 0): fmpq(7)},
     )
-    for text in ("", "[]:", "[u0", "[u0,]:", "[u0u1]:", "[2u0]:", "[u0^]:", "[1/0]:", "[u0^99999]:", "[--u0]:"):
+    for text in (
+        "",
+        "[]:",
+        "[u0",
+        "[u0,]:",
+        "[u0u1]:",
+        "[2u0]:",
+        "[u0^]:",
+        "[1/0]:",
+        "[u0^99999]:",
+        "[--u0]:",
+    ):
         with pytest.raises(MsolveError, match="not understood"):
             parsed_basis(text, 2)
 

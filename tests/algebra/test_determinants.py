@@ -1,4 +1,6 @@
-"""Determinants from values modulo primes, against elimination and permutations, and least assignments."""
+"""Determinants from values modulo primes, against elimination and permutations, and least
+assignments.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +23,9 @@ X, Y = PLANE.gens()
 Matrix = list[list[fmpz_mpoly]]
 
 COEFFICIENT = st.integers(-9, 9) | st.integers(-(10**20), 10**20)
-POLYNOMIAL = st.dictionaries(st.tuples(st.integers(0, 3), st.integers(0, 3)), COEFFICIENT, max_size=3).map(
-    lambda terms: PLANE.from_dict({m: c for m, c in terms.items() if c})
-)
+POLYNOMIAL = st.dictionaries(
+    st.tuples(st.integers(0, 3), st.integers(0, 3)), COEFFICIENT, max_size=3
+).map(lambda terms: PLANE.from_dict({m: c for m, c in terms.items() if c}))
 
 
 @st.composite
@@ -61,7 +63,9 @@ def test_assignments_of_many_rows_are_those_of_scipy() -> None:
     for size in range(2, 40):
         costs = [[source.randint(-9, 40) for _ in range(size)] for _ in range(size)]
         rows, columns = linear_sum_assignment(costs)
-        assert least_assignment(costs) == sum(costs[i][j] for i, j in zip(rows, columns, strict=True))
+        assert least_assignment(costs) == sum(
+            costs[i][j] for i, j in zip(rows, columns, strict=True)
+        )
 
 
 @given(matrices())
@@ -76,7 +80,10 @@ def test_long_eliminations_are_given_up_for_values(monkeypatch: pytest.MonkeyPat
     source = random.Random(5)
     size = 12
     few = [
-        [PLANE.constant(source.randint(-9, 9)) * (X + i) + (Y if i == j else 0) for j in range(size)]
+        [
+            PLANE.constant(source.randint(-9, 9)) * (X + i) + (Y if i == j else 0)
+            for j in range(size)
+        ]
         for i in range(size)
     ]
     expected = determinants._bareiss([list(row) for row in few], math.inf)
@@ -101,4 +108,6 @@ def test_sparse_determinants_take_an_elimination(monkeypatch: pytest.MonkeyPatch
 
 def test_a_matrix_without_rank_has_determinant_zero() -> None:
     rows = [[X + i * Y + j for j in range(4)] for i in range(3)]
-    assert determinants.characteristic([*rows, [a + b for a, b in zip(rows[0], rows[1], strict=True)]])[0].is_zero()
+    assert determinants.characteristic(
+        [*rows, [a + b for a, b in zip(rows[0], rows[1], strict=True)]]
+    )[0].is_zero()

@@ -1,4 +1,6 @@
-"""The algebra under the engine: against constructions with known answers, and against FLINT's own functions."""
+"""The algebra under the engine: against constructions with known answers, and against FLINT's own
+functions.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +22,22 @@ from ptmcad.algebra.determinants import determinant
 from ptmcad.algebra.fibre import evaluate as multiplication
 from ptmcad.algebra.fibre import fibre
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
-from ptmcad.algebra.polynomials import PLANE, coefficients_in, evaluate, from_expression, irreducible_factors, to_plane
-from ptmcad.algebra.quotient import LINE, multiplication_denominator, norm, poles, quotient_algebra, trace_form
+from ptmcad.algebra.polynomials import (
+    PLANE,
+    coefficients_in,
+    evaluate,
+    from_expression,
+    irreducible_factors,
+    to_plane,
+)
+from ptmcad.algebra.quotient import (
+    LINE,
+    multiplication_denominator,
+    norm,
+    poles,
+    quotient_algebra,
+    trace_form,
+)
 from ptmcad.algebra.real_roots import (
     RealRoot,
     disjoint,
@@ -69,7 +85,11 @@ def check_roots(p: fmpz_poly, roots: set[Fraction], low: Fraction, high: Fractio
     inside = sorted(r for r in roots if low < r < high)
     assert len(found) == len(inside)
     for interval, r in zip(found, inside, strict=True):
-        assert interval.low == q(r) == interval.high if interval.is_rational else interval.low < q(r) < interval.high
+        assert (
+            interval.low == q(r) == interval.high
+            if interval.is_rational
+            else interval.low < q(r) < interval.high
+        )
         if not interval.is_rational:
             assert sign_at(p, interval.low) * sign_at(p, interval.high) < 0
             assert sum(interval.low < q(s) < interval.high for s in roots) == 1
@@ -80,7 +100,9 @@ def check_roots(p: fmpz_poly, roots: set[Fraction], low: Fraction, high: Fractio
     assert all(a.high < b.low for a, b in pairwise(apart))
 
 
-corner = st.sampled_from([Fraction(c) for c in ("0", "1", "-1", "1/2", "-3/4", "1/1024", "1e-12", "1/3", "1e6", "7/8")])
+corner = st.sampled_from(
+    [Fraction(c) for c in ("0", "1", "-1", "1/2", "-3/4", "1/1024", "1e-12", "1/3", "1e6", "7/8")]
+)
 rationals = st.one_of(corner, st.fractions(min_value=-4, max_value=4, max_denominator=50))
 
 
@@ -90,20 +112,27 @@ rationals = st.one_of(corner, st.fractions(min_value=-4, max_value=4, max_denomi
     st.sampled_from([(-4, 4), (0, 1), (-1, 1), (-8, 10**7), (Fraction(1, 3), Fraction(7, 8))]),
 )
 @settings(max_examples=examples(150))
-def test_roots_by_construction(roots: set[Fraction], squares: list[tuple[int, int]], window: tuple[int, int]) -> None:
+def test_roots_by_construction(
+    roots: set[Fraction], squares: list[tuple[int, int]], window: tuple[int, int]
+) -> None:
     check_roots(with_roots(roots, squares), roots, Fraction(window[0]), Fraction(window[1]))
 
 
 @pytest.mark.parametrize("gap", ["1e-5", "1e-20", "1e-60"])
 def test_clustered_roots(gap: str) -> None:
-    roots = {Fraction(1, 3) + k * Fraction(gap) for k in range(5)} | {Fraction(1, 2), Fraction(1, 2) + Fraction(gap)}
+    roots = {Fraction(1, 3) + k * Fraction(gap) for k in range(5)} | {
+        Fraction(1, 2),
+        Fraction(1, 2) + Fraction(gap),
+    }
     check_roots(with_roots(roots), roots, Fraction(0), Fraction(1))
 
 
 def test_roots_of_wilkinson_and_mignotte() -> None:
     check_roots(with_roots({Fraction(k) for k in range(1, 31)}), {Fraction(k) for k in range(1, 31)}, Fraction(0),
                 Fraction(31))  # fmt: skip
-    mignotte = fmpz_poly([-2 * 1, 4 * 1000, -2 * 1000**2] + [0] * 14 + [1])  # x^17 - 2 (1000 x - 1)^2
+    mignotte = fmpz_poly(
+        [-2 * 1, 4 * 1000, -2 * 1000**2] + [0] * 14 + [1]
+    )  # x^17 - 2 (1000 x - 1)^2
     found = isolate(mignotte, fmpq(0), fmpq(1))
     assert len(found) == 2
     assert disjoint(found)[0].high < fmpq(1, 1000) < disjoint(found)[1].low
@@ -120,10 +149,19 @@ def test_huge_coefficients() -> None:
 @pytest.mark.parametrize("reach", [10**9, 10**400, 10**5000], ids=("1e9", "1e400", "1e5000"))
 @pytest.mark.parametrize("unit", [Fraction(1), Fraction(10**30), Fraction(1, 10**30)], ids=str)
 def test_roots_in_intervals_of_any_length(reach: int, unit: Fraction) -> None:
-    """Cut off by a bound for the roots, of which none may be lost, whichever part of them the interval holds."""
+    """Cut off by a bound for the roots, of which none may be lost, whichever part of them the
+    interval holds.
+    """
     known = [Fraction(k) * unit for k in (-7, -2, 0, 1, 5)]
     p = prod((fmpz_poly([-r.numerator, r.denominator]) for r in known), start=fmpz_poly([1]))
-    ends = ((-reach, reach), (-reach, 0), (0, reach), (unit * 6, reach), (unit * 3, reach), (-reach, unit * -8))
+    ends = (
+        (-reach, reach),
+        (-reach, 0),
+        (0, reach),
+        (unit * 6, reach),
+        (unit * 3, reach),
+        (-reach, unit * -8),
+    )
     for low, high in ((Fraction(a), Fraction(b)) for a, b in ends if a < b):
         found = isolate(p, from_fraction(low), from_fraction(high))
         inside = [r for r in known if low < r < high]
@@ -160,7 +198,9 @@ def test_roots_at_the_ends_of_the_interval_are_outside() -> None:
 
 
 @given(st.lists(rationals, min_size=1, max_size=4), rationals, rationals)
-def test_has_root_between_with_multiplicities(roots: list[Fraction], a: Fraction, b: Fraction) -> None:
+def test_has_root_between_with_multiplicities(
+    roots: list[Fraction], a: Fraction, b: Fraction
+) -> None:
     assume(a < b)
     p = with_roots(set(roots)) * with_roots({roots[0]}) ** 2 * fmpz_poly([1, 0, 1])
     assert has_root_between(p, q(a), q(b)) == any(a <= r <= b for r in roots)
@@ -211,7 +251,10 @@ def test_discriminant_is_flints(p: fmpz_mpoly) -> None:
 @settings(max_examples=examples(100))
 def test_resultant_is_flints(p: fmpz_mpoly, r: fmpz_mpoly) -> None:
     assume(p.degrees()[1] >= 1 and r.degrees()[1] >= 1)
-    ours, theirs = resultant(coefficients_in(p, 1), coefficients_in(r, 1)), in_x(p.resultant(r, "y"))
+    ours, theirs = (
+        resultant(coefficients_in(p, 1), coefficients_in(r, 1)),
+        in_x(p.resultant(r, "y")),
+    )
     assert ours in (theirs, -theirs)
 
 
@@ -224,12 +267,20 @@ def test_resultant_is_flints(p: fmpz_mpoly, r: fmpz_mpoly) -> None:
 def test_leading_coefficients_that_vanish_at_evaluation_points(p: fmpz_mpoly) -> None:
     assert discriminant(coefficients_in(p, 1)) == in_x(p.discriminant("y"))
     for r in (Y - X, X * Y**2 + 1, X * Y + X**2 - 1, X * (X - 1) * Y**3 + Y):
-        ours, theirs = resultant(coefficients_in(p, 1), coefficients_in(r, 1)), in_x(p.resultant(r, "y"))
+        ours, theirs = (
+            resultant(coefficients_in(p, 1), coefficients_in(r, 1)),
+            in_x(p.resultant(r, "y")),
+        )
         assert ours in (theirs, -theirs)
 
 
 def test_common_factors_give_zero() -> None:
-    assert resultant(coefficients_in((X + Y) * (Y**2 + 1), 1), coefficients_in((X + Y) * (Y - X**2), 1)) == 0
+    assert (
+        resultant(
+            coefficients_in((X + Y) * (Y**2 + 1), 1), coefficients_in((X + Y) * (Y - X**2), 1)
+        )
+        == 0
+    )
     assert discriminant(coefficients_in((X + Y) ** 2 * (Y - 1), 1)) == 0
 
 
@@ -241,8 +292,15 @@ def test_interpolation(coefficients: list[int], excess: int) -> None:
 
 # ------------------------------------------------------------------------------------------- Groebner bases and fibres
 
-SLICES = {name: load(CONFIGS / f"{name}.yaml") for name in ("fig2", "fig3", "fig4", "fig5-text", "horizontal")}
-POINTS = [(Fraction(7, 10), Fraction(13, 10)), (Fraction(1, 3), Fraction(-5, 2)), (Fraction(11, 7), Fraction(2, 9))]
+SLICES = {
+    name: load(CONFIGS / f"{name}.yaml")
+    for name in ("fig2", "fig3", "fig4", "fig5-text", "horizontal")
+}
+POINTS = [
+    (Fraction(7, 10), Fraction(13, 10)),
+    (Fraction(1, 3), Fraction(-5, 2)),
+    (Fraction(11, 7), Fraction(2, 9)),
+]
 
 
 def slice_system(name: str) -> tuple[dict[str, tuple[fmpz_mpoly, fmpz_mpoly]], SliceSystem]:
@@ -250,18 +308,24 @@ def slice_system(name: str) -> tuple[dict[str, tuple[fmpz_mpoly, fmpz_mpoly]], S
     return parameters, on_slice(SYSTEM, parameters)
 
 
-def specialised(p: dict[tuple[int, ...], fmpz_mpoly], x: Fraction, y: Fraction) -> dict[tuple[int, ...], fmpq]:
+def specialised(
+    p: dict[tuple[int, ...], fmpz_mpoly], x: Fraction, y: Fraction
+) -> dict[tuple[int, ...], fmpq]:
     values = {m: evaluate(c, q(x), q(y)) for m, c in p.items()}
     return {m: v for m, v in values.items() if v}
 
 
-def flint_basis(equations: list[dict[tuple[int, ...], fmpq]], unknowns: int) -> list[dict[tuple[int, ...], fmpq]]:
+def flint_basis(
+    equations: list[dict[tuple[int, ...], fmpq]], unknowns: int
+) -> list[dict[tuple[int, ...], fmpq]]:
     """FLINT's reduced Groebner basis, each element made monic."""
     context = fmpz_mpoly_ctx.get(tuple(f"u{k}" for k in range(unknowns)), Ordering.degrevlex)
     integral = []
     for e in equations:
         scale = prod(int(c.q) for c in e.values())
-        integral.append(context.from_dict({m: int(c.p) * (scale // int(c.q)) for m, c in e.items()}))
+        integral.append(
+            context.from_dict({m: int(c.p) * (scale // int(c.q)) for m, c in e.items()})
+        )
     result = []
     for p in fmpz_mpoly_vec(integral, context).buchberger_naive().autoreduction():
         terms = [(tuple(int(i) for i in m), fmpq(c)) for m, c in p.terms()]
@@ -271,7 +335,9 @@ def flint_basis(equations: list[dict[tuple[int, ...], fmpq]], unknowns: int) -> 
 
 @pytest.mark.parametrize("name", SLICES)
 def test_basis_specialises_to_flints(name: str) -> None:
-    """The basis over Q(x, y), specialised at rational points, is the basis that FLINT computes there."""
+    """The basis over Q(x, y), specialised at rational points, is the basis that FLINT computes
+    there.
+    """
     _, equations = slice_system(name)
     order = MonomialOrder(tuple(range(equations.unknowns)))
     basis = groebner_basis(equations.equations, order)
@@ -281,7 +347,9 @@ def test_basis_specialises_to_flints(name: str) -> None:
             values = specialised(element, x, y)
             assert lead in values, "the point is special"
             ours.append({m: c / values[lead] for m, c in values.items()})
-        theirs = flint_basis([specialised(e, x, y) for e in equations.equations], equations.unknowns)
+        theirs = flint_basis(
+            [specialised(e, x, y) for e in equations.equations], equations.unknowns
+        )
         assert {frozenset((m, str(c)) for m, c in e.items()) for e in ours} == {
             frozenset((m, str(c)) for m, c in e.items()) for e in theirs
         }
@@ -289,9 +357,13 @@ def test_basis_specialises_to_flints(name: str) -> None:
 
 @pytest.mark.parametrize("name", SLICES)
 def test_norm_is_the_product_over_the_fibre(name: str) -> None:
-    """The norm of the Hessian's determinant at rational points is the determinant of multiplication by it there."""
+    """The norm of the Hessian's determinant at rational points is the determinant of multiplication
+    by it there.
+    """
     parameters, equations = slice_system(name)
-    algebra = quotient_algebra(groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns)))))
+    algebra = quotient_algebra(
+        groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns))))
+    )
     assert algebra is not None
     above, below = norm(algebra, equations.jacobian)
     for x, y in POINTS:
@@ -301,7 +373,9 @@ def test_norm_is_the_product_over_the_fibre(name: str) -> None:
         expected = multiplication(over, specialised(equations.jacobian, x, y)).det()
         assert evaluate(above, q(x), q(y)) / evaluate(below, q(x), q(y)) == expected
         # and the slice's equations are those of the mechanism at that point, up to constants
-        values = {n: evaluate(a, q(x), q(y)) / evaluate(b, q(x), q(y)) for n, (a, b) in parameters.items()}
+        values = {
+            n: evaluate(a, q(x), q(y)) / evaluate(b, q(x), q(y)) for n, (a, b) in parameters.items()
+        }
         _, hessian = at_point(SYSTEM, values)
         h = [[multiplication(over, hessian[i][j]) for j in (0, 1)] for i in (0, 1)]
         direct = (h[0][0] * h[1][1] - h[0][1] * h[1][0]).det()
@@ -311,7 +385,9 @@ def test_norm_is_the_product_over_the_fibre(name: str) -> None:
 @pytest.mark.parametrize("axis", [X, Y], ids=["x", "y"])
 @pytest.mark.parametrize("rank", [11, 12])
 def test_determinants_of_many_rows_in_one_axis(axis: fmpz_mpoly, rank: int) -> None:
-    """A triangular matrix with its rows mixed, of known determinant, and the same with a row that depends on others."""
+    """A triangular matrix with its rows mixed, of known determinant, and the same with a row that
+    depends on others.
+    """
     size = 12
     diagonal = [(k + 2) * axis ** (k % 3) + k - 7 if k < rank else 0 * axis for k in range(size)]
     rows = [
@@ -330,18 +406,24 @@ def test_determinants_of_many_rows_in_one_axis(axis: fmpz_mpoly, rank: int) -> N
 def test_poles_by_characteristic_polynomials_are_those_by_power_traces(name: str) -> None:
     problem = problem_of(load(CONFIGS / f"{name}.yaml"))
     equations = on_slice(problem.system, problem.on.parameters)
-    algebra = quotient_algebra(groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns)))))
+    algebra = quotient_algebra(
+        groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns))))
+    )
     assert algebra is not None
     suspects = irreducible_factors(multiplication_denominator(algebra))
     traces = [power_trace_denominators(algebra, k) for k in equations.unbounded]
     found = poles(algebra, suspects, equations.unbounded)
     assert 0 < len(found) < len(suspects)
-    assert set(map(str, found)) == {str(f) for f in suspects if any((t % f).is_zero() for t in traces)}
+    assert set(map(str, found)) == {
+        str(f) for f in suspects if any((t % f).is_zero() for t in traces)
+    }
     assert set(map(str, poles(algebra, [], equations.unbounded, suspects))) == set(map(str, found))
 
 
 def test_a_pole_that_the_line_does_not_show_is_found_in_the_plane() -> None:
-    """The only root is (y - x - 1009)/f, and nothing on the line y = x + 1009: of f = x, so only a suspect is found."""
+    """The only root is (y - x - 1009)/f, and nothing on the line y = x + 1009: of f = x, so only a
+    suspect is found.
+    """
     basis = groebner_basis([{(1,): X, (0,): X + LINE - Y}], MonomialOrder((0,)))
     algebra = quotient_algebra(basis)
     assert algebra is not None
@@ -352,11 +434,15 @@ def test_a_pole_that_the_line_does_not_show_is_found_in_the_plane() -> None:
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "fig5-text"])
 @pytest.mark.slow_cases("fig5-text", "fig3", "fig4")
 def test_hermite_determinant_has_every_critical_component(name: str) -> None:
-    """REFERENCE: the numerator of the Hermite determinant has the curves as factors, with these multiplicities."""
+    """REFERENCE: the numerator of the Hermite determinant has the curves as factors, with these
+    multiplicities.
+    """
     parameters, _ = slice_system(name)
     numerator, _ = determinant(trace_form(algebra_of(on_slice(SYSTEM, parameters))))
     factors = {to_plane(f): e for f, e in numerator.factor()[1]}
-    critical = [c.polynomial for c in shipped(name).components if c.kind is Kind.CRITICAL and not c.left_out]
+    critical = [
+        c.polynomial for c in shipped(name).components if c.kind is Kind.CRITICAL and not c.left_out
+    ]
     assert critical
     assert all(p in factors for p in critical)
     found = sorted(factors[p] for p in critical)
@@ -368,7 +454,10 @@ def test_six_complex_solutions(shipped) -> None:  # type: ignore[no-untyped-def]
         assert shipped(name).complex_solutions == 6
 
 
-@given(st.lists(st.integers(-4, 4), min_size=4, max_size=4), st.lists(st.integers(-2, 2), min_size=16, max_size=16))
+@given(
+    st.lists(st.integers(-4, 4), min_size=4, max_size=4),
+    st.lists(st.integers(-2, 2), min_size=16, max_size=16),
+)
 @settings(max_examples=examples(60))
 def test_signature_by_construction(diagonal: list[int], entries: list[int]) -> None:
     """Sylvester's law of inertia: P^T D P has the signs of D for invertible P."""
@@ -402,7 +491,9 @@ BOTH = (fmpq(-1), fmpq(1))
      (X**2 - 2, UNIT, UNIT, True), (X**2 - 2, (fmpq(1), fmpq(2)), UNIT, False), (Y * (X - 5), BOTH, UNIT, True)],
     ids=str,
 )  # fmt: skip
-def test_nowhere_zero(p: fmpz_mpoly, x: tuple[fmpq, fmpq], y: tuple[fmpq, fmpq], proved: bool) -> None:
+def test_nowhere_zero(
+    p: fmpz_mpoly, x: tuple[fmpq, fmpq], y: tuple[fmpq, fmpq], proved: bool
+) -> None:
     assert nowhere_zero(p, x, y) == proved
 
 
@@ -428,11 +519,18 @@ def test_a_zero_in_the_window_is_never_denied(p: fmpz_mpoly, a: int, b: int) -> 
 
 def test_pairs_of_components_are_different() -> None:
     for name in SLICES:
-        assert all(a.polynomial != b.polynomial for a, b in combinations(shipped(name).components, 2))
+        assert all(
+            a.polynomial != b.polynomial for a, b in combinations(shipped(name).components, 2)
+        )
 
 
-@pytest.mark.parametrize("p", [(X**2 + Y**2 - 3) * (X * Y**2 - 5) + 7, X**3 * Y**6 - (X + 1) * Y**3 + X - 2, Y**2 - X])
+@pytest.mark.parametrize(
+    "p", [(X**2 + Y**2 - 3) * (X * Y**2 - 5) + 7, X**3 * Y**6 - (X + 1) * Y**3 + X - 2, Y**2 - X]
+)
 def test_discriminants_of_least_degree_have_the_roots_of_the_whole_ones(p: fmpz_mpoly) -> None:
     seen = curve(0, p, 0)
-    least, whole = squarefree_part(_discriminant(seen, nothing)), squarefree_part(discriminant(seen.in_v))
+    least, whole = (
+        squarefree_part(_discriminant(seen, nothing)),
+        squarefree_part(discriminant(seen.in_v)),
+    )
     assert least.degree() == whole.degree() == least.gcd(whole).degree() > 0

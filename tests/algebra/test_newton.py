@@ -18,7 +18,9 @@ def _squarefree(source: random.Random) -> fmpz_poly:
     while True:
         if source.random() < 0.5:
             bits = source.choice((3, 60, 400))
-            p = fmpz_poly([source.randint(-(2**bits), 2**bits) for _ in range(source.randint(2, 25))])
+            p = fmpz_poly(
+                [source.randint(-(2**bits), 2**bits) for _ in range(source.randint(2, 25))]
+            )
         else:
             p = fmpz_poly([1])
             for _ in range(source.randint(1, 8)):
@@ -40,7 +42,9 @@ def test_bernstein_coefficients_part_the_roots_that_shifts_part(
     for p, roots in zip(polynomials, found, strict=True):
         other = isolate(p, low, high)
         assert len(roots) == len(other)
-        for a, b in zip(roots, other, strict=True):  # near a cluster one may be shorter than the other
+        for a, b in zip(
+            roots, other, strict=True
+        ):  # near a cluster one may be shorter than the other
             assert max(a.low, b.low) <= min(a.high, b.high)
 
 

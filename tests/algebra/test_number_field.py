@@ -1,4 +1,6 @@
-"""Elements of real number fields: what a prime shows and what an expression encloses, against residues over Q."""
+"""Elements of real number fields: what a prime shows and what an expression encloses, against
+residues over Q.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,13 @@ from hypothesis import strategies as st
 from support.examples import examples
 
 from ptmcad.algebra import number_field
-from ptmcad.algebra.number_field import FieldElement, Modulus, RealField, RingEvaluation, polynomial_at
+from ptmcad.algebra.number_field import (
+    FieldElement,
+    Modulus,
+    RealField,
+    RingEvaluation,
+    polynomial_at,
+)
 from ptmcad.algebra.rational_roots import rational_roots
 from ptmcad.algebra.real_roots import isolate
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -68,10 +76,14 @@ def expressions(draw: st.DrawFn, field: RealField) -> tuple[FieldElement, fmpq_p
     return e, r
 
 
-@pytest.mark.parametrize("prime", [pytest.param(p, marks=pytest.mark.slow) if 2 < p < 11 else p for p in PRIMES])
+@pytest.mark.parametrize(
+    "prime", [pytest.param(p, marks=pytest.mark.slow) if 2 < p < 11 else p for p in PRIMES]
+)
 @pytest.mark.fast_cases("2", "11")
 @pytest.mark.slow_cases("11")
-def test_zero_rational_and_enclosure_agree_with_residues_over_q(prime: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_zero_rational_and_enclosure_agree_with_residues_over_q(
+    prime: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(number_field, "PRIME", prime)
 
     @settings(deadline=None, max_examples=examples(50))
@@ -92,7 +104,9 @@ def test_zero_rational_and_enclosure_agree_with_residues_over_q(prime: int, monk
 
 
 def test_most_elements_are_told_without_a_residue_over_q() -> None:
-    field = RealField(Modulus(fmpz_poly([-2, 0, 1])), isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0])
+    field = RealField(
+        Modulus(fmpz_poly([-2, 0, 1])), isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0]
+    )
     root = field.element(fmpq_poly([0, 1]))
     asked: list[RingEvaluation] = []
 
@@ -109,7 +123,9 @@ def test_most_elements_are_told_without_a_residue_over_q() -> None:
 
 
 def test_zero_has_no_inverse() -> None:
-    field = RealField(Modulus(fmpz_poly([-2, 0, 1])), isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0])
+    field = RealField(
+        Modulus(fmpz_poly([-2, 0, 1])), isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0]
+    )
     root = field.element(fmpq_poly([0, 1]))
     with pytest.raises(ZeroDivisionError, match="has no inverse"):
         (root * root - field.constant(fmpq(2))).inverse()
@@ -121,15 +137,21 @@ def test_a_rational_eigenvalue_is_found_beside_an_irrational_one(
 ) -> None:
     """Eigenvalues q and o: the characteristic polynomial is x^2 - (q + o) x + q o."""
     assume(field.modulus.degree > 1)
-    other = field.element(fmpq_poly(data.draw(st.lists(NUMBERS, min_size=2, max_size=2).filter(lambda c: c[1] != 0))))
+    other = field.element(
+        fmpq_poly(data.draw(st.lists(NUMBERS, min_size=2, max_size=2).filter(lambda c: c[1] != 0)))
+    )
     rational, one = field.constant(q), field.constant(fmpq(1))
     assert list(rational_roots([rational * other, -(rational + other)])) == [(to_fraction(q), 1)]
     assert not list(rational_roots([rational * other + one, -(rational + other)]))
-    assert list(rational_roots([rational * rational, -(rational + rational)])) == [(to_fraction(q), 2)]
+    assert list(rational_roots([rational * rational, -(rational + rational)])) == [
+        (to_fraction(q), 2)
+    ]
 
 
 def test_the_generator_is_enclosed_as_narrowly_as_the_precision_says() -> None:
-    field = RealField(Modulus(fmpz_poly([-2, 0, 1])), isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0])
+    field = RealField(
+        Modulus(fmpz_poly([-2, 0, 1])), isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0]
+    )
     for bits in (64, 1024):
         with ctx.workprec(bits):
             ball = field.evaluation().embed(fmpq_poly([0, 1]))

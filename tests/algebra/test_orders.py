@@ -41,7 +41,9 @@ def test_bounds_of_resultants_hold(p: list[fmpz_poly], q: list[fmpz_poly]) -> No
 @given(st.lists(st.lists(st.integers(0, 6), min_size=2, max_size=7), min_size=2, max_size=2))
 @settings(max_examples=examples(60))
 def test_bounds_of_degrees_are_sharp(degrees: list[list[int]]) -> None:
-    """For leading coefficients at random the resultant has the degree, and it is no larger than by a single slope."""
+    """For leading coefficients at random the resultant has the degree, and it is no larger than by
+    a single slope.
+    """
     source = random.Random(1)
     p, q = ([fmpz_poly([0] * d + [source.getrandbits(40) + 1]) for d in ds] for ds in degrees)
     n, m = len(p) - 1, len(q) - 1
@@ -54,7 +56,9 @@ def test_bounds_of_degrees_are_sharp(degrees: list[list[int]]) -> None:
 
 @given(polynomials(), polynomials())
 @settings(max_examples=examples(60))
-def test_discriminants_and_resultants_commute_with_values(p: list[fmpz_poly], q: list[fmpz_poly]) -> None:
+def test_discriminants_and_resultants_commute_with_values(
+    p: list[fmpz_poly], q: list[fmpz_poly]
+) -> None:
     """At an integer at which no degree falls, beyond the points from which they are interpolated."""
     u = 10**6 + 3
     left, right = (fmpz_poly([c(u) for c in r]) for r in (p, q))
@@ -66,7 +70,9 @@ def test_discriminants_and_resultants_commute_with_values(p: list[fmpz_poly], q:
 
 @given(polynomials(), polynomials())
 @settings(max_examples=examples(60))
-def test_values_modulo_primes_give_what_integers_give(p: list[fmpz_poly], q: list[fmpz_poly]) -> None:
+def test_values_modulo_primes_give_what_integers_give(
+    p: list[fmpz_poly], q: list[fmpz_poly]
+) -> None:
     """Also where leading coefficients vanish at points, or coefficients of v^0 do."""
     in_integers = resultants.discriminant(p), resultants.resultant(p, q)
     with pytest.MonkeyPatch.context() as patch:
@@ -75,9 +81,13 @@ def test_values_modulo_primes_give_what_integers_give(p: list[fmpz_poly], q: lis
         assert (resultants.discriminant(p), resultants.resultant(p, q)) == in_integers
 
 
-@pytest.mark.parametrize("rows", [[[2], [3], [5]], [[10**20], [0], [1]], [[1], [0], [10**20]], [[0], [4], [0, 1]]])
+@pytest.mark.parametrize(
+    "rows", [[[2], [3], [5]], [[10**20], [0], [1]], [[1], [0], [10**20]], [[0], [4], [0, 1]]]
+)
 def test_coefficients_are_below_their_bound(rows: list[list[int]]) -> None:
-    """By Hadamard, with a unit of v that makes long coefficients of v^2 or of 1 no worse than others."""
+    """By Hadamard, with a unit of v that makes long coefficients of v^2 or of 1 no worse than
+    others.
+    """
     p, q = [fmpz_poly(c) for c in rows], [fmpz_poly([2]), fmpz_poly([0, 7]), fmpz_poly([1])]
     bits = resultants._bits(resultants._norms(p), resultants._norms(q))
     found = max(abs(int(c)) for c in resultants.resultant(p, q).coeffs())

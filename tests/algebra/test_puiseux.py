@@ -1,4 +1,6 @@
-"""Branches beside places where they turn, meet or have a cusp: integrals that are known in closed form."""
+"""Branches beside places where they turn, meet or have a cusp: integrals that are known in closed
+form.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +53,10 @@ def riemann(in_v: Sequence[fmpz_poly], low: fmpq, high: fmpq, number: int) -> tu
     """Bounds of a monotone branch's integral, by rectangles."""
     parts = 400
     step = (high - low) / parts
-    heights = [refine(root_over(in_v, low + step * k, number), fmpq(1, 10**9)).middle for k in range(parts + 1)]
+    heights = [
+        refine(root_over(in_v, low + step * k, number), fmpq(1, 10**9)).middle
+        for k in range(parts + 1)
+    ]
     sums = [sum(heights[:-1], fmpq(0)) * step, sum(heights[1:], fmpq(0)) * step]
     return arb(min(sums)) - arb(step) / 10**6, arb(max(sums)) + arb(step) / 10**6
 
@@ -80,10 +85,14 @@ def test_integrals_beside_a_singular_point(
     in_v = curve(rows, t)
     c = Fraction(14142, 10000) if t == IRRATIONAL else Fraction(1)
     near, far = (
-        (c + Fraction(1, 10**4), c + Fraction(6, 100)) if right else (c - Fraction(1, 10**4), c - Fraction(6, 100))
+        (c + Fraction(1, 10**4), c + Fraction(6, 100))
+        if right
+        else (c - Fraction(1, 10**4), c - Fraction(6, 100))
     )
     with ctx.workprec(BITS):
-        found = puiseux_integral(in_v, beside(t, near, far), lambda u: root_over(in_v, u, number), 24, fmpq(1, 10**9))
+        found = puiseux_integral(
+            in_v, beside(t, near, far), lambda u: root_over(in_v, u, number), 24, fmpq(1, 10**9)
+        )
         assert found is not None
         value, cut = found
         assert value.rad() < arb(fmpq(1, 10**9))
@@ -93,7 +102,9 @@ def test_integrals_beside_a_singular_point(
         assert least < value < most
 
 
-def test_another_branch_in_the_tube_is_not_taken_for_the_one_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_branch_in_the_tube_is_not_taken_for_the_one_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Whatever leads to a tube, the root over its far end decides."""
     in_v = curve(FOLD, IRRATIONAL)
     straightened = puiseux._straightened
@@ -101,12 +112,20 @@ def test_another_branch_in_the_tube_is_not_taken_for_the_one_asked_for(monkeypat
         place = beside(IRRATIONAL, Fraction(14143, 10000), Fraction(147, 100))
         other = straightened(in_v, place, lambda u: root_over(in_v, u, 0))
         monkeypatch.setattr(puiseux, "_straightened", lambda *_: other)
-        assert puiseux_integral(in_v, place, lambda u: root_over(in_v, u, 0), 24, fmpq(1, 10**9)) is not None
-        assert puiseux_integral(in_v, place, lambda u: root_over(in_v, u, 1), 24, fmpq(1, 10**9)) is None
+        assert (
+            puiseux_integral(in_v, place, lambda u: root_over(in_v, u, 0), 24, fmpq(1, 10**9))
+            is not None
+        )
+        assert (
+            puiseux_integral(in_v, place, lambda u: root_over(in_v, u, 1), 24, fmpq(1, 10**9))
+            is None
+        )
 
 
 def test_what_does_not_vanish_quite_is_counted_as_error() -> None:
-    """Negative powers of s are as large as at the end next to the singular point, where s = 1/8 here."""
+    """Negative powers of s are as large as at the end next to the singular point, where s = 1/8
+    here.
+    """
     place = Beside(arb(1), fmpq(65, 64), fmpq(65, 64) + fmpq(64, 65))  # X = 1
     rows = [arb_poly([fmpq(1, 2**40), fmpq(-1, 2**45), 7]), arb_poly([fmpq(-1, 2**50)])]
     chart = puiseux._PuiseuxChart(2, arb_poly([0]), 1, rows, 2, 1, arb(0))

@@ -17,7 +17,9 @@ from ptmcad.algebra.reflected_roots import isolate_reflected
 from ptmcad.text.flint_numbers import from_fraction
 
 SMALL = st.fractions(min_value=-4, max_value=4, max_denominator=6)
-SQUARES = st.lists(st.fractions(min_value=-9, max_value=30, max_denominator=9), min_size=1, max_size=6, unique=True)
+SQUARES = st.lists(
+    st.fractions(min_value=-9, max_value=30, max_denominator=9), min_size=1, max_size=6, unique=True
+)
 
 
 def with_roots(squares: list[Fraction]) -> fmpz_poly:
@@ -40,7 +42,9 @@ def reflected(q: fmpz_poly, middle: fmpq, d: int) -> fmpz_poly:
 
 
 def the_same(found: tuple[RealRoot, ...], expected: tuple[RealRoot, ...]) -> bool:
-    """Whether intervals are disjoint, in order, with ends that are no roots, and each meets its own one alone."""
+    """Whether intervals are disjoint, in order, with ends that are no roots, and each meets its own
+    one alone.
+    """
     assert len(found) == len(expected)
     for a, b in pairwise(found):
         assert a.high <= b.low
@@ -52,12 +56,22 @@ def the_same(found: tuple[RealRoot, ...], expected: tuple[RealRoot, ...]) -> boo
         else:
             assert sign_at(root.polynomial, root.low) * sign_at(root.polynomial, root.high) == -1
             low, high = max(root.low, other.low), min(root.high, other.high)
-            inside = sign_at(root.polynomial, low) * sign_at(root.polynomial, high) <= 0 if low < high else low == high
+            inside = (
+                sign_at(root.polynomial, low) * sign_at(root.polynomial, high) <= 0
+                if low < high
+                else low == high
+            )
             assert inside
     return True
 
 
-@given(SQUARES, SMALL, st.integers(1, 4), SMALL, st.fractions(min_value=Fraction(1, 5), max_value=8, max_denominator=5))
+@given(
+    SQUARES,
+    SMALL,
+    st.integers(1, 4),
+    SMALL,
+    st.fractions(min_value=Fraction(1, 5), max_value=8, max_denominator=5),
+)
 @settings(max_examples=examples(200))
 def test_roots_are_those_found_without_the_reflection(
     squares: list[Fraction], middle: Fraction, d: int, low: Fraction, width: Fraction
@@ -100,7 +114,9 @@ def test_a_multiple_root_outside_of_the_interval_is_no_matter() -> None:
     p = reflected(q, fmpq(0), 1)
     found = isolate(p, fmpq(-2), fmpq(2))
     assert the_same(isolate_reflected(p, q, fmpq(0), 1, fmpq(-2), fmpq(2)), found)
-    assert isolate_reflected(p, q, fmpq(0), 1, fmpq(5, 2), fmpq(3)) == ()  # a double root is within reach, and outside
+    assert (
+        isolate_reflected(p, q, fmpq(0), 1, fmpq(5, 2), fmpq(3)) == ()
+    )  # a double root is within reach, and outside
     with pytest.raises(ValueError, match="not squarefree"):
         isolate_reflected(p, q, fmpq(0), 1, fmpq(-4), fmpq(2))
 

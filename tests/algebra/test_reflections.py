@@ -1,4 +1,6 @@
-"""Curves that a reflection along the fibres maps to themselves: that it is found, and what it saves is the same."""
+"""Curves that a reflection along the fibres maps to themselves: that it is found, and what it saves
+is the same.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ from ptmcad.algebra import clusters, resultants
 from ptmcad.algebra.reflections import axis_of, squared
 
 SMALL = st.integers(-9, 9)
-ROWS = st.lists(st.lists(SMALL, max_size=4).map(fmpz_poly), min_size=2, max_size=4).filter(lambda q: q[-1] != 0)
+ROWS = st.lists(st.lists(SMALL, max_size=4).map(fmpz_poly), min_size=2, max_size=4).filter(
+    lambda q: q[-1] != 0
+)
 
 
 def reflected_about(q: list[fmpz_poly], line: fmpz_poly, d: int) -> list[fmpz_poly]:
@@ -26,19 +30,26 @@ def reflected_about(q: list[fmpz_poly], line: fmpz_poly, d: int) -> list[fmpz_po
         for i, c in enumerate(power):
             total[i] += row * c
         for _ in range(2):
-            power = [d * a - line * b for a, b in zip([fmpz_poly([0]), *power], [*power, fmpz_poly([0])], strict=True)]
+            power = [
+                d * a - line * b
+                for a, b in zip([fmpz_poly([0]), *power], [*power, fmpz_poly([0])], strict=True)
+            ]
     return total
 
 
 @given(ROWS, st.tuples(SMALL, SMALL), st.integers(1, 5))
 @settings(max_examples=examples(100))
-def test_an_axis_is_found_and_the_discriminant_is_the_same(q: list[fmpz_poly], line: tuple[int, int], d: int) -> None:
+def test_an_axis_is_found_and_the_discriminant_is_the_same(
+    q: list[fmpz_poly], line: tuple[int, int], d: int
+) -> None:
     axis = fmpq_poly(list(line)) / fmpq(d)
     p = reflected_about(q, fmpz_poly(list(line)), d)
     assert axis_of(p) == axis
     # in units of the axis's own denominator
     scale = (d // int(axis.denom())) ** 2
-    assert squared(p, axis) == [c * scale**k * axis.denom() ** (len(p) - 1) for k, c in enumerate(q)]
+    assert squared(p, axis) == [
+        c * scale**k * axis.denom() ** (len(p) - 1) for k, c in enumerate(q)
+    ]
     direct = resultants.discriminant(p)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(resultants, "LONG", 0)
@@ -50,7 +61,9 @@ def test_the_shorter_discriminant_is_computed(monkeypatch: pytest.MonkeyPatch) -
 
     def followed(p: Any, check: Any) -> fmpz_poly:
         degrees.append(len(p) - 1)
-        return resultants.interpolate(lambda k: fmpz_poly([c(k) for c in p]).discriminant(), 8, check)
+        return resultants.interpolate(
+            lambda k: fmpz_poly([c(k) for c in p]).discriminant(), 8, check
+        )
 
     q = [fmpz_poly([3, 1]), fmpz_poly([0, 5]), fmpz_poly([-2]), fmpz_poly([1])]
     p = reflected_about(q, fmpz_poly([1, 3]), 2)
@@ -68,7 +81,9 @@ def test_a_curve_that_is_not_its_image_has_no_axis(
     q: list[fmpz_poly], line: tuple[int, int], d: int, at: int, by: int
 ) -> None:
     p = reflected_about(q, fmpz_poly(list(line)), d)
-    assume(by != 0 and at % 2 == 1 and at < len(p) - 2)  # the roots' mean, so the only candidate, stays
+    assume(
+        by != 0 and at % 2 == 1 and at < len(p) - 2
+    )  # the roots' mean, so the only candidate, stays
     p[at] += fmpz_poly([by])
     assert axis_of(p) is None
 
@@ -81,7 +96,9 @@ def test_a_bent_axis_and_odd_degrees_are_left_alone() -> None:
 
 
 def test_discs_over_an_abscissa_start_from_the_squares(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of real, complex and imaginary w, at a place where two of the squares are equal, and where one is zero."""
+    """Of real, complex and imaginary w, at a place where two of the squares are equal, and where
+    one is zero.
+    """
     u = fmpz_poly([0, 1])
     q = [fmpz_poly([1])]
     for factor in ([-u, 1], [fmpz_poly([-2]), 1], [u**2 + 3, 1], [fmpz_poly([5]), u, 1]):

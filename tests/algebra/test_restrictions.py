@@ -1,4 +1,6 @@
-"""Polynomials in two variables on lines: the same, but for a positive factor, as by evaluating each coefficient."""
+"""Polynomials in two variables on lines: the same, but for a positive factor, as by evaluating each
+coefficient.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +12,9 @@ from support.examples import examples
 from ptmcad.algebra.polynomials import univariate
 from ptmcad.algebra.restrictions import Restrictions
 
-ROWS = st.lists(st.lists(st.integers(-(2**70), 2**70), max_size=6).map(fmpz_poly), min_size=1, max_size=6).filter(
-    lambda rows: rows[-1] != 0
-)
+ROWS = st.lists(
+    st.lists(st.integers(-(2**70), 2**70), max_size=6).map(fmpz_poly), min_size=1, max_size=6
+).filter(lambda rows: rows[-1] != 0)
 
 
 @given(ROWS, st.integers(-(2**40), 2**40), st.integers(1, 2**40))

@@ -1,4 +1,6 @@
-"""Discriminants, resultants and common zeros over Z[u, w], beside FLINT's own, and signs over boxes."""
+"""Discriminants, resultants and common zeros over Z[u, w], beside FLINT's own, and signs over
+boxes.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,15 @@ import pytest
 from flint import fmpq, fmpz_poly
 
 from ptmcad.algebra.polynomials import PLANE, SPACE, Coefficient
-from ptmcad.algebra.space import at_value, common_zeros, discriminant, nowhere_zero, predicted_work, resultant, rows_in
+from ptmcad.algebra.space import (
+    at_value,
+    common_zeros,
+    discriminant,
+    nowhere_zero,
+    predicted_work,
+    resultant,
+    rows_in,
+)
 
 X, Y, Z = SPACE.gens()
 U, W = PLANE.gens()
@@ -16,10 +26,14 @@ U, W = PLANE.gens()
 
 def polynomial(source: random.Random, degree: int, even: bool = False) -> Coefficient:
     """With terms at random, of a degree in y at least."""
-    powers = [(source.randint(0, 3), source.randint(0, degree), source.randint(0, 3)) for _ in range(6)]
+    powers = [
+        (source.randint(0, 3), source.randint(0, degree), source.randint(0, 3)) for _ in range(6)
+    ]
     powers.append((source.randint(0, 2), degree, source.randint(0, 2)))
     scale = 2 if even else 1
-    return SPACE.from_dict({(i * scale, j, k * scale): source.choice([-7, -2, -1, 1, 3]) for i, j, k in powers})
+    return SPACE.from_dict(
+        {(i * scale, j, k * scale): source.choice([-7, -2, -1, 1, 3]) for i, j, k in powers}
+    )
 
 
 def in_plane(p: Coefficient) -> Coefficient:
@@ -28,13 +42,20 @@ def in_plane(p: Coefficient) -> Coefficient:
 
 
 def proportional(p: Coefficient, q: Coefficient) -> bool:
-    return p.primitive()[1] in (q.primitive()[1], -q.primitive()[1]) if not p.is_zero() else bool(q.is_zero())
+    return (
+        p.primitive()[1] in (q.primitive()[1], -q.primitive()[1])
+        if not p.is_zero()
+        else bool(q.is_zero())
+    )
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_discriminants_and_resultants_are_those_of_flint(seed: int) -> None:
     source = random.Random(seed)
-    p, q = (polynomial(source, degree, seed % 2 == 1) for degree in (source.randint(2, 4), source.randint(1, 3)))
+    p, q = (
+        polynomial(source, degree, seed % 2 == 1)
+        for degree in (source.randint(2, 4), source.randint(1, 3))
+    )
     assert proportional(discriminant(rows_in(p, 1)), in_plane(p.discriminant("y")))
     assert proportional(resultant(rows_in(p, 1), rows_in(q, 1)), in_plane(p.resultant(q, "y")))
     assert resultant(rows_in(p, 1), rows_in(p, 1)).is_zero()

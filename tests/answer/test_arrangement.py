@@ -17,7 +17,9 @@ def renumbered(a: Arrangement, order: list[int]) -> Arrangement:
     """Region n becomes region order[n]."""
     keys = [a.keys[order.index(n)] for n in range(len(order))]
     pairs = {(min(order[i], order[j]), max(order[i], order[j])) for i, j in a.neighbours}
-    return Arrangement(tuple(keys), frozenset(pairs), tuple(tuple(order[n] for n in side) for side in a.sides))
+    return Arrangement(
+        tuple(keys), frozenset(pairs), tuple(tuple(order[n] for n in side) for side in a.sides)
+    )
 
 
 def islands(number: int, lakes: int) -> Arrangement:
@@ -56,8 +58,13 @@ def test_a_correspondence_keeps_everything(a: Arrangement, b: Arrangement) -> No
 def test_what_differs_has_no_correspondence() -> None:
     a = islands(3, 1)
     assert correspondence(a, islands(3, 2)) is None
-    assert correspondence(a, Arrangement(a.keys, a.neighbours, ((0,), (0,), (0,), (0, 1, 0)))) is None
-    assert correspondence(a, Arrangement(((0,), (2,), (2,), (4,), (2,)), a.neighbours, a.sides)) is None
+    assert (
+        correspondence(a, Arrangement(a.keys, a.neighbours, ((0,), (0,), (0,), (0, 1, 0)))) is None
+    )
+    assert (
+        correspondence(a, Arrangement(((0,), (2,), (2,), (4,), (2,)), a.neighbours, a.sides))
+        is None
+    )
     hexagon = frozenset({(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), (0, 5)})
     triangles = frozenset({(0, 1), (1, 2), (0, 2), (3, 4), (4, 5), (3, 5)})
     rings = [Arrangement(((0,),) * 6, pairs, NO_SIDES) for pairs in (hexagon, triangles)]

@@ -1,4 +1,6 @@
-"""Certified maps as documents, tables and answers to points: on a map made by hand, without the engine."""
+"""Certified maps as documents, tables and answers to points: on a map made by hand, without the
+engine.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ from ptmcad.exact.ranges.strips import strips
 from ptmcad.question.slice import Count, Slice
 
 SCHEMA = json.loads(
-    (Path(__file__).resolve().parents[2] / "docs" / "region-map.schema.json").read_text(encoding="utf-8")
+    (Path(__file__).resolve().parents[2] / "docs" / "region-map.schema.json").read_text(
+        encoding="utf-8"
+    )
 )
 
 
@@ -52,7 +56,9 @@ def test_rectangles_take_a_line_each() -> None:
 
 
 def test_an_exact_map_has_no_word_of_it() -> None:
-    result = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho", ranges=["L2=1:2", "rho=0:1/2"]))
+    result = ptmcad.classify(
+        ptmcad.slice_from_options(slice="L2,rho", ranges=["L2=1:2", "rho=0:1/2"])
+    )
     text = result.to_json()
     assert "cover" not in json.loads(text)
     assert "admissible" not in text
@@ -61,7 +67,9 @@ def test_an_exact_map_has_no_word_of_it() -> None:
 
 @given(
     st.lists(
-        st.tuples(*[st.integers(0, 15)] * 4).map(lambda q: (min(q[:2]), max(q[:2]) + 1, min(q[2:]), max(q[2:]) + 1)),
+        st.tuples(*[st.integers(0, 15)] * 4).map(
+            lambda q: (min(q[:2]), max(q[:2]) + 1, min(q[2:]), max(q[2:]) + 1)
+        ),
         unique=True,
         max_size=20,
     )
@@ -89,7 +97,11 @@ def _put(data: dict[str, Any], path: str, value: Any) -> None:
         ("cover.rectangles", [0, 1, 0, 1.0], "is not a list of integers"),
         ("cover.rectangles", [0, 1, 0, True], "is not a list of integers"),
         ("cover.rectangles", "0,1,0,1", "is not a list of integers"),
-        ("cover.rectangles", [0, 1, 0, 1, 0, 1, 0, 1], "not of distinct rectangles: see numbers 0 and 1"),
+        (
+            "cover.rectangles",
+            [0, 1, 0, 1, 0, 1, 0, 1],
+            "not of distinct rectangles: see numbers 0 and 1",
+        ),
         ("cover.rectangles", [1, 2, 0, 1, 0, 1, 0, 1], "is not sorted"),
         ("cover.rectangles", [0, 1, 0, 1, 3, 3, 0, 1], "number 1, that does not lie in the window"),
         ("cover.rectangles", [0, 1, -1, 1], "number 0, that does not lie in the window"),
@@ -145,14 +157,21 @@ def test_points_are_told_exactly_or_left_undecided(rho: str, height: str, cell: 
         assert found == Location(Status.UNDECIDED)
         return
     c = result.cells[cell]
-    assert found == Location(Status.CERTIFIED, c.region, cell, c.total, c.stable, c.index, c.further)
+    assert found == Location(
+        Status.CERTIFIED, c.region, cell, c.total, c.stable, c.index, c.further
+    )
 
 
 def test_points_of_two_maps_are_not_confused() -> None:
-    one, other = certified_map(), replace(certified_map(), cover=Cover(16, ((0, 16, 7, 8), (10, 11, 0, 16))))
+    one, other = (
+        certified_map(),
+        replace(certified_map(), cover=Cover(16, ((0, 16, 7, 8), (10, 11, 0, 16)))),
+    )
     free = replace(certified_map(), cover=Cover(2, ()), cells=certified_map().cells[:1])
     for result in (one, free, other, free, one):
-        assert result.locate(rho=1, L2="15/8").status is (Status.CERTIFIED if result is free else Status.UNDECIDED)
+        assert result.locate(rho=1, L2="15/8").status is (
+            Status.CERTIFIED if result is free else Status.UNDECIDED
+        )
     assert one.locate(rho=0, L2=2).status is Status.ON_EDGE
 
 
@@ -180,9 +199,13 @@ def test_the_table_tells_what_is_open() -> None:
     assert "1 stable and admissible: 2 regions; 2 stable and admissible: 1 region" in admissible
 
 
-def test_locate_prints_what_is_admissible(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_locate_prints_what_is_admissible(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "map.json"
-    made = certified_map()  # whose first cell has the box of one solution only, and is taken for damaged
+    made = (
+        certified_map()
+    )  # whose first cell has the box of one solution only, and is taken for damaged
     without = replace(made, cells=tuple(replace(cell, solutions=()) for cell in made.cells))
     path.write_text(without.to_json(), encoding="utf-8")
     assert run(["locate", str(path), "--at", "rho=1/2,L2=5/2"]) == 0
@@ -206,7 +229,11 @@ def test_locate_prints_what_is_admissible(tmp_path: Path, capsys: pytest.Capture
 @pytest.mark.parametrize(
     ("options", "key", "part"),
     [
-        ({"engine": "exact"}, "engine", "an exact map is not computed for springs with a free length"),
+        (
+            {"engine": "exact"},
+            "engine",
+            "an exact map is not computed for springs with a free length",
+        ),
         ({"engine": "certifed"}, "engine", "did you mean 'certified'?"),
         ({"tolerance": 0}, "tolerance", "0 is not between 0 and 1"),
         ({"tolerance": "x"}, "tolerance", "unknown name 'x'"),
@@ -243,7 +270,9 @@ def test_admissible_asks_for_free_lengths(engine: str) -> None:
     ],
     ids=["exact", "count", "slice"],
 )
-def test_only_a_certified_map_of_the_same_slice_can_be_gone_on_from(earlier: RegionMap, part: str) -> None:
+def test_only_a_certified_map_of_the_same_slice_can_be_gone_on_from(
+    earlier: RegionMap, part: str
+) -> None:
     with pytest.raises(ConfigError) as caught:
         ptmcad.classify(free_slice(), resume=earlier)
     assert caught.value.key == "resume"
@@ -262,7 +291,9 @@ def test_what_algebra_alone_answers_is_refused_in_one_line(
     monkeypatch.chdir(tmp_path)
     assert run(["variety", "--slice", "rho,L2", "--set", "l0=1/5", "--range", "rho=0:2"]) == 2
     message = capsys.readouterr().err
-    assert message.startswith("error: the discriminant variety is not computed for springs with a free length")
+    assert message.startswith(
+        "error: the discriminant variety is not computed for springs with a free length"
+    )
     assert message.count("\n") == 1
     assert not list(tmp_path.iterdir())
 
@@ -277,15 +308,21 @@ def test_what_algebra_alone_answers_is_refused_in_one_line(
     ],
     ids=["exact map", "variety", "strips", "widths"],
 )
-def test_no_function_of_the_exact_engine_leaves_free_lengths_out(ask: Callable[[Slice], object]) -> None:
+def test_no_function_of_the_exact_engine_leaves_free_lengths_out(
+    ask: Callable[[Slice], object],
+) -> None:
     with pytest.raises(ConfigError, match="not computed for springs with a free length"):
         ask(free_slice())
 
 
 def test_a_line_on_which_the_free_lengths_are_zero_is_answered() -> None:
     """F3 = F4 = -10, L1 = L2 = 1, l0 = 0: a line of fig. 4."""
-    free = ptmcad.intervals(ptmcad.slice_from_options(slice="rho,l0", sets=["F3=-10", "F4=-10"]), "rho", {"l0": 0})
-    fig4 = ptmcad.intervals(ptmcad.slice_from_options(slice="rho,L2", sets=["F3=-10", "F4=-10"]), "rho", {"L2": 1})
+    free = ptmcad.intervals(
+        ptmcad.slice_from_options(slice="rho,l0", sets=["F3=-10", "F4=-10"]), "rho", {"l0": 0}
+    )
+    fig4 = ptmcad.intervals(
+        ptmcad.slice_from_options(slice="rho,L2", sets=["F3=-10", "F4=-10"]), "rho", {"L2": 1}
+    )
     assert free.intervals == fig4.intervals
 
 
@@ -294,6 +331,9 @@ def test_resume_names_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str
     path.write_text(certified_map().to_json(), encoding="utf-8")
     words = ["classify", "--slice", "rho,L2", "--set", "l0=1/5", "--out", str(tmp_path), "--resume"]
     assert run([*words, str(path)]) == 2
-    assert f"error: {path}: --resume: this map is of another slice: axes, F3, F4 differ" in capsys.readouterr().err
+    assert (
+        f"error: {path}: --resume: this map is of another slice: axes, F3, F4 differ"
+        in capsys.readouterr().err
+    )
     assert run([*words, str(tmp_path / "none.json")]) == 2
     assert "none.json: there is no such file" in capsys.readouterr().err

@@ -1,4 +1,6 @@
-"""What a model says of itself to whatever shows it: names of its solutions, what is drawn, numbers of a pose."""
+"""What a model says of itself to whatever shows it: names of its solutions, what is drawn, numbers
+of a pose.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,10 @@ def model(name: str) -> Model:
 @pytest.mark.parametrize(
     ("name", "expected"),
     [
-        ("mechanisms/inverted-pendulum", ("stable pose", "stable equilibria", "operation range", 2, True)),
+        (
+            "mechanisms/inverted-pendulum",
+            ("stable pose", "stable equilibria", "operation range", 2, True),
+        ),
         ("mechanisms/four-bar", ("stable solution", "stable equilibria", "range", 1, False)),
         ("systems/duffing", ("solution", "solutions", "range", 1, False)),
         ("systems/schloegl", ("stable solution", "stable solutions", "range", 1, False)),
@@ -33,7 +38,13 @@ def model(name: str) -> Model:
 def test_words_follow_from_the_model(name: str, expected: tuple[str, str, str, int, bool]) -> None:
     own = model(name)
     least = operation_number(own, [Counts(1, 0, None)])
-    assert (followed(own), sought(own), own.nouns.range, least, own.drawable is not None) == expected
+    assert (
+        followed(own),
+        sought(own),
+        own.nouns.range,
+        least,
+        own.drawable is not None,
+    ) == expected
     assert noun(own, 1) in sought(own, 1)
     assert untold(own) == ""
 
@@ -42,7 +53,11 @@ def test_a_moment_on_another_unknown_leaves_stability_untold() -> None:
     lever = ptmcad.Mechanism(
         parameters={"L": {"kind": "length"}, "k": {"kind": "stiffness"}, "M": {}},
         unknowns={"a": "angle", "b": "angle"},
-        points={"O": [0, 0], "P": ["L*cos(a)", "L*sin(a)"], "Q": ["L*cos(a) + L*cos(b)", "L*sin(a) + L*sin(b)"]},
+        points={
+            "O": [0, 0],
+            "P": ["L*cos(a)", "L*sin(a)"],
+            "Q": ["L*cos(a) + L*cos(b)", "L*sin(a) + L*sin(b)"],
+        },
         bars=[["O", "P"], ["P", "Q"]],
         springs=[{"between": ["O", "Q"], "k": "k"}],
         moments={"a": "M*cos(b)"},
@@ -75,12 +90,21 @@ def test_numbers_of_a_pose_by_name_are_those_of_its_fields() -> None:
     assert poses.working == poses.equilibria[: poses.stable]
     for pose in poses.equilibria:
         unknowns, nodes, springs, torsion = pose.quantities(poses.model)
-        assert [(q.name, q.unit) for q in unknowns] == [("th1", "rad"), ("th2", "rad"), ("th1", "deg"), ("th2", "deg")]
+        assert [(q.name, q.unit) for q in unknowns] == [
+            ("th1", "rad"),
+            ("th2", "rad"),
+            ("th1", "deg"),
+            ("th2", "deg"),
+        ]
         assert [q.value for q in unknowns] == [*pose.angles, *pose.degrees]
         assert {q.name: q.value for q in nodes} == {
-            f"{name} {axis}": x for name in poses.model.moving for axis, x in zip("xy", pose.nodes[name], strict=True)
+            f"{name} {axis}": x
+            for name in poses.model.moving
+            for axis, x in zip("xy", pose.nodes[name], strict=True)
         }  # type: ignore[attr-defined]
-        assert [q.value for q in springs] == [s.length for s in pose.springs] + [s.force for s in pose.springs]
+        assert [q.value for q in springs] == [s.length for s in pose.springs] + [
+            s.force for s in pose.springs
+        ]
         assert torsion == ()
     texts = assignments(poses.model, ["1°", "2°"], [], lambda name: name.upper())
     assert texts == ["TH1 = 1°", "TH2 = 2°"]

@@ -1,4 +1,6 @@
-"""What Python's functions say of arguments of the wrong kind: what is expected, by the argument's name."""
+"""What Python's functions say of arguments of the wrong kind: what is expected, by the argument's
+name.
+"""
 
 from __future__ import annotations
 
@@ -88,4 +90,6 @@ def test_a_point_may_be_a_mapping_or_a_sample() -> None:
     result = shipped("fig4")
     cell = result.cells[3]
     assert result.locate(cell.sample).cell == 3
-    assert result.locate({"rho": Fraction(7, 10), "L2": "3/2"}) == result.locate(rho="7/10", L2="3/2")
+    assert result.locate({"rho": Fraction(7, 10), "L2": "3/2"}) == result.locate(
+        rho="7/10", L2="3/2"
+    )

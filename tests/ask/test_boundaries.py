@@ -23,17 +23,26 @@ SLICES = ("fig2", "fig3", "fig4", "forces")
 
 
 def distance_along_fibre(points: np.ndarray, at: float, height: float) -> float:
-    """From a point to the polyline, over the same abscissa; the points are (along, across) in increasing order."""
+    """From a point to the polyline, over the same abscissa; the points are (along, across) in
+    increasing order.
+    """
     return abs(float(np.interp(at, points[:, 0], points[:, 1])) - height)
 
 
 @pytest.mark.parametrize(
     ("name", "tolerance"),
-    [("fig2", "1/50"), ("fig3", "1/2000"), ("forces", "1/2000"), pytest.param("fig4", "1/50", marks=pytest.mark.slow)],
+    [
+        ("fig2", "1/50"),
+        ("fig3", "1/2000"),
+        ("forces", "1/2000"),
+        pytest.param("fig4", "1/50", marks=pytest.mark.slow),
+    ],
 )
 @pytest.mark.fast_cases("fig2-1/50")
 def test_every_point_of_a_curve_is_as_near_as_is_said(name: str, tolerance: str) -> None:
-    """Roots from SymPy at random abscissae: each is near one polyline of its component, and each polyline near one."""
+    """Roots from SymPy at random abscissae: each is near one polyline of its component, and each
+    polyline near one.
+    """
     result, source = shipped(name), random.Random(name)
     base, names = result.base, result.slice.axis_names
     along, across = result.slice.axes[base], result.slice.axes[1 - base]
@@ -44,8 +53,14 @@ def test_every_point_of_a_curve_is_as_near_as_is_said(name: str, tolerance: str)
         for number, component in enumerate(result.components):
             if component.left_out or component.polynomial.degrees[1 - base] == 0:
                 continue
-            p = sum(sympy.Integer(c) * symbols[0] ** i * symbols[1] ** j for i, j, c in component.polynomial.terms)
-            fibre = sympy.Poly(p.subs(symbols[base], sympy.Rational(at.numerator, at.denominator)), symbols[1 - base])
+            p = sum(
+                sympy.Integer(c) * symbols[0] ** i * symbols[1] ** j
+                for i, j, c in component.polynomial.terms
+            )
+            fibre = sympy.Poly(
+                p.subs(symbols[base], sympy.Rational(at.numerator, at.denominator)),
+                symbols[1 - base],
+            )
             roots = [float(r) for r in fibre.real_roots() if across.low < r < across.high]
             over = [
                 (q, q.points[:, [base, 1 - base]])
@@ -54,16 +69,26 @@ def test_every_point_of_a_curve_is_as_near_as_is_said(name: str, tolerance: str)
             ]
             assert len(over) == len(roots)
             for root in roots:
-                assert min(distance_along_fibre(c, float(at), root) - q.distance for q, c in over) < 1e-12
+                assert (
+                    min(distance_along_fibre(c, float(at), root) - q.distance for q, c in over)
+                    < 1e-12
+                )
             for q, c in over:
-                assert q.distance <= float(Fraction(tolerance) * (across.high - across.low)) * 1.0000001
-                assert min(distance_along_fibre(c, float(at), r) for r in roots) <= q.distance + 1e-12
+                assert (
+                    q.distance
+                    <= float(Fraction(tolerance) * (across.high - across.low)) * 1.0000001
+                )
+                assert (
+                    min(distance_along_fibre(c, float(at), r) for r in roots) <= q.distance + 1e-12
+                )
 
 
 @pytest.mark.parametrize(
     ("name", "tolerance"), [("fig2", "1/50"), pytest.param("fig4", "1/10", marks=pytest.mark.slow)]
 )
-def test_polylines_have_all_chords_of_which_the_distance_is_proved(name: str, tolerance: str) -> None:
+def test_polylines_have_all_chords_of_which_the_distance_is_proved(
+    name: str, tolerance: str
+) -> None:
     result = shipped(name)
     base, axes = result.base, result.slice.axes
     drawn = {
@@ -84,7 +109,9 @@ def test_polylines_have_all_chords_of_which_the_distance_is_proved(name: str, to
                 assert (wall.component, *one, *other) in drawn
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n == "fig4" else n for n in SLICES])
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow) if n == "fig4" else n for n in SLICES]
+)
 @pytest.mark.slow_cases("fig3")
 def test_regions_at_the_left_and_right_hand(name: str) -> None:
     """Over the middle of chords, twice the distance above and below, where no other curve is near."""
@@ -97,7 +124,11 @@ def test_regions_at_the_left_and_right_hand(name: str) -> None:
         for k in range(0, len(chain) - 1, 1 + len(chain) // 8):
             at, height = ((chain[k] + chain[k + 1]) / 2).tolist()
             away = 2 * piece.distance + 1e-9
-            others = [np.interp(at, c[:, 0], c[:, 1]) for o, c in pieces if o is not piece and c[0, 0] < at < c[-1, 0]]
+            others = [
+                np.interp(at, c[:, 0], c[:, 1])
+                for o, c in pieces
+                if o is not piece and c[0, 0] < at < c[-1, 0]
+            ]
             if any(abs(h - height) < 3 * away for h in others):
                 continue
             for v, region in ((height + away, (piece.left, piece.right)[base]),
@@ -153,7 +184,9 @@ def test_a_grid_says_what_locate_says(name: str) -> None:
 
 
 def test_centres_on_curves_and_critical_values_have_no_label_or_the_right_one() -> None:
-    """2 (x^2 + y^2) = 1 on [-2, 2]^2: with 4 columns (1/2, 1/2) is a centre, an odd number has one over 0."""
+    """2 (x^2 + y^2) = 1 on [-2, 2]^2: with 4 columns (1/2, 1/2) is a centre, an odd number has one
+    over 0.
+    """
     record = {
         "name": "circle", "system": {"unknowns": {"z": "real"}, "equations": ["z^2 + 2*x^2 + 2*y^2 - 1"]},
         "axes": {"x": [-2, 2], "y": [-2, 2]},
@@ -165,7 +198,9 @@ def test_centres_on_curves_and_critical_values_have_no_label_or_the_right_one() 
             for column, u in enumerate(grid.x):
                 square = Fraction(2 * column + 1 - n) ** 2 + Fraction(2 * row + 1 - n) ** 2
                 inside = square * 8 - n * n
-                assert grid.total[row, column] == (NONE if inside == 0 else 2 if inside < 0 else 0), (u, v)
+                assert grid.total[row, column] == (
+                    NONE if inside == 0 else 2 if inside < 0 else 0
+                ), (u, v)
     assert (result.grid(4).total == NONE).sum() == 4
 
 
@@ -187,7 +222,9 @@ def test_a_line_of_the_variety_on_a_column_has_no_label() -> None:
 
 @pytest.mark.parametrize(("columns", "rows"), [(24, 18), (8, 8), (STEPS, 1), (5, 40)])
 def test_a_grid_over_a_certified_map(columns: int, rows: int) -> None:
-    """Of 8 x 8 centres each lies on a line of the lattice both ways, and touches closed rectangles there."""
+    """Of 8 x 8 centres each lies on a line of the lattice both ways, and touches closed rectangles
+    there.
+    """
     result = certified_map()
     grid = result.grid(columns, rows)
     (x, y), names = result.slice.axes, result.slice.axis_names
@@ -209,7 +246,11 @@ def test_the_outlines_of_a_certified_map_enclose_its_cells() -> None:
     for b in pieces:
         assert (b.points[0] == b.points[-1]).all()
         assert (b.right, b.distance, b.component) == (None, 0.0, None)
-    areas = {b.left: float(np.sum(p[:-1, 0] * p[1:, 1] - p[1:, 0] * p[:-1, 1])) / 2 for b in pieces for p in [b.points]}
+    areas = {
+        b.left: float(np.sum(p[:-1, 0] * p[1:, 1] - p[1:, 0] * p[:-1, 1])) / 2
+        for b in pieces
+        for p in [b.points]
+    }
     assert areas == {n: squares / 64 for n, squares in enumerate((80, 70, 35))}
 
 
@@ -232,13 +273,22 @@ def test_bad_requests_are_refused(call: object, message: str) -> None:
 
 @pytest.mark.parametrize(
     ("polynomial", "low", "high"),
-    [((-1, 1), "1", "1"), ((-2, 0, 1), "1", "2"), ((1, 0, 1), "1/1000", "1/10"), ((-1, 399), "1/400", "1/300")],
+    [
+        ((-1, 1), "1", "1"),
+        ((-2, 0, 1), "1", "2"),
+        ((1, 0, 1), "1/1000", "1/10"),
+        ((-1, 399), "1/400", "1/300"),
+    ],
 )
-def test_a_critical_value_that_is_elsewhere_is_said(polynomial: tuple[int, ...], low: str, high: str) -> None:
+def test_a_critical_value_that_is_elsewhere_is_said(
+    polynomial: tuple[int, ...], low: str, high: str
+) -> None:
     """Halving an interval would never part it from a sample that is not at its side."""
     result = shipped("fig4")
     assert result.stacks[0].sample == Fraction(1, 399)
-    first = replace(result.critical_values[0], polynomial=polynomial, low=Fraction(low), high=Fraction(high))
+    first = replace(
+        result.critical_values[0], polynomial=polynomial, low=Fraction(low), high=Fraction(high)
+    )
     damaged = replace(result, critical_values=(first, *result.critical_values[1:]))
     with pytest.raises(ValueError, match="not between the samples"):
         damaged.boundaries("1/10")

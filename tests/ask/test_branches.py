@@ -64,10 +64,15 @@ def test_each_point_is_what_solve_says(fig4: Branches) -> None:
 
 
 def test_branches_are_smooth_and_meet_at_the_folds(fig4: Branches) -> None:
-    """A stable branch and a saddle have nearly the same energy at a fold, and no eigenvalue to speak of."""
+    """A stable branch and a saddle have nearly the same energy at a fold, and no eigenvalue to
+    speak of.
+    """
     for branch in fig4.branches:
         energies, places = numbers(branch, 1), [float(p.value) for p in branch.points]
-        steps = [abs((b - a) / (y - x)) for a, b, x, y in zip(energies, energies[1:], places, places[1:], strict=False)]
+        steps = [
+            abs((b - a) / (y - x))
+            for a, b, x, y in zip(energies, energies[1:], places, places[1:], strict=False)
+        ]
         assert max(steps) < 1500
     middle = [b for b in fig4.branches if 0.49 < float(b.points[0].value) < 0.5]
     for end in (0, -1):
@@ -78,9 +83,14 @@ def test_branches_are_smooth_and_meet_at_the_folds(fig4: Branches) -> None:
 
 def test_the_cubic() -> None:
     """x^3 - a x + 1/2 has one solution, or three where 4 a^3 > 27/4."""
-    found = branch_diagram(load(CONFIGS / "systems" / "cubic.yaml"), "a", {"b": Fraction(1, 2)}, ["x"])
+    found = branch_diagram(
+        load(CONFIGS / "systems" / "cubic.yaml"), "a", {"b": Fraction(1, 2)}, ["x"]
+    )
     fold = (27 / 16) ** (1 / 3)
-    assert [len(found.branches), sum(float(b.points[-1].value) < fold for b in found.branches)] == [4, 1]
+    assert [len(found.branches), sum(float(b.points[-1].value) < fold for b in found.branches)] == [
+        4,
+        1,
+    ]
     for branch in found.branches:
         for point in branch.points:
             x, a = numbers(Branch(None, None, (point,)), 0)[0], float(point.value)
@@ -119,7 +129,9 @@ def test_both_commands_take_the_same_names(read: Callable[[Slice, str], Any], ke
     slice = load(FIG4)
     for name, known in quantities(slice.model).items():
         found = read(slice, name)
-        if name not in slice.model.angles or key == OPTION:  # by itself an angle is an expression, in radians
+        if (
+            name not in slice.model.angles or key == OPTION
+        ):  # by itself an angle is an expression, in radians
             assert (found.name, found.unit) == (name, known.unit)
     for text, name, unit in [("angle:th2", "angle:th2", "degrees"), (" force : k1 ", "force:k1", "force"),
                              ("x:A1", "x:A1", "length"), ("stiffness ", "stiffness", "force × length")]:  # fmt: skip
@@ -170,9 +182,13 @@ def test_a_line_is_solved_once_for_several_diagrams(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(module, "SAMPLES", 8)
     slice = ptmcad.slice_from_options(FIG4, ranges=["rho=1:5/4"])
     line = solutions_on_line(slice, "rho", {"L2": "3/2"})
-    one, two = (branch_diagram(slice, "rho", {"L2": "3/2"}, [name], line=line) for name in ("th1", "energy"))
+    one, two = (
+        branch_diagram(slice, "rho", {"L2": "3/2"}, [name], line=line) for name in ("th1", "energy")
+    )
     assert len(asked) == len(set(asked)) > 8
-    assert [[p.value for p in b.points] for b in one.branches] == [[p.value for p in b.points] for b in two.branches]
+    assert [[p.value for p in b.points] for b in one.branches] == [
+        [p.value for p in b.points] for b in two.branches
+    ]
     assert two == branch_diagram(slice, "rho", {"L2": "3/2"}, ["energy"])
 
 
@@ -204,17 +220,31 @@ def test_other_spellings_are_the_same_numbers() -> None:
 @pytest.mark.usefixtures("coarse")
 def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     common = ["range", FIG4, "--along", "rho"]
-    asked = ["--quantity", "th1", "--quantity", "energy", "--quantity", "th1", "--format", "json,svg"]
+    asked = [
+        "--quantity",
+        "th1",
+        "--quantity",
+        "energy",
+        "--quantity",
+        "th1",
+        "--format",
+        "json,svg",
+    ]
     assert run([*common, "--at", "L2=3/2", *asked, "--out", str(tmp_path), "--name", "x"]) == 0
     assert {path.name for path in tmp_path.iterdir()} == {"x.json", "x.svg", "x-branches.svg"}
     data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
     schema = json.loads((CONFIGS.parent / "docs" / "range.schema.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
-    assert data["branches"]["quantities"] == ["th1", "energy"] and len(data["branches"]["branches"]) == 14
+    assert (
+        data["branches"]["quantities"] == ["th1", "energy"]
+        and len(data["branches"]["branches"]) == 14
+    )
     picture = (tmp_path / "x-branches.svg").read_text(encoding="utf-8")
     assert "th1, energy of all solutions along rho: stable, saddle, maximum." in picture
     out = capsys.readouterr().out
-    assert "\nfrom         to        kind     th1 (degrees)          energy (force × length)\n" in out
+    assert (
+        "\nfrom         to        kind     th1 (degrees)          energy (force × length)\n" in out
+    )
     assert run([*common, "--over", "L2", "--quantity", "th1"]) == 2
     assert "error: --quantity: needs the value of the other axis too" in capsys.readouterr().err
 
@@ -223,8 +253,32 @@ def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
 @pytest.mark.slow
 def test_a_picture_of_branches_with_free_lengths(tmp_path: Path) -> None:
     pytest.importorskip("numba")
-    common = ["range", str(CONFIGS / "free02.yaml"), "--along", "rho", "--at", "L2=3/2", "--range", "rho=3/10:2/5"]
-    assert run([*common, "--quantity", "energy", "--format", "svg", "--out", str(tmp_path), "--name", "x"]) == 0
+    common = [
+        "range",
+        str(CONFIGS / "free02.yaml"),
+        "--along",
+        "rho",
+        "--at",
+        "L2=3/2",
+        "--range",
+        "rho=3/10:2/5",
+    ]
+    assert (
+        run(
+            [
+                *common,
+                "--quantity",
+                "energy",
+                "--format",
+                "svg",
+                "--out",
+                str(tmp_path),
+                "--name",
+                "x",
+            ]
+        )
+        == 0
+    )
     assert [path.name for path in tmp_path.iterdir()] == ["x-branches.svg"]
 
 
@@ -232,7 +286,10 @@ def test_a_picture_of_branches_with_free_lengths(tmp_path: Path) -> None:
 def test_a_picture_of_paths_shows_what_is_not_stable(tmp_path: Path) -> None:
     """... behind the paths; not of what nothing tells to be stable."""
     cubic = str(CONFIGS / "systems" / "cubic.yaml")
-    for name, record, words in (("a", FIG4, ["rho", "L2=3/2", "7/10"]), ("b", cubic, ["a", "b=1/2", "0"])):
+    for name, record, words in (
+        ("a", FIG4, ["rho", "L2=3/2", "7/10"]),
+        ("b", cubic, ["a", "b=1/2", "0"]),
+    ):
         along, at, start = words
         asked = ["--along", along, "--at", at, "--path", start, "--format", "svg", "--name", name]
         assert run(["range", record, *asked, "--out", str(tmp_path)]) == 0

@@ -24,14 +24,25 @@ from ptmcad.question.config import load, slice_from_options
 from ptmcad.show.ranges.certified import table
 from ptmcad.show.render.landscape import energy_of
 
-SCHEMA = json.loads((Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads(
+    (Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8")
+)
 POINTS: list[dict[str, Any]] = [
     {"rho": "7/10", "L2": "3/2", "F3": -10, "F4": -10, "l0": "4/5"},
     {"rho": "7/10", "L2": "3/2", "l0": "1/5"},
     {"rho": "7/10", "L2": 1, "F3": -10, "F4": -10, "l0": "1/5"},
     {"rho": 1, "L2": "3/2", "l0": "1/5"},
     {"rho": 1, "L2": 1, "F3": -10, "l0": "2/5"},
-    {"rho": "1/3", "L2": "6/5", "k1": 50, "k3": 150, "F3": 3, "F4x": -7, "l0_1": "1/2", "l0_3": "3/10"},
+    {
+        "rho": "1/3",
+        "L2": "6/5",
+        "k1": 50,
+        "k3": 150,
+        "F3": 3,
+        "F4x": -7,
+        "l0_1": "1/2",
+        "l0_3": "3/10",
+    },
 ]
 
 
@@ -56,7 +67,9 @@ def test_poses_agree_with_the_energy_written_out_again(number: int) -> None:
         assert abs(g1[0]) + abs(g2[0]) < 1e-8
         eigenvalues = np.linalg.eigvalsh([[h11[0], h12[0]], [h12[0], h22[0]]])
         assert eigenvalues == pytest.approx([float(x.center) for x in pose.eigenvalues], rel=1e-8)
-        assert lengths[:, 0] == pytest.approx([float(s.length.center) for s in pose.springs], abs=1e-9)
+        assert lengths[:, 0] == pytest.approx(
+            [float(s.length.center) for s in pose.springs], abs=1e-9
+        )
         assert energy(a, b)[0] == pytest.approx(energy.scaled(pose.energy.center), abs=1e-9)
         for spring in pose.springs:
             force = spring.stiffness * (spring.length.center - spring.free_length)
@@ -76,7 +89,15 @@ def test_document_and_table(number: int) -> None:
 def numbers(pose: Pose) -> list[Any]:
     springs = [x for s in pose.springs for x in (s.length, s.force)]
     nodes = [x for at in pose.nodes.values() for x in at]
-    return [*pose.angles, *pose.degrees, *pose.cosines_sines, *nodes, *springs, pose.energy, *pose.eigenvalues]
+    return [
+        *pose.angles,
+        *pose.degrees,
+        *pose.cosines_sines,
+        *nodes,
+        *springs,
+        pose.energy,
+        *pose.eigenvalues,
+    ]
 
 
 def test_many_digits_and_few_agree() -> None:
@@ -91,7 +112,9 @@ def test_flat_poses_are_exact() -> None:
     flat = [pose for pose in poses.equilibria if pose.flat]
     assert len(flat) == 4
     # at th1 = pi, th2 = 0 spring A3A4 has its free length exactly: no force
-    assert any(spring.force.low == spring.force.high == 0 for pose in flat for spring in pose.springs)
+    assert any(
+        spring.force.low == spring.force.high == 0 for pose in flat for spring in pose.springs
+    )
     assert all(pose.energy.low == pose.energy.high for pose in flat)
 
 
@@ -99,7 +122,11 @@ def test_without_free_lengths_nothing_changes() -> None:
     plain, zero = solve(rho=1, L2="3/2"), solve(rho=1, L2="3/2", l0=0)
     assert plain == zero and plain.status is Status.EXACT
     assert all(pose.admissible is None for pose in plain.equilibria)
-    assert "admissible" not in plain.to_json() and "l0" not in plain.to_json() and "tense" not in plain.table()
+    assert (
+        "admissible" not in plain.to_json()
+        and "l0" not in plain.to_json()
+        and "tense" not in plain.table()
+    )
 
 
 def test_infinitely_many_equilibria_are_undecided() -> None:
@@ -119,10 +146,16 @@ def test_a_negative_free_length_is_refused() -> None:
 
 @pytest.mark.slow
 def test_critical_free_lengths_enclosed() -> None:
-    """Known: folds at rho = 7/10, L2 = 3/2, f = -1/10 are among the 52 of REFERENCE; counts are proved between."""
-    slice = slice_from_options(None, "l0,rho", ("L2=3/2", "F3=-10", "F4=-10"), ("l0=0:1", "rho=0:2"))
+    """Known: folds at rho = 7/10, L2 = 3/2, f = -1/10 are among the 52 of REFERENCE; counts are
+    proved between.
+    """
+    slice = slice_from_options(
+        None, "l0,rho", ("L2=3/2", "F3=-10", "F4=-10"), ("l0=0:1", "rho=0:2")
+    )
     found = certified_intervals(slice, "l0", {"rho": "7/10"}, 20)
-    assert [change.names[0] for change in found.changes] == ["point where spring A3A4 has no length"] * 2 + ["fold"] * 2
+    assert [change.names[0] for change in found.changes] == [
+        "point where spring A3A4 has no length"
+    ] * 2 + ["fold"] * 2
     assert all(change.proved and change.at.settles(20) for change in found.changes)
     assert [interval.index for interval in found.intervals] == [
         (2, 3, 1), (2, 4, 1), (2, 5, 1), (3, 6, 1), (3, 7, 2)
@@ -130,14 +163,18 @@ def test_critical_free_lengths_enclosed() -> None:
     for interval in found.intervals:
         values = {"rho": 0.7, "L2": 1.5, "L1": 1.0, "F3": -0.1, "F4": -0.1, "F3x": 0.0, "F4x": 0.0}
         free = float(interval.sample)
-        values |= {f"{name}{i}": value for i in (1, 2, 3) for name, value in (("k", 1.0), ("l0_", free))}
+        values |= {
+            f"{name}{i}": value for i in (1, 2, 3) for name, value in (("k", 1.0), ("l0_", free))
+        }
         assert dense_search(values, 80)["index"] == interval.index
     assert "0.38821735322286586534" in table(found, 20)
 
 
 def test_the_cone_s_critical_length_by_hand() -> None:
     """It solves A1^2 + A2^2 + 2 A1 A2 c12 = s12^2 l0^2 (REFERENCE) at the triangle rho, L1, L2."""
-    slice = slice_from_options(None, "l0,rho", ("L2=3/2", "F3=-10", "F4=-10"), ("l0=1/3:1/2", "rho=0:2"))
+    slice = slice_from_options(
+        None, "l0,rho", ("L2=3/2", "F3=-10", "F4=-10"), ("l0=1/3:1/2", "rho=0:2")
+    )
     found = certified_intervals(slice, "l0", {"rho": "7/10"}, 10)
     (cone,) = found.changes
     rho, p, q, free = 0.7, 1.0, 1.5, float(cone.at.center)
@@ -179,7 +216,9 @@ def test_a_coordinate_that_interval_arithmetic_knows_exactly(force: Q, tmp_path:
 
 @pytest.mark.slow
 def test_the_issue_s_line() -> None:
-    slice = slice_from_options(None, "rho,L2", ("l0=1/5", "F3=-10", "F4=-10"), ("rho=0:4", "L2=0:4"))
+    slice = slice_from_options(
+        None, "rho,L2", ("l0=1/5", "F3=-10", "F4=-10"), ("rho=0:4", "L2=0:4")
+    )
     found = certified_intervals(slice, "rho", {"L2": "3/2"}, 10)
     stable = [interval.index[0] for interval in found.intervals if interval.index]
     assert stable == [1, 2, 2, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2, 2, 1]
@@ -187,12 +226,23 @@ def test_the_issue_s_line() -> None:
 
 @pytest.mark.slow
 def test_range_on_the_command_line() -> None:
-    options = ["--along", "l0", "--at", "rho=7/10,L2=3/2", "--range", "l0=1/3:1/2", "--set", "F3=-10"]
+    options = [
+        "--along",
+        "l0",
+        "--at",
+        "rho=7/10,L2=3/2",
+        "--range",
+        "l0=1/3:1/2",
+        "--set",
+        "F3=-10",
+    ]
     done = CliRunner().invoke(command, options)
     assert done.exit_code == 0 and "min-saddle-max" in done.output
     followed = CliRunner().invoke(command, [*options, "--path", "2/5"])
     assert followed.exit_code == 0 and "pose 2 at l0 = 0.4: th1 = 67.34006196" in followed.output
-    assert isinstance(CliRunner().invoke(command, [*options, "--format", "svg"]).exception, ConfigError)
+    assert isinstance(
+        CliRunner().invoke(command, [*options, "--format", "svg"]).exception, ConfigError
+    )
 
 
 def test_energy_has_no_free_length_unless_asked_for() -> None:
@@ -201,13 +251,16 @@ def test_energy_has_no_free_length_unless_asked_for() -> None:
 
 
 def test_a_free_length_of_zero_beside_one_that_is_a_number() -> None:
-    """One angle, two springs: the parameter is zero and the number is not, so that the point tells both. The poses are
-    those of a dense look at the energy's slope."""
+    """One angle, two springs: the parameter is zero and the number is not, so that the point tells
+    both. The poses are those of a dense look at the energy's slope."""
     mechanism = {
         "parameters": {"l0": {"kind": "free length"}, "F": {"kind": "force"}},
         "unknowns": {"th": "angle"},
         "points": {"A": [2, 0], "B": [0, 2], "P": ["cos(th)", "sin(th)"]},
-        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}, {"between": ["B", "P"], "k": 1, "free": "1/2"}],
+        "springs": [
+            {"between": ["A", "P"], "k": 1, "free": "l0"},
+            {"between": ["B", "P"], "k": 1, "free": "1/2"},
+        ],
         "loads": {"P": ["F", 0]},
     }
     record = {"name": "two", "mechanism": mechanism, "axes": {"F": [-1, 1], "l0": [0, 1]}}
@@ -215,7 +268,9 @@ def test_a_free_length_of_zero_beside_one_that_is_a_number() -> None:
     assert poses.status is Status.CERTIFIED and poses.parameters["l0"] == 0
     angle = np.linspace(0, 2 * np.pi, 100_001)
     away = np.hypot(np.cos(angle), np.sin(angle) - 2)
-    energy = ((np.cos(angle) - 2) ** 2 + np.sin(angle) ** 2 + (away - 0.5) ** 2) / 2 - np.cos(angle) / 3
+    energy = ((np.cos(angle) - 2) ** 2 + np.sin(angle) ** 2 + (away - 0.5) ** 2) / 2 - np.cos(
+        angle
+    ) / 3
     slope = np.diff(energy)
     minima = np.sum((slope[:-1] < 0) & (slope[1:] >= 0))
     assert len(poses.equilibria) == np.sum((slope[:-1] < 0) != (slope[1:] < 0)) == 2

@@ -1,4 +1,6 @@
-"""Where the arrangement of a family's regions changes: values known by hand, bisection beside elimination."""
+"""Where the arrangement of a family's regions changes: values known by hand, bisection beside
+elimination.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,12 @@ def of(equations: str | list[str], low: Any, high: Any, **further: Any) -> dict[
     """A system in real unknowns over the square, with the free parameter c."""
     texts = [equations] if isinstance(equations, str) else equations
     unknowns = {name: "real" for name in "uv"[: len(texts)]}
-    return {"system": {"unknowns": unknowns, "equations": texts}, "axes": SQUARE, "free": {"c": [low, high]}, **further}
+    return {
+        "system": {"unknowns": unknowns, "equations": texts},
+        "axes": SQUARE,
+        "free": {"c": [low, high]},
+        **further,
+    }
 
 
 def exact_texts(found: Changes) -> list[str]:
@@ -39,7 +46,10 @@ def exact_texts(found: Changes) -> list[str]:
 
 
 ASTROID = {
-    "system": {"unknowns": {"t": "angle"}, "equations": ["a*sin(t) - b*cos(t) + 2*c*sin(t)*cos(t)"]},
+    "system": {
+        "unknowns": {"t": "angle"},
+        "equations": ["a*sin(t) - b*cos(t) + 2*c*sin(t)*cos(t)"],
+    },
     "axes": SQUARE,
     "free": {"c": ["1/10", 2]},
 }
@@ -82,7 +92,9 @@ def test_values_known_by_hand(question: dict[str, Any], values: list[str], first
 
 def test_what_is_the_same_on_both_sides_is_told_apart() -> None:
     found = ptmcad.changes(of("u^2 - c*b + a", -2, 2))
-    assert [number.text() for number in found.others] == ["0"]  # over which the surface vanishes identically
+    assert [number.text() for number in found.others] == [
+        "0"
+    ]  # over which the surface vanishes identically
     assert len(found.between) == len(found.arrangements) == 3
     assert found.reason.endswith("but at 3 values")
     assert repr(found) == "<Changes of c in [-2, 2]: 2, complete>"
@@ -103,7 +115,9 @@ def test_the_ends_of_the_range_are_told_apart() -> None:
     assert not found.changes
     assert found.complete
     assert found.at_ends[0] == ("a region of 2 solutions vanishes",)
-    assert found.at_ends[1] == ("the region of 0 solutions splits into 4",)  # the disc touches sides in points only
+    assert found.at_ends[1] == (
+        "the region of 0 solutions splits into 4",
+    )  # the disc touches sides in points only
 
 
 def sampled(question: dict[str, Any], tolerance: Fraction = Fraction(1, 1000)) -> Changes:
@@ -112,7 +126,9 @@ def sampled(question: dict[str, Any], tolerance: Fraction = Fraction(1, 1000)) -
 
 
 def agree(exact: Changes, enclosed: Changes) -> None:
-    """Each enclosure holds an exact change, and each sample lies between changes with its arrangement."""
+    """Each enclosure holds an exact change, and each sample lies between changes with its
+    arrangement.
+    """
     assert not enclosed.complete
     for change in enclosed:
         assert any(_within(known, change) for known in exact), change
@@ -128,7 +144,9 @@ def _within(known: Change, enclosure: Change) -> bool:
     return value.compare(enclosure.value.low) >= 0 >= value.compare(enclosure.value.high)
 
 
-@pytest.mark.parametrize("question", [of("u^2 - c + a^2 + b^2", -1, 3), of("u^3 - a*u + b + c*u^2", -4, 4), ASTROID])
+@pytest.mark.parametrize(
+    "question", [of("u^2 - c + a^2 + b^2", -1, 3), of("u^3 - a*u + b + c*u^2", -4, 4), ASTROID]
+)
 @pytest.mark.fast_cases("question0")
 def test_bisection_encloses_what_elimination_finds(question: dict[str, Any]) -> None:
     exact, enclosed = ptmcad.changes(question), sampled(question)
@@ -163,15 +181,26 @@ def test_where_elimination_is_out_of_reach_that_is_said(monkeypatch: pytest.Monk
     assert not found.complete
     assert found.reason.startswith("found by sampling")
     assert found.reason.endswith("not proved complete: that would take too long")
-    assert all(not change.is_exact and change.value.high - change.value.low <= 4e-6 for change in found)
+    assert all(
+        not change.is_exact and change.value.high - change.value.low <= 4e-6 for change in found
+    )
     low, _, high = found.table().splitlines()[1].split("enclosed")[0].partition(" to ")
-    assert Fraction(low.strip()) <= found.changes[0].value.low < found.changes[0].value.high <= Fraction(high.strip())
+    assert (
+        Fraction(low.strip())
+        <= found.changes[0].value.low
+        < found.changes[0].value.high
+        <= Fraction(high.strip())
+    )
 
 
 def test_bad_questions_and_limits_are_told() -> None:
     with pytest.raises(ConfigError, match="is not between 0 and 1"):
         ptmcad.changes(of("u^2 - c", -1, 3), tolerance=0)
-    free_length = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"l0": "1/5"}, "free": {"F3": [-4, 0]}}
+    free_length = {
+        "axes": {"rho": [0, 2], "L2": [0, 2]},
+        "parameters": {"l0": "1/5"},
+        "free": {"F3": [-4, 0]},
+    }
     with pytest.raises(ConfigError, match="certified engine"):
         ptmcad.changes(free_length)
     with pytest.raises(ConfigError, match="choose stable"):
@@ -183,7 +212,11 @@ def test_bad_questions_and_limits_are_told() -> None:
                                                                      "equations": ["(u - c*a)^2"]}})  # fmt: skip
 
 
-LOADS = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": "F", "F4": "F"}, "free": {"F": [-40, 0]}}
+LOADS = {
+    "axes": {"rho": [0, 2], "L2": [0, 2]},
+    "parameters": {"F3": "F", "F4": "F"},
+    "free": {"F": [-40, 0]},
+}
 
 
 @pytest.mark.slow
@@ -204,7 +237,9 @@ def test_the_loads_of_figure_4_change_nothing_between_0_and_40() -> None:
         (LOADS | {"parameters": {"F3": "F", "F4": "2*F"}}, 1),
     ],
 )
-def test_400_members_have_the_arrangements_between_the_changes(question: dict[str, Any], number: int) -> None:
+def test_400_members_have_the_arrangements_between_the_changes(
+    question: dict[str, Any], number: int
+) -> None:
     found = ptmcad.changes(question)
     assert found.complete
     assert len(found) == number
@@ -213,7 +248,9 @@ def test_400_members_have_the_arrangements_between_the_changes(question: dict[st
     for k in range(400):
         value = low + (high - low) * Fraction(2 * k + 1, 800)
         place = sum(change.value.compare(value) < 0 for change in found)  # type: ignore[union-attr]
-        assert correspondence(members.at(value).arrangement, found.arrangements[place]) is not None, value
+        assert (
+            correspondence(members.at(value).arrangement, found.arrangements[place]) is not None
+        ), value
 
 
 @pytest.mark.slow
@@ -224,14 +261,20 @@ def test_400_members_have_the_arrangements_between_the_changes(question: dict[st
         (LOADS | {"axes": {"rho": [0, 6], "L2": [0, 6]}, "free": {"F": [-100, 0]}}, ""),
     ],
 )
-def test_members_classified_on_both_sides_confirm_the_changes(question: dict[str, Any], first: str) -> None:
-    """At a distance of 1e-6, by maps over either axis: sides that a region reaches are among what differs."""
+def test_members_classified_on_both_sides_confirm_the_changes(
+    question: dict[str, Any], first: str
+) -> None:
+    """At a distance of 1e-6, by maps over either axis: sides that a region reaches are among what
+    differs.
+    """
     family = family_from(question)
     slice = family.member(family.values[0])
 
     def maps_at(value: Fraction) -> Maps:
         low, high = (
-            region_map(member_like(slice, family.text, family.free.name, value, turned), OVER_THE_FIRST)
+            region_map(
+                member_like(slice, family.text, family.free.name, value, turned), OVER_THE_FIRST
+            )
             for turned in (False, True)
         )
         return low, high

@@ -1,4 +1,6 @@
-"""Two maps compared: the area where their counts differ, against areas that are known and exact grids."""
+"""Two maps compared: the area where their counts differ, against areas that are known and exact
+grids.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,10 @@ def test_the_area_between_two_lines() -> None:
     (change,) = found.changes
     assert change.area[0] <= Fraction(1, 12) <= change.area[1]
     assert change.area[1] - change.area[0] < Fraction(1, 10**6)
-    assert found.first.regions[change.before].total == 0 and found.second.regions[change.after].total == 2
+    assert (
+        found.first.regions[change.before].total == 0
+        and found.second.regions[change.after].total == 2
+    )
     assert found.share == found.area
 
 
@@ -74,7 +79,10 @@ def test_the_area_agrees_with_an_exact_grid() -> None:
     for change in found.changes:
         sample = found.decomposition.regions[change.region].sample
         at = {name: sample[name] for name in sample.names}
-        assert (first.locate(**at).region, second.locate(**at).region) == (change.before, change.after)
+        assert (first.locate(**at).region, second.locate(**at).region) == (
+            change.before,
+            change.after,
+        )
 
 
 def test_maps_that_are_not_of_one_window_are_refused() -> None:
@@ -93,7 +101,9 @@ def test_the_picture_has_both_maps_and_the_difference() -> None:
     said = [t.get_text() for t in made.texts]
     assert "0 → 2" in said and "area 0.0833333" in " ".join(said)
     (rim,) = [a for a in made.axes[2].get_children() if str(a.get_gid()).startswith("change-")]
-    assert rim.get_edgecolor()[0][:3] == pytest.approx([int(CHANGES[0][k : k + 2], 16) / 255 for k in (1, 3, 5)])
+    assert rim.get_edgecolor()[0][:3] == pytest.approx(
+        [int(CHANGES[0][k : k + 2], 16) / 255 for k in (1, 3, 5)]
+    )
     with pytest.raises(ConfigError, match="at least"), settings():
         comparison_figure(found, 100, styled("ieee", size="3.5x2.6in"))
 
@@ -108,7 +118,9 @@ def test_the_maps_of_a_change_have_letters_where_a_journal_has_no_titles() -> No
     assert {"A: F₃ = F₄ = −10", "B: F₃ = −14, F₄ = −8", "Difference, A → B"} <= said
     assert {"A", "B", "Difference, A → B"} <= {t.get_text() for t in same.texts}
     heads = [t.get_text() for t in titled.texts if t.get_fontweight() == "bold"]
-    assert any(t.startswith("A: Equal loads") for t in heads) and any(t.startswith("B: ") for t in heads)
+    assert any(t.startswith("A: Equal loads") for t in heads) and any(
+        t.startswith("B: ") for t in heads
+    )
     # curves at which nothing differs are no part of a difference
     assert not [a for a in made.axes[2].findobj() if str(a.get_gid()).endswith("-thin")]
 

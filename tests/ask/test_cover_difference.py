@@ -1,4 +1,6 @@
-"""Two certified maps compared, against one place in each square of their lattices: neither count changes within one."""
+"""Two certified maps compared, against one place in each square of their lattices: neither count
+changes within one.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ Label = Callable[[Fraction, Fraction], int | None]
 
 def covered(cover: Cover, x: Fraction, y: Fraction) -> bool:
     u, v = x * cover.steps, y * cover.steps
-    return any(left <= u <= right and bottom <= v <= top for left, right, bottom, top in cover.rectangles)
+    return any(
+        left <= u <= right and bottom <= v <= top for left, right, bottom, top in cover.rectangles
+    )
 
 
 def sampled(first: Label, second: Label, steps: int) -> Counter[tuple[int | None, int | None]]:
@@ -42,16 +46,21 @@ def sampled(first: Label, second: Label, steps: int) -> Counter[tuple[int | None
     return Counter((first(x, y), second(x, y)) for x in middles for y in middles)
 
 
-def check(found: Comparison, pairs: Counter[tuple[int | None, int | None]], square: Fraction) -> None:
+def check(
+    found: Comparison, pairs: Counter[tuple[int | None, int | None]], square: Fraction
+) -> None:
     """Areas are what the squares of these pairs have."""
 
     def area(*wanted: set[int | None]) -> Fraction:
-        return square * sum(n for pair, n in pairs.items() if all(v in w for v, w in zip(pair, wanted, strict=True)))
+        return square * sum(
+            n for pair, n in pairs.items() if all(v in w for v, w in zip(pair, wanted, strict=True))
+        )
 
     known = {v for pair in pairs for v in pair if v is not None}
     certain = {(a, b): area({a}, {b}) for a in known for b in known if a != b}
     changes = {
-        (found.first.regions[c.before].stable, found.second.regions[c.after].stable): c.area for c in found.changes
+        (found.first.regions[c.before].stable, found.second.regions[c.after].stable): c.area
+        for c in found.changes
     }
     assert set(changes) == {pair for pair, value in certain.items() if value}
     for (a, b), (low, high) in changes.items():
@@ -68,7 +77,9 @@ def ellipse(depth: int) -> RegionMap:
     def function(x: float, y: float) -> tuple[float, float]:
         return hypot(x - 0.6, 2 * (y - 0.5)) - 0.3, 2.0
 
-    return certified(around(function, depth), lambda x, y: 2 if hypot(x - 0.6, 2 * (y - 0.5)) < 0.3 else 3)
+    return certified(
+        around(function, depth), lambda x, y: 2 if hypot(x - 0.6, 2 * (y - 0.5)) < 0.3 else 3
+    )
 
 
 def in_circle(x: Fraction, y: Fraction) -> int:
@@ -96,20 +107,28 @@ def test_areas_are_those_of_the_squares(one: int, other: int) -> None:
 
 SIDE = 8
 RECTANGLES = st.lists(
-    st.tuples(*[st.tuples(st.integers(0, SIDE - 1), st.integers(1, 3)) for _ in range(2)]), min_size=0, max_size=7
+    st.tuples(*[st.tuples(st.integers(0, SIDE - 1), st.integers(1, 3)) for _ in range(2)]),
+    min_size=0,
+    max_size=7,
 )
 
 
 def random_cover(boxes: list[tuple[tuple[int, int], tuple[int, int]]], steps: int) -> Cover:
     sides = [(min(x, steps - 1), min(y, steps - 1), w, h) for (x, w), (y, h) in boxes]
-    return Cover(steps, tuple(sorted({(x, min(x + w, steps), y, min(y + h, steps)) for x, y, w, h in sides})))
+    return Cover(
+        steps, tuple(sorted({(x, min(x + w, steps), y, min(y + h, steps)) for x, y, w, h in sides}))
+    )
 
 
 def flooded(cover: Cover) -> dict[tuple[int, int], int]:
-    """The squares outside a cover, and the number of the part of the window that each is in, from left and below."""
+    """The squares outside a cover, and the number of the part of the window that each is in, from
+    left and below.
+    """
     middles = {(x, y): (Fraction(2 * x + 1, 2), Fraction(2 * y + 1, 2)) for x in range(cover.steps)
                for y in range(cover.steps)}  # fmt: skip
-    free = {k for k, (x, y) in middles.items() if not covered(cover, x / cover.steps, y / cover.steps)}
+    free = {
+        k for k, (x, y) in middles.items() if not covered(cover, x / cover.steps, y / cover.steps)
+    }
     number: dict[tuple[int, int], int] = {}
     for start in sorted(free):
         if start in number:
@@ -147,7 +166,8 @@ def random_map(cover: Cover) -> tuple[RegionMap, Label]:
 @given(RECTANGLES, RECTANGLES)
 @settings(max_examples=examples(60), deadline=None)
 def test_any_covers_of_two_lattices(
-    one: list[tuple[tuple[int, int], tuple[int, int]]], other: list[tuple[tuple[int, int], tuple[int, int]]]
+    one: list[tuple[tuple[int, int], tuple[int, int]]],
+    other: list[tuple[tuple[int, int], tuple[int, int]]],
 ) -> None:
     covers = random_cover(one, SIDE // 2), random_cover(other, SIDE)
     assume(all(flooded(cover) for cover in covers))  # something is outside each of them
@@ -161,7 +181,11 @@ def test_a_map_differs_from_itself_nowhere_but_where_it_is_undetermined() -> Non
     found = result.compare(result)
     x, y = result.slice.axes
     assert found.changes == () and found.area[0] == 0
-    assert found.area[1] == found.undetermined == result.undetermined * (x.high - x.low) * (y.high - y.low)
+    assert (
+        found.area[1]
+        == found.undetermined
+        == result.undetermined * (x.high - x.low) * (y.high - y.low)
+    )
     (said,) = difference_words(found)
     assert said.startswith("The maps have the same counts everywhere where both are determined; ")
 
@@ -174,14 +198,21 @@ def test_the_picture_shows_the_changes_where_they_are() -> None:
     said = [text.get_text() for text in made.texts]
     assert {"3 → 2", "2 → 3", "by one map or both"} <= set(said)
     ground = next(a for a in made.axes[2].get_children() if a.get_gid() == "undetermined")
-    assert ground.get_facecolor()[:3] == pytest.approx([int(UNDETERMINED.face[k : k + 2], 16) / 255 for k in (1, 3, 5)])
+    assert ground.get_facecolor()[:3] == pytest.approx(
+        [int(UNDETERMINED.face[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+    )
     for change in found.changes:
-        (patch,) = [a for a in made.axes[2].get_children() if a.get_gid() == f"region-{change.region}"]
+        (patch,) = [
+            a for a in made.axes[2].get_children() if a.get_gid() == f"region-{change.region}"
+        ]
         path = patch.get_path()
         inside = np.clip(path.vertices, 0, 1)  # outlines on the frame are drawn beyond it
         parts = np.split(inside, np.flatnonzero(path.codes == path.MOVETO)[1:])
         # polygons around holes turn the other way
-        area = sum(0.5 * float(np.sum(p[:, 0] * np.roll(p[:, 1], -1) - np.roll(p[:, 0], -1) * p[:, 1])) for p in parts)
+        area = sum(
+            0.5 * float(np.sum(p[:, 0] * np.roll(p[:, 1], -1) - np.roll(p[:, 0], -1) * p[:, 1]))
+            for p in parts
+        )
         assert 4 * area == pytest.approx(float(change.area[0]), rel=0.02)
 
 
@@ -191,7 +222,9 @@ def test_what_cannot_be_compared_is_said() -> None:
     with pytest.raises(ConfigError, match="not the same axes"):
         part_of_free02().compare(circle(5))
     own = circle(5)
-    metres, feet = (replace(own, slice=replace(own.slice, units={"length": unit})) for unit in ("m", "ft"))
+    metres, feet = (
+        replace(own, slice=replace(own.slice, units={"length": unit})) for unit in ("m", "ft")
+    )
     with pytest.raises(ConfigError, match="not the same units"):
         metres.compare(feet)
     assert metres.compare(own).changes == ()
@@ -214,7 +247,9 @@ def test_the_damaged_file_is_named(tmp_path: Path, capsys: pytest.CaptureFixture
             assert f"{other}.json" in said and "whole.json" not in said and reason in said
 
 
-def test_the_damaged_exact_file_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_damaged_exact_file_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     whole = shipped("fig4")
     number = next(k for k, s in enumerate(whole.stacks) if s.walls)
     stack = whole.stacks[number]

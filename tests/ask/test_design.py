@@ -37,7 +37,9 @@ def test_a_range_over_one_parameter_is_proved_by_critical_values() -> None:
 
 
 def test_a_condition_moves_the_best_of_one_parameter_to_its_bound() -> None:
-    found = ptmcad.design(DISC, "range", where={"conditions": "4*a <= 2"}, tolerance="1/20", evaluations=20)
+    found = ptmcad.design(
+        DISC, "range", where={"conditions": "4*a <= 2"}, tolerance="1/20", evaluations=20
+    )
     assert found.best == {"a": Fraction(1, 2)} and found.proved and found.boxes
     assert found.value is not None and abs(float(found.value) - sqrt(3)) < 1e-12
     assert found.bound is not None and sqrt(3) <= found.bound <= 1.05 * sqrt(3)
@@ -51,7 +53,8 @@ def test_a_range_over_two_parameters_is_proved_by_branch_and_bound() -> None:
     assert sum(_volume(box.ranges) for box in found.boxes) == 2, "the boxes cover the bounds"
     for box in found.boxes:  # the true length at the box's best design
         nearest = [
-            min(max(centre, low), high) for centre, (low, high) in zip((1, Fraction(1, 2)), box.ranges, strict=True)
+            min(max(centre, low), high)
+            for centre, (low, high) in zip((1, Fraction(1, 2)), box.ranges, strict=True)
         ]
         square = 1 - (nearest[0] - 1) ** 2 - (nearest[1] - Fraction(1, 2)) ** 2
         assert box.bound >= 0 and box.bound**2 >= 4 * max(square, 0)
@@ -64,9 +67,18 @@ def _volume(ranges: tuple[tuple[Fraction, Fraction], ...]) -> Fraction:
 
 def test_conditions_are_kept_by_the_best_design_and_by_the_bound() -> None:
     found = ptmcad.design(
-        IN_SPACE, "range", OVER, where={"conditions": ["a + b <= 1", "a >= b"]}, tolerance="1/10", evaluations=120
+        IN_SPACE,
+        "range",
+        OVER,
+        where={"conditions": ["a + b <= 1", "a >= b"]},
+        tolerance="1/10",
+        evaluations=120,
     )
-    assert found.best is not None and sum(found.best.values()) <= 1 and found.best["a"] >= found.best["b"]
+    assert (
+        found.best is not None
+        and sum(found.best.values()) <= 1
+        and found.best["a"] >= found.best["b"]
+    )
     true = 2 * sqrt(7 / 8)  # at (3/4, 1/4), the foot of the perpendicular
     assert found.value is not None and 0.97 * true < float(found.value) <= true
     assert found.bound is not None and found.proved and true <= found.bound
@@ -76,7 +88,9 @@ def test_the_count_that_is_wanted_is_the_one_that_is_asked() -> None:
     cubic = system("u^3 - a*u + b", {"b": [-1, 1], "a": [1, "3/2"]})
     three = ptmcad.design(cubic, "range", where={"stable": 3}, evaluations=5)
     assert three.best == {"a": Fraction(3, 2)}
-    assert three.value is not None and abs(float(three.value) - 4 * 0.5**1.5) < 1e-12 and three.proved
+    assert (
+        three.value is not None and abs(float(three.value) - 4 * 0.5**1.5) < 1e-12 and three.proved
+    )
     one = ptmcad.design(cubic, "range", where={"stable": 1}, tolerance="1/20", evaluations=20)
     assert one.best == {"a": 1} and one.proved  # of two equal ranges one
     assert one.value is not None and abs(float(one.value) - (1 - 2 * (1 / 3) ** 1.5)) < 1e-12
@@ -104,7 +118,9 @@ WELL: dict[str, Any] = {
         pytest.param("3*a - b^2", "stable:1", 6, id="of parameters alone"),
     ],
 )
-def test_a_value_at_a_point_is_proved_and_no_bound_is_claimed(maximise: str, pose: str, value: int | None) -> None:
+def test_a_value_at_a_point_is_proved_and_no_bound_is_claimed(
+    maximise: str, pose: str, value: int | None
+) -> None:
     found = ptmcad.design(WELL, maximise, pose=pose, evaluations=60)
     assert found.best is not None and found.value is not None and found.best["a"] == 2
     if value is not None:
@@ -146,7 +162,10 @@ def test_there_may_be_none() -> None:
 
 
 def test_the_same_seed_gives_the_same_answer() -> None:
-    first, again = (ptmcad.design(IN_SPACE, "range", OVER, tolerance="1/5", evaluations=30, seed=7) for _ in range(2))
+    first, again = (
+        ptmcad.design(IN_SPACE, "range", OVER, tolerance="1/5", evaluations=30, seed=7)
+        for _ in range(2)
+    )
     assert first.to_json() == again.to_json() and first.seed == 7
 
 
@@ -227,17 +246,25 @@ def test_the_range_is_widest_at_equal_lengths() -> None:
         pytest.param(1, [], None, id="of a base of at most one"),
     ],
 )
-def test_no_design_of_a_grid_is_better(window: int, conditions: list[str], best: dict[str, int] | None) -> None:
-    """Lengths within 1/2 and 2: the optimum within 1 %, and 41 x 41 exact evaluations by each line's own variety."""
+def test_no_design_of_a_grid_is_better(
+    window: int, conditions: list[str], best: dict[str, int] | None
+) -> None:
+    """Lengths within 1/2 and 2: the optimum within 1 %, and 41 x 41 exact evaluations by each
+    line's own variety.
+    """
     record = {**LOADED, "axes": {"rho": [0, window], "L2": [0, 2]}}
-    found = ptmcad.design(record, "range", BOTH, where={"conditions": conditions} if conditions else None)
+    found = ptmcad.design(
+        record, "range", BOTH, where={"conditions": conditions} if conditions else None
+    )
     assert found.proved and found.value is not None and found.bound is not None
     assert found.bound <= found.value.low * Fraction(101, 100)
     assert best is None or found.best == best
     grid = []
     for i in range(GRID + 1):
         first = Fraction(1, 2) + Fraction(3, 2) * Fraction(i, GRID)
-        slice = ptmcad.slice_from_mapping({**record, "parameters": {**record["parameters"], "L1": first}})
+        slice = ptmcad.slice_from_mapping(
+            {**record, "parameters": {**record["parameters"], "L1": first}}
+        )
         for j in range(GRID + 1):
             second = Fraction(1, 2) + Fraction(3, 2) * Fraction(j, GRID)
             if not conditions or first + second <= 2:
@@ -252,7 +279,9 @@ GRID = 40
 
 @pytest.mark.slow
 def test_a_finer_proof_holds_too() -> None:
-    found = ptmcad.design({**LOADED, "axes": {"rho": [0, 1], "L2": [0, 2]}}, "range", BOTH, tolerance="1/500")
+    found = ptmcad.design(
+        {**LOADED, "axes": {"rho": [0, 1], "L2": [0, 2]}}, "range", BOTH, tolerance="1/500"
+    )
     assert found.proved and found.value is not None and 0.7616 < float(found.value) < 0.7619
 
 
@@ -263,4 +292,7 @@ def test_the_area_of_two_stable_poses_is_bounded() -> None:
     for number in range(13):
         record = {**LOADED, "parameters": {**LOADED["parameters"], "L1": Fraction(4 + number, 8)}}
         result = ptmcad.classify(ptmcad.slice_from_mapping(record))
-        assert found.bound is not None and sum(r.area[0] for r in result.regions if r.stable == 2) <= found.bound
+        assert (
+            found.bound is not None
+            and sum(r.area[0] for r in result.regions if r.stable == 2) <= found.bound
+        )

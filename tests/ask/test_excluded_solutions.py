@@ -1,4 +1,6 @@
-"""Solutions that an inequality excludes, and conditions that are zero at every solution: map, points, checker."""
+"""Solutions that an inequality excludes, and conditions that are zero at every solution: map,
+points, checker.
+"""
 
 from __future__ import annotations
 
@@ -24,9 +26,15 @@ from ptmcad.verification import verify
 LINE = {"unknowns": {"x": "real", "y": "real"}}
 WINDOW = {"a": [-3, 3], "b": [-2, 2]}
 # on x = 0 there are infinitely many solutions
-CONTINUUM = {"system": {**LINE, "equations": ["x*(x + y - a)", "x*(x*y - b)"], "positive": ["x"]}, "axes": WINDOW}
+CONTINUUM = {
+    "system": {**LINE, "equations": ["x*(x + y - a)", "x*(x*y - b)"], "positive": ["x"]},
+    "axes": WINDOW,
+}
 # x = 0 is a double root everywhere
-DOUBLE = {"system": {**LINE, "equations": ["x^2*(x^2 - a*x + b)", "y^2 - x - 1"], "positive": ["x"]}, "axes": WINDOW}
+DOUBLE = {
+    "system": {**LINE, "equations": ["x^2*(x^2 - a*x + b)", "y^2 - x - 1"], "positive": ["x"]},
+    "axes": WINDOW,
+}
 
 
 def roots(a: Fraction, b: Fraction) -> int:
@@ -40,9 +48,13 @@ POINTS = [(Fraction(1392, 625), Fraction(1003, 1250)), (Fraction(459, 2500), Fra
           (Fraction(2), Fraction(1, 3)), (Fraction(-2), Fraction(1, 3)), (Fraction(1), Fraction(1))]  # fmt: skip
 
 
-@pytest.mark.parametrize(("record", "each"), [(CONTINUUM, 1), (DOUBLE, 2)], ids=["a continuum", "a double root"])
+@pytest.mark.parametrize(
+    ("record", "each"), [(CONTINUUM, 1), (DOUBLE, 2)], ids=["a continuum", "a double root"]
+)
 @pytest.mark.parametrize(("a", "b"), POINTS, ids=str)
-def test_solve_counts_what_the_map_counts(record: dict[str, Any], each: int, a: Fraction, b: Fraction) -> None:
+def test_solve_counts_what_the_map_counts(
+    record: dict[str, Any], each: int, a: Fraction, b: Fraction
+) -> None:
     found = ptmcad.solve(model=slice_from(record).model, a=a, b=b)
     assert found.status is Status.EXACT
     assert len(found.equilibria) == each * roots(a, b)
@@ -65,21 +77,27 @@ STABLE_NOWHERE = [
 ]
 
 
-@pytest.mark.parametrize("system", STABLE_NOWHERE, ids=["the equation", "a multiple of it", "and another one"])
+@pytest.mark.parametrize(
+    "system", STABLE_NOWHERE, ids=["the equation", "a multiple of it", "and another one"]
+)
 @pytest.mark.parametrize("ask", [ptmcad.classify, check])
 @pytest.mark.slow_cases("check-a multiple of it", "check-and another one")
 def test_a_condition_that_is_zero_at_every_solution_is_refused(
     ask: Callable[[Slice], object], system: dict[str, Any]
 ) -> None:
     slice = slice_from({"system": system, "axes": {"a": [-1, 1], "b": [-1, 1]}, "count": "stable"})
-    with pytest.raises(NothingToCountError, match="zero at each solution, real or complex: none is stable") as caught:
+    with pytest.raises(
+        NothingToCountError, match="zero at each solution, real or complex: none is stable"
+    ) as caught:
         ask(slice)
     assert caught.value.part == "stable.1"
 
 
 def test_a_condition_that_is_zero_at_some_solutions_is_none_that_is_refused() -> None:
     system = {"unknowns": {"x": "real"}, "equations": ["x*(x - 2 + a)"], "stable": ["x"]}
-    found = ptmcad.classify({"system": system, "axes": {"a": [-1, 1], "b": [-1, 1]}, "count": "stable"})
+    found = ptmcad.classify(
+        {"system": system, "axes": {"a": [-1, 1], "b": [-1, 1]}, "count": "stable"}
+    )
     assert {region.stable for region in found.regions} == {1}
     assert check(found.slice).complex_solutions == 2
     assert verify(found).ok
@@ -117,7 +135,10 @@ MANY = {"unknowns": {"x": "real", "y": "real", "z": "real"},
 
 @pytest.mark.parametrize(
     ("system", "bound"),
-    [(MANY, 12 * 11 * 18), ({"unknowns": {"x": "angle"}, "equations": ["cos(40*x) - b*a*sin(x)"]}, 80)],
+    [
+        (MANY, 12 * 11 * 18),
+        ({"unknowns": {"x": "angle"}, "equations": ["cos(40*x) - b*a*sin(x)"]}, 80),
+    ],
     ids=["three polynomials", "a high harmonic"],
 )
 def test_check_does_not_count_more_than_it_can_at_once(system: dict[str, Any], bound: int) -> None:
@@ -137,13 +158,20 @@ MANY_SIDES = [
 
 @pytest.mark.parametrize(("system", "solutions"), MANY_SIDES)
 @pytest.mark.slow_cases("system1-16")
-def test_check_answers_at_once_whatever_the_inequalities(system: dict[str, Any], solutions: int) -> None:
+def test_check_answers_at_once_whatever_the_inequalities(
+    system: dict[str, Any], solutions: int
+) -> None:
     """A basis with the inverse of the inequalities' product takes minutes of each."""
-    assert check(slice_from({"system": system, "axes": {"a": [1, 3], "b": [1, 3]}})).complex_solutions == solutions
+    assert (
+        check(slice_from({"system": system, "axes": {"a": [1, 3], "b": [1, 3]}})).complex_solutions
+        == solutions
+    )
 
 
 @pytest.mark.parametrize("record", [CONTINUUM, DOUBLE], ids=["a continuum", "a double root"])
-def test_solutions_off_a_condition_are_as_many_as_the_saturated_ideal_has(record: dict[str, Any]) -> None:
+def test_solutions_off_a_condition_are_as_many_as_the_saturated_ideal_has(
+    record: dict[str, Any],
+) -> None:
     problem = problem_of(slice_from(record))
     values = problem.on.values((fmpq(1, 3), fmpq(2, 5)))
     algebra = point_system(problem.system, values, saturated=True).algebra
@@ -153,7 +181,11 @@ def test_solutions_off_a_condition_are_as_many_as_the_saturated_ideal_has(record
 
 
 def test_what_counts_is_taken_with_its_multiplicity() -> None:
-    system = {"unknowns": {"x": "real"}, "equations": ["x^3*(x - 1)^2*(x - a)*(x - b)"], "positive": ["x^2"]}
+    system = {
+        "unknowns": {"x": "real"},
+        "equations": ["x^3*(x - 1)^2*(x - a)*(x - b)"],
+        "positive": ["x^2"],
+    }
     problem = problem_of(slice_from({"system": system, "axes": {"a": [2, 3], "b": [4, 5]}}))
     values = problem.on.values((fmpq(5, 2), fmpq(9, 2)))
     assert solutions_at(problem.system, values) == (4, 7)
@@ -162,7 +194,9 @@ def test_what_counts_is_taken_with_its_multiplicity() -> None:
 
 @pytest.mark.slow
 def test_check_does_not_count_where_a_basis_gets_large() -> None:
-    """Four angles with dense equations: no basis is computed to its end, though the degrees are small."""
+    """Four angles with dense equations: no basis is computed to its end, though the degrees are
+    small.
+    """
     terms = [f"{f}({x})" for x in "wxyz" for f in ("cos", "sin")]
     squares = " + ".join(f"{(7 * k + 3 * n) % 11 + 1}*{p}*{q}"
                          for k, p in enumerate(terms) for n, q in enumerate(terms[k:], 2))  # fmt: skip

@@ -1,4 +1,6 @@
-"""Continuous quantities over maps, against exact poses, roots in closed form, and a landscape flooded on a grid."""
+"""Continuous quantities over maps, against exact poses, roots in closed form, and a landscape
+flooded on a grid.
+"""
 
 from __future__ import annotations
 
@@ -58,8 +60,12 @@ def exact_poses_at(name: str, result: RegionMap, x: Fraction, y: Fraction) -> tu
     return KNOWN[name, x, y]
 
 
-def compare(result: RegionMap, value: str, pose: str, sides: tuple[int, int], number: int, seed: int) -> None:
-    """Random pixels against `solve`: relative to the largest value, to 9 digits; nan where there is no such pose."""
+def compare(
+    result: RegionMap, value: str, pose: str, sides: tuple[int, int], number: int, seed: int
+) -> None:
+    """Random pixels against `solve`: relative to the largest value, to 9 digits; nan where there is
+    no such pose.
+    """
     field = field_of(
         result, request_of(result.slice, value, pose), *sides, checks=5
     )  # the comparison below is by more pixels
@@ -86,15 +92,24 @@ def compare(result: RegionMap, value: str, pose: str, sides: tuple[int, int], nu
 
 
 @pytest.mark.parametrize(
-    "value", few(QUANTITIES, "energy", "stiffness", "angle:th2", "force:k1", "sin(th1)*L2/rho + th2^2")
+    "value",
+    few(QUANTITIES, "energy", "stiffness", "angle:th2", "force:k1", "sin(th1)*L2/rho + th2^2"),
 )
 @pytest.mark.fast_cases("energy", "force:k1")
 def test_quantities_are_those_of_exact_poses(value: str) -> None:
-    compare(shipped("fig4"), value, "stable:2" if value == "stiffness" else "stable:1", (24, 18), 10, 0)
+    compare(
+        shipped("fig4"), value, "stable:2" if value == "stiffness" else "stable:1", (24, 18), 10, 0
+    )
 
 
 @pytest.mark.parametrize(
-    "pose", few(["stable:2", "unstable:1", "saddle:3", "maximum:2", "pose:5"], "stable:2", "unstable:1", "maximum:2")
+    "pose",
+    few(
+        ["stable:2", "unstable:1", "saddle:3", "maximum:2", "pose:5"],
+        "stable:2",
+        "unstable:1",
+        "maximum:2",
+    ),
 )
 @pytest.mark.fast_cases("maximum:2")
 def test_poses_are_those_of_solve(pose: str) -> None:
@@ -115,7 +130,9 @@ def test_two_thousand_pixels_of_figure_4() -> None:
 
 
 def flooded(energy: np.ndarray, start: tuple[int, int], others: list[tuple[int, int]]) -> float:
-    """The lowest level at which a pixel of a torus is joined to another one, by pixels added in their order."""
+    """The lowest level at which a pixel of a torus is joined to another one, by pixels added in
+    their order.
+    """
     n = len(energy)
     parent = list(range(n * n))
 
@@ -146,7 +163,10 @@ def test_a_barrier_is_the_level_at_which_a_flooded_landscape_joins_two_poses(num
     """By a way of its own: 240 x 240 points of the torus, added from the lowest upwards."""
     result = shipped("fig4")
     sides = (16, 16)
-    one, two = (field_of(result, request_of(result.slice, "barrier", f"stable:{k}"), *sides, checks=5) for k in (1, 2))
+    one, two = (
+        field_of(result, request_of(result.slice, "barrier", f"stable:{k}"), *sides, checks=5)
+        for k in (1, 2)
+    )
     assert (np.isnan(one.values) == (result.grid(*sides).stable < 2)).all()
     rows, columns = np.nonzero(~np.isnan(one.values))
     n = 240
@@ -200,7 +220,9 @@ def test_a_certified_map_and_its_stable_poses(monkeypatch: pytest.MonkeyPatch) -
     field = field_of(result, request_of(result.slice, "energy", "stable:1"), 12, checks=10)
     assert (field.missed, field.checked > 0, field.difference < 1e-9) == (0, True, True)
     assert (np.isnan(field.values) == (result.grid(12).stable < 1)).all()
-    monkeypatch.setattr("ptmcad.ask.fields.field.filled", None)  # refused before anything is followed
+    monkeypatch.setattr(
+        "ptmcad.ask.fields.field.filled", None
+    )  # refused before anything is followed
     for value, pose in (("energy", "saddle:1"), ("barrier", "stable:1")):
         with pytest.raises(ConfigError, match="knows the stable equilibria only"):
             result.field(value, pose, 12)
@@ -252,14 +274,30 @@ def test_a_system_has_neither_energy_nor_springs(value: str, pose: str, message:
 
 
 @pytest.mark.usefixtures("coarse")
-def test_the_command_writes_pictures_and_numbers(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["map", str(CONFIGS / "fig2.yaml"), "--value", "barrier", "--pose", "stable:2", "--pixels", "20x15"]
-    assert run([*arguments, "--format", "png,svg,csv,npz", "--out", str(tmp_path), "--checks", "5"]) == 0
+def test_the_command_writes_pictures_and_numbers(
+    tmp_path: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = [
+        "map",
+        str(CONFIGS / "fig2.yaml"),
+        "--value",
+        "barrier",
+        "--pose",
+        "stable:2",
+        "--pixels",
+        "20x15",
+    ]
+    assert (
+        run([*arguments, "--format", "png,svg,csv,npz", "--out", str(tmp_path), "--checks", "5"])
+        == 0
+    )
     said = capsys.readouterr().out
     assert "barrier of stable:2: " in said
     assert "5 random pixels agree with exact poses" in said
     stem = "fig2-barrier-stable-2"
-    assert {p.name for p in tmp_path.iterdir()} == {f"{stem}.{kind}" for kind in ("png", "svg", "csv", "npz")}
+    assert {p.name for p in tmp_path.iterdir()} == {
+        f"{stem}.{kind}" for kind in ("png", "svg", "csv", "npz")
+    }
     expected = field_of(
         shipped("fig2"), request_of(shipped("fig2").slice, "barrier", "stable:2"), 20, 15, checks=0
     ).values
@@ -278,11 +316,24 @@ def test_the_command_takes_a_result_whose_map_is_not_made_again(
     result = tmp_path / "stored.json"
     result.write_text(shipped("fig2").to_json())
     monkeypatch.setattr("ptmcad.ask.classification.region_map", fail)
-    wanted = ["--pixels", "12x9", "--checks", "0", "--format", "npz", "--tolerance", "1/9", "--out", str(tmp_path)]
+    wanted = [
+        "--pixels",
+        "12x9",
+        "--checks",
+        "0",
+        "--format",
+        "npz",
+        "--tolerance",
+        "1/9",
+        "--out",
+        str(tmp_path),
+    ]
     assert run(["map", str(result), *wanted]) == 0
     assert "--tolerance has no effect here: the map is made already" in capsys.readouterr().err
     with np.load(tmp_path / "fig2-energy-stable-1.npz") as arrays:
-        assert np.array_equal(arrays["values"], shipped("fig2").field("energy", "stable:1", 12, 9).values)
+        assert np.array_equal(
+            arrays["values"], shipped("fig2").field("energy", "stable:1", 12, 9).values
+        )
     assert run(["map", str(result), "--set", "L1=2"]) == 2
     assert "--set: a result has its slice already" in capsys.readouterr().err
     first = shipped("fig2").critical_values[0]
@@ -295,14 +346,20 @@ def test_the_command_takes_a_result_whose_map_is_not_made_again(
     assert "stored.json: is damaged or not a ptmcad-region-map/" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("arguments", [["--value", "nothing"], ["--pose", "best"], ["--pixels", "0"]])
-def test_bad_options_leave_nothing(arguments: list[str], tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    "arguments", [["--value", "nothing"], ["--pose", "best"], ["--pixels", "0"]]
+)
+def test_bad_options_leave_nothing(
+    arguments: list[str], tmp_path: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["map", "--slice", "L2,rho", "--out", str(tmp_path), *arguments]) == 2
     assert arguments[0] in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("request_", ["--value barrier --pose saddle:1", "--value enrgy", "--value th1^1e400"])
+@pytest.mark.parametrize(
+    "request_", ["--value barrier --pose saddle:1", "--value enrgy", "--value th1^1e400"]
+)
 def test_what_means_nothing_is_refused_before_the_map_is_made(
     request_: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -317,7 +374,19 @@ def test_a_difference_from_exact_poses_is_said(
     def wrong(*_: object, **__: object) -> Field:
         values = np.ones((2, 2))
         sides = np.array([0.0, 1.0])
-        return Field("energy", "stable:1", "", sides, sides, ("L2", "rho"), values, values.astype(int), 0, 3, 0.25)
+        return Field(
+            "energy",
+            "stable:1",
+            "",
+            sides,
+            sides,
+            ("L2", "rho"),
+            values,
+            values.astype(int),
+            0,
+            3,
+            0.25,
+        )
 
     monkeypatch.setattr("ptmcad.ask.fields.field.field_of", wrong)
     assert command.MAX_DIFFERENCE < 0.25
@@ -328,7 +397,10 @@ def test_a_difference_from_exact_poses_is_said(
 def test_derivatives_of_the_equations_are_those_of_differences() -> None:
     """Gradient and Hessian by the chain rule against central differences of the energy."""
     result = shipped("fig4")
-    values = {n: float(e.evaluate(Fraction(7, 10), Fraction(3, 2))) for n, e in result.slice.parameters.items()}
+    values = {
+        n: float(e.evaluate(Fraction(7, 10), Fraction(3, 2)))
+        for n, e in result.slice.parameters.items()
+    }
     values |= {"l0_1": 0.3, "l0_2": 0.1, "l0_3": 0.7}
     at = np.random.default_rng(1).uniform(-3, 3, (2, 5))
     state, step = equations.state_at(result.slice.model, values, at), 1e-5
@@ -339,8 +411,12 @@ def test_derivatives_of_the_equations_are_those_of_differences() -> None:
         up, down = (equations.state_at(result.slice.model, values, m) for m in moved)
         assert up.energy is not None
         assert down.energy is not None
-        assert state.residuals[k] == pytest.approx((up.energy - down.energy) / (2 * step), rel=1e-6, abs=1e-5)
-        assert state.jacobian[k] == pytest.approx((up.residuals - down.residuals) / (2 * step), rel=1e-6, abs=1e-5)
+        assert state.residuals[k] == pytest.approx(
+            (up.energy - down.energy) / (2 * step), rel=1e-6, abs=1e-5
+        )
+        assert state.jacobian[k] == pytest.approx(
+            (up.residuals - down.residuals) / (2 * step), rel=1e-6, abs=1e-5
+        )
 
 
 TURNED = {
@@ -363,7 +439,11 @@ def test_moments_on_their_own_unknown_are_in_the_energy() -> None:
     field = result.field("energy", "stable:1", 9)
     assert (field.missed, field.checked > 0, field.difference < 1e-9) == (0, True, True)
     for row, column in ((0, 0), (4, 7), (8, 3)):
-        pose = next(p for p in exact_at(result, *centre(result, result.grid(9), row, column)).equilibria if p.stable)
+        pose = next(
+            p
+            for p in exact_at(result, *centre(result, result.grid(9), row, column)).equilibria
+            if p.stable
+        )
         assert field.values[row, column] == pytest.approx(float(pose.known_energy.center), abs=1e-9)
     with pytest.raises(ConfigError, match="under the moment a pose"):
         result.field("barrier", "stable:1", 9)
@@ -372,7 +452,9 @@ def test_moments_on_their_own_unknown_are_in_the_energy() -> None:
 def test_springs_have_the_names_of_other_commands() -> None:
     """By their stiffness or by their ends, as `range --quantity` takes them too."""
     result = shipped("fig2")
-    assert np.array_equal(result.field("force:k2", columns=5).values, result.field("force:A2A3", columns=5).values)
+    assert np.array_equal(
+        result.field("force:k2", columns=5).values, result.field("force:A2A3", columns=5).values
+    )
 
 
 def test_a_barrier_that_was_not_found_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -388,7 +470,9 @@ def test_a_barrier_among_more_poses_than_an_integer_has_bits() -> None:
 
     def evaluate(_pixels: Any, points: np.ndarray) -> ModelState:
         angle = waves * points[0]
-        return ModelState(waves * np.sin(angle)[None], waves**2 * np.cos(angle)[None, None], -np.cos(angle))
+        return ModelState(
+            waves * np.sin(angle)[None], waves**2 * np.cos(angle)[None, None], -np.cos(angle)
+        )
 
     at = (np.pi * np.arange(2 * waves) / waves)[None, None]
     for chosen in (0, 66, 78):
@@ -435,7 +519,9 @@ def test_at_its_poles_an_expression_has_no_value(recwarn: pytest.WarningsRecorde
         ("0*10^300", 0, 0.0),
     ],
 )
-def test_values_that_no_double_is_near_are_undecided_and_counted(value: str, beyond: int, known: float | None) -> None:
+def test_values_that_no_double_is_near_are_undecided_and_counted(
+    value: str, beyond: int, known: float | None
+) -> None:
     field = shipped("fig4").field(value, "stable:1", 3)
     at_one = value.startswith("rho^")  # the middle column is at rho = 1
     assert field.beyond == beyond - 3 * at_one
@@ -449,7 +535,17 @@ def test_the_command_says_at_how_many_pixels_a_value_is_beyond_doubles(
 ) -> None:
     result = tmp_path / "fig4.json"
     result.write_text(shipped("fig4").to_json(), encoding="utf-8")
-    asked = ["map", str(result), "--pixels", "7", "--out", str(tmp_path), "--format", "csv", "--value"]
+    asked = [
+        "map",
+        str(result),
+        "--pixels",
+        "7",
+        "--out",
+        str(tmp_path),
+        "--format",
+        "csv",
+        "--value",
+    ]
     assert run([*asked, "rho^1000000"]) == 0
     out, err = capsys.readouterr()
     assert "rho^1000000 of stable:1: 1 to 1, at 14.3 % of the pixels" in out
@@ -459,7 +555,10 @@ def test_the_command_says_at_how_many_pixels_a_value_is_beyond_doubles(
     )
     assert run([*asked, "1e-400*rho"]) == 0
     out, err = capsys.readouterr()
-    assert "1e-400*rho of stable:1 is beyond doubles wherever it has a value" in out and "49 pixels" in err
+    assert (
+        "1e-400*rho of stable:1 is beyond doubles wherever it has a value" in out
+        and "49 pixels" in err
+    )
     assert run([*asked, "rho^2"]) == 0
     assert capsys.readouterr().err == ""
 
@@ -478,7 +577,9 @@ def test_the_command_says_at_how_many_pixels_a_value_is_beyond_doubles(
     r"1e-400*rho-1e\u2212400*\u03c1 of stable pose 1: fig4-1e\u2212400*\u03c1 is beyond doubles",
     r"1/(rho-1)-1/(\u03c1\u22121) of stable pose 1: fig4-no pixel has a value",
 )
-def test_a_picture_names_its_quantity_as_the_bar_beside_it(value: str, title: str, nothing: str) -> None:
+def test_a_picture_names_its_quantity_as_the_bar_beside_it(
+    value: str, title: str, nothing: str
+) -> None:
     from ptmcad.show.render.field import field_figure
     from ptmcad.show.render.printing import settings
 
@@ -495,23 +596,76 @@ def test_a_pose_that_the_counts_exclude_is_refused_before_anything_is_drawn(
 ) -> None:
     result = tmp_path / "fig4.json"
     result.write_text(shipped("fig4").to_json(), encoding="utf-8")
-    for pose, most in (("stable:9", "at most 2"), ("maximum:3", "at most 2"), ("pose:7", "at most 6")):
-        assert run(["map", str(result), "--pose", pose, "--pixels", "7", "--checks", "1", "--out", str(tmp_path)]) == 2
-        assert f"--pose: there is no {pose} in the window: of its kind there are {most}" in capsys.readouterr().err
+    for pose, most in (
+        ("stable:9", "at most 2"),
+        ("maximum:3", "at most 2"),
+        ("pose:7", "at most 6"),
+    ):
+        assert (
+            run(
+                [
+                    "map",
+                    str(result),
+                    "--pose",
+                    pose,
+                    "--pixels",
+                    "7",
+                    "--checks",
+                    "1",
+                    "--out",
+                    str(tmp_path),
+                ]
+            )
+            == 2
+        )
+        assert (
+            f"--pose: there is no {pose} in the window: of its kind there are {most}"
+            in capsys.readouterr().err
+        )
     # what the counts leave open is seen at the pixels
     assert (
-        run(["map", str(result), "--pose", "maximum:2", "--pixels", "7", "--checks", "1", "--out", str(tmp_path)]) == 2
+        run(
+            [
+                "map",
+                str(result),
+                "--pose",
+                "maximum:2",
+                "--pixels",
+                "7",
+                "--checks",
+                "1",
+                "--out",
+                str(tmp_path),
+            ]
+        )
+        == 2
     )
     assert "no pixel has maximum:2" in capsys.readouterr().err
     assert (
-        run(["map", str(result), "--pose", "saddle:3", "--pixels", "7", "--checks", "1", "--out", str(tmp_path)]) == 0
+        run(
+            [
+                "map",
+                str(result),
+                "--pose",
+                "saddle:3",
+                "--pixels",
+                "7",
+                "--checks",
+                "1",
+                "--out",
+                str(tmp_path),
+            ]
+        )
+        == 0
     )
     assert [path.suffix for path in tmp_path.iterdir()].count(".png") == 1
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("coarse")
-def test_a_quantitys_map_is_drawn_in_a_style_at_its_size(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_quantitys_map_is_drawn_in_a_style_at_its_size(
+    tmp_path: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     result = tmp_path / "fig4.json"
     result.write_text(shipped("fig4").to_json(), encoding="utf-8")
     asked = ["map", str(result), "--pixels", "12", "--checks", "0", "--out", str(tmp_path)]
@@ -519,6 +673,9 @@ def test_a_quantitys_map_is_drawn_in_a_style_at_its_size(tmp_path: Any, capsys: 
     assert imread(tmp_path / "fig4-energy-stable-2.png").shape[:2] == (260, 350)
     capsys.readouterr()
     assert run([*asked, "--size", "1.5x1.5in"]) == 2
-    assert "error: --size: the map with its scale does not fit into 1.50x1.50in" in capsys.readouterr().err
+    assert (
+        "error: --size: the map with its scale does not fit into 1.50x1.50in"
+        in capsys.readouterr().err
+    )
     assert run([*asked, "--thin-lines", "dashed", "--format", "csv", "--dpi", "80"]) == 0
     assert "--dpi has no effect here: no picture is written" in capsys.readouterr().err

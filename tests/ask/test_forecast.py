@@ -26,12 +26,16 @@ def test_a_record_is_told_its_curve_and_its_cost() -> None:
 def test_a_component_that_is_an_axis_is_told() -> None:
     """Von Mises' truss is flat where a = 0, and its two poses are one."""
     lines = list(cost_text(checked(load(CONFIGS / "systems" / "von-mises-truss.yaml"))))
-    assert lines[1].endswith("critical of degree 6, 6 in a, 6 in f: up to 10 terms; and the line a = 0")
+    assert lines[1].endswith(
+        "critical of degree 6, 6 in a, 6 in f: up to 10 terms; and the line a = 0"
+    )
 
 
 @pytest.mark.slow
 def test_the_way_of_the_projection_is_told() -> None:
-    small, large = (list(foretold(load(CONFIGS / f"{name}.yaml"))) for name in ("fig4", "systems/kuramoto-4"))
+    small, large = (
+        list(foretold(load(CONFIGS / f"{name}.yaml"))) for name in ("fig4", "systems/kuramoto-4")
+    )
     assert "the curve's discriminant from 121 values in integers" in small
     assert "14 complex solutions" in large
     assert "the curve's discriminant from 1985 values in integers" in large

@@ -1,4 +1,6 @@
-"""Paths of stable poses with free lengths: against exact paths where these are tiny, proved poses, a film's fall."""
+"""Paths of stable poses with free lengths: against exact paths where these are tiny, proved poses,
+a film's fall.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +50,9 @@ def test_it_snaps_at_the_fold_to_the_pose_that_is_left(found: PosePaths) -> None
     assert end.energy is not None
     assert end.target_energy is not None
     points = [end.at.center + Fraction(k, 10**5) for k in (1, 2)]
-    beyond = [ptmcad.solve(rho=rho, L2="3/2", F3=-10, F4=-10, l0="1/5").equilibria for rho in points]
+    beyond = [
+        ptmcad.solve(rho=rho, L2="3/2", F3=-10, F4=-10, l0="1/5").equilibria for rho in points
+    ]
     near, far = (next(p for p in poses if p.stable) for poses in beyond)
     for got, one, two in zip(end.target.angles, near.angles, far.angles, strict=True):
         assert got.radius < Fraction(1, 10**20)
@@ -60,8 +64,13 @@ def test_it_snaps_at_the_fold_to_the_pose_that_is_left(found: PosePaths) -> None
 
 @pytest.mark.slow
 def test_what_holds_at_a_fold_is_told_there_wherever_the_path_began(found: PosePaths) -> None:
-    """The energy of the fold itself, by poses before it: it changes as distance, and their square roots cancel."""
-    ends = [found.paths[1].high, ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, "23/20", 2).paths[0].high]
+    """The energy of the fold itself, by poses before it: it changes as distance, and their square
+    roots cancel.
+    """
+    ends = [
+        found.paths[1].high,
+        ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, "23/20", 2).paths[0].high,
+    ]
     (one, two) = (
         tuple(e.text(10) for e in (*end.target.angles, end.energy, end.target_energy))  # type: ignore[misc, union-attr]
         for end in ends
@@ -69,7 +78,9 @@ def test_what_holds_at_a_fold_is_told_there_wherever_the_path_began(found: PoseP
     assert one == two
     assert isinstance(ends[0].at, Enclosure)
     assert ends[0].energy is not None
-    before = ptmcad.solve(rho=ends[0].at.center - Fraction(1, 10**6), L2="3/2", F3=-10, F4=-10, l0="1/5").equilibria
+    before = ptmcad.solve(
+        rho=ends[0].at.center - Fraction(1, 10**6), L2="3/2", F3=-10, F4=-10, l0="1/5"
+    ).equilibria
     folding = [p.known_energy for p in before if p.index in (0, 1)]
     assert min(abs(float(e) - float(ends[0].energy)) for e in folding) < 1e-3
     assert ends[0].energy.radius < Fraction(1, 10**20)
@@ -97,10 +108,16 @@ def test_every_point_is_a_proved_stable_pose_and_neighbours_are_near(found: Pose
 def test_tiny_free_lengths_make_no_difference() -> None:
     """To the exact paths without, which are proved."""
     slices = [slice_of(free=free, window="4/5:6/5") for free in ("1/1000000", "0")]
-    free, exact = (ptmcad.pose_paths(slice, "rho", {"L2": "3/2"}, "9/10", 2).paths[0] for slice in slices)
+    free, exact = (
+        ptmcad.pose_paths(slice, "rho", {"L2": "3/2"}, "9/10", 2).paths[0] for slice in slices
+    )
     assert isinstance(free.high.at, Enclosure)
     assert isinstance(exact.high.at, AlgebraicNumber)
-    assert (free.low.fate, free.high.fate) == (exact.low.fate, exact.high.fate) == (Fate.WINDOW, Fate.SNAP)
+    assert (
+        (free.low.fate, free.high.fate)
+        == (exact.low.fate, exact.high.fate)
+        == (Fate.WINDOW, Fate.SNAP)
+    )
     assert float(free.high.at) == pytest.approx(float(exact.high.at), abs=1e-4)
     assert free.high.meeting == exact.high.meeting
     assert free.high.target is not None
@@ -112,7 +129,9 @@ def test_tiny_free_lengths_make_no_difference() -> None:
 @pytest.mark.slow
 def test_a_film_falls_at_the_same_place(found: PosePaths) -> None:
     slice = ptmcad.slice_from_options(FREE02, ranges=["rho=11/10:13/10", "L2=7/5:8/5"])
-    motion = ptmcad.classify(slice, tolerance="1/5", jobs=1).animate("rho=6/5:5/4,L2=3/2", "stable:2", frames=6)
+    motion = ptmcad.classify(slice, tolerance="1/5", jobs=1).animate(
+        "rho=6/5:5/4,L2=3/2", "stable:2", frames=6
+    )
     (fall,) = motion.falls
     end = found.paths[1].high
     assert isinstance(end.at, Enclosure)
@@ -120,12 +139,16 @@ def test_a_film_falls_at_the_same_place(found: PosePaths) -> None:
 
 
 @pytest.mark.slow
-def test_a_value_without_an_answer_leaves_a_point_out(monkeypatch: pytest.MonkeyPatch, found: PosePaths) -> None:
+def test_a_value_without_an_answer_leaves_a_point_out(
+    monkeypatch: pytest.MonkeyPatch, found: PosePaths
+) -> None:
     """Here the one just beyond a fold of others, which the path passes."""
     slice, own = slice_of(window="1:6/5"), module.SolutionsOnLine.at
     known: dict[Fraction, Sample | None] = {}
 
-    def at(line: SolutionsOnLine, value: Fraction) -> Sample | None:  # both times at nearly the same values
+    def at(
+        line: SolutionsOnLine, value: Fraction
+    ) -> Sample | None:  # both times at nearly the same values
         if value not in known:
             known[value] = own(line, value)
         return known[value]
@@ -168,14 +191,39 @@ def test_starts_that_there_are_not(start: str, number: int | None, message: str,
 
 
 @pytest.mark.usefixtures("coarse")
-def test_the_command_draws_and_tells_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    asked = ["range", str(FREE02), "--along", "rho", "--at", "L2=3/2", "--range", "rho=6/5:5/4", "--path", "61/50"]
-    assert run([*asked, "--pose", "2", "--format", "json,svg", "--out", str(tmp_path), "--name", "x"]) == 0
+def test_the_command_draws_and_tells_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = [
+        "range",
+        str(FREE02),
+        "--along",
+        "rho",
+        "--at",
+        "L2=3/2",
+        "--range",
+        "rho=6/5:5/4",
+        "--path",
+        "61/50",
+    ]
+    assert (
+        run([*asked, "--pose", "2", "--format", "json,svg", "--out", str(tmp_path), "--name", "x"])
+        == 0
+    )
     out = capsys.readouterr().out
-    assert re.search(r"^pose 2 at rho = 1\.22: .*; y3 > 0 and y4 > 0 at all points that were computed$", out, re.M), out
-    assert "  up: rho = 1.231662423: fold: the stable pose merges with a saddle and both vanish; the mechanism" in out
+    assert re.search(
+        r"^pose 2 at rho = 1\.22: .*; y3 > 0 and y4 > 0 at all points that were computed$",
+        out,
+        re.M,
+    ), out
+    assert (
+        "  up: rho = 1.231662423: fold: the stable pose merges with a saddle and both vanish; the mechanism"
+        in out
+    )
     assert "followed in floating point from one proved solution to the next" in out
-    assert "what meets at an end is told by the numbers on both sides of it, and is not proved" in out
+    assert (
+        "what meets at an end is told by the numbers on both sides of it, and is not proved" in out
+    )
     assert {path.name for path in tmp_path.iterdir()} == {"x.json", "x-path.svg"}
     data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
@@ -201,7 +249,9 @@ def test_a_slider_on_a_level_is_none_of_the_points_that_rise() -> None:
         "axes": {"F": ["-1/8", "1/8"], "c": ["1/10", 1]},
     })  # fmt: skip
     found = ptmcad.pose_paths(slider, "F", {"c": "1/5"}, 0)
-    assert [(len(point.sides), path.upright) for path in found.paths for point in path.points[:1]] == [(1, True)] * 2
+    assert [
+        (len(point.sides), path.upright) for path in found.paths for point in path.points[:1]
+    ] == [(1, True)] * 2
 
 
 @pytest.mark.slow

@@ -41,9 +41,14 @@ def test_points_next_to_walls(name: str) -> None:
     for stack in result.stacks:
         u = from_fraction(stack.sample)
         for level, wall in enumerate(stack.walls):
-            p = curve(wall.component, from_plane(result.components[wall.component].polynomial), base).fibre(u)
+            p = curve(
+                wall.component, from_plane(result.components[wall.component].polynomial), base
+            ).fibre(u)
             root = refine(isolate(p, low, high)[wall.root], from_fraction(TINY / 4))
-            for v, expected in ((to_fraction(root.high) + TINY, level + 1), (to_fraction(root.low) - TINY, level)):
+            for v, expected in (
+                (to_fraction(root.high) + TINY, level + 1),
+                (to_fraction(root.low) - TINY, level),
+            ):
                 found = result.locate(**{names[base]: stack.sample, names[1 - base]: v})
                 assert found.status is Status.EXACT
                 assert found.cell == stack.cells[expected]
@@ -62,7 +67,16 @@ def test_on_the_variety_and_next_to_it() -> None:
 
 @pytest.mark.parametrize(
     ("rho", "length"),
-    [("-1", "1"), ("3", "1"), ("0", "1"), ("2", "1"), ("1", "0"), ("1", "2"), ("0", "0"), ("1", "1e9")],
+    [
+        ("-1", "1"),
+        ("3", "1"),
+        ("0", "1"),
+        ("2", "1"),
+        ("1", "0"),
+        ("1", "2"),
+        ("0", "0"),
+        ("1", "1e9"),
+    ],
 )
 def test_outside_and_on_the_edge(rho: str, length: str) -> None:
     """The window is open: its edge is no part of the map."""
@@ -92,7 +106,9 @@ def test_on_rational_critical_abscissae(name: str) -> None:
 
 
 def test_a_rational_critical_abscissa_off_the_curves() -> None:
-    """fig2's lines meet on the edge over L2 = 1: the stacks end there, the points over it lie in cells all the same."""
+    """fig2's lines meet on the edge over L2 = 1: the stacks end there, the points over it lie in
+    cells all the same.
+    """
     result = shipped("fig2")
     rational = [v.low for v in result.critical_values if v.low == v.high]
     name = result.slice.axis_names[result.base]
@@ -107,7 +123,9 @@ def test_a_rational_critical_abscissa_off_the_curves() -> None:
 
 
 def test_a_float_stands_for_its_shortest_decimal() -> None:
-    """fig. 2 has a wall on 2 rho = L2 + 1, which the binary value of the float 0.7, a little less than 7/10, misses."""
+    """fig. 2 has a wall on 2 rho = L2 + 1, which the binary value of the float 0.7, a little less
+    than 7/10, misses.
+    """
     result = shipped("fig2")
     assert result.locate(rho=Fraction(0.7), L2="2/5").status is Status.EXACT
     for number in ("0.7", 0.7, np.float64(0.7), np.float32(0.7)):
@@ -121,7 +139,12 @@ def test_values_are_exact_numbers() -> None:
     assert result.locate(rho="7/10", L2="3/2") == result.locate(rho="0.7", L2=Fraction(3, 2))
     assert result.locate(rho="0.7" + "0" * 60, L2="1.5").stable == 2
     no_numbers = ("x", "nan", float("nan"), float("inf"), np.True_)
-    for bad in ({"rho": 1}, {"rho": 1, "L2": 1, "k": 1}, {}, *({"rho": value, "L2": 1} for value in no_numbers)):
+    for bad in (
+        {"rho": 1},
+        {"rho": 1, "L2": 1, "k": 1},
+        {},
+        *({"rho": value, "L2": 1} for value in no_numbers),
+    ):
         with pytest.raises(ConfigError):
             result.locate(**bad)
 
@@ -140,7 +163,9 @@ def test_json_round_trip(name: str) -> None:
     assert "timings" not in result.to_json(timings=False)
 
 
-@pytest.mark.parametrize("text", ["{}", "[]", '{"format": "other"}', "3", '{"format": "ptmcad-region-map/1"}'])
+@pytest.mark.parametrize(
+    "text", ["{}", "[]", '{"format": "other"}', "3", '{"format": "ptmcad-region-map/1"}']
+)
 def test_other_json_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r"."):
         RegionMap.from_json(text)
@@ -167,11 +192,16 @@ def test_equal_bytes_in_other_processes() -> None:
     ]
     assert texts[0] == texts[1]
     assert RegionMap.from_json(texts[0]).slice == load(path).__class__(
-        **{f: getattr(RegionMap.from_json(texts[0]).slice, f) for f in load(path).__dataclass_fields__}
+        **{
+            f: getattr(RegionMap.from_json(texts[0]).slice, f)
+            for f in load(path).__dataclass_fields__
+        }
     )
 
 
-def test_maps_that_are_asked_in_turn_are_prepared_once_each(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_maps_that_are_asked_in_turn_are_prepared_once_each(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Exact and certified ones; what prepares them takes seconds for a large one."""
     made: list[str] = []
 
@@ -188,6 +218,8 @@ def test_maps_that_are_asked_in_turn_are_prepared_once_each(monkeypatch: pytest.
     maps = [RegionMap.from_json(result.to_json()) for result in known]
     for k in range(1, 6):
         for result in maps:
-            x, y = (axis.low + (axis.high - axis.low) * Fraction(k, 17) for axis in result.slice.axes)
+            x, y = (
+                axis.low + (axis.high - axis.low) * Fraction(k, 17) for axis in result.slice.axes
+            )
             result.locate(**dict(zip(result.slice.axis_names, (x, y), strict=True)))
     assert len(made) == len(maps)

@@ -1,4 +1,6 @@
-"""Four angles at a point: what a basis over Q does not count is searched for, and both agree where both answer."""
+"""Four angles at a point: what a basis over Q does not count is searched for, and both agree where
+both answer.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +53,9 @@ def pendulums() -> Model:
 
 @pytest.mark.slow
 def test_a_chain_of_four_bars_is_counted() -> None:
-    """70 complex solutions, whose basis over Q took minutes and more; Euler's sum is 2 - 7 + 9 - 5 + 1 = 0."""
+    """70 complex solutions, whose basis over Q took minutes and more; Euler's sum is
+    2 - 7 + 9 - 5 + 1 = 0.
+    """
     found = ptmcad.counts_at(chain(), a="1/3", F="1/2")
     assert (found.total, found.stable, found.index) == (24, 2, (2, 7, 9, 5, 1))
     poses = ptmcad.solve(digits=6, model=chain(), a="1/3", F="1/2")
@@ -67,9 +71,13 @@ def test_algebra_and_search_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     assert ptmcad.solve(model=pendulums(), F="-3/2").status is Status.CERTIFIED
 
 
-def test_a_potential_of_four_angles_is_counted_in_the_same_way(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_potential_of_four_angles_is_counted_in_the_same_way(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     unknowns = dict.fromkeys(("p", "q", "r", "s"), "angle")
-    system = ptmcad.System(unknowns=unknowns, potential="cos(p) + b*cos(q) + sin(r) - 2*cos(s) + cos(p - q)/5")
+    system = ptmcad.System(
+        unknowns=unknowns, potential="cos(p) + b*cos(q) + sin(r) - 2*cos(s) + cos(p - q)/5"
+    )
     exact = ptmcad.counts_at(system, b=2)
     monkeypatch.setattr(manyangles, "_MAX_WORK", (1, 1, 1, 1))
     assert ptmcad.counts_at(system, b=2) == exact
@@ -86,13 +94,17 @@ def test_a_search_that_does_not_end_is_refused_by_name() -> None:
 def test_more_angles_than_are_searched_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ptmcad.certified.plain.problem.MAX_UNKNOWNS_AT_POINTS", 3)
     monkeypatch.setattr("ptmcad.algebra.msolve.program", lambda: None)
-    with pytest.raises(LimitReached, match=r"takes up to 3 unknowns there; .*pip install 'ptmcad\[large\]'"):
+    with pytest.raises(
+        LimitReached, match=r"takes up to 3 unknowns there; .*pip install 'ptmcad\[large\]'"
+    ):
         ptmcad.counts_at(chain(), a="1/3", F="1/2")
 
 
 @needs_msolve
 @pytest.mark.slow
-def test_what_the_search_does_not_tell_is_solved_with_a_basis_by_msolve(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_the_search_does_not_tell_is_solved_with_a_basis_by_msolve(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     searched = ptmcad.solve(digits=6, model=chain(), a="1/3", F="1/2")
     assert searched.status is Status.CERTIFIED
     monkeypatch.setattr("ptmcad.certified.plain.problem.MAX_UNKNOWNS_AT_POINTS", 3)

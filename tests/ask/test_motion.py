@@ -58,8 +58,12 @@ def test_every_step_is_one_of_all_equilibria_of_its_point(snap: Motion) -> None:
         assert (step.total, step.stable) == (len(poses), sum(p.stable is True for p in poses))
         levels = sorted((float(p.known_energy.center), bool(p.stable)) for p in poses)
         assert [s for _, s in sorted(step.others)] == [s for _, s in levels]
-        assert [h for h, _ in sorted(step.others)] == pytest.approx([h for h, _ in levels], rel=1e-9)
-        assert step.points == pytest.approx(np.array([[float(v) for v in near[0].nodes[n]] for n in near[0].nodes]))
+        assert [h for h, _ in sorted(step.others)] == pytest.approx(
+            [h for h, _ in levels], rel=1e-9
+        )
+        assert step.points == pytest.approx(
+            np.array([[float(v) for v in near[0].nodes[n]] for n in near[0].nodes])
+        )
     assert {step.stable for step in still} == {1, 2}
 
 
@@ -78,7 +82,9 @@ def test_a_fall_descends_and_counts_nothing(snap: Motion) -> None:
 @pytest.mark.slow
 def test_hysteresis_of_a_bistable_slider() -> None:
     """By hand: F^(2/3) + (2 c)^(2/3) = 1 at the folds; there and back it snaps at either side."""
-    motion = shipped("mechanisms/bistable-slider").animate({"F": [-1, 1, -1], "c": "1/5"}, frames=40)
+    motion = shipped("mechanisms/bistable-slider").animate(
+        {"F": [-1, 1, -1], "c": "1/5"}, frames=40
+    )
     fold = (1 - 0.4 ** (2 / 3)) ** 1.5
     assert [fall.at[0] for fall in motion.falls] == pytest.approx([fold, -fold], abs=1e-6)
     assert motion.steps[-1].unknowns == pytest.approx(motion.steps[0].unknowns)
@@ -90,7 +96,9 @@ def test_a_pose_that_gives_way_by_symmetry_falls_to_a_side() -> None:
     motion = shipped("mechanisms/inverted-pendulum").animate("H=0,W=-7/5:7/5", frames=20)
     (fall,) = motion.falls
     assert fall.at[1] == pytest.approx(1, abs=1e-6)
-    assert [abs(degrees(v)) for v in (*fall.before, *fall.after)] == pytest.approx([0, 180], abs=1e-3)
+    assert [abs(degrees(v)) for v in (*fall.before, *fall.after)] == pytest.approx(
+        [0, 180], abs=1e-3
+    )
 
 
 def turning() -> ptmcad.RegionMap:
@@ -115,7 +123,9 @@ def test_a_moment_that_turns_a_bar_for_ever_ends_the_motion() -> None:
     for step in motion.steps:
         assert np.sin(step.unknowns[0]) == pytest.approx(float(step.at[1]))
         # the energy less the moment's work, as the residuals are slopes of that
-        assert step.height == pytest.approx(1 - np.cos(step.unknowns[0]) - float(step.at[1]) * step.unknowns[0])
+        assert step.height == pytest.approx(
+            1 - np.cos(step.unknowns[0]) - float(step.at[1]) * step.unknowns[0]
+        )
 
 
 def test_what_was_not_stable_or_has_no_energy_does_not_fall() -> None:
@@ -126,7 +136,10 @@ def test_what_was_not_stable_or_has_no_energy_does_not_fall() -> None:
         "axes": {"a": [-1, 3], "b": [-2, 2]},
     }  # fmt: skip
     cubic = ptmcad.classify(record).animate("a=2:0,b=1/2", "pose:2", frames=12)
-    assert "a = 1.19055, b = 0.5 the pose vanishes, and without a potential nothing says where" in cubic.end
+    assert (
+        "a = 1.19055, b = 0.5 the pose vanishes, and without a potential nothing says where"
+        in cubic.end
+    )
     for step in cubic.steps:
         x, a = step.unknowns[0], float(step.at[0])
         assert abs(x**3 - a * x + 0.5) < 1e-9
@@ -155,7 +168,9 @@ def test_a_pose_that_is_lost_within_a_region_is_an_error(monkeypatch: pytest.Mon
         motion_of(shipped("fig4"), "rho=3/4:4/5,L2=3/2", frames=5)
 
 
-def test_a_pose_that_is_none_of_the_counted_ones_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pose_that_is_none_of_the_counted_ones_is_an_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(module, "SAME", 0.0)
     with pytest.raises(LostError, match="none of those that are counted"):
         motion_of(shipped("fig4"), "rho=3/4:4/5,L2=3/2", frames=5)
@@ -197,28 +212,43 @@ def test_other_requests_without_meaning_are_refused() -> None:
         with pytest.raises(ConfigError, match="is not a number of frames from 2 to 600"):
             shipped("fig4").animate("rho=1/2:1,L2=1", frames=frames)
     with pytest.raises(
-        ConfigError, match="there is no stable:2 at the path's start, rho = 1/10, L2 = 1: only 1 of them"
+        ConfigError,
+        match="there is no stable:2 at the path's start, rho = 1/10, L2 = 1: only 1 of them",
     ):
         shipped("fig4").animate("rho=1/10:1,L2=1", "stable:2")
 
 
 def test_a_path_goes_evenly_through_its_corners() -> None:
     slice = shipped("fig4").slice
-    corners = corners_of(slice, {"rho": [Fraction(1, 2), 1, 1, 1], "L2": ["1/2", "1/2", "1/2", "3/2"]})
+    corners = corners_of(
+        slice, {"rho": [Fraction(1, 2), 1, 1, 1], "L2": ["1/2", "1/2", "1/2", "3/2"]}
+    )
     course = Course.through(slice, corners)
     assert [course.at(Fraction(k, 6)) for k in range(7)] == [
-        (Fraction(1, 2) + Fraction(k, 4), Fraction(1, 2)) if k <= 2 else (1, Fraction(1, 2) + Fraction(k - 2, 4))
+        (Fraction(1, 2) + Fraction(k, 4), Fraction(1, 2))
+        if k <= 2
+        else (1, Fraction(1, 2) + Fraction(k - 2, 4))
         for k in range(7)
     ]
 
 
 def test_a_pose_that_comes_to_a_condition_leaves_and_none_falls_beyond() -> None:
     record = {
-        "system": {"unknowns": {"x": "real"}, "potential": "x^4/4 - x^2/2 - b*x", "positive": ["x + c"]},
+        "system": {
+            "unknowns": {"x": "real"},
+            "potential": "x^4/4 - x^2/2 - b*x",
+            "positive": ["x + c"],
+        },
         "axes": {"b": [-1, 1], "c": [0, 2]},
     }
     result = ptmcad.classify(ptmcad.slice_from_mapping(record))
     falls = result.animate("b=9/10:-9/10,c=1/4", frames=20)
-    assert falls.end == "at b = -0.3849, c = 0.25 the pose vanishes, and no other was reached from there"
+    assert (
+        falls.end
+        == "at b = -0.3849, c = 0.25 the pose vanishes, and no other was reached from there"
+    )
     leaves = result.animate("b=-1/10:-9/10,c=6/5", frames=20)
-    assert leaves.end == f"at b = {-(1.2**3) + 1.2:.6g}, c = 1.2 the pose leaves what the inequalities allow"
+    assert (
+        leaves.end
+        == f"at b = {-(1.2**3) + 1.2:.6g}, c = 1.2 the pose leaves what the inequalities allow"
+    )

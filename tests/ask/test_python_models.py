@@ -19,7 +19,11 @@ from ptmcad.model import described
 
 PENDULUM: dict[str, Any] = {
     "name": "pendulum",
-    "parameters": {"k": {"kind": "stiffness", "default": 1}, "W": {"kind": "force"}, "H": {"kind": "force"}},
+    "parameters": {
+        "k": {"kind": "stiffness", "default": 1},
+        "W": {"kind": "force"},
+        "H": {"kind": "force"},
+    },
     "unknowns": {"th": "angle"},
     "points": {"O": [0, 0], "P": ["sin(th)", "cos(th)"], "G": [0, "cos(th)"]},
     "bars": [["O", "P"]],
@@ -35,7 +39,11 @@ def in_sympy() -> Any:
         name="pendulum",
         parameters=PENDULUM["parameters"],
         unknowns={th: "angle"},
-        points={"O": (0, 0), "P": (sympy.sin(th), sympy.cos(th)), "G": (sympy.Integer(0), sympy.cos(th))},
+        points={
+            "O": (0, 0),
+            "P": (sympy.sin(th), sympy.cos(th)),
+            "G": (sympy.Integer(0), sympy.cos(th)),
+        },
         bars=[("O", "P")],
         springs=[{"between": ("G", "P"), "k": k}],
         loads={"P": (h, -w)},
@@ -51,10 +59,14 @@ def test_strings_and_sympys_expressions_say_the_same() -> None:
     )
 
 
-@pytest.mark.parametrize("mechanism", [ptmcad.Mechanism(PENDULUM), in_sympy(), PENDULUM], ids=["", "sympy", "mapping"])
+@pytest.mark.parametrize(
+    "mechanism", [ptmcad.Mechanism(PENDULUM), in_sympy(), PENDULUM], ids=["", "sympy", "mapping"]
+)
 def test_a_mapping_with_a_mechanism_is_classified(mechanism: Any) -> None:
     """The astroid's area, 3 pi/8."""
-    result = ptmcad.classify({"mechanism": mechanism, "parameters": {"k": sympy.Integer(1)}, "axes": AXES})
+    result = ptmcad.classify(
+        {"mechanism": mechanism, "parameters": {"k": sympy.Integer(1)}, "axes": AXES}
+    )
     (two,) = [region for region in result.regions if region.stable == 2]
     assert float(two.area[0]) == pytest.approx(3 * pi / 8, rel=1e-3)
     assert result.locate(H=0, W="1/2").stable == 2
@@ -66,7 +78,11 @@ def test_numbers_equations_and_arrays_of_other_libraries() -> None:
     x, a, b = sympy.symbols("x a b")
     cubic = ptmcad.System(unknowns={"x": "real"}, equations=["x^3 - (a*x - b)"])
     equation = sympy.Eq(x**3, a * x - b)
-    for equations in ([equation], np.array([equation], dtype=object), sympy.Matrix([x**3 - (a * x - b)])):
+    for equations in (
+        [equation],
+        np.array([equation], dtype=object),
+        sympy.Matrix([x**3 - (a * x - b)]),
+    ):
         other = ptmcad.System(unknowns={x: "real"}, equations=equations)
         at = ptmcad.counts_at(other, a=sympy.Integer(1), b=sympy.Rational(1, 10))
         assert at == ptmcad.counts_at(cubic, a=1, b="1/10")
@@ -76,13 +92,17 @@ def test_numbers_equations_and_arrays_of_other_libraries() -> None:
     assert ptmcad.slice_from_mapping(question) == ptmcad.slice_from_mapping(
         {"system": cubic, "axes": {"a": [-1, 1], "b": [-1, 1]}}
     )
-    pose = ptmcad.solve(model=ptmcad.Mechanism(PENDULUM), W=sympy.Rational(1, 10), H=sympy.Rational(-1, 3))
+    pose = ptmcad.solve(
+        model=ptmcad.Mechanism(PENDULUM), W=sympy.Rational(1, 10), H=sympy.Rational(-1, 3)
+    )
     assert pose.parameters["H"] == Fraction(-1, 3)
 
 
 def test_functions_in_place_of_symbols_are_refused() -> None:
     q = sympy.Function("q")(sympy.Symbol("t"))
-    refusal = r"q\(t\) is a function of SymPy's: use a symbol in its place, such as sympy.Symbol\('q'\)"
+    refusal = (
+        r"q\(t\) is a function of SymPy's: use a symbol in its place, such as sympy.Symbol\('q'\)"
+    )
     with pytest.raises(ConfigError, match=refusal):
         ptmcad.System(unknowns={q: "real"}, equations=["x"])
     with pytest.raises(ConfigError, match=refusal):
@@ -111,7 +131,9 @@ def test_the_steps_one_by_one() -> None:
 
 def test_what_is_wrong_is_said() -> None:
     with pytest.raises(ConfigError) as caught:
-        ptmcad.Mechanism({**PENDULUM, "springs": [{"between": ["O", "Q"], "k": "K"}], "bars": [["G", "P"]]})
+        ptmcad.Mechanism(
+            {**PENDULUM, "springs": [{"between": ["O", "Q"], "k": "K"}], "bars": [["G", "P"]]}
+        )
     assert [fault.key for fault in caught.value.faults] == [
         "mechanism.springs.1.between", "mechanism.springs.1.k", "mechanism.bars.1",
     ]  # fmt: skip
@@ -121,7 +143,10 @@ def test_what_is_wrong_is_said() -> None:
         ptmcad.System("x^3")  # type: ignore[arg-type]
     with pytest.raises(ConfigError, match="is not an exact number"):
         ptmcad.Mechanism({**PENDULUM, "points": {**PENDULUM["points"], "O": [object(), 0]}})
-    with pytest.raises(ConfigError, match=r"system\.equations\.1: <class 'int'> of type type is not an exact number"):
+    with pytest.raises(
+        ConfigError,
+        match=r"system\.equations\.1: <class 'int'> of type type is not an exact number",
+    ):
         ptmcad.System(unknowns={"x": "real"}, equations=[int])
     with pytest.raises(ConfigError, match="unknown parameter 'K'"):
         ptmcad.counts_at(ptmcad.Mechanism(PENDULUM), K=1)

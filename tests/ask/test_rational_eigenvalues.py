@@ -1,4 +1,6 @@
-"""Rational eigenvalues of Hessians of three unknowns at irrational solutions, whose digits no ball settles."""
+"""Rational eigenvalues of Hessians of three unknowns at irrational solutions, whose digits no ball
+settles.
+"""
 
 from __future__ import annotations
 
@@ -18,13 +20,17 @@ PLATE: dict[str, Any] = {
         "parameters": {"h": {"kind": "length", "default": 1}, "W": {"kind": "force"}},
         "unknowns": {"x": "length", "y": "length", "t": "angle"},
         "points": {"A": [-1, 0], "B": [1, 0], "P": ["x", "y"]},
-        "bodies": {"plate": {"at": "P", "angle": "t", "points": {"Q": ["-1/2", "h"], "R": ["1/2", "h"]}}},
+        "bodies": {
+            "plate": {"at": "P", "angle": "t", "points": {"Q": ["-1/2", "h"], "R": ["1/2", "h"]}}
+        },
         "springs": [{"between": [a, b], "k": 1} for a, b in ("AQ", "BR", "AP")],
         "loads": {"P": {"weight": "W"}},
     },
     "axes": {"h": ["1/4", 2], "W": [0, 4]},
 }
-"""The Hessian is 3 on the diagonal of x and y and couples both to t alone: 3 is an eigenvalue at every solution."""
+"""The Hessian is 3 on the diagonal of x and y and couples both to t alone: 3 is an eigenvalue at
+every solution.
+"""
 
 
 def solved(record: dict[str, Any], **at: str) -> Poses:
@@ -53,7 +59,9 @@ def test_an_eigenvalue_that_is_three_at_irrational_poses() -> None:
         ("x^3/3 - a*x + y^2/2 + x*y*z - b*z^2", []),
     ],
 )
-def test_rational_eigenvalues_are_exact_with_their_multiplicity(text: str, rational: list[Any]) -> None:
+def test_rational_eigenvalues_are_exact_with_their_multiplicity(
+    text: str, rational: list[Any]
+) -> None:
     found = solved(potential(text), a="2", b="3").equilibria
     assert len(found) >= 2
     for pose in found:

@@ -1,4 +1,5 @@
-"""Shipped mechanisms and systems: polynomials, counts and areas are those of the literature, or of another computation.
+"""Shipped mechanisms and systems: polynomials, counts and areas are those of the literature, or of
+another computation.
 
 What each figure rests on is said in the record itself, under ``reference``.
 """
@@ -35,7 +36,9 @@ VALIDATOR = jsonschema.Draft202012Validator(
 )
 RECORDS = list(OTHER)
 SPURIOUS = {"two-x-joints"}
-"""Its equations have two solutions more, which inequalities exclude; signatures of its forms take a minute."""
+"""Its equations have two solutions more, which inequalities exclude; signatures of its forms take a
+minute.
+"""
 MAPPED = [path for path in RECORDS if path.stem not in LINES_ONLY]
 MECHANISMS = {
     "bistable-slider",
@@ -99,9 +102,13 @@ def test_records_load_and_validate(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "path", few(RECORDS, *(p for p in RECORDS if p.stem not in LINES_ONLY)), ids=lambda path: path.stem
+    "path",
+    few(RECORDS, *(p for p in RECORDS if p.stem not in LINES_ONLY)),
+    ids=lambda path: path.stem,
 )
-@pytest.mark.slow_cases("four-bar", "platform-loop", "slider-crank", "two-dof-tensegrity", "kuramoto-4")
+@pytest.mark.slow_cases(
+    "four-bar", "platform-loop", "slider-crank", "two-dof-tensegrity", "kuramoto-4"
+)
 def test_numbers_of_solutions(path: Path) -> None:
     """At the points of the record, by both methods; and complex ones."""
     slice, known = load(path), reference(path)
@@ -109,19 +116,36 @@ def test_numbers_of_solutions(path: Path) -> None:
         for signature in (False,) if path.stem in SPURIOUS else (False, True):
             found = counts_at(slice, entry["at"], signature)
             told = {key: getattr(found, key) for key in entry if key != "at"}
-            assert told == {key: tuple(v) if isinstance(v, list) else v for key, v in entry.items() if key != "at"}
+            assert told == {
+                key: tuple(v) if isinstance(v, list) else v
+                for key, v in entry.items()
+                if key != "at"
+            }
     if "complex_solutions" in known:
         problem = problem_of(slice)
         at = tuple(fmpq(29, 100) * (b - a) + a for a, b in problem.window)
         values = problem.on.values((at[0], at[1]))
-        assert solutions_at(problem.system, values, path.stem in SPURIOUS) == (known["complex_solutions"],) * 2
+        assert (
+            solutions_at(problem.system, values, path.stem in SPURIOUS)
+            == (known["complex_solutions"],) * 2
+        )
 
 
-HEAVY = {"four-bar", "two-dof-tensegrity", "stability-pair", "kuramoto", "kuramoto-4", "orthogonal-3r"}
-"""The fast tests have the certified engine's areas of the three oscillators and of the manipulator."""
+HEAVY = {
+    "four-bar",
+    "two-dof-tensegrity",
+    "stability-pair",
+    "kuramoto",
+    "kuramoto-4",
+    "orthogonal-3r",
+}
+"""The fast tests have the certified engine's areas of the three oscillators and of the manipulator.
+"""
 
 
-@pytest.mark.parametrize("path", few(MAPPED, *(p for p in MAPPED if p.stem not in HEAVY)), ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", few(MAPPED, *(p for p in MAPPED if p.stem not in HEAVY)), ids=lambda path: path.stem
+)
 @pytest.mark.slow_cases("two-bar-chain", "platform", "slider-crank")
 def test_areas_and_regions(path: Path) -> None:
     known, result = reference(path), mapped(path)
@@ -156,7 +180,9 @@ STATED = [path for path in MAPPED if {"polynomials", "terms"} & reference(path).
 
 
 @pytest.mark.parametrize(
-    "path", few(STATED, *(path for path in STATED if path.stem != "kuramoto-4")), ids=lambda path: path.stem
+    "path",
+    few(STATED, *(path for path in STATED if path.stem != "kuramoto-4")),
+    ids=lambda path: path.stem,
 )
 @pytest.mark.slow_cases("four-bar", "two-dof-tensegrity", "stability-pair")
 def test_polynomials(path: Path) -> None:
@@ -184,6 +210,8 @@ def test_real_solutions_of_the_stability_pair_on_a_lattice() -> None:
     steps = range(lattice["from"], lattice["to"] + 1)
     offsets = {name: Fraction(text) for name, text in lattice["offsets"].items()}
     found = Counter(
-        counts_at(slice, {"u1": i + offsets["u1"], "u2": j + offsets["u2"]}, False).total for i in steps for j in steps
+        counts_at(slice, {"u1": i + offsets["u1"], "u2": j + offsets["u2"]}, False).total
+        for i in steps
+        for j in steps
     )
     assert found == lattice["points"]

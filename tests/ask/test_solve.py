@@ -1,4 +1,6 @@
-"""`ptmcad.solve` against independent methods, known answers, symmetries, degenerate points, extreme values."""
+"""`ptmcad.solve` against independent methods, known answers, symmetries, degenerate points, extreme
+values.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,9 @@ few = settings(max_examples=examples(15))
 
 
 def parameters_of(generator: random.Random) -> dict[str, Fraction]:
-    """A random mechanism; one in three has equal springs, one in three no horizontal loads, some are symmetric."""
+    """A random mechanism; one in three has equal springs, one in three no horizontal loads, some
+    are symmetric.
+    """
 
     def between(low: int, high: int) -> Fraction:
         return Fraction(generator.randint(low * 1000, high * 1000), 1000)
@@ -44,12 +48,19 @@ def parameters_of(generator: random.Random) -> dict[str, Fraction]:
     if generator.random() < 0.34:
         values |= {"F3x": Fraction(0), "F4x": Fraction(0)}
     if generator.random() < 0.1:
-        values |= {"L2": values["L1"], "F4": values["F3"], "F4x": -values["F3x"], "k2": values["k1"]}
+        values |= {
+            "L2": values["L1"],
+            "F4": values["F3"],
+            "F4x": -values["F3x"],
+            "k2": values["k1"],
+        }
     return values
 
 
 def agrees(x: Enclosure, value: mpf, digits: int) -> bool:
-    """Whether the text is the value rounded to nearest: within half a unit of its last digit, or exact."""
+    """Whether the text is the value rounded to nearest: within half a unit of its last digit, or
+    exact.
+    """
     text = x.text(digits)
     with mpmath.workdps(DIGITS):
         error = abs(mpf(text) - value)
@@ -90,7 +101,9 @@ def check_against_newton(seed: int, number: int, digits: int = 12) -> None:
         parameters = parameters_of(generator)
         poses = solve(digits=digits, **parameters)
         found = equilibria(parameters)
-        if len(found) != len(poses.equilibria):  # two that are close together may lie between two points of the grid
+        if len(found) != len(
+            poses.equilibria
+        ):  # two that are close together may lie between two points of the grid
             found = equilibria(parameters, grid=20_000)
         assert poses.status is Status.EXACT
         assert len(poses.equilibria) == len(found), parameters
@@ -128,7 +141,9 @@ def signature(poses: Poses) -> tuple[int, int, int]:
 
 
 def test_unloaded_equation_9_of_the_paper_corrected() -> None:
-    """cos th1 = (4 rho^2 + L1^2 - L2^2) / (4 rho L1), and likewise cos th2; two mirror images, and four flat poses."""
+    """cos th1 = (4 rho^2 + L1^2 - L2^2) / (4 rho L1), and likewise cos th2; two mirror images, and
+    four flat poses.
+    """
     poses = solve(rho=1, L2="3/2")
     assert signature(poses) == (2, 3, 1)
     for pose, sign in zip(poses.equilibria[:2], (1, -1), strict=True):
@@ -136,13 +151,23 @@ def test_unloaded_equation_9_of_the_paper_corrected() -> None:
         assert pose.cosines_sines[2].exact == Fraction(7, 8)
         assert sign * pose.angles[0].low > 0
     assert [pose.flat for pose in poses.equilibria] == [False, False, True, True, True, True]
-    assert [p.energy.exact for p in poses.equilibria] == [Fraction(225, 2), Fraction(225, 2), 125, 225, 425, 1125]
+    assert [p.energy.exact for p in poses.equilibria] == [
+        Fraction(225, 2),
+        Fraction(225, 2),
+        125,
+        225,
+        425,
+        1125,
+    ]
 
 
 @pytest.mark.parametrize(
     ("parameters", "counts"),
     [
-        ({"F3": -10, "F4": -10, "rho": "0.0025"}, (1, 3, 2)),  # the sliver: six equilibria, one stable
+        (
+            {"F3": -10, "F4": -10, "rho": "0.0025"},
+            (1, 3, 2),
+        ),  # the sliver: six equilibria, one stable
         ({"F3": -10, "F4": -10, "rho": "0.0026"}, (1, 2, 1)),
         ({"F3": -10, "F4": -10, "rho": "0.2149"}, (1, 2, 1)),
         ({"F3": -10, "F4": -10, "rho": "0.215"}, (2, 3, 1)),
@@ -153,16 +178,22 @@ def test_unloaded_equation_9_of_the_paper_corrected() -> None:
     ],
     ids=lambda value: str(value).replace(" ", ""),
 )
-def test_counts_of_the_reference(parameters: dict[str, object], counts: tuple[int, int, int]) -> None:
+def test_counts_of_the_reference(
+    parameters: dict[str, object], counts: tuple[int, int, int]
+) -> None:
     assert signature(solve(**parameters)) == counts  # type: ignore[arg-type]
 
 
 def test_what_is_rational_is_exact() -> None:
-    """At rho = 1/2, L1 = L2 = 1 the stable rods stand at 60 degrees, in an equilateral triangle upside down."""
+    """At rho = 1/2, L1 = L2 = 1 the stable rods stand at 60 degrees, in an equilateral triangle
+    upside down.
+    """
     pose = solve(rho="1/2").equilibria[0]
     assert [x.exact for x in pose.degrees] == [60, 60]
     assert pose.angles[0].text(12) == "1.04719755120"
-    assert [s.length.exact for s in pose.springs] == [1, 1, Fraction(1, 2)] or pose.springs[2].length.exact is not None
+    assert [s.length.exact for s in pose.springs] == [1, 1, Fraction(1, 2)] or pose.springs[
+        2
+    ].length.exact is not None
 
 
 def test_poses_are_in_an_order_that_rounding_does_not_change() -> None:
@@ -173,7 +204,10 @@ def test_poses_are_in_an_order_that_rounding_does_not_change() -> None:
         for pose, other in zip(poses.equilibria, poses.equilibria[1:], strict=False):
             if pose.stable == other.stable:
                 assert pose.known_energy.low <= other.energy.high
-        assert [p.angles[0].low > 0 for p in poses.equilibria[:2]] == [True, False]  # equal energies
+        assert [p.angles[0].low > 0 for p in poses.equilibria[:2]] == [
+            True,
+            False,
+        ]  # equal energies
 
 
 # ---------------------------------------------------------------------------------------- degenerate by construction
@@ -185,9 +219,11 @@ lengths = st.fractions(min_value=Fraction(1, 5), max_value=4, max_denominator=7)
 def at_pose(
     t1: Fraction, t2: Fraction, x: Fraction, y: Fraction, rho: Fraction, length: Fraction
 ) -> dict[str, Fraction]:
-    """Loads that hold the rods at tan(th/2) = t1, t2 with H11 = x L1 k, H22 = y L2 k, where L1 = 1, L2 = length, k = 1.
+    """Loads that hold the rods at tan(th/2) = t1, t2 with H11 = x L1 k, H22 = y L2 k, where L1 = 1,
+    L2 = length, k = 1.
 
-    dU/dth1 = 0 and the value of H11 are two linear equations for (2 rho + F3x, F3), with determinant 1.
+    dU/dth1 = 0 and the value of H11 are two linear equations for (2 rho + F3x, F3), with
+    determinant 1.
     """
     (c1, s1), (c2, s2) = (((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)) for t in (t1, t2))
     s12, c12 = s1 * c2 + c1 * s2, c1 * c2 - s1 * s2
@@ -214,8 +250,11 @@ def cosine_of_sum(t1: Fraction, t2: Fraction) -> Fraction:
 
 @few
 @given(rationals, rationals, rationals, st.integers(0, 3), lengths)
-def test_folds_by_construction(t1: Fraction, t2: Fraction, x: Fraction, rho: int, length: Fraction) -> None:
-    """H11 H22 = H12^2 with a chosen H11: multiplicity 2, or more where the third derivative along the kernel vanishes.
+def test_folds_by_construction(
+    t1: Fraction, t2: Fraction, x: Fraction, rho: int, length: Fraction
+) -> None:
+    """H11 H22 = H12^2 with a chosen H11: multiplicity 2, or more where the third derivative along
+    the kernel vanishes.
 
     That derivative is 3 L1 L2 sin(th1 + th2) v1 v2 (v1 + v2) for the kernel vector (v1, v2).
     """
@@ -235,7 +274,9 @@ def test_folds_by_construction(t1: Fraction, t2: Fraction, x: Fraction, rho: int
 @few
 @given(rationals, rationals, lengths)
 def test_cusps_by_construction(t1: Fraction, t2: Fraction, length: Fraction) -> None:
-    """H11 = H22 = H12: the kernel is (1, -1), and a third derivative vanishes: multiplicity 3, or more."""
+    """H11 = H22 = H12: the kernel is (1, -1), and a third derivative vanishes: multiplicity 3, or
+    more.
+    """
     c12 = cosine_of_sum(t1, t2)
     if c12 == 0 or abs(c12) == 1:
         return
@@ -246,7 +287,9 @@ def test_cusps_by_construction(t1: Fraction, t2: Fraction, length: Fraction) -> 
 @few
 @given(rationals, lengths)
 def test_elliptic_umbilics_by_construction(t: Fraction, length: Fraction) -> None:
-    """Rods at right angles and a Hessian of zero: the cubic is a product of three different lines, multiplicity 4."""
+    """Rods at right angles and a Hessian of zero: the cubic is a product of three different lines,
+    multiplicity 4.
+    """
     if t == -1:
         return
     other = (1 - t) / (1 + t)  # the tangent of half of 90 degrees minus th1
@@ -264,27 +307,43 @@ def test_elliptic_umbilics_by_construction(t: Fraction, length: Fraction) -> Non
         ({"rho": 1, "L2": 1}, True, 3),
         ({"L2": "4/3", "rho": "2/5", "F3": "-320/3", "F4": -60}, False, 4),
     ],
-    ids=["fig2-2rho=L2+1", "fig2-2rho=L2-1", "fig2-2rho=1-L2", "fig2-symmetric", "elliptic-umbilic"],
+    ids=[
+        "fig2-2rho=L2+1",
+        "fig2-2rho=L2-1",
+        "fig2-2rho=1-L2",
+        "fig2-symmetric",
+        "elliptic-umbilic",
+    ],
 )
-def test_degenerate_points_of_the_paper(parameters: dict[str, object], flat: bool, multiplicity: int) -> None:
-    """On the lines of fig. 2 the two mirror images and a flat pose meet: a pitchfork, at exactly flat rods."""
+def test_degenerate_points_of_the_paper(
+    parameters: dict[str, object], flat: bool, multiplicity: int
+) -> None:
+    """On the lines of fig. 2 the two mirror images and a flat pose meet: a pitchfork, at exactly
+    flat rods.
+    """
     poses = solve(**parameters)  # type: ignore[arg-type]
     pose = degenerate(poses)
     assert (pose.flat, pose.multiplicity) == (flat, multiplicity)
-    assert all(p.multiplicity == 1 and p.stable is not None for p in poses.equilibria if p is not pose)
+    assert all(
+        p.multiplicity == 1 and p.stable is not None for p in poses.equilibria if p is not pose
+    )
     assert sum(p.multiplicity for p in poses.equilibria) in (4, 6)
 
 
 @pytest.mark.parametrize("offset", ["1e-9", "1e-30", "1e-300"])
 @pytest.mark.parametrize("side", [1, -1])
 def test_beside_a_fold_the_counts_are_those_of_the_side(offset: str, side: int) -> None:
-    """The flat pose of fig. 2 is stable beyond the line, and a saddle with two stable neighbours before it."""
+    """The flat pose of fig. 2 is stable beyond the line, and a saddle with two stable neighbours
+    before it.
+    """
     poses = solve(rho=Fraction(5, 4) + side * Fraction(offset), L2="3/2")
     assert signature(poses) == ((1, 2, 1) if side > 0 else (2, 3, 1))
 
 
 @pytest.mark.parametrize(
-    "parameters", [{"rho": 0}, {"rho": 0, "L2": "3/2"}, {"rho": 1, "F3x": -200, "F4x": 200}], ids=str
+    "parameters",
+    [{"rho": 0}, {"rho": 0, "L2": "3/2"}, {"rho": 1, "F3x": -200, "F4x": 200}],
+    ids=str,
 )
 def test_infinitely_many_equilibria_are_said(parameters: dict[str, object]) -> None:
     poses = solve(**parameters)  # type: ignore[arg-type]
@@ -294,14 +353,19 @@ def test_infinitely_many_equilibria_are_said(parameters: dict[str, object]) -> N
 
 
 def test_points_of_a_fibre_with_complex_and_fat_points() -> None:
-    """x^2 (x - 1) (x^2 + 1)^2 with y = x + 1; and the fat point x^2 = x y = y^2 = 0, which no single root counts."""
+    """x^2 (x - 1) (x^2 + 1)^2 with y = x + 1; and the fat point x^2 = x y = y^2 = 0, which no
+    single root counts.
+    """
     one = fmpq(1)
     p = {(7, 0): one, (6, 0): -one, (5, 0): 2 * one, (4, 0): -2 * one, (3, 0): one, (2, 0): -one}
     curve = fibre([p, {(0, 1): one, (1, 0): -one, (0, 0): -one}], 2)  # type: ignore[list-item]
     assert curve is not None
     found = points(curve, bound=2)
     assert (found.distinct, found.total) == (4, 7)
-    assert [(tuple(u.rational for u in x.unknowns), x.multiplicity) for x in found.real] == [((0, 1), 2), ((1, 2), 1)]
+    assert [(tuple(u.rational for u in x.unknowns), x.multiplicity) for x in found.real] == [
+        ((0, 1), 2),
+        ((1, 2), 1),
+    ]
     fat = fibre([{(2, 0): one}, {(1, 1): one}, {(0, 2): one}], 2)
     assert fat is not None
     assert [x.multiplicity for x in points(fat).real] == [3]
@@ -372,7 +436,10 @@ def test_the_rods_can_be_exchanged(parameters: dict[str, Fraction]) -> None:
     names |= {b: a for a, b in names.items()}
     poses = solve(**parameters)
     exchanged = solve(
-        **{n: -parameters[names.get(n, n)] if n in ("F3x", "F4x") else parameters[names.get(n, n)] for n in parameters}
+        **{
+            n: -parameters[names.get(n, n)] if n in ("F3x", "F4x") else parameters[names.get(n, n)]
+            for n in parameters
+        }
     )
     assert len(exchanged.equilibria) == len(poses.equilibria)
     for a in exchanged.equilibria:
@@ -404,7 +471,9 @@ EXTREME = [
     "{'F3': '1e30', 'F4': '-1e30+1', 'F3x': '1e-30'}",
 )
 def test_extreme_values_agree_with_the_oracle_and_newton(given_values: dict[str, object]) -> None:
-    """Counts by Sturm sequences; digits by Newton's method from the poses themselves, which moves what is no zero."""
+    """Counts by Sturm sequences; digits by Newton's method from the poses themselves, which moves
+    what is no zero.
+    """
     parameters = point_from_mapping(given_values)
     poses = solve(**given_values)  # type: ignore[arg-type]
     assert signature(poses) == count(parameters)
@@ -414,7 +483,9 @@ def test_extreme_values_agree_with_the_oracle_and_newton(given_values: dict[str,
             start = [mpf(x.center.numerator) / x.center.denominator for x in finer.angles]
         found = improved(parameters, start)
         wrong = [
-            name for name, x, value in pairs(pose, found) if not agrees(x, value, 12) and abs(value) > mpf("1e-60")
+            name
+            for name, x, value in pairs(pose, found)
+            if not agrees(x, value, 12) and abs(value) > mpf("1e-60")
         ]
         assert wrong == []
 
@@ -478,4 +549,6 @@ def test_a_record_a_mapping_and_its_slice_give_the_point_s_other_parameters() ->
 
 
 def test_what_nothing_says_stability_of_has_no_stable_poses_to_its_name() -> None:
-    assert repr(solve(CONFIGS / "systems" / "duffing.yaml", W=2, G="1/2")).startswith("<Poses of duffing: 1, exact")
+    assert repr(solve(CONFIGS / "systems" / "duffing.yaml", W=2, G="1/2")).startswith(
+        "<Poses of duffing: 1, exact"
+    )

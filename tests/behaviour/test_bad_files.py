@@ -1,4 +1,6 @@
-"""Results that were renamed, cut, retyped, made later or never: one clear message and status 2, never a traceback."""
+"""Results that were renamed, cut, retyped, made later or never: one clear message and status 2,
+never a traceback.
+"""
 
 from __future__ import annotations
 
@@ -21,15 +23,29 @@ from ptmcad.cli import run
 
 ROOT = Path(__file__).resolve().parents[2]
 SYSTEM = {"unknowns": {"u": "real"}, "potential": "u^3/3 + (a^2 + b^2 - c)*u"}
-RECORD = {"name": "disc", "system": SYSTEM, "axes": {"a": [-2, 2], "b": [-2, 2]}, "parameters": {"c": 1}}
-FAMILY = {**{k: v for k, v in RECORD.items() if k != "parameters"}, "name": "discs", "free": {"c": [0, 3]}}
+RECORD = {
+    "name": "disc",
+    "system": SYSTEM,
+    "axes": {"a": [-2, 2], "b": [-2, 2]},
+    "parameters": {"c": 1},
+}
+FAMILY = {
+    **{k: v for k, v in RECORD.items() if k != "parameters"},
+    "name": "discs",
+    "free": {"c": [0, 3]},
+}
 DESIGN = {
     "name": "best",
     "system": {"unknowns": {"t": "angle"}, "potential": "a*cos(t) + b*sin(t) + c*cos(2*t)"},
     "parameters": {"c": "1/2"},
     "axes": {"a": [-2, 2], "b": [-2, 2]},
     "count": "stable",
-    "design": {"maximise": "range", "along": "a", "over": {"b": [-1, 1], "c": ["1/10", 1]}, "where": {"stable": 2}},
+    "design": {
+        "maximise": "range",
+        "along": "a",
+        "over": {"b": [-1, 1], "c": ["1/10", 1]},
+        "where": {"stable": 2},
+    },
 }
 CERTIFIED = ["--slice", "rho,L2", "--range", "rho=1/2:1", "--range", "L2=5/4:7/4", "--set", "l0=1/5", "--set", "F3=-10",
              "--set", "F4=-10", "--tolerance", "0.2", "--no-timings"]  # fmt: skip
@@ -37,13 +53,23 @@ MAKING: dict[str, tuple[dict[str, Any], list[str], str]] = {
     "exact": (RECORD, ["classify", "--no-timings"], "disc.json"),
     "certified": ({}, ["classify", *CERTIFIED], "slice-rho-L2.json"),
     "family": (FAMILY, ["classify", "--members", "1,2", "--no-timings"], "discs.json"),
-    "changes": (FAMILY, ["classify", "--members", "1,2", "--changes", "--no-timings"], "discs.json"),
+    "changes": (
+        FAMILY,
+        ["classify", "--members", "1,2", "--changes", "--no-timings"],
+        "discs.json",
+    ),
     "design": (DESIGN, ["design"], "best-design.json"),
     "poses": (RECORD, ["solve", "--at", "a=0,b=0"], "poses.json"),
     "range": (RECORD, ["range", "--along", "a", "--over", "b"], "disc-range.json"),
 }
 READING = {
-    "exact": ("report", "locate --at a=0,b=0", "plot --format csv", "verify", "map --value u --pose 1 --pixels 4"),
+    "exact": (
+        "report",
+        "locate --at a=0,b=0",
+        "plot --format csv",
+        "verify",
+        "map --value u --pose 1 --pixels 4",
+    ),
     "certified": ("report", "locate --at rho=3/4,L2=3/2", "plot --format csv"),
     "family": ("verify", "plot --format png"),
     "changes": ("verify",),
@@ -88,14 +114,22 @@ def part(data: Any, path: tuple[Any, ...]) -> Any:
 
 def places(data: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
     """Every key, of lists of the first and the last entry."""
-    steps = list(data) if isinstance(data, dict) else sorted({0, len(data) - 1}) if isinstance(data, list) else []
+    steps = (
+        list(data)
+        if isinstance(data, dict)
+        else sorted({0, len(data) - 1})
+        if isinstance(data, list)
+        else []
+    )
     for step in steps if data else []:
         yield (*path, step)
         yield from places(data[step], (*path, step))
 
 
 def mutants(document: Any) -> Iterator[tuple[str, Any]]:
-    """The document with one key renamed or removed, or one value of another type, and what was done."""
+    """The document with one key renamed or removed, or one value of another type, and what was
+    done.
+    """
     for *above, step in places(document):
         for value in ("renamed", "removed", *WRONG) if isinstance(step, str) else WRONG:
             data = copy.deepcopy(document)
@@ -111,7 +145,9 @@ def mutants(document: Any) -> Iterator[tuple[str, Any]]:
             yield f"{'.'.join(map(str, (*above, step)))}: {value}", data
 
 
-def _read(path: Path, data: Any, capsys: pytest.CaptureFixture[str], *command: str) -> tuple[int, str]:
+def _read(
+    path: Path, data: Any, capsys: pytest.CaptureFixture[str], *command: str
+) -> tuple[int, str]:
     """The status and the message of a command that reads the document once it is changed."""
     changed = path.with_name("changed.json")
     changed.write_text(json.dumps(data))
@@ -139,7 +175,12 @@ def _read(path: Path, data: Any, capsys: pytest.CaptureFixture[str], *command: s
     ],
 )
 def test_a_fault_names_the_keys_place(
-    folder: Path, capsys: pytest.CaptureFixture[str], kind: str, path: tuple[Any, ...], value: Any, words: str
+    folder: Path,
+    capsys: pytest.CaptureFixture[str],
+    kind: str,
+    path: tuple[Any, ...],
+    value: Any,
+    words: str,
 ) -> None:
     made = _made(folder, kind)
     data = json.loads(made.read_text())
@@ -149,14 +190,18 @@ def test_a_fault_names_the_keys_place(
             ptmcad.Poses.from_json(json.dumps(data))
         return
     for command in READING[kind]:
-        if command != "verify" or kind != "exact":  # which says itself where a map contradicts itself
+        if (
+            command != "verify" or kind != "exact"
+        ):  # which says itself where a map contradicts itself
             status, said = _read(made, data, capsys, *command.split())
             assert (status, said.count("\n"), words in said) == (2, 1, True), (command, said)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", MAKING)
-def test_no_change_of_a_key_ends_in_a_traceback(folder: Path, capsys: pytest.CaptureFixture[str], kind: str) -> None:
+def test_no_change_of_a_key_ends_in_a_traceback(
+    folder: Path, capsys: pytest.CaptureFixture[str], kind: str
+) -> None:
     if kind == "certified":
         pytest.importorskip("numba")
     made = _made(folder, kind)
@@ -181,8 +226,12 @@ def test_no_change_of_a_key_ends_in_a_traceback(folder: Path, capsys: pytest.Cap
     assert refused > 50
 
 
-@pytest.mark.parametrize("kind", ["exact", "family", pytest.param("design", marks=pytest.mark.slow), "poses", "range"])
-def test_a_later_version_needs_a_newer_program(folder: Path, capsys: pytest.CaptureFixture[str], kind: str) -> None:
+@pytest.mark.parametrize(
+    "kind", ["exact", "family", pytest.param("design", marks=pytest.mark.slow), "poses", "range"]
+)
+def test_a_later_version_needs_a_newer_program(
+    folder: Path, capsys: pytest.CaptureFixture[str], kind: str
+) -> None:
     made = _made(folder, kind)
     data = json.loads(made.read_text())
     name, _, version = data["format"].partition("/")
@@ -199,9 +248,13 @@ def test_a_later_version_needs_a_newer_program(folder: Path, capsys: pytest.Capt
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="bounds memory")
-@pytest.mark.parametrize("head", ["[", '{"format": "ptmcad-region-map/2", "status": ['], ids=["other", "map"])
+@pytest.mark.parametrize(
+    "head", ["[", '{"format": "ptmcad-region-map/2", "status": ['], ids=["other", "map"]
+)
 @pytest.mark.slow_cases("other")
-def test_a_large_file_that_is_no_result_is_refused_in_little_memory(tmp_path: Path, head: str) -> None:
+def test_a_large_file_that_is_no_result_is_refused_in_little_memory(
+    tmp_path: Path, head: str
+) -> None:
     path = tmp_path / "large.json"
     path.write_text(f"{head}{'{},' * 8_000_000}0]{'}' * (head[0] == '{')}")
     command = [sys.executable, "-m", "ptmcad", "report", str(path), "--max-memory", "300M"]
@@ -229,13 +282,27 @@ def test_a_kill_leaves_nothing_of_msolve(tmp_path: Path, to: str) -> None:
     record = {"system": {"unknowns": {"x": "real", "y": "real"}, "equations": ["x^2 - a", "y^2 - b"]},
               "axes": {"a": [1, 2], "b": [1, 2]}}  # fmt: skip
     (tmp_path / "record.yaml").write_text(json.dumps(record))
-    command = [sys.executable, "-c", ASKING, "solve", str(tmp_path / "record.yaml"), "--at", "a=1,b=1"]
-    environment = {**os.environ, "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}", "TMPDIR": str(temporary)}
+    command = [
+        sys.executable,
+        "-c",
+        ASKING,
+        "solve",
+        str(tmp_path / "record.yaml"),
+        "--at",
+        "a=1,b=1",
+    ]
+    environment = {
+        **os.environ,
+        "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}",
+        "TMPDIR": str(temporary),
+    }
     with subprocess.Popen(command, cwd=ROOT, env=environment, stderr=subprocess.DEVNULL) as process:
         while not asked.exists():
             assert process.poll() is None
             time.sleep(0.02)
-        (computing,) = map(int, Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split())
+        (computing,) = map(
+            int, Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+        )
         os.kill(computing, signal.SIGKILL)
         if to == "both":
             process.kill()

@@ -1,4 +1,6 @@
-"""A line of the plane on which there are infinitely many solutions is named as that by every command."""
+"""A line of the plane on which there are infinitely many solutions is named as that by every
+command.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +59,8 @@ mechanism:
 axes: {k: [1, 8], W: [0, 2]}
 count: stable
 """
-"""The balancer with a second bar that a spring pulls to the pivot: at k = 4 W both turn together."""
+"""The balancer with a second bar that a spring pulls to the pivot: at k = 4 W both turn together.
+"""
 
 PRODUCT = """
 name: product
@@ -76,12 +79,24 @@ def written(record: str, folder: Path) -> Path:
 
 
 def classified(record: str, folder: Path) -> dict[str, Any]:
-    assert run(["classify", str(written(record, folder)), "--out", str(folder / "map"), "--format", "json,svg"]) == 0
+    assert (
+        run(
+            [
+                "classify",
+                str(written(record, folder)),
+                "--out",
+                str(folder / "map"),
+                "--format",
+                "json,svg",
+            ]
+        )
+        == 0
+    )
     (path,) = (folder / "map").glob("*.json")
     found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    jsonschema.Draft202012Validator(json.loads((DOCS / "region-map.schema.json").read_text(encoding="utf-8"))).validate(
-        found
-    )
+    jsonschema.Draft202012Validator(
+        json.loads((DOCS / "region-map.schema.json").read_text(encoding="utf-8"))
+    ).validate(found)
     return found
 
 
@@ -100,7 +115,9 @@ def test_every_command_names_the_line(
     many = "infinitely many solutions" if record is PAIR else "infinitely many equilibria"
     document = classified(record, tmp_path)
     assert f"continua  {many} where {line} = 0" in capsys.readouterr().out
-    assert [c["polynomial"] for c in document["components"] if c.get("continuum") == "infinitely many"] == [line]
+    assert [
+        c["polynomial"] for c in document["components"] if c.get("continuum") == "infinitely many"
+    ] == [line]
     (path,) = (tmp_path / "map").glob("*.json")
     (picture,) = (tmp_path / "map").glob("*.svg")
     assert many in picture.read_text(encoding="utf-8")
@@ -115,9 +132,9 @@ def test_every_command_names_the_line(
     assert "infinitely many equilibria" in capsys.readouterr().out
     (ranges,) = (tmp_path / "line").glob("*.json")
     found = json.loads(ranges.read_text(encoding="utf-8"))
-    jsonschema.Draft202012Validator(json.loads((DOCS / "range.schema.json").read_text(encoding="utf-8"))).validate(
-        found
-    )
+    jsonschema.Draft202012Validator(
+        json.loads((DOCS / "range.schema.json").read_text(encoding="utf-8"))
+    ).validate(found)
     assert [c.get("continuum") for c in found["line"]["changes"]] == ["infinitely many"]
     assert run(["solve", str(written(record, tmp_path)), "--at", place]) == 3
     told = capsys.readouterr()
@@ -136,7 +153,9 @@ def test_a_forged_line_is_not_accepted(tmp_path: Path) -> None:
     assert run(["verify", str(path)]) == 1
 
 
-def test_complex_solutions_are_not_said_to_be_real(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_complex_solutions_are_not_said_to_be_real(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """p^2 + q^2 = -1 has none but complex solutions, infinitely many of them."""
     record = """
 name: circle
@@ -150,8 +169,12 @@ axes: {a: [0, 2], b: [0, 1]}
     assert "infinitely many solutions, complex ones included" in capsys.readouterr().out
 
 
-def test_equations_that_depend_on_each_other_on_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """At a = b each solution of the first equation is one of both: perhaps infinitely many, as is said."""
+def test_equations_that_depend_on_each_other_on_a_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """At a = b each solution of the first equation is one of both: perhaps infinitely many, as is
+    said.
+    """
     classified(PRODUCT.replace('["-1/2", "-1/4"]', '["3/4", 1]'), tmp_path)
     assert "perhaps infinitely many solutions where a - b = 0" in capsys.readouterr().out
 
@@ -173,18 +196,23 @@ count: stable
 """At M = 0 complex solutions leave to infinity; all four real ones stay."""
 
 
-def test_points_on_a_curve_that_no_count_feels(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_points_on_a_curve_that_no_count_feels(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     classified(FOUR_BAR, tmp_path)
     (path,) = (tmp_path / "map").glob("*.json")
     capsys.readouterr()
     here, beside = (
-        ptmcad.RegionMap.from_json(path.read_text(encoding="utf-8")).locate(M=m, r2=1) for m in ("0", "1/1000")
+        ptmcad.RegionMap.from_json(path.read_text(encoding="utf-8")).locate(M=m, r2=1)
+        for m in ("0", "1/1000")
     )
     assert (here.status.value, here.total, here.stable) == ("exact", 4, 2)
     assert (here.region, here.cell) == (beside.region, None)
     assert run(["locate", str(path), "--at", "M=0,r2=1"]) == 0
     assert "counted at the point itself" in capsys.readouterr().out
-    assert [pose.stable for pose in ptmcad.solve(written(FOUR_BAR, tmp_path), M=0, r2=1).equilibria].count(True) == 2
+    assert [
+        pose.stable for pose in ptmcad.solve(written(FOUR_BAR, tmp_path), M=0, r2=1).equilibria
+    ].count(True) == 2
 
 
 def test_paths_start_at_such_a_point(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -195,5 +223,8 @@ def test_paths_start_at_such_a_point(tmp_path: Path, capsys: pytest.CaptureFixtu
     # at a fold a pose is degenerate: there no path starts
     system = "{parameters: {a: {}, b: {}}, unknowns: {x: real}, equations: [x^2 - a - b]}"
     fold = f"name: fold\nsystem: {system}\naxes: {{a: [-1, 1], b: [-1, 1]}}\n"
-    assert run(["range", str(written(fold, tmp_path)), "--along", "a", "--at", "b=0", "--path", "0"]) == 2
+    assert (
+        run(["range", str(written(fold, tmp_path)), "--along", "a", "--at", "b=0", "--path", "0"])
+        == 2
+    )
     assert "critical value" in capsys.readouterr().err

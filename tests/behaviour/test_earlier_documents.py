@@ -48,7 +48,9 @@ def test_an_earlier_map_is_drawn(name: str, command: str, tmp_path: Path) -> Non
 
 
 def test_an_earlier_sweep_is_verified(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Where a width is attained its index does not say, and bounds that another version finds may be others."""
+    """Where a width is attained its index does not say, and bounds that another version finds may
+    be others.
+    """
     folder = tmp_path / "grid"
     shutil.copytree(EARLIER / "sweep", folder)
     assert run(["verify", str(folder)]) == 0

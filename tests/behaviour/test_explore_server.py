@@ -1,4 +1,6 @@
-"""`ptmcad explore` under clients that do harm: it answers its own page, and prints nothing but its address."""
+"""`ptmcad explore` under clients that do harm: it answers its own page, and prints nothing but its
+address.
+"""
 
 from __future__ import annotations
 
@@ -127,9 +129,13 @@ def test_what_is_no_request_does_no_harm(own: Explorer, number: int) -> None:
     assert own.ask("map").status == 200
 
 
-@pytest.mark.parametrize(("limit", "number"), [(80, 120), pytest.param(1024, 1500, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    ("limit", "number"), [(80, 120), pytest.param(1024, 1500, marks=pytest.mark.slow)]
+)
 def test_idle_connections_keep_nobody_out(record: Path, limit: int, number: int) -> None:
-    """More than the process may have files; some have sent a part, and some do not read what they asked for."""
+    """More than the process may have files; some have sent a part, and some do not read what they
+    asked for.
+    """
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
     try:
@@ -153,7 +159,11 @@ def test_idle_connections_keep_nobody_out(record: Path, limit: int, number: int)
 
 
 def _children(pid: int) -> list[int]:
-    return [int(n) for task in Path(f"/proc/{pid}/task").iterdir() for n in (task / "children").read_text().split()]
+    return [
+        int(n)
+        for task in Path(f"/proc/{pid}/task").iterdir()
+        for n in (task / "children").read_text().split()
+    ]
 
 
 # ---------------------------------------------------------------------------------------------------------------- files
@@ -175,17 +185,26 @@ def test_what_is_saved_takes_new_names_alone(saver: tuple[Explorer, Path], tmp_p
     (folder / "two.json").symlink_to(tmp_path / "nowhere")
     for name in ("one", "two"):
         refused = own.ask("save", name=name, formats=[], values={"c": "1/2"})
-        assert refused.status == 422 and "is there already: choose another name" in refused.data["error"]
+        assert (
+            refused.status == 422
+            and "is there already: choose another name" in refused.data["error"]
+        )
     assert (folder / "two.json").is_symlink() and not (tmp_path / "nowhere").exists()
     (folder / "two.json").unlink()
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 
 
-def test_what_clients_that_have_gone_have_asked_for_is_not_made(saver: tuple[Explorer, Path]) -> None:
-    """But for what was under way when they went: the worker takes one job at a time, the oldest first."""
+def test_what_clients_that_have_gone_have_asked_for_is_not_made(
+    saver: tuple[Explorer, Path],
+) -> None:
+    """But for what was under way when they went: the worker takes one job at a time, the oldest
+    first.
+    """
     own, folder = saver
     for k in range(30):
-        body = json.dumps({"tab": f"{k}", "values": {"c": f"{k}/97"}, "name": f"gone-{k}", "formats": []}).encode()
+        body = json.dumps(
+            {"tab": f"{k}", "values": {"c": f"{k}/97"}, "name": f"gone-{k}", "formats": []}
+        ).encode()
         connection = connected(own)
         connection.sendall(head(own, f"Content-Length: {len(body)}", path="/api/save") + body)
         cut(connection)
@@ -197,7 +216,9 @@ def test_what_clients_that_have_gone_have_asked_for_is_not_made(saver: tuple[Exp
 def test_a_name_that_is_taken_while_files_are_written_is_not_replaced(
     record: Path, tmp_path: Path, kind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """By another program, in the moment before the files are put into place: none of them is there then."""
+    """By another program, in the moment before the files are put into place: none of them is there
+    then.
+    """
     from ptmcad.errors import OutputError
     from ptmcad.process.output import text_writer, write_files
 
@@ -205,7 +226,9 @@ def test_a_name_that_is_taken_while_files_are_written_is_not_replaced(
 
     def late(path: Path) -> None:
         text_writer("ours")(path)
-        place.symlink_to(tmp_path / "nowhere") if kind == "link" else place.write_text("theirs", encoding="utf-8")
+        place.symlink_to(tmp_path / "nowhere") if kind == "link" else place.write_text(
+            "theirs", encoding="utf-8"
+        )
 
     with pytest.raises(OutputError, match=r"File exists; earlier files are as they were"):
         write_files(tmp_path, {"two.yaml": text_writer("ours"), "two.json": late}, new=True)
@@ -217,12 +240,16 @@ def test_a_name_that_is_taken_while_files_are_written_is_not_replaced(
 
 
 @pytest.fixture(name="opened")
-def opened_fixture(record: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Explorer, Path]]:
+def opened_fixture(
+    record: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[tuple[Explorer, Path]]:
     """An explorer that has started the desktop's browser, and the file that this was given."""
     (tmp_path / "bin").mkdir()
     (tmp_path / "own").mkdir()
     program, given = tmp_path / "bin" / "xdg-open", tmp_path / "given"
-    program.write_text(f'#!/bin/sh\nprintf "%s" "$*" > {given}.part\nmv {given}.part {given}\n', encoding="utf-8")
+    program.write_text(
+        f'#!/bin/sh\nprintf "%s" "$*" > {given}.part\nmv {given}.part {given}\n', encoding="utf-8"
+    )
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{program.parent}:{os.environ['PATH']}")
     monkeypatch.setenv("TMPDIR", str(tmp_path / "own"))
@@ -255,7 +282,9 @@ def test_the_file_leads_a_browser_to_the_page(one: Browser, opened: tuple[Explor
 
 @pytest.mark.slow
 @pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
-def test_a_page_that_has_been_quiet_for_a_while_goes_on(one: Browser, own: Explorer, record: Path) -> None:
+def test_a_page_that_has_been_quiet_for_a_while_goes_on(
+    one: Browser, own: Explorer, record: Path
+) -> None:
     """The connection that its browser kept has been closed meanwhile."""
     with explorer(record) as found:
         one.visit(found.address, "view.shown !== null")

@@ -1,7 +1,7 @@
 """Where a range is widest: whether that is attained, by answers that were found by hand.
 
-Each slice has lines on which the count is another one than beside them, or on which two ranges become one: the count
-of such a line itself is the answer, and a limit is none.
+Each slice has lines on which the count is another one than beside them, or on which two ranges
+become one: the count of such a line itself is the answer, and a limit is none.
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ from ptmcad.cli import run
 
 ROOT = Path(__file__).resolve().parents[2]
 RANGE, DESIGN = (
-    jsonschema.Draft202012Validator(json.loads((ROOT / "docs" / f"{name}.schema.json").read_text(encoding="utf-8")))
+    jsonschema.Draft202012Validator(
+        json.loads((ROOT / "docs" / f"{name}.schema.json").read_text(encoding="utf-8"))
+    )
     for name in ("range", "design")
 )
 ATTAINED, APPROACHED = "attained", "approached but not attained"
@@ -47,7 +49,8 @@ EDGE = ", the edge of the window"
 ROOT_2 = ", a root of a polynomial of degree 2"
 WHOLE = "attained on the interval b from -1 to 1"
 SLICES = {
-    # a = x^2 + b/x on x > 0: for b > 0 two where a > 3 (b/2)^(2/3); x^2 = a has one positive solution at b = 0
+    # a = x^2 + b/x on x > 0: for b > 0 two where a > 3 (b/2)^(2/3); x^2 = a has one positive
+    # solution at b = 0
     "positive cubic": Slice(
         '{unknowns: {x: real}, equations: ["x^3 - a*x + b"], positive: ["x"]}',
         "2", (f"approached but not attained at b = 0{CRITICAL}",), APPROACHED,
@@ -81,7 +84,8 @@ SLICES = {
         '{unknowns: {x: real}, equations: ["x^3 - a*x + b^2 - 2"]}',
         "2", (f"attained at b = 1.414213562{CRITICAL}{ROOT_2}",), ATTAINED, "a: [-1, 2], b: [0, 2]",
     ),
-    # a > 3 (b^2/2)^(2/3), and with b^2 - 2 or (b^2 - 2)(b^2 - 3) for b: flat at 2, where nothing is special
+    # a > 3 (b^2/2)^(2/3), and with b^2 - 2 or (b^2 - 2)(b^2 - 3) for b: flat at 2, where nothing is
+    # special
     "flat cusp": Slice(
         '{unknowns: {x: real}, potential: "x^4/4 - a*x^2/2 + b^2*x"}',
         "2", (f"attained at b = 0{CRITICAL}",), ATTAINED,
@@ -221,7 +225,8 @@ SLICES = {
         '{unknowns: {x: real}, equations: ["x*(x^2 - a - 3)"], stable: ["b^2*(3*x^2 - a - 3)"]}',
         "4", (f"{WHOLE} except at b = 0",), EXCEPT,
     ),
-    # both solutions -s, s with s^2 = a + 3 are above b where a < b^2 - 3: for all a from b = -5^(1/2) on
+    # both solutions -s, s with s^2 = a + 3 are above b where a < b^2 - 3: for all a from
+    # b = -5^(1/2) on
     "an interval to an irrational end": Slice(
         '{unknowns: {x: real}, equations: ["x^2 - a - 3"], positive: ["x - b"]}',
         "4", ("attained on the interval b from -3 to -2.236067977",), ATTAINED, "a: [-2, 2], b: [-3, 3]",
@@ -278,9 +283,15 @@ def test_range_says_whether_the_widest_range_is_attained(
 ) -> None:
     slice = SLICES[name]
     record = f"system: {slice.system}\naxes: {{{slice.axes}}}\n"
-    asked(["range", "--along", "a", "--over", "b", "--rows", "1", "--format", "json"], tmp_path, record)
+    asked(
+        ["range", "--along", "a", "--over", "b", "--rows", "1", "--format", "json"],
+        tmp_path,
+        record,
+    )
     told = [line for line in capsys.readouterr().out.splitlines() if line.startswith("widest ")]
-    assert [line.partition(": ")[2] for line in told] == [f"width {slice.width}, {words}" for words in slice.words]
+    assert [line.partition(": ")[2] for line in told] == [
+        f"width {slice.width}, {words}" for words in slice.words
+    ]
     data = document(tmp_path)
     RANGE.validate(data)
     maxima = data["over"]["maxima"]
@@ -288,17 +299,25 @@ def test_range_says_whether_the_widest_range_is_attained(
     assert {m["attainment"] for m in maxima} == {slice.attainment}
     for m, words in zip(maxima, slice.words, strict=True):
         excepted = words.partition(" except at ")[2]
-        shown = [part.split(" = ")[1] for part in excepted.replace(" and ", ", ").split(", ") if part]
+        shown = [
+            part.split(" = ")[1] for part in excepted.replace(" and ", ", ").split(", ") if part
+        ]
         assert [e["decimal"] for e in m["except"]] == shown
         assert [value(e) for e in m["except"]] == pytest.approx(list(map(float, shown)))
 
 
-@pytest.mark.parametrize("name", ["positive cubic", "parabola", "two ranges that meet at a point", "cusp"])
+@pytest.mark.parametrize(
+    "name", ["positive cubic", "parabola", "two ranges that meet at a point", "cusp"]
+)
 def test_the_extreme_agrees_with_the_row_of_the_line(name: str, tmp_path: Path) -> None:
     """The table's middle row is that of b = 0."""
     slice = SLICES[name]
     record = f"system: {slice.system}\naxes: {{{slice.axes}}}\n"
-    asked(["range", "--along", "a", "--over", "b", "--rows", "1", "--format", "json"], tmp_path, record)
+    asked(
+        ["range", "--along", "a", "--over", "b", "--rows", "1", "--format", "json"],
+        tmp_path,
+        record,
+    )
     over = document(tmp_path)["over"]
     (row,), (maximum,) = over["rows"], over["maxima"]
     ends = [
@@ -307,24 +326,41 @@ def test_the_extreme_agrees_with_the_row_of_the_line(name: str, tmp_path: Path) 
         for e in (i["low"], i["high"])
     ]
     width = max(ends) - min(ends) if ends else 0
-    assert (maximum["attainment"] == ATTAINED) == (width == Fraction(maximum["width"]["enclosure"][0]))
-
-
-def test_what_is_not_known_of_a_continuum_is_not_decided(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """At b = 0 the unknown x is free and y is 1."""
-    record = (
-        'system: {unknowns: {x: real, y: real}, equations: ["b*(x^2 - a)", "y - 1"]}\naxes: {a: [-2, 2], b: [-1, 1]}'
+    assert (maximum["attainment"] == ATTAINED) == (
+        width == Fraction(maximum["width"]["enclosure"][0])
     )
-    asked(["range", "--along", "a", "--over", "b", "--rows", "1", "--format", "json"], tmp_path, record)
+
+
+def test_what_is_not_known_of_a_continuum_is_not_decided(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """At b = 0 the unknown x is free and y is 1."""
+    record = 'system: {unknowns: {x: real, y: real}, equations: ["b*(x^2 - a)", "y - 1"]}\naxes: {a: [-2, 2], b: [-1, 1]}'
+    asked(
+        ["range", "--along", "a", "--over", "b", "--rows", "1", "--format", "json"],
+        tmp_path,
+        record,
+    )
     assert f"{UNDECIDED} at b = 0{CRITICAL}" in capsys.readouterr().out
     assert UNDECIDED in {m["attainment"] for m in document(tmp_path)["over"]["maxima"]}
 
 
 DESIGNS = {
-    # as above; the second with one solution: everywhere on b = 0, nowhere on an interval of another line
-    "approached": ('"x^3 - a*x + b"], positive: ["x"', 2, "2", f"approached but not attained at b = 0{CRITICAL}"),
+    # as above; the second with one solution: everywhere on b = 0, nowhere on an interval of another
+    # line
+    "approached": (
+        '"x^3 - a*x + b"], positive: ["x"',
+        2,
+        "2",
+        f"approached but not attained at b = 0{CRITICAL}",
+    ),
     "on a line alone": ('"b*x^2 + x - a"', 1, "4", f"attained at b = 0{CRITICAL}"),
-    "on an interval": ('"b*x^2 + x - a"', 2, "4", "attained on the interval b from -0.125 to 0.125 except at b = 0"),
+    "on an interval": (
+        '"b*x^2 + x - a"',
+        2,
+        "4",
+        "attained on the interval b from -0.125 to 0.125 except at b = 0",
+    ),
     "where ranges meet": ('"x^2 - (a^2 - b^2)"', 2, "4", f"attained at b = 0{CRITICAL}"),
 }
 
@@ -340,7 +376,9 @@ def test_design_says_whether_its_bound_is_attained(
     )
     asked(["design", "--format", "json", "--evaluations", "5"], tmp_path, record)
     out = capsys.readouterr().out
-    assert f"no design has more than {bound}" in out and f"by exact critical values: {words}\n" in out
+    assert (
+        f"no design has more than {bound}" in out and f"by exact critical values: {words}\n" in out
+    )
     data = document(tmp_path)
     DESIGN.validate(data)
     assert data["bound"] == bound and [e["text"] for e in data["extremes"]] == [words]
@@ -357,13 +395,19 @@ def test_a_line_in_the_variety_counts_under_conditions_too(tmp_path: Path) -> No
         'system: {unknowns: {x: real}, equations: ["b*x^2 + x - a"]}\naxes: {a: [-2, 2], b: [-1, 1]}\n'
         "design: {maximise: range, along: a, over: {b: [-1, 1]}, where: {stable: 1, conditions: [b <= 1/2]}}\n"
     )
-    asked(["design", "--format", "json", "--evaluations", "5"], tmp_path, record, status=3)  # not found, but bounded
+    asked(
+        ["design", "--format", "json", "--evaluations", "5"], tmp_path, record, status=3
+    )  # not found, but bounded
     data = document(tmp_path)
     assert data["bound"] == "4" and not data["proved"]
 
 
-def test_sweep_says_whether_it_is_attained(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """At b = 0 the cubic has x = 0, which counts where d > 0 alone: there are then three on 0 < a < d^2."""
+def test_sweep_says_whether_it_is_attained(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """At b = 0 the cubic has x = 0, which counts where d > 0 alone: there are then three on
+    0 < a < d^2.
+    """
     record = (
         'system: {unknowns: {x: real}, equations: ["x^3 - a*x + b"], positive: ["x + d"]}\n'
         "axes: {a: [-1, 2], b: [-1, 1]}\nsweep: {d: [0, 1/2]}\ncount: total\n"
@@ -374,7 +418,9 @@ def test_sweep_says_whether_it_is_attained(tmp_path: Path, capsys: pytest.Captur
     (path,) = (tmp_path / "out").glob("*.csv")
     rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
     words = [f"approached but not attained at b = 0{CRITICAL}", f"attained at b = 0{CRITICAL}"]
-    assert [(row["attainment"], row["proof"]) for row in rows] == list(zip((APPROACHED, ATTAINED), words, strict=True))
+    assert [(row["attainment"], row["proof"]) for row in rows] == list(
+        zip((APPROACHED, ATTAINED), words, strict=True)
+    )
     (page,) = (tmp_path / "out").glob("*.html")
     assert all(text in page.read_text(encoding="utf-8") for text in words)
 
@@ -395,7 +441,9 @@ def test_sweep_says_attained_where_one_of_several_places_has_it(tmp_path: Path) 
 def test_the_picture_says_it(tmp_path: Path) -> None:
     slice = SLICES["positive cubic"]
     record = f"system: {slice.system}\naxes: {{{slice.axes}}}\n"
-    asked(["range", "--along", "a", "--over", "b", "--rows", "1", "--format", "svg"], tmp_path, record)
+    asked(
+        ["range", "--along", "a", "--over", "b", "--rows", "1", "--format", "svg"], tmp_path, record
+    )
     (path,) = (tmp_path / "out").glob("*.svg")
     assert "approached but not attained at b = 0" in path.read_text(encoding="utf-8")
 
@@ -435,7 +483,9 @@ def test_verify_checks_what_a_design_says_of_attainment(
     assert status == 1 and "FALSE        extremes" in out
 
 
-def test_verify_checks_it_at_irrational_values_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_verify_checks_it_at_irrational_values_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Two solutions where a > c^2 - 2 with c = 2 b^2 - 1, and one where c is 0."""
     record = (
         'system: {unknowns: {x: real}, equations: ["x^2 - (2*b^2 - 1)^2*(a + 2 - (2*b^2 - 1)^2)"]}\n'

@@ -1,4 +1,6 @@
-"""The first minute: help, misspelt words, shipped records by name, floats, the question, bars, remedies."""
+"""The first minute: help, misspelt words, shipped records by name, floats, the question, bars,
+remedies.
+"""
 
 from __future__ import annotations
 
@@ -109,7 +111,10 @@ UNIT = {"a": [-1, 1], "b": [-1, 1]}
 def test_a_float_is_its_shortest_decimal_wherever_a_number_is_taken(tenth: Any) -> None:
     record = {**PARABOLA, "axes": {"a": [-tenth, 1], "b": [0, tenth]}}
     result = ptmcad.classify(record, tolerance=None)
-    assert [(axis.low, axis.high) for axis in result.slice.axes] == [(Fraction(-1, 10), 1), (0, Fraction(1, 10))]
+    assert [(axis.low, axis.high) for axis in result.slice.axes] == [
+        (Fraction(-1, 10), 1),
+        (0, Fraction(1, 10)),
+    ]
     window = ptmcad.classify({**PARABOLA, "axes": UNIT})
     assert window.locate(a=-tenth, b="1/10").status.value == "on the variety"
     (pose,) = ptmcad.solve({**PARABOLA, "axes": UNIT}, a=tenth, b="-1/10").equilibria
@@ -122,7 +127,9 @@ def test_a_float_is_its_shortest_decimal_wherever_a_number_is_taken(tenth: Any) 
 def test_what_is_no_number_is_refused_by_name(value: float) -> None:
     with pytest.raises(ConfigError, match=r"axes\.b.*is not a number"):
         ptmcad.classify({**PARABOLA, "axes": {"a": [0, 1], "b": [0, value]}})
-    with pytest.raises(ConfigError, match=r"^a: .*is not a number .*; all values are finite: write a large number"):
+    with pytest.raises(
+        ConfigError, match=r"^a: .*is not a number .*; all values are finite: write a large number"
+    ):
         ptmcad.solve({**PARABOLA, "axes": UNIT}, a=value, b=0)
     with pytest.raises(ConfigError, match=r"^tolerance: .*is not a number"):
         ptmcad.classify({**PARABOLA, "axes": UNIT}, tolerance=value)
@@ -152,7 +159,9 @@ def test_no_two_shipped_records_have_one_name(capfd: pytest.CaptureFixture[str])
         "classify equal-loads --members 2 --format json --no-areas",
     ],
 )
-def test_shipped_records_are_found_by_name(command: str, folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_shipped_records_are_found_by_name(
+    command: str, folder: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     assert run(command.split()) == 0
     assert capfd.readouterr().err == ""
 
@@ -165,7 +174,9 @@ def test_shipped_records_are_found_by_name_in_python(folder: Path) -> None:
 
 def test_a_file_wins_over_a_shipped_record(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """A folder of the name does not."""
-    Path("duffing").write_text((ROOT / "configs" / "systems" / "cubic.yaml").read_text("utf-8"), encoding="utf-8")
+    Path("duffing").write_text(
+        (ROOT / "configs" / "systems" / "cubic.yaml").read_text("utf-8"), encoding="utf-8"
+    )
     Path("fig4").mkdir()
     assert ptmcad.load("duffing").axis_names == ptmcad.load("cubic").axis_names
     assert ptmcad.load("fig4").name == "fig4"
@@ -173,7 +184,9 @@ def test_a_file_wins_over_a_shipped_record(folder: Path, capfd: pytest.CaptureFi
 
 def test_an_extra_has_all_that_messages_name() -> None:
     """But msolve, which is a program of its own and not for every system."""
-    extras = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"][
+        "optional-dependencies"
+    ]
     (everything,) = extras["all"]
     named = set(re.findall(r"\w+", everything.partition("[")[2]))
     assert named == extras.keys() - {"all", "large", "test", "check", "fuzz", "docs", "dev"}
@@ -222,12 +235,18 @@ main()
 """The program, whose bar appears at once."""
 
 
-def on_a_terminal(words: list[str], columns: int, program: tuple[str, ...] = ("-m", "ptmcad")) -> str:
+def on_a_terminal(
+    words: list[str], columns: int, program: tuple[str, ...] = ("-m", "ptmcad")
+) -> str:
     """What a command shows on a terminal of so many columns."""
     child, terminal = pty.fork()
     if child == 0:
         fcntl.ioctl(2, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-        os.execvpe(sys.executable, [sys.executable, *program, *words], os.environ | {"PYTHONPATH": str(ROOT)})
+        os.execvpe(
+            sys.executable,
+            [sys.executable, *program, *words],
+            os.environ | {"PYTHONPATH": str(ROOT)},
+        )
     shown = b""
     try:
         while part := os.read(terminal, 1 << 16):
@@ -240,7 +259,18 @@ def on_a_terminal(words: list[str], columns: int, program: tuple[str, ...] = ("-
 
 
 MAP = ["map", "fig4", "--value", "barrier", "--pose", "stable:2", "--pixels", "60"]
-SEARCH = ["design", "fig4", "--along", "rho", "--over", "L1=1/2:2", "--over", "L2=1/2:2", "--boxes", "2000"]
+SEARCH = [
+    "design",
+    "fig4",
+    "--along",
+    "rho",
+    "--over",
+    "L1=1/2:2",
+    "--over",
+    "L2=1/2:2",
+    "--boxes",
+    "2000",
+]
 
 
 @pytest.mark.parametrize(
@@ -250,7 +280,9 @@ SEARCH = ["design", "fig4", "--along", "rho", "--over", "L1=1/2:2", "--over", "L
         pytest.param(MAP, 80, id="map", marks=pytest.mark.slow),
     ],
 )
-def test_a_long_command_has_one_bar_on_one_line(words: list[str], columns: int, folder: Path) -> None:
+def test_a_long_command_has_one_bar_on_one_line(
+    words: list[str], columns: int, folder: Path
+) -> None:
     shown = on_a_terminal(words, columns)
     bars = re.findall(r"\r\x1b\[K(\[[#.]+\][^\r\n]*)", shown)
     assert bars and all(len(bar) < columns for bar in bars)
@@ -259,7 +291,9 @@ def test_a_long_command_has_one_bar_on_one_line(words: list[str], columns: int, 
 
 
 def test_lines_and_the_bar_stay_apart(folder: Path) -> None:
-    """Rows that are printed while a check goes on; and nothing is left of a bar drawn as libraries were loaded."""
+    """Rows that are printed while a check goes on; and nothing is left of a bar drawn as libraries
+    were loaded.
+    """
     made = on_a_terminal(["classify", "duffing", "--format", "json,png"], 40, ("-c", IMPATIENT))
     checked = on_a_terminal(["verify", "duffing.json"], 40, ("-c", IMPATIENT))
     for shown in (made, checked):
@@ -304,7 +338,9 @@ def test_a_message_says_what_to_write_instead(
     text: str, remedy: str, folder: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """In a record's values, and in options."""
-    Path("mine.yaml").write_text(f'parameters: {{L1: "{text}"}}\naxes: {{rho: [0, 2], L2: [0, 2]}}\n', encoding="utf-8")
+    Path("mine.yaml").write_text(
+        f'parameters: {{L1: "{text}"}}\naxes: {{rho: [0, 2], L2: [0, 2]}}\n', encoding="utf-8"
+    )
     said = refusal(["classify", "mine.yaml"], capfd)
     assert said.startswith("error: mine.yaml:1: parameters.L1: ") and remedy in said
     if "rho" not in text and "," not in text:  # a comma begins the next name there
@@ -328,7 +364,12 @@ def test_a_message_says_what_to_write_instead(
 def test_a_message_says_what_to_write_instead_in_an_equation(
     equation: str, remedy: str, folder: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    lines = ["system:", "  unknowns: {x: real}", f"  equations: ['{equation}']", "axes: {a: [0, 1], n: [1, 2]}"]
+    lines = [
+        "system:",
+        "  unknowns: {x: real}",
+        f"  equations: ['{equation}']",
+        "axes: {a: [0, 1], n: [1, 2]}",
+    ]
     Path("mine.yaml").write_text("\n".join(lines), encoding="utf-8")
     said = refusal(["classify", "mine.yaml"], capfd)
     assert said.startswith("error: mine.yaml:3: system.equations.1: ") and remedy in said
@@ -341,13 +382,22 @@ def test_a_message_says_what_to_write_instead_in_an_equation(
 def test_check_says_where_points_are_answered_and_maps_are_not(
     number: int, folder: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """A chain of springs with free lengths: no map of so many unknowns is made, and `solve` answers."""
+    """A chain of springs with free lengths: no map of so many unknowns is made, and `solve`
+    answers.
+    """
     masses = ["P", "Q", "R"][: (number + 1) // 2]
-    heights = {name: f"y{name}" if n < number - len(masses) else "-1" for n, name in enumerate(masses)}
+    heights = {
+        name: f"y{name}" if n < number - len(masses) else "-1" for n, name in enumerate(masses)
+    }
     record = {
         "mechanism": {
-            "parameters": {"k": {"kind": "stiffness", "default": 5}, "g": {"default": 10}, "m": {"default": 1}},
-            "unknowns": {f"x{n}": "length" for n in masses} | {y: "length" for y in heights.values() if y != "-1"},
+            "parameters": {
+                "k": {"kind": "stiffness", "default": 5},
+                "g": {"default": 10},
+                "m": {"default": 1},
+            },
+            "unknowns": {f"x{n}": "length" for n in masses}
+            | {y: "length" for y in heights.values() if y != "-1"},
             "points": {"A": [0, 0], "B": [4, 0]} | {n: [f"x{n}", heights[n]] for n in masses},
             "springs": [
                 {"between": list(ends), "k": "k", "free": 1}
@@ -363,7 +413,9 @@ def test_check_says_where_points_are_answered_and_maps_are_not(
     assert "no map can be made" in out and "by ptmcad solve" in out and "hours" not in out
 
 
-def test_check_has_no_word_for_what_it_has_not_counted(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_check_has_no_word_for_what_it_has_not_counted(
+    folder: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     unknowns = "xyzuv"
     record = {
         "system": {
@@ -375,4 +427,6 @@ def test_check_has_no_word_for_what_it_has_not_counted(folder: Path, capfd: pyte
     Path("mine.yaml").write_text(json.dumps(record), encoding="utf-8")
     assert run(["check", "mine.yaml"]) == 0
     out = capfd.readouterr().out
-    assert "solutions   not counted" in out and "cost        not known" in out and "hours" not in out
+    assert (
+        "solutions   not counted" in out and "cost        not known" in out and "hours" not in out
+    )

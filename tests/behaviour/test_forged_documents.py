@@ -46,7 +46,10 @@ COMMANDS = {
     "poses": (["solve", "line.yaml", "--at", "a=1,b=1/50"], "poses.json"),
     "range": (["range", "line.yaml", "--along", "a", "--at", "b=1/50"], "line-range.json"),
     "map": (["classify", "line.yaml"], "line.json"),
-    "poses of a mechanism": (["solve", "arm.yaml", "--at", "F=1/2,P=1/4", "--name", "arm"], "arm.json"),
+    "poses of a mechanism": (
+        ["solve", "arm.yaml", "--at", "F=1/2,P=1/4", "--name", "arm"],
+        "arm.json",
+    ),
 }
 STILL_TRUE = {
     ("title",): "free text",
@@ -56,7 +59,9 @@ STILL_TRUE = {
     ("model", "system", "name"): "free text",
     ("mechanism",): "of a range, whose model is in its slice",
     ("bound",): "a larger bound is true, too",
-    ("points",): "of the designs that were evaluated one may be left out; the values of the others are evaluated anew",
+    (
+        "points",
+    ): "of the designs that were evaluated one may be left out; the values of the others are evaluated anew",
     ("reason",): "no number of boxes is another",
     ("seed",): "of the search, on which nothing rests",
     ("tolerance",): "what was asked for",
@@ -67,7 +72,10 @@ STILL_TRUE = {
     ("name",): "free text",
     ("versions",): "of the program that made it",
     ("extremes",): "a claim less",
-    ("parameters", "c"): "of a family the free parameter itself, of a design the present one's value",
+    (
+        "parameters",
+        "c",
+    ): "of a family the free parameter itself, of a design the present one's value",
     ("conditions",): "a condition that holds for the same designs",
     ("members",): "a member less",
     ("slice", "axes", "b"): "the line is at one value of it",
@@ -104,7 +112,9 @@ def verified(data: Any) -> int:
 
 
 @pytest.mark.parametrize("kind", [*COMMANDS, "sweep"])
-def test_a_true_document_holds_and_its_last_line_says_so(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_true_document_holds_and_its_last_line_says_so(
+    kind: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["verify", "swept" if kind == "sweep" else COMMANDS[kind][1]]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= 80
@@ -114,12 +124,19 @@ def test_a_true_document_holds_and_its_last_line_says_so(kind: str, capsys: pyte
 def test_a_design_without_any_range_holds() -> None:
     """A cubic has one root or three, never two."""
     asked = "design: {maximise: range, along: a, over: {b: [-1, 1]}, where: {stable: 2}}\n"
-    Path("none.yaml").write_text(RECORDS["line"].replace("name: line", "name: none") + asked, encoding="utf-8")
-    assert run(["design", "none.yaml", "--format", "json"]) in (0, 3)  # a bound of what there is not is not proved
+    Path("none.yaml").write_text(
+        RECORDS["line"].replace("name: line", "name: none") + asked, encoding="utf-8"
+    )
+    assert run(["design", "none.yaml", "--format", "json"]) in (
+        0,
+        3,
+    )  # a bound of what there is not is not proved
     assert run(["verify", "none-design.json"]) == 0
 
 
-def test_the_verdict_counts_what_holds_and_what_was_not_checked(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_verdict_counts_what_holds_and_what_was_not_checked(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     assert run(["verify", "line.json"]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == "20 claims hold, 2 not checked"
 
@@ -133,7 +150,11 @@ def shorter_window(data: Any) -> None:
 
 
 def design_over_the_bound(data: Any) -> None:
-    point = next(p for p in data["points"] if p["value"] is not None and p["at"] != list(data["best"].values()))
+    point = next(
+        p
+        for p in data["points"]
+        if p["value"] is not None and p["at"] != list(data["best"].values())
+    )
     point["value"] = ["10", "10"]
 
 
@@ -160,7 +181,11 @@ def another_free_parameter(data: Any) -> None:
 
 def value_that_is_near(data: Any) -> None:
     near = "-5221655/10000000"  # 2.7e-8 from the root of 432 c^2 + 216 c - 5
-    data["changes"]["found"][0]["value"] = {"polynomial": ["5221655", "10000000"], "low": near, "high": near}
+    data["changes"]["found"][0]["value"] = {
+        "polynomial": ["5221655", "10000000"],
+        "low": near,
+        "high": near,
+    }
 
 
 def another_event(data: Any) -> None:
@@ -228,13 +253,17 @@ def test_a_false_document_is_refused(
 
 @pytest.mark.parametrize("kind", [name for name in COMMANDS if name != "map"])
 @pytest.mark.slow
-def test_whatever_is_changed_is_refused_or_still_true(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_whatever_is_changed_is_refused_or_still_true(
+    kind: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     """A sample of all changes of single entries; maps have a forger of their own."""
     false = list(forged(document(kind)))
     accepted = []
     for place, data in random.Random(kind).sample(false, min(len(false), 60)):
         keys = tuple(key for key in place if isinstance(key, str))
-        if verified(data) == 0 and not any(keys[: len(allowed)] == allowed for allowed in STILL_TRUE):
+        if verified(data) == 0 and not any(
+            keys[: len(allowed)] == allowed for allowed in STILL_TRUE
+        ):
             accepted.append(place)
         capsys.readouterr()
     assert not accepted
@@ -255,7 +284,9 @@ def test_whatever_is_changed_is_refused_or_still_true(kind: str, capsys: pytest.
         "DELETE FROM members WHERE number = 0",
     ],
 )
-def test_a_false_index_of_a_sweep_is_refused(statement: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_false_index_of_a_sweep_is_refused(
+    statement: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     index = Path("swept/index.sqlite")
     true = index.read_bytes()
     try:
@@ -289,7 +320,9 @@ def test_a_member_that_is_no_map_is_named(text: str, capsys: pytest.CaptureFixtu
     try:
         member.write_bytes(data)
         with sqlite3.connect(index) as rows:
-            rows.execute("UPDATE members SET digest = ? WHERE number = 1", (sha256(data).hexdigest(),))
+            rows.execute(
+                "UPDATE members SET digest = ? WHERE number = 1", (sha256(data).hexdigest(),)
+            )
         rows.close()
         assert run(["verify", "swept"]) == 2
         assert "000001.json: is damaged or no region map" in capsys.readouterr().err
@@ -322,7 +355,9 @@ def test_at_a_time_limit_it_is_said_what_was_checked(capsys: pytest.CaptureFixtu
 
 @pytest.mark.slow
 def test_a_time_limit_ends_the_program_with_its_own_status() -> None:
-    """The watched process has a clock of its own, which the watching one does not take for a signal from outside."""
+    """The watched process has a clock of its own, which the watching one does not take for a signal
+    from outside.
+    """
     assert run(["classify", "fig4", "--format", "json"]) == 0
     command = [sys.executable, "-m", "ptmcad", "verify", "fig4.json", "--timeout", "0.5"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -1,5 +1,6 @@
-"""Pictures say nothing false: what is undetermined is seen as that, a label stands on what it names, lines are those of
-stability. Read from the files that the commands write: fills, outlines and texts of an SVG.
+"""Pictures say nothing false: what is undetermined is seen as that, a label stands on what it
+names, lines are those of stability. Read from the files that the commands write: fills, outlines
+and texts of an SVG.
 """
 
 from __future__ import annotations
@@ -27,7 +28,11 @@ _NUMBER = r"-?[0-9.]+(?:e-?[0-9]+)?"
 
 def texts(picture: Path) -> list[str]:
     """All texts of an SVG, in order."""
-    return ["".join(node.itertext()).strip() for node in ET.parse(picture).iter() if node.tag.endswith("}text")]
+    return [
+        "".join(node.itertext()).strip()
+        for node in ET.parse(picture).iter()
+        if node.tag.endswith("}text")
+    ]
 
 
 def group(picture: Path, name: str) -> ET.Element:
@@ -37,7 +42,11 @@ def group(picture: Path, name: str) -> ET.Element:
 
 def groups(picture: Path, pattern: str) -> list[str]:
     """The names of groups that a pattern matches."""
-    return [name for node in ET.parse(picture).iter() if re.fullmatch(pattern, name := node.get("id", ""))]
+    return [
+        name
+        for node in ET.parse(picture).iter()
+        if re.fullmatch(pattern, name := node.get("id", ""))
+    ]
 
 
 def paths(node: ET.Element) -> list[ET.Element]:
@@ -56,7 +65,11 @@ def outline(path: ET.Element) -> Curve:
         numbers = [float(number) for number in re.findall(_NUMBER, part)]
         corners = [*zip(numbers[::2], numbers[1::2], strict=True)]
         points += [*corners, corners[0]]
-        codes += [int(Curve.MOVETO), *[int(Curve.LINETO)] * (len(corners) - 1), int(Curve.CLOSEPOLY)]
+        codes += [
+            int(Curve.MOVETO),
+            *[int(Curve.LINETO)] * (len(corners) - 1),
+            int(Curve.CLOSEPOLY),
+        ]
     return Curve(points, codes)
 
 
@@ -73,13 +86,34 @@ def truss(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A certified map of which 8 % are undetermined."""
     folder = tmp_path_factory.mktemp("truss")
     (folder / "truss.yaml").write_text(yaml.safe_dump({"name": "truss", **TRUSS}))
-    options = ["--engine", "certified", "--tolerance", "1/10", "--format", "json,svg", "--out", str(folder)]
+    options = [
+        "--engine",
+        "certified",
+        "--tolerance",
+        "1/10",
+        "--format",
+        "json,svg",
+        "--out",
+        str(folder),
+    ]
     assert run(["classify", str(folder / "truss.yaml"), *options]) == 0
     return folder
 
 
-def test_pixels_that_are_undetermined_are_said_to_be_so(truss: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    asked = ["map", str(truss / "truss.json"), "--value", "energy", "--checks", "2", "--pixels", "12", "--out"]
+def test_pixels_that_are_undetermined_are_said_to_be_so(
+    truss: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = [
+        "map",
+        str(truss / "truss.json"),
+        "--value",
+        "energy",
+        "--checks",
+        "2",
+        "--pixels",
+        "12",
+        "--out",
+    ]
     assert run([*asked, str(truss), "--format", "svg"]) == 0
     assert re.search(r"of the pixels; [0-9.]+ % undetermined", capsys.readouterr().out)
     found = texts(truss / "truss-energy-stable-1.svg")
@@ -91,14 +125,25 @@ def test_pixels_that_are_undetermined_are_said_to_be_so(truss: Path, capsys: pyt
 
 
 def test_a_barrier_that_is_not_there_is_no_missing_pose(tmp_path: Path) -> None:
-    asked = ["map", str(CONFIGS / "fig4.yaml"), "--value", "barrier", "--checks", "2", "--pixels", "6"]
+    asked = [
+        "map",
+        str(CONFIGS / "fig4.yaml"),
+        "--value",
+        "barrier",
+        "--checks",
+        "2",
+        "--pixels",
+        "6",
+    ]
     assert run([*asked, "--format", "svg", "--out", str(tmp_path)]) == 0
     found = texts(tmp_path / "fig4-barrier-stable-1.svg")
     assert "no barrier" in found and "undetermined" not in found
 
 
 def test_what_is_undetermined_is_seen_in_its_grey_over_its_rims(truss: Path) -> None:
-    """It is drawn after the regions and their rims, and with a line of its own, so that no rim hides it."""
+    """It is drawn after the regions and their rims, and with a line of its own, so that no rim
+    hides it.
+    """
     picture = truss / "truss.svg"
     names = groups(picture, r"region-\d+|edges")
     assert names[-1] == "edges"
@@ -117,14 +162,18 @@ def test_a_label_stands_on_a_region_of_its_own_count(name: str, style: str, tmp_
     options = ["--format", "svg", "--style", style, "--no-areas", "--out", str(tmp_path)]
     assert run(["classify", str(CONFIGS / f"{name}.yaml"), *options]) == 0
     picture = tmp_path / f"{name}.svg"
-    regions = {region: paths(group(picture, region))[0] for region in groups(picture, r"region-\d+")}
+    regions = {
+        region: paths(group(picture, region))[0] for region in groups(picture, r"region-\d+")
+    }
     arrows = groups(picture, r"arrow-\d+")
     assert arrows
     for arrow in arrows:
         label = next(path for path in paths(group(picture, arrow)) if fill(path) == "#ffffff")
         own = fill(regions[arrow.replace("arrow", "region")])
         for corner in box(label):
-            assert [fill(path) for path in regions.values() if outline(path).contains_point(corner)] == [own]
+            assert [
+                fill(path) for path in regions.values() if outline(path).contains_point(corner)
+            ] == [own]
 
 
 SWEPT = """
@@ -139,7 +188,16 @@ count: stable
 def test_an_atlas_is_headed_by_what_all_members_have_in_common(tmp_path: Path) -> None:
     (tmp_path / "swept.yaml").write_text(SWEPT)
     folder = tmp_path / "out"
-    asked = ["sweep", str(tmp_path / "swept.yaml"), "--no-ranges", "--no-areas", "--jobs", "1", "--format", "html"]
+    asked = [
+        "sweep",
+        str(tmp_path / "swept.yaml"),
+        "--no-ranges",
+        "--no-areas",
+        "--jobs",
+        "1",
+        "--format",
+        "html",
+    ]
     assert run([*asked, "--out", str(folder)]) == 0
     assert "<h1>L₁ = 1, k = 100</h1>" in (folder / "swept.html").read_text(encoding="utf-8")
 
@@ -147,10 +205,14 @@ def test_an_atlas_is_headed_by_what_all_members_have_in_common(tmp_path: Path) -
 def test_bounds_of_an_area_are_the_same_everywhere_and_what_is_proved(
     truss: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Of regions alone with their counts: not more than the table of numbers proves, to two digits at least."""
+    """Of regions alone with their counts: not more than the table of numbers proves, to two digits
+    at least.
+    """
     assert run(["plot", str(truss / "truss.json"), "--format", "csv", "--out", str(truss)]) == 0
     rows = list(csv.DictReader((truss / "truss-regions.csv").read_text().splitlines()))
-    proved = {f"({row['index'].replace(' ', ', ')})": (row["area_low"], row["area_high"]) for row in rows}
+    proved = {
+        f"({row['index'].replace(' ', ', ')})": (row["area_low"], row["area_high"]) for row in rows
+    }
     capsys.readouterr()
     assert run(["classify", str(truss / "truss.yaml"), "--engine", "certified", "--tolerance", "1/10", "--out",
                 str(truss), "--format", "json"]) == 0  # fmt: skip
@@ -167,19 +229,38 @@ def test_bounds_of_an_area_are_the_same_everywhere_and_what_is_proved(
 
 def lines(node: ET.Element) -> list[dict[str, str]]:
     """The styles of the lines below a node."""
-    styles = [dict(re.findall(r"([a-z-]+): ?([^;]+)", path.get("style", ""))) for path in paths(node)]
+    styles = [
+        dict(re.findall(r"([a-z-]+): ?([^;]+)", path.get("style", ""))) for path in paths(node)
+    ]
     return [style for style in styles if "stroke" in style and style.get("fill") == "none"]
 
 
 def test_stable_branches_are_solid_and_no_others_are(tmp_path: Path) -> None:
     """In both pictures of a line; and no colour is that of a stable branch and of another."""
-    asked = ["range", str(CONFIGS / "fig4.yaml"), "--along", "rho", "--at", "L2=3/2", "--format", "svg"]
+    asked = [
+        "range",
+        str(CONFIGS / "fig4.yaml"),
+        "--along",
+        "rho",
+        "--at",
+        "L2=3/2",
+        "--format",
+        "svg",
+    ]
     assert run([*asked, "--path", "3/4", "--quantity", "th1", "--out", str(tmp_path)]) == 0
     solid: set[str] = set()
     broken: set[str] = set()
     for name, stable in (("fig4-range-path", r"pose \d at"), ("fig4-range-branches", "stable$")):
-        keys = [text for text in texts(tmp_path / f"{name}.svg") if re.match(rf"{stable}|saddle|maximum", text)]
-        marks = [style for style in lines(ET.parse(tmp_path / f"{name}.svg").getroot()) if style["stroke"] != "#111111"]
+        keys = [
+            text
+            for text in texts(tmp_path / f"{name}.svg")
+            if re.match(rf"{stable}|saddle|maximum", text)
+        ]
+        marks = [
+            style
+            for style in lines(ET.parse(tmp_path / f"{name}.svg").getroot())
+            if style["stroke"] != "#111111"
+        ]
         assert keys
         of_legend = marks[-len(keys) :]
         for text, style in zip(keys, of_legend, strict=True):
@@ -187,22 +268,42 @@ def test_stable_branches_are_solid_and_no_others_are(tmp_path: Path) -> None:
             assert ("stroke-dasharray" not in style) == is_stable, text
             (solid if is_stable else broken).add(style["stroke"])
         drawn = {(style["stroke"], style.get("stroke-dasharray")) for style in of_legend}
-        assert {(s["stroke"], s.get("stroke-dasharray")) for s in marks if s["stroke"] in solid | broken} == drawn
+        assert {
+            (s["stroke"], s.get("stroke-dasharray")) for s in marks if s["stroke"] in solid | broken
+        } == drawn
     assert len(solid) == 2 and not solid & broken
 
 
 def test_names_have_greek_letters_in_all_of_a_picture_or_in_none(tmp_path: Path) -> None:
     """The record's title has rho and L1, as a keyboard has them."""
     record = CONFIGS / "forces.yaml"
-    assert run(["classify", str(record), "--no-areas", "--format", "json,svg", "--out", str(tmp_path)]) == 0
+    assert (
+        run(["classify", str(record), "--no-areas", "--format", "json,svg", "--out", str(tmp_path)])
+        == 0
+    )
     assert "The two loads, L₁ = 1, L₂ = 3/2, ρ = 3/4, k = 100" in texts(tmp_path / "forces.svg")
     assert run(["report", str(tmp_path / "forces.json"), "--out", str(tmp_path)]) == 0
     page = (tmp_path / "forces.html").read_text(encoding="utf-8")
     assert "<dd>L₁ = 1, L₂ = 3/2, ρ = 3/4, k = 100; zero: F₃ₓ, F₄ₓ</dd>" in page
     names = {"omega1": [-1, 1], "Sigma": [0, 1]}
     system = {"unknowns": {"x": "real"}, "equations": ["x^2 - omega1 - Sigma"]}
-    (tmp_path / "greek.yaml").write_text(yaml.safe_dump({"name": "greek", "system": system, "axes": names}))
-    assert run(["classify", str(tmp_path / "greek.yaml"), "--no-areas", "--format", "svg", "--out", str(tmp_path)]) == 0
+    (tmp_path / "greek.yaml").write_text(
+        yaml.safe_dump({"name": "greek", "system": system, "axes": names})
+    )
+    assert (
+        run(
+            [
+                "classify",
+                str(tmp_path / "greek.yaml"),
+                "--no-areas",
+                "--format",
+                "svg",
+                "--out",
+                str(tmp_path),
+            ]
+        )
+        == 0
+    )
     assert {"ω₁", "Σ"} <= set(texts(tmp_path / "greek.svg"))
 
 
@@ -218,16 +319,22 @@ mechanism:
 axes: {W: [0, 3], k: [1/2, 3]}
 count: stable
 """
-"""Upright under a small weight, with both angles 0, and hanging under a large one, with both at half a turn."""
+"""Upright under a small weight, with both angles 0, and hanging under a large one, with both at
+half a turn.
+"""
 
 
 def test_half_a_turn_is_one_angle_and_its_symbol_stands_in_all_of_a_picture(tmp_path: Path) -> None:
-    """Half a turn is 180 degrees at every pixel, never -180; names with an underscore have their letter, too."""
+    """Half a turn is 180 degrees at every pixel, never -180; names with an underscore have their
+    letter, too.
+    """
     record, out = tmp_path / "arm.yaml", ["--out", str(tmp_path)]
     record.write_text(ARM, encoding="utf-8")
     asked = ["map", str(record), "--pixels", "10", "--checks", "2", "--format", "svg,csv", *out]
     assert run([*asked, "--value", "angle:alpha_1"]) == 0
-    rows = (tmp_path / "arm-angle-alpha-1-stable-1.csv").read_text(encoding="utf-8").splitlines()[1:]
+    rows = (
+        (tmp_path / "arm-angle-alpha-1-stable-1.csv").read_text(encoding="utf-8").splitlines()[1:]
+    )
     hanging = [float(row.split(",")[2]) for row in rows if float(row.split(",")[0]) > 2]
     assert hanging == pytest.approx([180] * (3 * 10))
     assert "angle α_1 (degrees)" in texts(tmp_path / "arm-angle-alpha-1-stable-1.svg")
@@ -245,7 +352,9 @@ def test_half_a_turn_is_180_degrees_on_a_page(one: chromium.Browser, tmp_path: P
     """The page opens at a point where the arm hangs."""
     (tmp_path / "arm.yaml").write_text(ARM, encoding="utf-8")
     out = ["--out", str(tmp_path)]
-    assert run(["classify", str(tmp_path / "arm.yaml"), "--no-areas", "--format", "json", *out]) == 0
+    assert (
+        run(["classify", str(tmp_path / "arm.yaml"), "--no-areas", "--format", "json", *out]) == 0
+    )
     assert run(["report", str(tmp_path / "arm.json"), *out]) == 0
     one.open(tmp_path / "arm.html")
     one.until("document.body.textContent.includes('°')")

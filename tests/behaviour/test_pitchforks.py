@@ -1,4 +1,6 @@
-"""`ptmcad range` with free lengths: where a symmetry proves a pitchfork, the end is one, and has all its digits."""
+"""`ptmcad range` with free lengths: where a symmetry proves a pitchfork, the end is one, and has
+all its digits.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ import pytest
 
 from ptmcad.cli import run
 
-SCHEMA = json.loads((Path(__file__).resolve().parents[2] / "docs" / "range.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads(
+    (Path(__file__).resolve().parents[2] / "docs" / "range.schema.json").read_text(encoding="utf-8")
+)
 
 BALANCER = """
 name: balancer
@@ -47,7 +51,16 @@ axes: {P: [3, 5], c: [1/2, 2]}
 def met(record: str, along: str, at: str, folder: Path) -> dict[str, Any]:
     """The part of the document that is about a line with free lengths."""
     (folder / "record.yaml").write_text(record, encoding="utf-8")
-    arguments = ["range", str(folder / "record.yaml"), "--along", along, "--at", at, "--format", "json"]
+    arguments = [
+        "range",
+        str(folder / "record.yaml"),
+        "--along",
+        along,
+        "--at",
+        at,
+        "--format",
+        "json",
+    ]
     assert run([*arguments, "--out", str(folder)]) == 0
     (path,) = folder.glob("*.json")
     document: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
@@ -63,7 +76,10 @@ def places(found: dict[str, Any]) -> list[float]:
 
 @pytest.mark.parametrize(
     ("along", "at", "expected"),
-    [("k", "l0=1/10", [30 / 7, 5]), pytest.param("l0", "k=9/2", [1 / 18, 1 / 6], marks=pytest.mark.slow)],
+    [
+        ("k", "l0=1/10", [30 / 7, 5]),
+        pytest.param("l0", "k=9/2", [1 / 18, 1 / 6], marks=pytest.mark.slow),
+    ],
     ids=["k", "l0"],
 )
 def test_ends_of_a_balancer_are_pitchforks(
@@ -77,24 +93,39 @@ def test_ends_of_a_balancer_are_pitchforks(
 
 
 def test_pitchforks_of_two_angles_by_hand(tmp_path: Path) -> None:
-    """Where both bars are upright or hang: U'' is linear in P there, less P times the cosines on the diagonal."""
+    """Where both bars are upright or hang: U'' is linear in P there, less P times the cosines on
+    the diagonal.
+    """
     expected = []
     for c in map(np.array, product((1.0, -1.0), repeat=2)):
         distance = 4 - c.sum()
         pull = (distance - 0.5) / distance
         bent = np.array([[c[0], 0], [0, 0]]) + c[0] * c[1] * np.array([[1, -1], [-1, 1]])
         hessian = pull * (np.outer(c, c) + distance * np.diag(c)) + bent
-        expected += [float(v.real) for v in np.linalg.eigvals(np.diag(c) @ hessian) if abs(v.imag) < 1e-9]
+        expected += [
+            float(v.real) for v in np.linalg.eigvals(np.diag(c) @ hessian) if abs(v.imag) < 1e-9
+        ]
     found = met(ARM, "P", "c=1", tmp_path)
     assert places(found) == pytest.approx(sorted(v for v in expected if 3 < v < 5), abs=1e-8)
     totals = [sum(interval["index"]) for interval in found["intervals"]]
     assert {abs(b - a) for a, b in pairwise(totals)} == {2}
 
 
-def path_ends(record: str, along: str, at: str, start: str, folder: Path) -> list[list[dict[str, Any]]]:
+def path_ends(
+    record: str, along: str, at: str, start: str, folder: Path
+) -> list[list[dict[str, Any]]]:
     """The lower and the upper end of each path of a stable pose."""
     (folder / "record.yaml").write_text(record, encoding="utf-8")
-    arguments = ["range", str(folder / "record.yaml"), "--along", along, "--at", at, "--path", start]
+    arguments = [
+        "range",
+        str(folder / "record.yaml"),
+        "--along",
+        along,
+        "--at",
+        at,
+        "--path",
+        start,
+    ]
     assert run([*arguments, "--format", "json", "--out", str(folder)]) == 0
     (path,) = folder.glob("*.json")
     document: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
@@ -103,8 +134,12 @@ def path_ends(record: str, along: str, at: str, start: str, folder: Path) -> lis
 
 
 @pytest.mark.slow
-def test_paths_end_at_a_pitchfork_as_what_meets_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Two stable poses and the unstable one between them become the one that hangs or stands, which goes on as them."""
+def test_paths_end_at_a_pitchfork_as_what_meets_there(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two stable poses and the unstable one between them become the one that hangs or stands, which
+    goes on as them.
+    """
     leaning = path_ends(BALANCER, "k", "l0=1/10", "9/2", tmp_path)
     assert [[end["fate"] for end in ends] for ends in leaning] == [["merge", "merge"]] * 2
     for end in [end for ends in leaning for end in ends]:
@@ -112,13 +147,23 @@ def test_paths_end_at_a_pitchfork_as_what_meets_there(tmp_path: Path, capsys: py
     told = capsys.readouterr().out
     assert "the pose goes on, without a snap, as th = 180.0000000°" in told and "as th = 0°" in told
     (((_, high)), *others) = path_ends(BALANCER, "k", "l0=1/10", "7/2", tmp_path)
-    assert (high["fate"], high["meeting"], high["leaving"], others) == ("vanish", [0], [0, 0, 1], [])
-    assert "k = 4.285714286: the stable pose goes on as a minimum, a minimum and a maximum" in capsys.readouterr().out
+    assert (high["fate"], high["meeting"], high["leaving"], others) == (
+        "vanish",
+        [0],
+        [0, 0, 1],
+        [],
+    )
+    assert (
+        "k = 4.285714286: the stable pose goes on as a minimum, a minimum and a maximum"
+        in capsys.readouterr().out
+    )
 
 
 @pytest.mark.slow
 def test_a_stable_pose_between_two_unstable_ones_meets_both(tmp_path: Path) -> None:
-    """About (W - 1/2) cos th - cos 2th: upright its second derivative is 0 where its fourth one is negative."""
+    """About (W - 1/2) cos th - cos 2th: upright its second derivative is 0 where its fourth one is
+    negative.
+    """
     record = """
 name: upright
 mechanism:
@@ -152,15 +197,21 @@ mechanism:
   loads: {T: [0, f], P: [0, 1/10]}
 axes: {f: [-1, 1], s: [1, 5/2]}
 """
-"""A level plate that moves up and down: where it tilts, phi -> -phi exchanges the springs, and h goes on."""
+"""A level plate that moves up and down: where it tilts, phi -> -phi exchanges the springs, and h
+goes on.
+"""
 
 
 @pytest.mark.slow
 def test_pitchforks_beside_an_unknown_that_moves(tmp_path: Path) -> None:
-    """Level at phi = 0 or upside down: U_h = 0 gives f by h, and U_phi,phi = 0 is an equation for h alone."""
+    """Level at phi = 0 or upside down: U_h = 0 gives f by h, and U_phi,phi = 0 is an equation for h
+    alone.
+    """
 
     def tilt(h: float, up: float) -> tuple[float, float]:
-        """The load that holds the level plate at a height, and the second derivative by the angle there."""
+        """The load that holds the level plate at a height, and the second derivative by the angle
+        there.
+        """
         reach = 2 - up / 2
         length = np.hypot(reach, h)
         load = 2 * (length - 2) * h / length - 0.1
@@ -175,9 +226,17 @@ def test_pitchforks_beside_an_unknown_that_moves(tmp_path: Path) -> None:
             if tilt(low, up)[1] * tilt(high, up)[1] < 0:
                 for _ in range(60):
                     middle = (low + high) / 2
-                    low, high = (middle, high) if tilt(low, up)[1] * tilt(middle, up)[1] > 0 else (low, middle)
+                    low, high = (
+                        (middle, high)
+                        if tilt(low, up)[1] * tilt(middle, up)[1] > 0
+                        else (low, middle)
+                    )
                 expected.append(tilt(low, up)[0])
     found = met(PLATE, "f", "s=2", tmp_path)
-    ends = [float(change["at"]["decimal"]) for change in found["changes"] if change["met"] == ["pitchfork"]]
+    ends = [
+        float(change["at"]["decimal"])
+        for change in found["changes"]
+        if change["met"] == ["pitchfork"]
+    ]
     assert len(ends) == 4
     assert ends == pytest.approx(sorted(f for f in expected if -1 < f < 1), abs=1e-8)

@@ -1,4 +1,6 @@
-"""`ptmcad solve` where a number cannot be told from zero, or a box stays open: the poses that are proved are shown."""
+"""`ptmcad solve` where a number cannot be told from zero, or a box stays open: the poses that are
+proved are shown.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ import pytest
 import ptmcad
 from ptmcad.cli import run
 
-SCHEMA = json.loads((Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads(
+    (Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8")
+)
 
 BAR = """
 name: bar
@@ -26,7 +30,9 @@ mechanism:
   loads: {Q: [X, Y]}
 axes: {X: [-3, 0], Y: [-2, 2]}
 """
-"""Loads at Q alone: the bar and the spring AP are in line, or AP has its free length and pulls nothing."""
+"""Loads at Q alone: the bar and the spring AP are in line, or AP has its free length and pulls
+nothing.
+"""
 
 BALANCER = """
 name: balancer
@@ -46,7 +52,16 @@ axes: {k: [3, 6], r: [1/2, 2]}
 def solved(record: str, at: str, folder: Path, status: int) -> dict[str, Any]:
     """The document that the command writes, which the schema and the reader take."""
     (folder / "record.yaml").write_text(record, encoding="utf-8")
-    arguments = ["solve", str(folder / "record.yaml"), "--at", at, "--format", "table,json,svg", "--out", str(folder)]
+    arguments = [
+        "solve",
+        str(folder / "record.yaml"),
+        "--at",
+        at,
+        "--format",
+        "table,json,svg",
+        "--out",
+        str(folder),
+    ]
     assert run(arguments) == status
     text = (folder / "poses.json").read_text(encoding="utf-8")
     document: dict[str, Any] = json.loads(text)
@@ -57,8 +72,12 @@ def solved(record: str, at: str, folder: Path, status: int) -> dict[str, Any]:
 
 @pytest.mark.parametrize("at", ["X=-2,Y=1/5", "X=-1,Y=1e-9"])
 @pytest.mark.slow_cases("X=-1,Y=1e-9")
-def test_a_force_that_may_be_zero_is_enclosed(at: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """By hand: both stable poses have AP at its free length, as the moment about P is that of the load alone."""
+def test_a_force_that_may_be_zero_is_enclosed(
+    at: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By hand: both stable poses have AP at its free length, as the moment about P is that of the
+    load alone.
+    """
     document = solved(BAR, at, tmp_path, 0)
     assert document["status"] == "certified"
     forces = [pose["springs"][0]["force"] for pose in document["equilibria"] if pose["stable"]]
@@ -69,7 +88,9 @@ def test_a_force_that_may_be_zero_is_enclosed(at: str, tmp_path: Path, capsys: p
     bound = forces[0]["radius"]
     table = capsys.readouterr().out
     assert f"|force AP| < {bound} in equilibria 1, 2" in table
-    assert [pose["admissible"] for pose in document["equilibria"]].count(None) == 2, "tense or not is not decided"
+    assert [pose["admissible"] for pose in document["equilibria"]].count(None) == 2, (
+        "tense or not is not decided"
+    )
     assert "undecided" in table
     assert all(pose["stable"] is not None for pose in document["equilibria"])
 
@@ -77,7 +98,9 @@ def test_a_force_that_may_be_zero_is_enclosed(at: str, tmp_path: Path, capsys: p
 def test_poses_beside_a_kink_are_shown_and_the_open_box_counted(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    decided = solved(BALANCER, "k=4,r=1.000000000001", tmp_path, 0)  # the peak is a smooth one, and more digits tell it
+    decided = solved(
+        BALANCER, "k=4,r=1.000000000001", tmp_path, 0
+    )  # the peak is a smooth one, and more digits tell it
     assert [pose["stable"] for pose in decided["equilibria"]] == [True, True, False, False]
     capsys.readouterr()
     document = solved(BALANCER, f"k=4,r=1.{'0' * 149}1", tmp_path, 3)
@@ -95,7 +118,9 @@ def test_poses_beside_a_kink_are_shown_and_the_open_box_counted(
 def test_verify_takes_the_poses_that_are_listed_beside_an_open_box(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The slopes of a slider's springs are 2x - 5 beyond B, 2x - 3 between A and B: at F = 1, x = 2 and the kink B."""
+    """The slopes of a slider's springs are 2x - 5 beyond B, 2x - 3 between A and B: at F = 1, x = 2
+    and the kink B.
+    """
     record = """
 name: slider
 mechanism:
@@ -123,7 +148,9 @@ def test_all_poses_are_certified_where_no_box_is_open(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_paper_s_mechanism_beside_a_spring_without_length(tmp_path: Path) -> None:
-    """At rho = L1 spring 2 may have no length: the poses that are proved are there, and open boxes are counted."""
+    """At rho = L1 spring 2 may have no length: the poses that are proved are there, and open boxes
+    are counted.
+    """
     record = "name: p\nmechanism: ptm\nparameters: {l0: 1/2}\naxes: {rho: [0, 2], L2: [0, 2]}\n"
     whole = solved(record, "rho=4/5,L2=4/5", tmp_path, 0)
     assert len(whole["equilibria"]) == 10 and "undecided" not in whole

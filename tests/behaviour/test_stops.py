@@ -1,4 +1,6 @@
-"""Certified runs that are stopped in a terminal: what is saved is what the bar had shown, and the message says so."""
+"""Certified runs that are stopped in a terminal: what is saved is what the bar had shown, and the
+message says so.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ pytest.importorskip("numba")
 pty = pytest.importorskip("pty")
 
 ROOT = Path(__file__).resolve().parents[2]
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="finds the computing process in /proc")
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux", reason="finds the computing process in /proc"
+)
 
 HOW = {
     signal.SIGINT: "interrupted",
@@ -53,28 +57,47 @@ class Stopped:
     def fault(self) -> str:
         """What is not as it has to be after a signal that the program heeds; empty if nothing."""
         if not self.signalled:
-            return "" if (self.status, self.message) == (0, "") else "it ended by itself with a message"
+            return (
+                ""
+                if (self.status, self.message) == (0, "")
+                else "it ended by itself with a message"
+            )
         if self.status != 128 + self.number:
             return "the status is not the signal's"
-        found = re.fullmatch(r"(.*); partial map \((\S+) % undetermined\) saved to (\S+); go on with .*", self.message)
+        found = re.fullmatch(
+            r"(.*); partial map \((\S+) % undetermined\) saved to (\S+); go on with .*",
+            self.message,
+        )
         if found is None:
             return "not one line that names what was saved"
         how, said, place = found.groups()
-        if how != HOW.get(signal.Signals(self.number), f"stopped by {signal.Signals(self.number).name}"):
+        if how != HOW.get(
+            signal.Signals(self.number), f"stopped by {signal.Signals(self.number).name}"
+        ):
             return "another signal is named"
         if self.saved is None or Path(place) != self.path:
             return "nothing is saved where it is said"
-        if not 0 <= Fraction(said) - 100 * self.saved < Fraction(said) / 10:  # rounded up to two digits
+        if (
+            not 0 <= Fraction(said) - 100 * self.saved < Fraction(said) / 10
+        ):  # rounded up to two digits
             return "another share is said than was saved"
-        return "" if 100 * self.saved <= 2 * Fraction(self.shown) else "more is undetermined than twice what was shown"
+        return (
+            ""
+            if 100 * self.saved <= 2 * Fraction(self.shown)
+            else "more is undetermined than twice what was shown"
+        )
 
 
 def children(process: int) -> list[int]:
-    return [int(child) for child in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+    return [
+        int(child) for child in Path(f"/proc/{process}/task/{process}/children").read_text().split()
+    ]
 
 
 def stopped(record: str, number: int, to: str, seconds: float, folder: Path) -> Stopped:
-    """Classify a shipped record, and send a signal so many seconds after the first level of the search was done."""
+    """Classify a shipped record, and send a signal so many seconds after the first level of the
+    search was done.
+    """
     terminal, end = pty.openpty()
     command = [sys.executable, "-m", "ptmcad", "classify", f"configs/{record}.yaml", "--format", "json",
                "--tolerance", "1e-9", "--out", str(folder)]  # fmt: skip
@@ -103,7 +126,9 @@ def stopped(record: str, number: int, to: str, seconds: float, folder: Path) -> 
     saved = Fraction(json.loads(path.read_text())["undetermined"]) if path.exists() else None
     message = printed.rpartition(b"\x1b[K")[2].decode().strip()
     shown = shares[-1].decode() if shares else "100"
-    return Stopped(record, number, to, signalled and status != 0, status, shown, message, saved, path)
+    return Stopped(
+        record, number, to, signalled and status != 0, status, shown, message, saved, path
+    )
 
 
 def test_a_signal_to_the_computing_process_saves_what_was_shown(tmp_path: Path) -> None:
@@ -115,12 +140,18 @@ def test_a_signal_to_the_computing_process_saves_what_was_shown(tmp_path: Path) 
 @pytest.mark.slow
 @pytest.mark.parametrize("to", [PROGRAM, COMPUTATION])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
-def test_25_interruptions_at_random_moments(tmp_path: Path, number: signal.Signals, to: str) -> None:
-    """Most in the first seconds, when maps are made one after the other; runs that ended before do not count."""
+def test_25_interruptions_at_random_moments(
+    tmp_path: Path, number: signal.Signals, to: str
+) -> None:
+    """Most in the first seconds, when maps are made one after the other; runs that ended before do
+    not count.
+    """
     generator = random.Random(f"{number.name} {to}")
     interrupted = 0
     for k in itertools.count():
-        run = stopped(RECORDS[k % len(RECORDS)], number, to, 4 * generator.random() ** 1.5, tmp_path / str(k))
+        run = stopped(
+            RECORDS[k % len(RECORDS)], number, to, 4 * generator.random() ** 1.5, tmp_path / str(k)
+        )
         print(f"{run.record:12} {number.name} to {to:16} shown {run.shown:>8} %  saved "
               f"{'-' if run.saved is None else f'{100 * float(run.saved):.3g}':>8} %  status {run.status}")  # fmt: skip
         assert not run.fault(), (run.fault(), run)
@@ -131,7 +162,9 @@ def test_25_interruptions_at_random_moments(tmp_path: Path, number: signal.Signa
 
 @pytest.mark.slow
 def test_a_signal_while_compiled_code_unpickles(tmp_path: Path) -> None:
-    """It makes a map of many small counts then, each of which asks Python for a type: what is raised there crashes."""
+    """It makes a map of many small counts then, each of which asks Python for a type: what is
+    raised there crashes.
+    """
     for k in range(10):
         run = stopped("free08", signal.SIGTERM, PROGRAM, 1.6, tmp_path / str(k))
         assert not run.fault(), (run.fault(), run)
@@ -153,7 +186,9 @@ def test_other_signals_that_end_a_program(tmp_path: Path, number: signal.Signals
     (signal.SIGRTMIN + 3, 3, f"stopped: the computation was ended from outside (signal {signal.SIGRTMIN + 3})"),
     (signal.SIGSEGV, 139, "error: the computation crashed (SIGSEGV); this is a bug, please report it"),
 ])  # fmt: skip
-def test_signals_that_nothing_can_answer(tmp_path: Path, number: int, status: int, words: str) -> None:
+def test_signals_that_nothing_can_answer(
+    tmp_path: Path, number: int, status: int, words: str
+) -> None:
     """There is no last map then; the one that was handed over before is saved."""
     run = stopped("free-load", number, COMPUTATION, 0.0, tmp_path)
     assert run.status == status

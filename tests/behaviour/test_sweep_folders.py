@@ -1,4 +1,6 @@
-"""A sweep's folder under planted links, changed results, full disks, damaged indexes: what is said, and what stays."""
+"""A sweep's folder under planted links, changed results, full disks, damaged indexes: what is said,
+and what stays.
+"""
 
 from __future__ import annotations
 
@@ -90,7 +92,9 @@ def test_planted_links_to_a_file_are_not_written_through(record: Path, tmp_path:
     assert not any(path.is_symlink() for path in results.iterdir())
 
 
-@pytest.mark.parametrize("name", ["results", "results/000", "index.sqlite", "index.sqlite-wal", "index.sqlite-shm"])
+@pytest.mark.parametrize(
+    "name", ["results", "results/000", "index.sqlite", "index.sqlite-wal", "index.sqlite-shm"]
+)
 def test_a_link_out_of_the_folder_is_refused(
     record: Path, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -101,7 +105,10 @@ def test_a_link_out_of_the_folder_is_refused(
         link.unlink(missing_ok=True)
         link.symlink_to(target)
         assert sweep(record, tmp_path / "out") == 2
-        assert f"{link}: is or lies behind a link that leads out of the sweep's folder" in one_error(capsys)
+        assert (
+            f"{link}: is or lies behind a link that leads out of the sweep's folder"
+            in one_error(capsys)
+        )
         assert not list(outside.iterdir()) and not (tmp_path / "not-there").exists()
 
 
@@ -141,7 +148,10 @@ def test_a_changed_result_is_noticed_by_every_format_and_not_written_over(
     before = (whole / "cusps.csv").read_bytes()
     assert sweep(record, whole, *(["--format", kind] if kind else [])) == 2
     assert f"{result}: has been changed since it was computed" in one_error(capsys)
-    assert result.read_text(encoding="utf-8") == changed and (whole / "cusps.csv").read_bytes() == before
+    assert (
+        result.read_text(encoding="utf-8") == changed
+        and (whole / "cusps.csv").read_bytes() == before
+    )
     if kind == "csv":
         result.unlink()  # as the message says
         assert sweep(record, whole) == 0
@@ -151,19 +161,46 @@ def test_a_changed_result_is_noticed_by_every_format_and_not_written_over(
 # -------------------------------------------------------------------------------------------------------- damaged index
 
 DAMAGES = {
-    "areas are cut": ("UPDATE members SET areas = '[[\"1\", 1' WHERE number = 2", "the row of member 2 is damaged"),
-    "areas are a number": ("UPDATE members SET areas = '5' WHERE number = 2", "the row of member 2 is damaged"),
-    "areas are deep": (f"UPDATE members SET areas = '{'[' * 100_000}'", "the row of member 0 is damaged"),
+    "areas are cut": (
+        "UPDATE members SET areas = '[[\"1\", 1' WHERE number = 2",
+        "the row of member 2 is damaged",
+    ),
+    "areas are a number": (
+        "UPDATE members SET areas = '5' WHERE number = 2",
+        "the row of member 2 is damaged",
+    ),
+    "areas are deep": (
+        f"UPDATE members SET areas = '{'[' * 100_000}'",
+        "the row of member 0 is damaged",
+    ),
     "an area is no number": ('UPDATE members SET areas = \'[["1", 1, ["a", "b"]]]\'', "is damaged"),
     "nothing is there": ("UPDATE members SET cells = NULL, areas = NULL", "is damaged"),
-    "values are cut": ("UPDATE members SET parameters = '{' WHERE number = 3", "the row of member 3 is damaged"),
+    "values are cut": (
+        "UPDATE members SET parameters = '{' WHERE number = 3",
+        "the row of member 3 is damaged",
+    ),
     "values are a list": ("UPDATE members SET parameters = '[1]'", "is damaged"),
     "values are others": ('UPDATE members SET parameters = \'{"c": 1, "d": null}\'', "is damaged"),
-    "another folder": ("UPDATE members SET file = '../../outside.json' WHERE number = 1", "the row of member 1 is"),
-    "an absolute path": ("UPDATE members SET file = '/etc/passwd' WHERE number = 1", "the row of member 1 is damaged"),
-    "bytes for a path": ("UPDATE members SET file = x'00ff' WHERE number = 1", "the row of member 1 is damaged"),
-    "another's result": ("UPDATE members SET same_as = 3 WHERE number = 2", "the row of member 2 is damaged"),
-    "no such state": ("UPDATE members SET state = 'perhaps' WHERE number = 2", "the row of member 2 is damaged"),
+    "another folder": (
+        "UPDATE members SET file = '../../outside.json' WHERE number = 1",
+        "the row of member 1 is",
+    ),
+    "an absolute path": (
+        "UPDATE members SET file = '/etc/passwd' WHERE number = 1",
+        "the row of member 1 is damaged",
+    ),
+    "bytes for a path": (
+        "UPDATE members SET file = x'00ff' WHERE number = 1",
+        "the row of member 1 is damaged",
+    ),
+    "another's result": (
+        "UPDATE members SET same_as = 3 WHERE number = 2",
+        "the row of member 2 is damaged",
+    ),
+    "no such state": (
+        "UPDATE members SET state = 'perhaps' WHERE number = 2",
+        "the row of member 2 is damaged",
+    ),
     "no text": ("UPDATE members SET error = CAST(x'ff' AS TEXT)", "Could not decode"),
     "a row is gone": ("DELETE FROM members WHERE number = 1", "UNIQUE constraint failed"),
     "a column is gone": ("ALTER TABLE members DROP COLUMN seconds", "no such column: seconds"),
@@ -223,7 +260,11 @@ def many_fixture(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("number", [7, 0])
 @pytest.mark.slow_cases("0")
 def test_a_full_disk_is_named_and_what_is_done_stays(
-    many: Path, tmp_path: Path, number: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    many: Path,
+    tmp_path: Path,
+    number: int,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     """The disk is full when a file is flushed, as on file systems that allot space late."""
     flush, flushed = os.fsync, 0
@@ -240,27 +281,38 @@ def test_a_full_disk_is_named_and_what_is_done_stays(
         patch.setattr(os, "fsync", full)
         assert sweep(many, folder) == 2
     line = one_error(capsys)
-    assert f"{number:06}.json cannot be written: No space left on device; {number} of 40 members are done" in line
+    assert (
+        f"{number:06}.json cannot be written: No space left on device; {number} of 40 members are done"
+        in line
+    )
     assert "the same command goes on" in line
     rows = sqlite3.connect(folder / "index.sqlite")
     done = [file for (file,) in rows.execute("SELECT file FROM members WHERE state = 'done'")]
     rows.close()
     assert len(done) == number and all(json.loads((folder / file).read_bytes()) for file in done)
-    assert sorted(path.name for path in folder.rglob("*.json")) == sorted(Path(file).name for file in done)
+    assert sorted(path.name for path in folder.rglob("*.json")) == sorted(
+        Path(file).name for file in done
+    )
     assert sweep(many, folder, "--format", "csv") == 0
     assert (folder / "cusps.csv").read_text(encoding="utf-8").count(",done,") == 40
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [20_000, 60_000])
-def test_files_that_may_not_grow_end_the_run_in_one_line(many: Path, tmp_path: Path, size: int) -> None:
+def test_files_that_may_not_grow_end_the_run_in_one_line(
+    many: Path, tmp_path: Path, size: int
+) -> None:
     """By the system's own limit: the index cannot grow then."""
     ended = subprocess.run(
         [sys.executable, "-m", "ptmcad", "sweep", str(many), "--out", str(tmp_path / "out"), *OPTIONS],
         capture_output=True, text=True, check=False,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
     )  # fmt: skip
-    assert ended.returncode == 2 and len(ended.stderr.splitlines()) == 1 and "index.sqlite: disk I/O" in ended.stderr
+    assert (
+        ended.returncode == 2
+        and len(ended.stderr.splitlines()) == 1
+        and "index.sqlite: disk I/O" in ended.stderr
+    )
     assert sweep(many, tmp_path / "out", "--format", "csv") == 0
     assert (tmp_path / "out" / "cusps.csv").read_text(encoding="utf-8").count(",done,") == 40
 
@@ -283,8 +335,19 @@ def test_results_are_on_disk_before_the_index_says_so(
 
 
 @pytest.mark.slow
-def test_two_sweeps_at_once_in_one_folder(many: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    command = [sys.executable, "-m", "ptmcad", "sweep", str(many), "--out", str(tmp_path / "out"), *OPTIONS[1:]]
+def test_two_sweeps_at_once_in_one_folder(
+    many: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = [
+        sys.executable,
+        "-m",
+        "ptmcad",
+        "sweep",
+        str(many),
+        "--out",
+        str(tmp_path / "out"),
+        *OPTIONS[1:],
+    ]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL) as other:
         while not list((tmp_path / "out").rglob("*.json")):
             assert other.poll() is None
@@ -295,17 +358,24 @@ def test_two_sweeps_at_once_in_one_folder(many: Path, tmp_path: Path, capsys: py
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(find_spec("distributed") is None, reason="distributed is not installed (ptmcad[distributed])")
+@pytest.mark.skipif(
+    find_spec("distributed") is None, reason="distributed is not installed (ptmcad[distributed])"
+)
 def test_a_scheduler_that_dies_is_named_and_what_is_done_stays(many: Path, tmp_path: Path) -> None:
     from support.dask_cluster import scheduler_with_workers
 
     with scheduler_with_workers(1, tmp_path) as (address, _):
         command = [sys.executable, "-m", "ptmcad", "sweep", str(many), "--out", str(tmp_path / "out"), *OPTIONS[:1],
                    "--scheduler", address]  # fmt: skip
-        run_ = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        run_ = subprocess.Popen(
+            command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        )
         while not list((tmp_path / "out").rglob("*.json")):
             assert run_.poll() is None
             time.sleep(0.01)
     (line,) = run_.communicate(timeout=120)[1].splitlines()
     assert run_.returncode == 2
-    assert line.startswith(f"error: the scheduler at {address} is gone; ") and "the same command goes on" in line
+    assert (
+        line.startswith(f"error: the scheduler at {address} is gone; ")
+        and "the same command goes on" in line
+    )

@@ -1,7 +1,8 @@
-"""`verify` at any scale: a true map is not called false, a box with two solutions is not called true.
+"""`verify` at any scale: a true map is not called false, a box with two solutions is not called
+true.
 
-Solutions lie 1e-14 apart, next to a pitchfork in windows of 1e-15 and less, or in windows of 2e9. A Newton step that
-fails over a box larger than that is no proof that the box is empty.
+Solutions lie 1e-14 apart, next to a pitchfork in windows of 1e-15 and less, or in windows of 2e9. A
+Newton step that fails over a box larger than that is no proof that the box is empty.
 """
 
 from __future__ import annotations
@@ -65,7 +66,9 @@ SLICES: dict[str, dict[str, Any]] = {
 
 def stored(record: dict[str, Any], **options: Any) -> dict[str, Any]:
     """The document of the record's map."""
-    document: dict[str, Any] = json.loads(ptmcad.classify({"name": "map", **record}, **options).to_json())
+    document: dict[str, Any] = json.loads(
+        ptmcad.classify({"name": "map", **record}, **options).to_json()
+    )
     return document
 
 
@@ -73,7 +76,9 @@ def verified(document: dict[str, Any]) -> ptmcad.VerifyReport:
     return ptmcad.verify(ptmcad.RegionMap.from_json(json.dumps(document)))
 
 
-@pytest.mark.parametrize("name", few(SLICES, "roots-1e-14-apart", "pitchfork-1e-30", "slider-crank-1e-30"))
+@pytest.mark.parametrize(
+    "name", few(SLICES, "roots-1e-14-apart", "pitchfork-1e-30", "slider-crank-1e-30")
+)
 def test_a_true_map_is_accepted(name: str) -> None:
     report = verified(stored(SLICES[name]))
     assert report.ok, report.violation
@@ -133,7 +138,9 @@ def test_a_box_beside_a_solution_is_refused(name: str) -> None:
 
 
 def test_a_wide_box_with_one_solution_is_accepted() -> None:
-    """One of a pitchfork's solutions, at 1e-30, in a box of 1e-3: it is the only one over this half of the window."""
+    """One of a pitchfork's solutions, at 1e-30, in a box of 1e-3: it is the only one over this half
+    of the window.
+    """
     document = stored({"system": PITCHFORK, "axes": {"a": ["-2e-30", "-1e-30"], "b": [0, 1]}})
     for center in (["0", "0"], ["1/3000", "-1/2000"]):
         report = verified(changed(document, center=center, radius="1/1000"))

@@ -1,4 +1,6 @@
-"""What the terminal says is English about what the record has: no internal labels, and nouns agree with their verbs."""
+"""What the terminal says is English about what the record has: no internal labels, and nouns agree
+with their verbs.
+"""
 
 from __future__ import annotations
 
@@ -65,13 +67,25 @@ def said(record: str, folder: Path, capsys: pytest.CaptureFixture[str], *asked: 
 @pytest.mark.parametrize(
     ("record", "line", "words"),
     [
-        (SLIDER, ("F", "a=1/2"), {f"point where the length of spring {name} is 0" for name in ("OS", "K")}),
+        (
+            SLIDER,
+            ("F", "a=1/2"),
+            {f"point where the length of spring {name} is 0" for name in ("OS", "K")},
+        ),
         (TURNING, ("F", "l0=1/2"), {"point where the length of spring k is 0"}),
-        (ANCHORED, ("X", "Y=1/2"), {"fold", *(f"point where spring {name} has no length" for name in ("E1", "E2"))}),
+        (
+            ANCHORED,
+            ("X", "Y=1/2"),
+            {"fold", *(f"point where spring {name} has no length" for name in ("E1", "E2"))},
+        ),
     ],
 )
 def test_what_is_met_on_a_line_is_named_as_the_record_names_it(
-    record: str, line: tuple[str, str], words: set[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    record: str,
+    line: tuple[str, str],
+    words: set[str],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     out = said(record, tmp_path, capsys, "range", "--along", line[0], "--at", line[1])
     met = out.partition("what is met\n")[2].splitlines()
@@ -79,15 +93,39 @@ def test_what_is_met_on_a_line_is_named_as_the_record_names_it(
 
 
 def test_a_plan_names_no_charts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    asked = ["classify", "--explain", "--tolerance", "1/5", "--format", "json", "--out", str(tmp_path)]
+    asked = [
+        "classify",
+        "--explain",
+        "--tolerance",
+        "1/5",
+        "--format",
+        "json",
+        "--out",
+        str(tmp_path),
+    ]
     out = said(TURNING, tmp_path, capsys, *asked)
     assert "computed: fold of a stable equilibrium with spring k forwards along its line (" in out
     assert "turned by" not in out and "cone " not in out
 
 
-def test_no_compilation_is_spoken_of_that_took_no_time(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The first run of a process loads the engine, in less than a second when it has been compiled before."""
-    out = said(TURNING, tmp_path, capsys, "classify", "--tolerance", "1/5", "--format", "json", "--out", str(tmp_path))
+def test_no_compilation_is_spoken_of_that_took_no_time(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The first run of a process loads the engine, in less than a second when it has been compiled
+    before.
+    """
+    out = said(
+        TURNING,
+        tmp_path,
+        capsys,
+        "classify",
+        "--tolerance",
+        "1/5",
+        "--format",
+        "json",
+        "--out",
+        str(tmp_path),
+    )
     assert "of which 0 s" not in out
 
 

@@ -1,6 +1,8 @@
-"""Minima that vanish without a fold, in a spring without length: the search for folds must enclose these points too.
+"""Minima that vanish without a fold, in a spring without length: the search for folds must enclose
+these points too.
 
-Lemma 14 of docs/soundness.md proves it; here is a curve of such points for a flat cone and one for a crease.
+Lemma 14 of docs/soundness.md proves it; here is a curve of such points for a flat cone and one for
+a crease.
 """
 
 from __future__ import annotations
@@ -27,13 +29,22 @@ FLAT_CONE = {
 }
 """At th = (0, 0) spring 3 has no length; for f = l0 its push balances the loads."""
 CREASE = {
-    "parameters": {"rho": 1, "L1": 1, "L2": "3/2", "k": 100, "F3": "100*f", "F4": "100*g", "l0": "1/5"},
+    "parameters": {
+        "rho": 1,
+        "L1": 1,
+        "L2": "3/2",
+        "k": 100,
+        "F3": "100*f",
+        "F4": "100*g",
+        "l0": "1/5",
+    },
     "axes": {"f": ["-3/2", "-1/2"], "g": ["1/2", "3/2"]},
 }
 """At th1 = 0 spring 2 has no length, whatever th2 is."""
 MECHANISMS = {
     "refined": "ptm",
-    "plain": {key: value for key, value in RECORD.items() if key != "symmetries"} | {"name": "plain_ptm"},
+    "plain": {key: value for key, value in RECORD.items() if key != "symmetries"}
+    | {"name": "plain_ptm"},
 }
 by_all_formulas = pytest.mark.parametrize("formulas", list(MECHANISMS))
 

@@ -1,4 +1,6 @@
-"""Stable equilibria at which every spring is longer than its free length, of any mechanism with such springs."""
+"""Stable equilibria at which every spring is longer than its free length, of any mechanism with
+such springs.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +45,10 @@ CHAIN: dict[str, Any] = {
             "Q": ["cos(th1) + cos(th2)", "sin(th1) + sin(th2)"],
         },
         "bars": [["O", "P"], ["P", "Q"]],
-        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}, {"between": ["B", "Q"], "k": 2, "free": "l0"}],
+        "springs": [
+            {"between": ["A", "P"], "k": 1, "free": "l0"},
+            {"between": ["B", "Q"], "k": 2, "free": "l0"},
+        ],
         "loads": {"Q": ["F", 0]},
     },
     "axes": {"F": [-2, 0], "l0": ["1/4", 2]},
@@ -58,7 +63,11 @@ ROOF: dict[str, Any] = {
     "name": "roof",
     "mechanism": {
         "name": "sprung_slider",
-        "parameters": {"f": {"kind": "force"}, "a": {"kind": "length"}, "l0": {"kind": "free length", "default": 1}},
+        "parameters": {
+            "f": {"kind": "force"},
+            "a": {"kind": "length"},
+            "l0": {"kind": "free length", "default": 1},
+        },
         "unknowns": {"h": "length"},
         "points": {"A": ["-a", 0], "S": [0, "h"]},
         "springs": [{"between": ["A", "S"], "k": 1, "free": "l0"}],
@@ -69,7 +78,8 @@ ROOF: dict[str, Any] = {
 }
 PLAIN_PTM: dict[str, Any] = {
     "name": "plain",
-    "mechanism": {key: value for key, value in RECORD.items() if key != "symmetries"} | {"name": "plain"},
+    "mechanism": {key: value for key, value in RECORD.items() if key != "symmetries"}
+    | {"name": "plain"},
     "parameters": {"L1": 1, "k": 100, "l0": "1/2", "F3": -10, "F4": -10},
     "axes": {"rho": ["1/20", 2], "L2": [0, 2]},
     "count": "admissible",
@@ -77,7 +87,9 @@ PLAIN_PTM: dict[str, Any] = {
 FOUR_BAR: dict[str, Any] = {
     key: value
     for key, value in yaml.safe_load(
-        (Path(__file__).parents[2] / "configs" / "mechanisms" / "four-bar-free.yaml").read_text(encoding="utf-8")
+        (Path(__file__).parents[2] / "configs" / "mechanisms" / "four-bar-free.yaml").read_text(
+            encoding="utf-8"
+        )
     ).items()
     if key != "reference"
 } | {"parameters": {"G": 1}, "axes": {"F": [0, 4], "l0": ["1/2", 2]}, "count": "admissible"}
@@ -99,13 +111,18 @@ def points_of(slice: Slice, number: int, seed: int = 1) -> list[tuple[Fraction, 
     rng = random.Random(seed)
     one, two = slice.axes
     shares = [
-        (Fraction(rng.randrange(1, 10**4), 10**4), Fraction(rng.randrange(1, 10**4), 10**4)) for _ in range(number)
+        (Fraction(rng.randrange(1, 10**4), 10**4), Fraction(rng.randrange(1, 10**4), 10**4))
+        for _ in range(number)
     ]
-    return [(one.low + u * (one.high - one.low), two.low + v * (two.high - two.low)) for u, v in shares]
+    return [
+        (one.low + u * (one.high - one.low), two.low + v * (two.high - two.low)) for u, v in shares
+    ]
 
 
 def in_chain(force: float, free: tuple[float, float]) -> tuple[int, int, bool]:
-    """The numbers of minima and of admissible ones, and whether a spring is nearly as long as its free length."""
+    """The numbers of minima and of admissible ones, and whether a spring is nearly as long as its
+    free length.
+    """
 
     def lengths(a: Any, b: Any) -> tuple[Any, Any]:
         px, py = np.cos(a), np.sin(a)
@@ -117,7 +134,11 @@ def in_chain(force: float, free: tuple[float, float]) -> tuple[int, int, bool]:
 
     found = [lengths(*p) for p in minima(energy)]
     taut = [l1 > free[0] and l2 > free[1] for l1, l2 in found]
-    return len(found), sum(taut), any(min(abs(l1 - free[0]), abs(l2 - free[1])) < NEAR for l1, l2 in found)
+    return (
+        len(found),
+        sum(taut),
+        any(min(abs(l1 - free[0]), abs(l2 - free[1])) < NEAR for l1, l2 in found),
+    )
 
 
 @pytest.mark.parametrize(("name", "tolerance"), [("chain", "1/100"), ("one without", "1/100")])
@@ -129,7 +150,9 @@ def test_counts_in_cells_are_those_of_a_search(name: str, tolerance: str) -> Non
     known = 0
     for x, y in points_of(m.slice, 60):
         at = m.locate(F=x, l0=y)
-        stable, admissible, close = in_chain(float(x), (float(y), 0.0 if name == "one without" else float(y)))
+        stable, admissible, close = in_chain(
+            float(x), (float(y), 0.0 if name == "one without" else float(y))
+        )
         if at.cell is None or close:
             continue
         known += 1
@@ -152,7 +175,15 @@ def test_by_the_papers_mechanism(number: int) -> None:
     for x, y in points_of(slice_of(PLAIN_PTM), number, seed=3):
         count = plain.at(x, y, Count.ADMISSIBLE)
         values = {f"k{n}": 100.0 for n in (1, 2, 3)} | {f"l0_{n}": 0.5 for n in (1, 2, 3)}
-        values |= {"rho": float(x), "L1": 1, "L2": float(y), "F3": -10, "F4": -10, "F3x": 0, "F4x": 0}
+        values |= {
+            "rho": float(x),
+            "L1": 1,
+            "L2": float(y),
+            "F3": -10,
+            "F4": -10,
+            "F3x": 0,
+            "F4x": 0,
+        }
         known = dense_search(values)
         if known["margin"] < 1e-6 or np.min(np.abs(known["lengths"] - 0.5)) < NEAR:
             continue
@@ -265,15 +296,20 @@ def test_without_boundaries_at_free_lengths_counts_are_wrong(
     wrong = ptmcad.classify(slice_of(RECORDS[name]), tolerance=tolerance)
     one, two = right.slice.axis_names
     assert any(
-        other.locate(**{one: cell.sample[0], two: cell.sample[1]}).admissible not in (None, cell.admissible)
+        other.locate(**{one: cell.sample[0], two: cell.sample[1]}).admissible
+        not in (None, cell.admissible)
         for some, other in ((right, wrong), (wrong, right))
         for cell in some.cells
     )
 
 
 def test_what_cannot_be_counted_is_refused_by_name() -> None:
-    with pytest.raises(DegenerateSliceError, match=r"the length of spring .* less its free length is zero"):
-        plain_counter(slice_of(ROOF, parameters={"f": 0}, axes={"a": ["1/10", "9/10"], "l0": [1, 2]}))
+    with pytest.raises(
+        DegenerateSliceError, match=r"the length of spring .* less its free length is zero"
+    ):
+        plain_counter(
+            slice_of(ROOF, parameters={"f": 0}, axes={"a": ["1/10", "9/10"], "l0": [1, 2]})
+        )
     free = [{"between": ["A", "P"], "k": "k"}, {"between": ["B", "Q"], "k": 2}]
     with pytest.raises(ConfigError, match=r"none has a free length here: choose stable"):
         slice_of(

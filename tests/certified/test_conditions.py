@@ -1,4 +1,6 @@
-"""Inequalities and conditions for stability by intervals, and unknowns on the line that bound one another."""
+"""Inequalities and conditions for stability by intervals, and unknowns on the line that bound one
+another.
+"""
 
 from __future__ import annotations
 
@@ -79,7 +81,16 @@ def small(system: dict[str, Any], axes: dict[str, list[Any]], **more: Any) -> Sl
 
 def counts_of(name: str) -> tuple[str, ...]:
     system = SYSTEMS[name]["system"]
-    return ("total", *(["stable"] if "stable" in system else ["stable", "index"] if "potential" in system else []))
+    return (
+        "total",
+        *(
+            ["stable"]
+            if "stable" in system
+            else ["stable", "index"]
+            if "potential" in system
+            else []
+        ),
+    )
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
@@ -90,7 +101,9 @@ def test_counts_at_random_points_are_those_of_the_exact_engine(name: str) -> Non
         slice = slice_of(name, count=count)
         counter = point_counter(slice)
         for _ in range(12):
-            x, y = (a.low + (a.high - a.low) * Fraction(rng.randint(1, 1008), 1009) for a in slice.axes)
+            x, y = (
+                a.low + (a.high - a.low) * Fraction(rng.randint(1, 1008), 1009) for a in slice.axes
+            )
             found = counter.at(x, y, slice.count)
             names = zip(slice.axis_names, map(str, (x, y)), strict=True)
             true = ptmcad.counts_at(slice.model, **dict(names))
@@ -109,7 +122,10 @@ def test_counts_at_random_points_are_those_of_the_exact_engine(name: str) -> Non
 @pytest.mark.slow_cases("selkov-total", "toggle-stable", "double well-total")
 def test_maps_agree_with_the_exact_engine(name: str, count: str) -> None:
     slice = slice_of(name, count=count)
-    exact, certified = ptmcad.classify(slice), ptmcad.classify(slice, engine="certified", tolerance="1/40", jobs=1)
+    exact, certified = (
+        ptmcad.classify(slice),
+        ptmcad.classify(slice, engine="certified", tolerance="1/40", jobs=1),
+    )
     for value in {getattr(region, count) for region in exact.regions}:
         low, high = bounds(certified, count, value)
         assert low <= sum(r.area[1] for r in exact.regions if getattr(r, count) == value)
@@ -117,7 +133,11 @@ def test_maps_agree_with_the_exact_engine(name: str, count: str) -> None:
     for cell in certified.cells:
         at = exact.locate(**dict(zip(slice.axis_names, cell.sample, strict=True)))
         assert getattr(at, count) == getattr(cell, count)
-        others = {"admissible"} if slice.model.criterion.order else {"total", "stable", "index"} - {count}
+        others = (
+            {"admissible"}
+            if slice.model.criterion.order
+            else {"total", "stable", "index"} - {count}
+        )
         assert not any(getattr(cell, other) is not None for other in others)
 
 
@@ -143,30 +163,47 @@ def test_where_all_are_counted_the_samples_say_which_are_stable(
     pairs = set()
     for cell in result.cells:
         stable = sum(set(s.signs) == {"+"} for s in cell.solutions)
-        assert stable == exact.locate(**dict(zip(slice.axis_names, cell.sample, strict=True))).stable
+        assert (
+            stable == exact.locate(**dict(zip(slice.axis_names, cell.sample, strict=True))).stable
+        )
         pairs |= {f"{stable} of {cell.total}"} if cell.total else set()
     assert any(stable < total for stable, total in (map(int, p.split(" of ")) for p in pairs))
     said = f"at the samples {', '.join(sorted(pairs))}; it may change within a region, see --count stable"
     assert f"stable    {said}" in result.table() and said in page(result)
     kinds = [pose["kind"] for cell in data_of(page(result))["cells"] for pose in cell["equilibria"]]
-    assert kinds.count("stable") == sum(set(s.signs) == {"+"} for c in result.cells for s in c.solutions)
-    assert kinds.count("unstable") == sum(len(c.solutions) for c in result.cells) - kinds.count("stable")
+    assert kinds.count("stable") == sum(
+        set(s.signs) == {"+"} for c in result.cells for s in c.solutions
+    )
+    assert kinds.count("unstable") == sum(len(c.solutions) for c in result.cells) - kinds.count(
+        "stable"
+    )
 
     (tmp_path / "map.json").write_text(result.to_json())
     for cell in result.cells:
         at = ",".join(f"{n}={v}" for n, v in zip(slice.axis_names, cell.sample, strict=True))
         assert run_command(["locate", str(tmp_path / "map.json"), "--at", at]) == 0
-        words = "not known: it may change within the cell; `ptmcad solve` tells it of a point" if cell.total else "0"
+        words = (
+            "not known: it may change within the cell; `ptmcad solve` tells it of a point"
+            if cell.total
+            else "0"
+        )
         assert f"stable      {words}\n" in capsys.readouterr().out
 
 
 def test_false_signs_of_conditions_are_rejected() -> None:
-    result = ptmcad.classify(slice_of("schloegl", count="total"), engine="certified", tolerance="1/20", jobs=1)
+    result = ptmcad.classify(
+        slice_of("schloegl", count="total"), engine="certified", tolerance="1/20", jobs=1
+    )
     assert ptmcad.verify(result, boxes=2).ok
 
     def altered(signs: str) -> ptmcad.RegionMap:
         cells = tuple(
-            replace(c, solutions=tuple(replace(s, signs=signs) if "-" in s.signs else s for s in c.solutions))
+            replace(
+                c,
+                solutions=tuple(
+                    replace(s, signs=signs) if "-" in s.signs else s for s in c.solutions
+                ),
+            )
             for c in result.cells
         )
         return replace(result, cells=cells)
@@ -189,22 +226,35 @@ AT: dict[str, list[Any]] = {"a": [-2, 2], "b": [-1, 2]}
 
 
 def test_a_solution_stops_to_count_where_an_inequality_vanishes_and_nowhere_else() -> None:
-    """The roots of x^2 = b beyond a: on one side of a parabola, whose vertex is the fold's only point that matters."""
+    """The roots of x^2 = b beyond a: on one side of a parabola, whose vertex is the fold's only
+    point that matters.
+    """
     slice = small({**ROOTS, "positive": ["x - a"]}, AT)
-    assert [curve.name for curve in curves(slice, Count.TOTAL)] == ["fold", "point where x - a is 0"]
+    assert [curve.name for curve in curves(slice, Count.TOTAL)] == [
+        "fold",
+        "point where x - a is 0",
+    ]
     result = ptmcad.classify(slice, engine="certified", tolerance="1/100", jobs=1)
-    for number, area in ((1, 2 ** (7 / 2) / 3), (2, 4 - 2 ** (5 / 2) / 3), (0, 8 - 2 ** (5 / 2) / 3)):
+    for number, area in (
+        (1, 2 ** (7 / 2) / 3),
+        (2, 4 - 2 ** (5 / 2) / 3),
+        (0, 8 - 2 ** (5 / 2) / 3),
+    ):
         low, high = bounds(result, "total", number)
         assert low <= area <= high
 
 
 def test_a_stable_solution_loses_its_stability_where_a_condition_vanishes() -> None:
     system = {**ROOTS, "positive": ["x"], "stable": ["x - a", "1 - x"]}
-    stable = ptmcad.classify(small(system, AT, count="stable"), engine="certified", tolerance="1/100", jobs=1)
+    stable = ptmcad.classify(
+        small(system, AT, count="stable"), engine="certified", tolerance="1/100", jobs=1
+    )
     low, high = bounds(stable, "stable", 1)
     assert low <= Fraction(8, 3) <= high  # a < sqrt b < 1
     assert {s.signs for cell in stable.cells for s in cell.solutions} == {"++"}
-    total = ptmcad.classify(small(system, AT, count="total"), engine="certified", tolerance="1/100", jobs=1)
+    total = ptmcad.classify(
+        small(system, AT, count="total"), engine="certified", tolerance="1/100", jobs=1
+    )
     assert {cell.total for cell in total.cells} == {0, 1}
     low, high = bounds(total, "total", 1)
     assert low <= 8 <= high  # the conditions for stability are no curves of this map
@@ -215,13 +265,17 @@ def test_a_stable_solution_loses_its_stability_where_a_condition_vanishes() -> N
 def test_folds_of_what_does_not_count_are_left_out() -> None:
     """The cubic's fold at x = -1 lies where the inequality is violated."""
     system = {"unknowns": {"x": "real"}, "equations": ["x^3 - 3*x + a"], "positive": ["x"]}
-    result = ptmcad.classify(small(system, {"a": [-4, 4], "b": [0, 1]}), engine="certified", tolerance="1/100", jobs=1)
+    result = ptmcad.classify(
+        small(system, {"a": [-4, 4], "b": [0, 1]}), engine="certified", tolerance="1/100", jobs=1
+    )
     assert [result.locate(a=a, b="1/2").total for a in (-3, -1, "9/8", 3)] == [1, 1, 2, 0]
     assert result.locate(a=-2, b="1/2").total == 1  # in a cell, though x = -1 is a double root
 
 
 @pytest.mark.parametrize(("offset", "total"), [("0", None), ("1/10^40", 1), ("-1/10^40", 2)])
-def test_a_condition_that_is_nearly_zero_is_decided_and_one_that_is_zero_is_not(offset: str, total: int | None) -> None:
+def test_a_condition_that_is_nearly_zero_is_decided_and_one_that_is_zero_is_not(
+    offset: str, total: int | None
+) -> None:
     """x = -1 and x = 1, beyond -1 and a little."""
     counter = point_counter(small({**ROOTS, "positive": ["x - a"]}, AT))
     small_one = Fraction(offset.replace("1/10^40", "1")) / 10**40
@@ -231,20 +285,27 @@ def test_a_condition_that_is_nearly_zero_is_decided_and_one_that_is_zero_is_not(
 def test_a_condition_that_is_zero_at_a_solution_all_over_the_window_is_named() -> None:
     for positive in ("x - a", "(x - a)*(x + 5)", "a^2 - x*a"):
         slice = small(
-            {"unknowns": PAIR, "equations": ["x - a", "y - b"], "positive": [positive]}, {"a": [1, 2], "b": [1, 2]}
+            {"unknowns": PAIR, "equations": ["x - a", "y - b"], "positive": [positive]},
+            {"a": [1, 2], "b": [1, 2]},
         )
         with pytest.raises(DegenerateSliceError, match="at a solution at a = 31/21"):
             ptmcad.classify(slice, engine="certified", tolerance="1/10")
     once = small(
-        {"unknowns": PAIR, "equations": ["x - a", "y - b"], "positive": ["x - 10/21"]}, {"a": [0, 1], "b": [1, 2]}
+        {"unknowns": PAIR, "equations": ["x - a", "y - b"], "positive": ["x - 10/21"]},
+        {"a": [0, 1], "b": [1, 2]},
     )
-    assert {c.total for c in ptmcad.classify(once, engine="certified", tolerance="1/10", jobs=1).cells} == {0, 1}
+    assert {
+        c.total for c in ptmcad.classify(once, engine="certified", tolerance="1/10", jobs=1).cells
+    } == {0, 1}
 
 
 def test_a_condition_without_unknowns_is_a_curve_and_a_number_is_none() -> None:
     system = {"unknowns": {"x": "real"}, "equations": ["x - a"], "positive": ["a - b", "2"]}
     slice = small(system, {"a": [0, 1], "b": [0, 1]})
-    assert [curve.name for curve in curves(slice, Count.TOTAL)] == ["fold", "point where a - b is 0"]
+    assert [curve.name for curve in curves(slice, Count.TOTAL)] == [
+        "fold",
+        "point where a - b is 0",
+    ]
     result = ptmcad.classify(slice, engine="certified", tolerance="1/50", jobs=1)
     assert (result.locate(a="3/4", b="1/4").total, result.locate(a="1/4", b="3/4").total) == (1, 0)
     for never in ("0", "-1", "x - x"):
@@ -265,8 +326,13 @@ def test_where_a_species_must_live_its_extinction_is_no_solution() -> None:
 
     assert degrees("x") == degrees("b*x*y") == [0, 1]
     assert degrees() == degrees("y") == degrees("x + 1") == [2, 3]
-    potential = small({"unknowns": {"x": "real"}, "potential": "x^4/4 - a*x^3/3", "positive": ["x"]}, axes)
-    assert sorted(e[0] for _, e in problem_of(potential).equations[0].terms) == [2, 3]  # its Jacobian is a Hessian
+    potential = small(
+        {"unknowns": {"x": "real"}, "potential": "x^4/4 - a*x^3/3", "positive": ["x"]}, axes
+    )
+    assert sorted(e[0] for _, e in problem_of(potential).equations[0].terms) == [
+        2,
+        3,
+    ]  # its Jacobian is a Hessian
 
 
 ONE_ANOTHER: list[tuple[list[str], dict[str, Any], tuple[float, ...]]] = [
@@ -280,7 +346,9 @@ ONE_ANOTHER: list[tuple[list[str], dict[str, Any], tuple[float, ...]]] = [
 
 @pytest.mark.parametrize(("equations", "axes", "reach"), ONE_ANOTHER)
 @pytest.mark.fast_cases("equations0-axes0-reach0", "equations1-axes1-reach1")
-def test_unknowns_that_bound_one_another(equations: list[str], axes: dict[str, Any], reach: tuple[float, ...]) -> None:
+def test_unknowns_that_bound_one_another(
+    equations: list[str], axes: dict[str, Any], reach: tuple[float, ...]
+) -> None:
     slice = small({"unknowns": PAIR, "equations": equations}, axes)
     found = ranges(problem_of(slice), slice.axes)
     for (low, high), least in zip(found, reach, strict=True):
@@ -324,7 +392,9 @@ def test_inequalities_bound_what_equations_alone_do_not() -> None:
         ("-a", False),
     ],
 )
-def test_a_solution_that_leaves_to_infinity_somewhere_in_the_closed_window(coefficient: str, bounded: bool) -> None:
+def test_a_solution_that_leaves_to_infinity_somewhere_in_the_closed_window(
+    coefficient: str, bounded: bool
+) -> None:
     slice = small({"unknowns": {"x": "real"}, "equations": [f"({coefficient})*x - 1"]}, WINDOW)
     if bounded:
         ((_, high),) = ranges(problem_of(slice), slice.axes)
@@ -343,25 +413,37 @@ def test_no_solution_that_counts_is_outside_of_the_ranges(name: str) -> None:
     across, up = slice.axes
     points = [(x, y) for x in (across.low, across.high) for y in (up.low, up.high)]
     points += [
-        (across.low + (across.high - across.low) * Fraction(rng.randint(0, 50), 50), up.low + (up.high - up.low) * t)
+        (
+            across.low + (across.high - across.low) * Fraction(rng.randint(0, 50), 50),
+            up.low + (up.high - up.low) * t,
+        )
         for t in (Fraction(rng.randint(0, 50), 50) for _ in range(4))
     ]
     for x, y in points:
         names = zip(slice.axis_names, map(str, (x, y)), strict=True)
         for pose in ptmcad.solve(model=slice.model, digits=5, **dict(names)).equilibria:
-            assert all(low <= z.center <= high for z, (low, high) in zip(pose.reals, found, strict=True)), (x, y)
+            assert all(
+                low <= z.center <= high for z, (low, high) in zip(pose.reals, found, strict=True)
+            ), (x, y)
 
 
 def test_polynomials_far_away_are_those_of_the_unknowns_inverse() -> None:
-    """x = t u^-2, y = t u^-1, times u^7: of both polynomials the same power, which the first one needs."""
+    """x = t u^-2, y = t u^-1, times u^7: of both polynomials the same power, which the first one
+    needs.
+    """
     ring = Harmonics(("x", "y", "t"), ("x", "y"))
     x, y, c = ring.parameter("x"), ring.parameter("y"), ring.cos("t")
-    polynomials = [x * x * x * y - x * y * y * c + y * y * y * y - c + ring.constant(Fraction(1)), x - y * c]
+    polynomials = [
+        x * x * x * y - x * y * y * c + y * y * y * y - c + ring.constant(Fraction(1)),
+        x - y * c,
+    ]
     graph = Graph()
     unknowns = [graph.variable(k) for k in (2, 3, 4, 5)]
     far = scaled_together(polynomials, {0: 2, 1: 1})
     found = evaluated([f.formula(unknowns) for f in far], [0.7, -1.3, 0.4, 0.5])
-    at = evaluated([f.formula(unknowns[:3]) for f in polynomials], [0.7 / 0.25, -1.3 / 0.5, 0.4, 0.5])
+    at = evaluated(
+        [f.formula(unknowns[:3]) for f in polynomials], [0.7 / 0.25, -1.3 / 0.5, 0.4, 0.5]
+    )
     assert found == pytest.approx([value * 0.5**7 for value in at])
 
 
@@ -375,7 +457,11 @@ def evaluated(formulas: list[Any], point: list[float]) -> list[float]:
 
 def test_nothing_is_counted_where_a_condition_is_not_decided() -> None:
     """A solution at which a condition is zero leaves its point undecided, also where others count."""
-    system = {"unknowns": {"x": "real"}, "equations": ["(x - a)*(x - 2)*(x + 2)"], "positive": ["x - 1/2"]}
+    system = {
+        "unknowns": {"x": "real"},
+        "equations": ["(x - a)*(x - 2)*(x + 2)"],
+        "positive": ["x - 1/2"],
+    }
     counter = point_counter(small(system, {"a": [0, 1], "b": [0, 1]}))
     assert counter.at(Fraction(1, 2), Fraction(1, 3), Count.TOTAL) == PointCount()
     assert counter.at(Fraction(1, 3), Fraction(1, 3), Count.TOTAL).total == 1

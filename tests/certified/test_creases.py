@@ -1,4 +1,6 @@
-"""Springs between two points of a circle, and along lines that turn (Lemma S10): counts and maps against known ones."""
+"""Springs between two points of a circle, and along lines that turn (Lemma S10): counts and maps
+against known ones.
+"""
 
 from __future__ import annotations
 
@@ -44,8 +46,17 @@ def record(mechanism: dict[str, Any], count: str = "index", **axes: list[Any]) -
         "F": {"kind": "force", "default": 0},
         "G": {"kind": "force", "default": 0},
     }
-    given = {"name": "creased", **mechanism, "parameters": parameters | mechanism.get("parameters", {})}
-    return {"name": "creased", "mechanism": given, "axes": axes or {"F": [-2, 2], "l": [0, 2]}, "count": count}
+    given = {
+        "name": "creased",
+        **mechanism,
+        "parameters": parameters | mechanism.get("parameters", {}),
+    }
+    return {
+        "name": "creased",
+        "mechanism": given,
+        "axes": axes or {"F": [-2, 2], "l": [0, 2]},
+        "count": count,
+    }
 
 
 CRANK: dict[str, Any] = {
@@ -55,7 +66,9 @@ CRANK: dict[str, Any] = {
     "springs": [{"between": ["A", "P"], "k": 1, "free": "l"}],
     "loads": {"P": ["F", "G"]},
 }
-"""With t = th/2 and s = sin t the energy is 2 s^2 - 2 l s - F (1 - 2 s^2) - G sin 2t, up to a constant."""
+"""With t = th/2 and s = sin t the energy is 2 s^2 - 2 l s - F (1 - 2 s^2) - G sin 2t, up to a
+constant.
+"""
 PAIR: dict[str, Any] = {
     "unknowns": {"a": "angle", "b": "angle"},
     "points": {"O": [0, 0], "P": ["cos(a)", "sin(a)"], "Q": ["cos(b)", "sin(b)"]},
@@ -67,8 +80,12 @@ PAIR: dict[str, Any] = {
 
 def counted(mechanism: dict[str, Any], **values: Fraction) -> Any:
     model = ptmcad.slice_from_mapping(record(mechanism)).model
-    defaults = {name: Fraction(p.default) for name, p in model.parameters.items() if p.default is not None}
-    return plain_counter(point_slice(model, defaults | values)).at(Fraction(0), Fraction(0), Count.INDEX)
+    defaults = {
+        name: Fraction(p.default) for name, p in model.parameters.items() if p.default is not None
+    }
+    return plain_counter(point_slice(model, defaults | values)).at(
+        Fraction(0), Fraction(0), Count.INDEX
+    )
 
 
 small = st.fractions(min_value=-2, max_value=2, max_denominator=8)
@@ -95,7 +112,9 @@ def test_a_crank_has_the_equilibria_of_half_its_angle(force: Fraction, free: Fra
 @settings(max_examples=examples(40), deadline=None)
 @given(small, small, lengths)
 def test_the_crease_is_a_peak_in_eulers_sum(force: Fraction, up: Fraction, free: Fraction) -> None:
-    """On the circle there are as many minima as maxima, one of which is the crease where it outweighs the load."""
+    """On the circle there are as many minima as maxima, one of which is the crease where it
+    outweighs the load.
+    """
     assume(abs(up) != free)
     count = counted(CRANK, F=force, G=up, l=free)
     assume(count.decided)  # near a fold nothing is
@@ -104,7 +123,9 @@ def test_the_crease_is_a_peak_in_eulers_sum(force: Fraction, up: Fraction, free:
 
 
 def pair_by_hand(force: float, free: float) -> Index:
-    """With a = s + f, b = s - f the energy is 2 sin^2 f - 2 l |sin f| - 2 F cos f cos s; sin s or cos f is 0."""
+    """With a = s + f, b = s - f the energy is 2 sin^2 f - 2 l |sin f| - 2 F cos f cos s; sin s or
+    cos f is 0.
+    """
     found = [0, 2, 0]  # cos f = 0 = cos s
     f = (np.arange(200000) + 0.5) * pi / 200000
     for c in (1, -1):
@@ -134,20 +155,27 @@ def test_two_cranks_have_the_equilibria_of_their_angles_difference(
 
 
 def turning(*frequencies: int) -> dict[str, Any]:
-    """A shaft with pins that gears turn so many times as fast, a spring between each and the next, and from a point of
-    their circle to the last."""
+    """A shaft with pins that gears turn so many times as fast, a spring between each and the next,
+    and from a point of their circle to the last."""
     pins = {f"P{k}": [f"cos({n}*a)", f"sin({n}*a)"] for k, n in enumerate(frequencies)}
     ends = [*pins, "A"]
     return {
         "unknowns": {"a": "angle"},
         "points": {"O": [0, 0], "A": ["3/5", "4/5"], **pins},
-        "springs": [{"between": list(ends), "k": 1, "free": f"l/{2 + k}"} for k, ends in enumerate(pairwise(ends))],
+        "springs": [
+            {"between": list(ends), "k": 1, "free": f"l/{2 + k}"}
+            for k, ends in enumerate(pairwise(ends))
+        ],
         "loads": {ends[0]: ["F", "G"]},
     }
 
 
-def by_samples(frequencies: tuple[int, ...], force: float, up: float, free: float) -> tuple[Index, float]:
-    """Minima and smooth maxima of the energy on a fine grid, and how far from every crease its extremes are."""
+def by_samples(
+    frequencies: tuple[int, ...], force: float, up: float, free: float
+) -> tuple[Index, float]:
+    """Minima and smooth maxima of the energy on a fine grid, and how far from every crease its
+    extremes are.
+    """
     a = (np.arange(400000) + 0.37) * (2 * pi / 400000)
     pins = [np.exp(1j * n * a) for n in frequencies] + [np.full_like(a, 0.6 + 0.8j, dtype=complex)]
     energy = -force * pins[0].real - up * pins[0].imag
@@ -206,7 +234,9 @@ def test_creases_of_sums_of_one_another_have_two_branches() -> None:
 
 
 def spun_by_newton(force: float, up: float, free: float) -> Index:
-    """From many starts, with derivatives written out; of every equilibrium with springs that are long."""
+    """From many starts, with derivatives written out; of every equilibrium with springs that are
+    long.
+    """
     generator = np.random.default_rng(7)
     q = generator.uniform(-pi, pi, (2, 20000))
     ways = ((1, -1, 1.0, free), (1, None, 1.0, 1 / 3), (None, 1, 2.0, 0.25))
@@ -258,7 +288,9 @@ ARM: dict[str, Any] = {
     "springs": [{"between": ["O", "S"], "k": 1, "free": "l"}],
     "loads": {"S": ["F", "G"]},
 }
-"""A slider with a spring along an arm that turns: as a point of the plane it has two places, half a turn apart."""
+"""A slider with a spring along an arm that turns: as a point of the plane it has two places, half a
+turn apart.
+"""
 
 
 @settings(max_examples=examples(40), deadline=None)
@@ -266,9 +298,11 @@ ARM: dict[str, Any] = {
 def test_a_slider_on_a_turning_arm_has_the_equilibria_of_either_side(
     way: tuple[str, str], force: Fraction, free: Fraction
 ) -> None:
-    """At l + F ahead of the force there is a minimum, and at l - F behind it, where that is positive, a saddle.
+    """At l + F ahead of the force there is a minimum, and at l - F behind it, where that is
+    positive, a saddle.
 
-    Beyond, the energy's continuation has solutions at x = 0 itself, of which no ball tells that they are none.
+    Beyond, the energy's continuation has solutions at x = 0 itself, of which no ball tells that
+    they are none.
     """
     assume(free > force)
     across, up = (force * Fraction(part) for part in way)
@@ -354,15 +388,27 @@ def test_a_solution_is_alone_in_the_cube_of_the_descriptions_angles() -> None:
         for corner in product((-1, 1), repeat=2):
             a, b = (c + side * cube.radius for c, side in zip(cube.center, corner, strict=True))
             own = a, a + b / 2
-            assert all(abs(u - c) <= solution.radius for u, c in zip(own, solution.center, strict=True))
-        assert all(abs(x - ball_of(c)) < ball_of(cube.radius) for x, c in zip(narrow[2:], cube.center, strict=True))
+            assert all(
+                abs(u - c) <= solution.radius for u, c in zip(own, solution.center, strict=True)
+            )
+        assert all(
+            abs(x - ball_of(c)) < ball_of(cube.radius)
+            for x, c in zip(narrow[2:], cube.center, strict=True)
+        )
 
 
 def test_a_length_that_no_unknown_changes_has_no_sides() -> None:
-    """From the middle of the circle, where a parameter puts it: the spring's line turns, but it is never short."""
+    """From the middle of the circle, where a parameter puts it: the spring's line turns, but it is
+    never short.
+    """
     points = {**CRANK["points"], "B": ["r", 0]}
     springs = [*CRANK["springs"], {"between": ["P", "B"], "k": 1, "free": "l"}]
-    middle = {**CRANK, "parameters": {"r": {"kind": "number", "default": 0}}, "points": points, "springs": springs}
+    middle = {
+        **CRANK,
+        "parameters": {"r": {"kind": "number", "default": 0}},
+        "points": points,
+        "springs": springs,
+    }
     slice = ptmcad.slice_from_mapping(record(middle))
     assert [len(b.cones) for b in branches(problem_of(slice), slice.axes)] == [1]
     values = {"F": Fraction(1, 3), "l": Fraction(1)}
@@ -371,7 +417,9 @@ def test_a_length_that_no_unknown_changes_has_no_sides() -> None:
 
 @cache
 def map_of(count: str) -> RegionMap:
-    return certified_map(ptmcad.slice_from_mapping(record(CRANK, count)), Options(tolerance=Fraction(1, 100), jobs=1))
+    return certified_map(
+        ptmcad.slice_from_mapping(record(CRANK, count)), Options(tolerance=Fraction(1, 100), jobs=1)
+    )
 
 
 @pytest.mark.parametrize("count", ["total", "index", "stable"])
@@ -390,7 +438,9 @@ def test_a_map_has_the_area_below_a_line(count: str) -> None:
 
 
 def test_a_map_tells_whether_the_spring_pulls() -> None:
-    """At the two minima it does where F < 0; beyond the line there is one, at th = pi, where it does, as l < 2."""
+    """At the two minima it does where F < 0; beyond the line there is one, at th = pi, where it
+    does, as l < 2.
+    """
     found = map_of("admissible")
     assert found.undetermined < Fraction(1, 100)
     areas = {(2, 2): 1, (2, 0): 4, (1, 1): 3}
@@ -437,30 +487,43 @@ def test_solve_has_the_angles_themselves() -> None:
     assert said == {(0, "60.000000"), (0, "-60.000000"), (1, "180")}
     pair = ptmcad.solve(record(PAIR), F="1/2", l=1)
     assert pair.status is Status.CERTIFIED
-    assert tuple(sum(p.index == k for p in pair.equilibria) for k in range(3)) == pair_by_hand(0.5, 1.0)
+    assert tuple(sum(p.index == k for p in pair.equilibria) for k in range(3)) == pair_by_hand(
+        0.5, 1.0
+    )
 
 
 def test_a_direction_may_depend_on_the_axes() -> None:
-    """The spring's end in the direction of a rational angle, or of one by the tangent of its half: the crank turned."""
+    """The spring's end in the direction of a rational angle, or of one by the tangent of its half:
+    the crank turned.
+    """
     way = {"c": {"kind": "number", "default": 1}, "s": {"kind": "number", "default": 0}}
     loads = {"P": ["F*c - G*s", "F*s + G*c"]}
-    turned = {**CRANK, "parameters": way, "points": {**CRANK["points"], "A": ["c", "s"]}, "loads": loads}
+    turned = {
+        **CRANK,
+        "parameters": way,
+        "points": {**CRANK["points"], "A": ["c", "s"]},
+        "loads": loads,
+    }
     values = {"F": Fraction(1, 3), "l": Fraction(3, 4)}
     there = counted(turned, c=Fraction(-7, 25), s=Fraction(24, 25), **values)
     assert there.decided
     assert there.index == crank_by_hand(values["F"], values["l"])
     moved = record(turned, F=[-2, 2], t=[-2, 2])
-    slice = ptmcad.slice_from_mapping({**moved, "parameters": {"c": "(1 - t^2)/(1 + t^2)", "s": "2*t/(1 + t^2)"}})
+    slice = ptmcad.slice_from_mapping(
+        {**moved, "parameters": {"c": "(1 - t^2)/(1 + t^2)", "s": "2*t/(1 + t^2)"}}
+    )
     (branch,) = branches(problem_of(slice), slice.axes)
     assert not branch.cones
     for x, y in (("1/2", "3/2"), ("-4/3", "1/7"), ("-2/3", "-3/2")):
-        assert plain_counter(slice).at(Fraction(x), Fraction(y), Count.INDEX).index == crank_by_hand(
-            Fraction(x), Fraction(1)
-        )
+        assert plain_counter(slice).at(
+            Fraction(x), Fraction(y), Count.INDEX
+        ).index == crank_by_hand(Fraction(x), Fraction(1))
 
 
 def test_without_lines_that_turn_nothing_is_decided(monkeypatch: pytest.MonkeyPatch) -> None:
-    """If such a spring may have any direction where it is short, its crease is as good as a solution."""
+    """If such a spring may have any direction where it is short, its crease is as good as a
+    solution.
+    """
     at = {"F": Fraction(1, 3), "l": Fraction(1, 2)}
     assert counted(CRANK, **at).decided
     monkeypatch.setattr(plain_points, "branches", lambda problem, _: (problem,))
@@ -470,29 +533,42 @@ def test_without_lines_that_turn_nothing_is_decided(monkeypatch: pytest.MonkeyPa
 def test_on_both_sides_every_equilibrium_is_there_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     """Over two turns of the angle one side is all: the other one has the same configurations again."""
     in_half_angles = straight._in_half_angles
-    monkeypatch.setattr(straight, "_in_half_angles", lambda *given: (in_half_angles(*given)[0], set()))
+    monkeypatch.setattr(
+        straight, "_in_half_angles", lambda *given: (in_half_angles(*given)[0], set())
+    )
     assert counted(CRANK, F=Fraction(1, 3), l=Fraction(1, 2)).total == 6
 
 
 def test_without_the_side_as_a_condition_counts_are_false(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where s = l/(2 (1 + F)) is greater than 1, but less than -1 or negative, too, is no equilibrium of the crank."""
+    """Where s = l/(2 (1 + F)) is greater than 1, but less than -1 or negative, too, is no
+    equilibrium of the crank.
+    """
 
     def unconditional(problem: Any, axes: Any) -> Any:
-        return tuple(replace(branch, inequalities=(), where="") for branch in branches(problem, axes))
+        return tuple(
+            replace(branch, inequalities=(), where="") for branch in branches(problem, axes)
+        )
 
     at = {"F": Fraction(1, 3), "l": Fraction(1, 2)}
     monkeypatch.setattr(plain_points, "branches", unconditional)
     assert counted(CRANK, **at).total == 4
 
 
-def test_without_the_crease_among_the_curves_a_map_is_false(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where |G| = l an equilibrium is swallowed at the crease: without that curve a cell has points of both kinds."""
+def test_without_the_crease_among_the_curves_a_map_is_false(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where |G| = l an equilibrium is swallowed at the crease: without that curve a cell has points
+    of both kinds.
+    """
     slice = ptmcad.slice_from_mapping(record(CRANK, G=[-1, 1], l=["1/10", 1]))
 
     def cells() -> int:
         return len(certified_map(slice, Options(tolerance=Fraction(1, 50), jobs=1)).cells)
 
-    counts = [plain_counter(slice).at(Fraction(g), Fraction(1, 4), Count.INDEX).index for g in ("1/5", "1/3")]
+    counts = [
+        plain_counter(slice).at(Fraction(g), Fraction(1, 4), Count.INDEX).index
+        for g in ("1/5", "1/3")
+    ]
     assert counts == [(2, 1), (1, 1)]
     before = cells()
     monkeypatch.setattr(plain_curves, "_boundaries", lambda *_: iter(()))
@@ -500,7 +576,9 @@ def test_without_the_crease_among_the_curves_a_map_is_false(monkeypatch: pytest.
 
 
 def test_half_of_a_direction_that_winds_is_none() -> None:
-    """Around the origin half the angle of the square of x + iy turns by half a turn: there the spring stays a cone."""
+    """Around the origin half the angle of the square of x + iy turns by half a turn: there the
+    spring stays a cone.
+    """
     way = {name: {"kind": "number"} for name in ("c", "s", "r")}
     points = {"O": [0, 0], "A": ["c", "s"], "P": ["r*cos(th)", "r*sin(th)"]}
     winding = record({**CRANK, "parameters": way, "points": points}, x=[-1, 1], y=[-1, 1])

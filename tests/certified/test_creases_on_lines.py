@@ -1,4 +1,6 @@
-"""Lines through values at which springs lose their lengths, two at once or in a pose that is its own image."""
+"""Lines through values at which springs lose their lengths, two at once or in a pose that is its
+own image.
+"""
 
 from __future__ import annotations
 
@@ -27,9 +29,19 @@ EQUAL_BARS |= {f"{name}{i}": value for i in (1, 2, 3) for name, value in (("k", 
 BAND: dict[str, Any] = {
     "name": "band",
     "mechanism": {
-        "parameters": {"h": {"kind": "number"}, "F": {"kind": "force"}, "l": {"kind": "free length", "default": "1/2"}},
+        "parameters": {
+            "h": {"kind": "number"},
+            "F": {"kind": "force"},
+            "l": {"kind": "free length", "default": "1/2"},
+        },
         "unknowns": {"u": "length", "t": "angle"},
-        "points": {"O": [0, 0], "M": [0, "h"], "S": ["u", 0], "P": ["u + cos(t)", "sin(t)"], "E": [3, 1]},
+        "points": {
+            "O": [0, 0],
+            "M": [0, "h"],
+            "S": ["u", 0],
+            "P": ["u + cos(t)", "sin(t)"],
+            "E": [3, 1],
+        },
         "bars": [["S", "P"]],
         "supports": {"M": "pin", "E": "pin"},
         "springs": [{"between": ["M", "S"], "k": 1, "free": "l"}, {"between": ["P", "E"], "k": 1}],
@@ -49,13 +61,23 @@ def along(record: str, axis: str, at: dict[str, str], window: str) -> CertifiedI
 @pytest.mark.parametrize(
     ("record", "at"),
     [
-        pytest.param("free-load", {"F": "-10"}, id="free-load at F = -10: ptmcad 7ed04eb8, and a dense search"),
-        pytest.param("free02", {"L2": "1"}, id="free02 at L2 = 1: ptmcad 7ed04eb8, and a dense search"),
+        pytest.param(
+            "free-load",
+            {"F": "-10"},
+            id="free-load at F = -10: ptmcad 7ed04eb8, and a dense search",
+        ),
+        pytest.param(
+            "free02", {"L2": "1"}, id="free02 at L2 = 1: ptmcad 7ed04eb8, and a dense search"
+        ),
     ],
 )
-def test_both_springs_of_equal_bars_lose_their_lengths_at_once(record: str, at: dict[str, str]) -> None:
+def test_both_springs_of_equal_bars_lose_their_lengths_at_once(
+    record: str, at: dict[str, str]
+) -> None:
     found = along(record, "rho", at, "24/25:26/25")
-    assert [(c.at.low, c.at.high, c.names, c.proved) for c in found.changes] == [(1, 1, CREASES, True)]
+    assert [(c.at.low, c.at.high, c.names, c.proved) for c in found.changes] == [
+        (1, 1, CREASES, True)
+    ]
     assert [interval.index for interval in found.intervals] == [(2, 6, 4)] * 2
     for interval in found.intervals:
         assert dense_search(EQUAL_BARS | {"rho": float(interval.sample)})["index"] == interval.index
@@ -64,17 +86,41 @@ def test_both_springs_of_equal_bars_lose_their_lengths_at_once(record: str, at: 
 @pytest.mark.parametrize(
     ("axis", "at", "window", "place"),
     [
-        pytest.param("rho", {"L2": "1/2"}, "12/25:13/25", "1/2", id="rho = L2: ptmcad 7ed04eb8, and a dense search"),
-        pytest.param("L2", {"rho": "1/2"}, "7/5:8/5", "3/2", id="L2 = L1 + rho: ptmcad 7ed04eb8, and a dense search"),
+        pytest.param(
+            "rho",
+            {"L2": "1/2"},
+            "12/25:13/25",
+            "1/2",
+            id="rho = L2: ptmcad 7ed04eb8, and a dense search",
+        ),
+        pytest.param(
+            "L2",
+            {"rho": "1/2"},
+            "7/5:8/5",
+            "3/2",
+            id="L2 = L1 + rho: ptmcad 7ed04eb8, and a dense search",
+        ),
     ],
 )
-def test_springs_of_flat_poses_lose_their_lengths(axis: str, at: dict[str, str], window: str, place: str) -> None:
-    """Flat poses are their own images, and equilibria without a load, also where no direction of a spring is known."""
+def test_springs_of_flat_poses_lose_their_lengths(
+    axis: str, at: dict[str, str], window: str, place: str
+) -> None:
+    """Flat poses are their own images, and equilibria without a load, also where no direction of a
+    spring is known.
+    """
     found = along("free02-unloaded", axis, at, window)
     (change,) = found.changes
-    assert change.proved and change.at.low <= Fraction(place) <= change.at.high and change.at.settles(10)
+    assert (
+        change.proved
+        and change.at.low <= Fraction(place) <= change.at.high
+        and change.at.settles(10)
+    )
     assert set(change.names) == {CONE, *CREASES[: axis == "rho"]}
-    unloaded = EQUAL_BARS | {"F3": 0.0, "F4": 0.0} | {name: float(Fraction(value)) for name, value in at.items()}
+    unloaded = (
+        EQUAL_BARS
+        | {"F3": 0.0, "F4": 0.0}
+        | {name: float(Fraction(value)) for name, value in at.items()}
+    )
     for interval in found.intervals:
         assert dense_search(unloaded | {axis: float(interval.sample)})["index"] == interval.index
 
@@ -86,7 +132,9 @@ def test_folds_beside_creases_are_called_folds() -> None:
 
 
 def test_a_crease_of_a_slider_keeps_its_unknown() -> None:
-    """Where the guide runs through the fixed end of its spring, between folds; with totals by signs on a fine grid."""
+    """Where the guide runs through the fixed end of its spring, between folds; with totals by signs
+    on a fine grid.
+    """
     slice = slice_from_mapping(BAND)
     (crease,) = (curve for curve in curves(slice, Count.INDEX) if "has no length" in curve.name)
     assert len(crease.ranges) == 1
@@ -97,4 +145,6 @@ def test_a_crease_of_a_slider_keeps_its_unknown() -> None:
     for interval in found.intervals:
         rest = u * (1 - 0.5 / np.hypot(u, float(interval.sample))) + u - 3 + 2
         pulled = (3 - u) / np.hypot(3 - u, 1)  # the bar points to E, or away from it
-        assert interval.total == sum((np.diff(np.sign(rest + side * pulled)) != 0).sum() for side in (1, -1))
+        assert interval.total == sum(
+            (np.diff(np.sign(rest + side * pulled)) != 0).sum() for side in (1, -1)
+        )

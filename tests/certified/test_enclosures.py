@@ -1,4 +1,6 @@
-"""Tapes on boxes enclose what Arb computes, formulas are the potential's derivatives, and no known solution is lost."""
+"""Tapes on boxes enclose what Arb computes, formulas are the potential's derivatives, and no known
+solution is lost.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +45,11 @@ SLICES = {
 
 def slice_of(name: str) -> Slice:
     return slice_from_mapping(
-        {"name": "s", "parameters": SLICES[name], "axes": {"rho": ["1/20", "2"], "L2": ["1/20", "2"]}}
+        {
+            "name": "s",
+            "parameters": SLICES[name],
+            "axes": {"rho": ["1/20", "2"], "L2": ["1/20", "2"]},
+        }
     )
 
 
@@ -53,7 +59,9 @@ def differentiable(m: SpringChart) -> list[Formula]:
 
 
 def tape_of(name: str) -> tuple[Tape, int]:
-    """Both slopes, the Hessian and its determinant, then the lengths; and derivatives of all six, row by row."""
+    """Both slopes, the Hessian and its determinant, then the lengths; and derivatives of all six,
+    row by row.
+    """
     m = chart(geometry(problem_of(slice_of(name))))
     graph = m.equations[0].graph
     wanted = differentiable(m)
@@ -67,12 +75,18 @@ def random_boxes(rng: random.Random, number: int) -> Iterator[tuple[list[float],
         x, y = rng.uniform(0.05, 2), rng.uniform(0.05, 2)
         if k % 3 == 0:
             y = x * (1 + rng.choice([0, 1e-9, 1e-3, -1e-2]))
-        th1, th2 = rng.uniform(-3.2, 3.3), rng.choice([0.0, rng.uniform(-3.2, 3.3), rng.uniform(-1e-3, 1e-3)])
+        th1, th2 = (
+            rng.uniform(-3.2, 3.3),
+            rng.choice([0.0, rng.uniform(-3.2, 3.3), rng.uniform(-1e-3, 1e-3)]),
+        )
         middle = [x, y, th1, th2]
         radius = [10 ** rng.uniform(-14, 0) for _ in range(4)]
         if k % 5 == 0:
             radius = [0.0] * 4
-        yield [m - r for m, r in zip(middle, radius, strict=True)], [m + r for m, r in zip(middle, radius, strict=True)]
+        yield (
+            [m - r for m, r in zip(middle, radius, strict=True)],
+            [m + r for m, r in zip(middle, radius, strict=True)],
+        )
 
 
 @pytest.mark.parametrize("name", SLICES)
@@ -85,7 +99,9 @@ def test_a_tape_encloses_all_its_nodes(name: str) -> None:
     for box_low, box_high in random_boxes(rng, 120):
         assert run(code, np.array(box_low), np.array(box_high), low, high, 0, len(tape))
         for k in range(3):
-            shares = [Fraction(rng.choice([0, 1])) if k == 0 else Fraction(rng.random()) for _ in range(4)]
+            shares = [
+                Fraction(rng.choice([0, 1])) if k == 0 else Fraction(rng.random()) for _ in range(4)
+            ]
             point = [
                 Fraction(a) + (Fraction(b) - Fraction(a)) * s
                 for a, b, s in zip(box_low, box_high, shares, strict=True)
@@ -100,7 +116,9 @@ def test_a_tape_encloses_all_its_nodes(name: str) -> None:
 
 
 def energy(slice: Slice, x: Fraction, y: Fraction) -> PaperEnergy:
-    return energy_at(lambda n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0))
+    return energy_at(
+        lambda n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0)
+    )
 
 
 @pytest.mark.parametrize("name", SLICES)
@@ -120,7 +138,9 @@ def test_formulas_are_those_of_the_verification(name: str) -> None:
             h11, h22, h12 = bar1 * d.e11, bar2 * d.e22, bar1 * d.e12
             expected = [bar1 * d.e1, bar2 * d.e2, h11, h22, h12, h11 * h22 - h12 * h12]
             lengths = [q.sqrt() for q in there.squares(ball_of(point[2]), ball_of(point[3]))]
-            for place, value in zip(tape.outputs[0][: number + 3], [*expected, *lengths], strict=True):
+            for place, value in zip(
+                tape.outputs[0][: number + 3], [*expected, *lengths], strict=True
+            ):
                 assert abs(values[int(place)] - value) < 1e-40
 
 
@@ -148,7 +168,9 @@ def test_derivatives_against_divided_differences(name: str) -> None:
 
 
 def fold_points(slice: Slice, count: int) -> list[Floats]:
-    """Folds of a minimum and a saddle, by Newton's method for (e1, e2, det) at random abscissae, from random starts."""
+    """Folds of a minimum and a saddle, by Newton's method for (e1, e2, det) at random abscissae,
+    from random starts.
+    """
     rng = np.random.default_rng(6)
 
     def equations(x: float, z: Floats) -> Floats:
@@ -176,7 +198,9 @@ def fold_points(slice: Slice, count: int) -> list[Floats]:
             if np.abs(move).max() < 1e-12:
                 turned = (z[1:] + 3) % (2 * np.pi) - 3
                 here = np.array([x, z[0], *turned])
-                d = energy(slice, Fraction(x), Fraction(float(z[0])))(arb(float(turned[0])), arb(float(turned[1])))
+                d = energy(slice, Fraction(x), Fraction(float(z[0])))(
+                    arb(float(turned[0])), arb(float(turned[1]))
+                )
                 if 0.06 < z[0] < 1.99 and d.e11 > 1e-3 and d.e22 > 1e-3:
                     found.append(here)
                 break
@@ -194,7 +218,9 @@ FOLDS = 2
 
 @cache
 def fold_curves() -> list[CriticalCurve]:
-    """The systems in the four unknowns whose solutions include all folds of minima away from short springs."""
+    """The systems in the four unknowns whose solutions include all folds of minima away from short
+    springs.
+    """
     slice = slice_of("free02")
     return [c for count in (Count.STABLE, Count.TOTAL) for c in curves(slice, count)
             if "fold" in c.name and len(c.ranges) == 2]  # fmt: skip
@@ -227,7 +253,9 @@ def test_contraction_keeps_known_folds(number: int, folds: list[Floats]) -> None
 
 def _shortest(point: Floats) -> float:
     there = energy(slice_of("free02"), Fraction(float(point[0])), Fraction(float(point[1])))
-    return min(float(q.mid()) ** 0.5 for q in there.squares(arb(float(point[2])), arb(float(point[3]))))
+    return min(
+        float(q.mid()) ** 0.5 for q in there.squares(arb(float(point[2])), arb(float(point[3])))
+    )
 
 
 def test_contraction_discards_what_holds_none() -> None:
@@ -247,6 +275,10 @@ def test_search_keeps_known_folds(folds: list[Floats]) -> None:
     curve = fold_curves()[0]
     for point in folds:
         window = np.array([[point[0] - 0.02, point[1] - 0.013, point[0] + 0.011, point[1] + 0.017]])
-        boxes = search_curve(curve.system.arguments(), curve.start(window), 1e-6, 20_000, curve.importance()).left()
-        inside = (boxes[:, :4] <= point + 1e-9).all(axis=1) & (boxes[:, 4:] >= point - 1e-9).all(axis=1)
+        boxes = search_curve(
+            curve.system.arguments(), curve.start(window), 1e-6, 20_000, curve.importance()
+        ).left()
+        inside = (boxes[:, :4] <= point + 1e-9).all(axis=1) & (boxes[:, 4:] >= point - 1e-9).all(
+            axis=1
+        )
         assert inside.any()

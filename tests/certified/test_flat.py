@@ -1,4 +1,6 @@
-"""The unloaded mechanism's mirror: formulas next to flat configurations, their pitchforks, and all other folds."""
+"""The unloaded mechanism's mirror: formulas next to flat configurations, their pitchforks, and all
+other folds.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,15 @@ Floats = NDArray[np.float64]
 REFLECTION = Involution((0, 1), (-1, -1), (0, 0))
 FLAT = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 """Cosines of th1 and th2, in the order of the curves."""
-UNLOADED = {"L1": "4/5", "k1": "90", "k2": "110", "k3": "70", "l0_1": "1/4", "l0_2": "1/5", "l0_3": "3/10"}
+UNLOADED = {
+    "L1": "4/5",
+    "k1": "90",
+    "k2": "110",
+    "k3": "70",
+    "l0_1": "1/4",
+    "l0_2": "1/5",
+    "l0_3": "3/10",
+}
 
 
 NEAR_FLAT = [
@@ -39,16 +49,22 @@ NEAR_FLAT = [
     (Fraction(764, 1000), np.array([0.855, -0.192, 0.140])),
     (Fraction(874, 1000), np.array([0.970, 0.116, -0.168])),
 ]
-"""rho, and about L2, th1 and th2, of folds that are not flat. Newton's method finds a flat one nearly always."""
+"""rho, and about L2, th1 and th2, of folds that are not flat. Newton's method finds a flat one
+nearly always.
+"""
 
 
 def slice_of(**changes: str) -> Slice:
     given = {name: value for name, value in (UNLOADED | changes).items() if value}
-    return slice_from_mapping({"name": "s", "parameters": given, "axes": {"rho": ["1/20", "2"], "L2": ["1/10", "2"]}})
+    return slice_from_mapping(
+        {"name": "s", "parameters": given, "axes": {"rho": ["1/20", "2"], "L2": ["1/10", "2"]}}
+    )
 
 
 def energy(slice: Slice, x: Fraction, y: Fraction) -> PaperEnergy:
-    return energy_at(lambda n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0))
+    return energy_at(
+        lambda n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0)
+    )
 
 
 def has_flat_mirror(slice: Slice) -> bool:
@@ -74,7 +90,11 @@ def folds(slice: Slice, number: int, *, flat: bool) -> list[Floats]:
         if flat:
             start[1:] = rng.choice([0.0, np.pi], 2)
         point = newton(slice, x, start, flat=flat)
-        if point is None or not 0.11 < point[1] < 1.99 or flat != (float(np.abs(np.sin(point[2:])).max()) < 1e-6):
+        if (
+            point is None
+            or not 0.11 < point[1] < 1.99
+            or flat != (float(np.abs(np.sin(point[2:])).max()) < 1e-6)
+        ):
             continue
         d = energy(slice, x, Fraction(float(point[1])))(*(arb(float(v)) for v in point[2:]))
         if d.e11 > 1e-3 and d.e22 > 1e-3:
@@ -95,7 +115,9 @@ def newton(slice: Slice, x: Fraction, z: Floats, *, flat: bool) -> Floats | None
         if not 0.1 < z[0] < 2:
             return None
         value = equations(z)
-        jacobian = np.array([(equations(z + h) - equations(z - h)) / 2e-7 for h in 1e-7 * np.eye(3)[:moving]]).T
+        jacobian = np.array(
+            [(equations(z + h) - equations(z - h)) / 2e-7 for h in 1e-7 * np.eye(3)[:moving]]
+        ).T
         if abs(np.linalg.det(jacobian)) < 1e-12:
             return None
         move = np.zeros(3)
@@ -111,7 +133,9 @@ def is_kept(found: tuple[CriticalCurve, ...], point: Floats) -> bool:
     x, y = point[:2]
     window = np.array([[x - 0.02, y - 0.02, x + 0.011, y + 0.03]])
     for number, curve in enumerate(found):
-        boxes = search_curve(curve.system.arguments(), curve.start(window), 1e-6, 50_000, curve.importance()).left()
+        boxes = search_curve(
+            curve.system.arguments(), curve.start(window), 1e-6, 50_000, curve.importance()
+        ).left()
         half = boxes.shape[1] // 2
         if number >= 3 * len(FLAT):  # far from the mirror, in both angles
             places = [np.array([x, y, *((point[2:] + 3) % (2 * np.pi) - 3)])]
@@ -122,9 +146,15 @@ def is_kept(found: tuple[CriticalCurve, ...], point: Floats) -> bool:
             shift = np.array([0.0 if c > 0 else np.pi for c in flat])
             # the tangents of half the angles from there, of the larger one first
             pair = np.tan((point[2:][::-1] if larger else point[2:]) / 2 - shift / 2)
-            places = [np.array([x, y, abs(pair[0]), pair[1] / pair[0]])] if abs(pair[0]) > 1e-9 else []
+            places = (
+                [np.array([x, y, abs(pair[0]), pair[1] / pair[0]])] if abs(pair[0]) > 1e-9 else []
+            )
         for place in places:
-            if ((boxes[:, :half] <= place + 1e-8) & (boxes[:, half:] >= place - 1e-8)).all(axis=1).any():
+            if (
+                ((boxes[:, :half] <= place + 1e-8) & (boxes[:, half:] >= place - 1e-8))
+                .all(axis=1)
+                .any()
+            ):
                 return True
     return False
 
@@ -136,7 +166,9 @@ def test_the_search_keeps_known_folds(kind: str) -> None:
     found = curves(slice, Count.STABLE)[:13]
     assert [len(c.system.unknowns) for c in found] == [2, 4, 4] * 4 + [4]
     points = (
-        folds(slice, 4, flat=True) if kind == "flat" else [newton(slice, *start, flat=False) for start in NEAR_FLAT]
+        folds(slice, 4, flat=True)
+        if kind == "flat"
+        else [newton(slice, *start, flat=False) for start in NEAR_FLAT]
     )
     assert all(point is not None and is_kept(found, point) for point in points)
 
@@ -163,20 +195,32 @@ def test_maps_with_and_without_the_mirror_do_not_contradict() -> None:
     slow = ptmcad.classify(slice, without=["mirror-images"], **given)  # type: ignore[arg-type]
     for one, other in ((quick, slow), (slow, quick)):
         at = [dict(zip(slice.axis_names, cell.sample, strict=True)) for cell in one.cells]
-        told = [(other.locate(**p).stable, cell.stable) for p, cell in zip(at, one.cells, strict=True)]
+        told = [
+            (other.locate(**p).stable, cell.stable) for p, cell in zip(at, one.cells, strict=True)
+        ]
         assert sum(a is not None for a, _ in told) >= len(told) // 2
         assert all(a in (None, b) for a, b in told)
     rng = random.Random(7)
     for _ in range(40):
-        x, y = (a.low + (a.high - a.low) * Fraction(rng.randrange(1, 10**6), 10**6) for a in slice.axes)
+        x, y = (
+            a.low + (a.high - a.low) * Fraction(rng.randrange(1, 10**6), 10**6) for a in slice.axes
+        )
         count = quick.locate(**dict(zip(slice.axis_names, (x, y), strict=True))).stable
-        values = {name: float(expression.evaluate(x, y)) for name, expression in slice.parameters.items()}
-        assert count is None or any(dense_search(values, grid)["stable"] == count for grid in (12, 48))
+        values = {
+            name: float(expression.evaluate(x, y)) for name, expression in slice.parameters.items()
+        }
+        assert count is None or any(
+            dense_search(values, grid)["stable"] == count for grid in (12, 48)
+        )
 
 
 def test_without_free_lengths_the_map_is_the_exact_engines() -> None:
     slice = slice_from_mapping(
-        {"name": "s", "parameters": {"L1": "1", "k": "100"}, "axes": {"rho": ["1/20", "2"], "L2": ["1/20", "2"]}}
+        {
+            "name": "s",
+            "parameters": {"L1": "1", "k": "100"},
+            "axes": {"rho": ["1/20", "2"], "L2": ["1/20", "2"]},
+        }
     )
     assert has_flat_mirror(slice)
     proved = ptmcad.classify(slice, engine="certified", tolerance="1/100", jobs=1)
@@ -184,7 +228,9 @@ def test_without_free_lengths_the_map_is_the_exact_engines() -> None:
     window = Fraction(39, 20) ** 2
     for count in {region.stable for region in true.regions}:
         low = sum((r.area[0] for r in proved.regions if r.stable == count), Fraction(0))
-        known = [sum((r.area[k] for r in true.regions if r.stable == count), Fraction(0)) for k in (0, 1)]
+        known = [
+            sum((r.area[k] for r in true.regions if r.stable == count), Fraction(0)) for k in (0, 1)
+        ]
         assert low <= known[1]
         assert known[0] <= low + proved.undetermined * window
 

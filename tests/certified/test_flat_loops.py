@@ -1,4 +1,6 @@
-"""Four-bar loops on springs with free lengths that fold flat all over a slice are named, and no other loop is."""
+"""Four-bar loops on springs with free lengths that fold flat all over a slice are named, and no
+other loop is.
+"""
 
 from __future__ import annotations
 
@@ -25,16 +27,26 @@ from ptmcad.text.expressions import constant
 pytest.importorskip("numba")
 
 RECORD = yaml.safe_load(
-    (Path(__file__).parents[2] / "configs" / "mechanisms" / "four-bar-free.yaml").read_text(encoding="utf-8")
+    (Path(__file__).parents[2] / "configs" / "mechanisms" / "four-bar-free.yaml").read_text(
+        encoding="utf-8"
+    )
 )
 FOUR_BAR: dict[str, Any] = RECORD["mechanism"]
 LOADS = {"F": [0, 4], "G": [0, 4]}
 
 
 def slice_of(
-    lengths: dict[str, Any], axes: dict[str, Any] | None = None, mechanism: dict[str, Any] | None = None, **more: Any
+    lengths: dict[str, Any],
+    axes: dict[str, Any] | None = None,
+    mechanism: dict[str, Any] | None = None,
+    **more: Any,
 ) -> ptmcad.Slice:
-    record = {"name": "loop", "mechanism": FOUR_BAR | (mechanism or {}), "parameters": lengths, "axes": axes or LOADS}
+    record = {
+        "name": "loop",
+        "mechanism": FOUR_BAR | (mechanism or {}),
+        "parameters": lengths,
+        "axes": axes or LOADS,
+    }
     return ptmcad.slice_from_mapping(record | more)
 
 
@@ -55,7 +67,11 @@ KINDS = [
 @pytest.mark.parametrize("count", ["total", "stable"])
 @pytest.mark.parametrize(("numbers", "said"), KINDS)
 @pytest.mark.slow_cases(
-    "kite of P-stable", "kite of Q-stable", "rhombus-total", "equal sums-stable", "parallelogram-total"
+    "kite of P-stable",
+    "kite of Q-stable",
+    "rhombus-total",
+    "equal sums-stable",
+    "parallelogram-total",
 )
 def test_a_loop_that_is_flat_everywhere_is_named_before_anything_is_searched(
     numbers: dict[str, Any], said: str, count: str
@@ -78,7 +94,8 @@ def test_at_a_point_it_is_undecided_by_name(numbers: dict[str, Any], said: str) 
 
 
 @pytest.mark.parametrize(
-    "numbers", [{"L1": "r", "L2": "r", "L3": "(b^2 - 1)/(b - 1) - 1"}, {"L1": "b", "L2": "r", "L3": "r"}]
+    "numbers",
+    [{"L1": "r", "L2": "r", "L3": "(b^2 - 1)/(b - 1) - 1"}, {"L1": "b", "L2": "r", "L3": "r"}],
 )
 def test_lengths_that_are_functions_of_the_axes(numbers: dict[str, Any]) -> None:
     mechanism = {"parameters": FOUR_BAR["parameters"] | {"r": {"kind": "length"}}}
@@ -109,9 +126,14 @@ TURNING = [
 
 
 @pytest.mark.parametrize(("p", "q", "free"), TURNING)
-def test_flat_poses_are_there_only_where_both_sides_turn(p: list[str], q: list[str], free: bool) -> None:
+def test_flat_poses_are_there_only_where_both_sides_turn(
+    p: list[str], q: list[str], free: bool
+) -> None:
     """Where a gear joins the cranks nothing says that the loop gets flat."""
-    description = FOUR_BAR | {"points": {"A0": [0, 0], "B0": [2, 0], "P": p, "Q": q}, "loads": {"P": [0, 1]}}
+    description = FOUR_BAR | {
+        "points": {"A0": [0, 0], "B0": [2, 0], "P": p, "Q": q},
+        "loads": {"P": [0, 1]},
+    }
     description |= {"parameters": {"L3": {"kind": "length"}}, "springs": []}
     model, values = ptmcad.Mechanism(description), {"L3": constant(2)}
     assert isinstance(model, ClosedMechanism)
@@ -132,7 +154,10 @@ HELD: dict[str, Any] = {
 
 def test_a_parallelogram_that_another_loop_keeps_from_folding_is_decided() -> None:
     slice = slice_of(lengths(1, 1, 2, 2), mechanism=HELD)
-    assert "A0 P Q B0 is a parallelogram with two branches: nothing is decided wherever" in check(slice).cost
+    assert (
+        "A0 P Q B0 is a parallelogram with two branches: nothing is decided wherever"
+        in check(slice).cost
+    )
     counts = plain_counter(slice).at(Fraction(1, 3), Fraction(1, 5), Count.TOTAL)
     assert counts.decided
     assert counts.total == 8
@@ -141,12 +166,18 @@ def test_a_parallelogram_that_another_loop_keeps_from_folding_is_decided() -> No
 
 
 BRANCHES = {
-    "crossed": (lengths(1, 1, 2, 2), ["b + (s - 2*b*cos(ph))*cos(ph)", "(s - 2*b*cos(ph))*sin(ph)"]),
+    "crossed": (
+        lengths(1, 1, 2, 2),
+        ["b + (s - 2*b*cos(ph))*cos(ph)", "(s - 2*b*cos(ph))*sin(ph)"],
+    ),
     "symmetric": (lengths(2, 1, 1, 2), ["b*cos(2*ph)", "b*sin(2*ph)"]),
 }
 
 
-SPRINGS = [{"between": ["A0", "Q"], "k": "k1", "free": "l0"}, {"between": ["C", "P"], "k": "k2", "free": "l0"}]
+SPRINGS = [
+    {"between": ["A0", "Q"], "k": "k1", "free": "l0"},
+    {"between": ["C", "P"], "k": "k2", "free": "l0"},
+]
 
 
 @pytest.mark.parametrize("branch", BRANCHES)
@@ -154,9 +185,19 @@ def test_a_branch_as_it_is_told_to_be_described(branch: str) -> None:
     """By the angle and the length of A0Q, with P as a mirror image: each pose is found twice."""
     numbers, image = BRANCHES[branch]
     mechanism = {
-        "parameters": {name: value for name, value in FOUR_BAR["parameters"].items() if name not in ("L1", "L3")},
+        "parameters": {
+            name: value
+            for name, value in FOUR_BAR["parameters"].items()
+            if name not in ("L1", "L3")
+        },
         "unknowns": {"ph": "angle", "s": "length"},
-        "points": {"A0": [0, 0], "B0": ["b", 0], "C": [1, 3], "Q": ["s*cos(ph)", "s*sin(ph)"], "P": image},
+        "points": {
+            "A0": [0, 0],
+            "B0": ["b", 0],
+            "C": [1, 3],
+            "Q": ["s*cos(ph)", "s*sin(ph)"],
+            "P": image,
+        },
         "bars": [],
         "closing": [{"between": ["Q", "B0"], "length": "L2"}],
         "supports": {},

@@ -1,4 +1,6 @@
-"""Moments that depend on another unknown, with springs of free lengths: no potential, but total counts with proof."""
+"""Moments that depend on another unknown, with springs of free lengths: no potential, but total
+counts with proof.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,12 @@ pytest.importorskip("numba")
 TWO_BARS: dict[str, Any] = {
     "mechanism": {
         "name": "follower",
-        "parameters": {"a": {"kind": "base"}, "l0": {"kind": "free length"}, "l1": {"kind": "free length"}, "F": {}},
+        "parameters": {
+            "a": {"kind": "base"},
+            "l0": {"kind": "free length"},
+            "l1": {"kind": "free length"},
+            "F": {},
+        },
         "unknowns": {"th": "angle", "ph": "angle"},
         "points": {
             "A": ["a", "3/10"],
@@ -46,7 +53,9 @@ def sliced(l0: str, l1: str) -> ptmcad.Slice:
     return ptmcad.slice_from_mapping({**TWO_BARS, "parameters": {"l0": l0, "l1": l1}})
 
 
-def residual(at: np.ndarray[Any, Any], a: float, force: float, l0: float, l1: float) -> np.ndarray[Any, Any]:
+def residual(
+    at: np.ndarray[Any, Any], a: float, force: float, l0: float, l1: float
+) -> np.ndarray[Any, Any]:
     """The balance of moments, written out by hand."""
     th, ph = at
     b = np.array([cos(th), sin(th)])
@@ -80,7 +89,11 @@ def test_without_free_lengths_counts_are_those_of_the_exact_engine(at: tuple[str
 def test_poses_balance_the_moments_and_none_is_missing(at: tuple[str, str], number: int) -> None:
     """Newton's method from a grid of starts finds the same ones."""
     a, force = map(Fraction, at)
-    found = poses_at(sliced("1/2", "1/3").model, {"a": a, "F": force, "l0": Fraction(1, 2), "l1": Fraction(1, 3)}, 12)
+    found = poses_at(
+        sliced("1/2", "1/3").model,
+        {"a": a, "F": force, "l0": Fraction(1, 2), "l1": Fraction(1, 3)},
+        12,
+    )
     values = (float(a), float(force), 0.5, 1 / 3)
     known = [np.array([float(angle) for angle in pose.angles]) for pose in found.equilibria]
     assert len(known) == number
@@ -90,7 +103,9 @@ def test_poses_balance_the_moments_and_none_is_missing(at: tuple[str, str], numb
     for start in product(np.arange(-pi, pi, 0.45), repeat=2):
         at_end = converged(np.array(start), values)
         if at_end is not None:
-            assert min(np.abs(np.exp(1j * at_end) - np.exp(1j * pose)).max() for pose in known) < 1e-6
+            assert (
+                min(np.abs(np.exp(1j * at_end) - np.exp(1j * pose)).max() for pose in known) < 1e-6
+            )
 
 
 def converged(at: np.ndarray[Any, Any], values: tuple[float, ...]) -> np.ndarray[Any, Any] | None:
@@ -99,7 +114,10 @@ def converged(at: np.ndarray[Any, Any], values: tuple[float, ...]) -> np.ndarray
         if np.abs(value).max() < 1e-12:
             return at
         jacobian = np.array(
-            [(residual(at + h, *values) - residual(at - h, *values)) / 2e-6 for h in 1e-6 * np.eye(2)]
+            [
+                (residual(at + h, *values) - residual(at - h, *values)) / 2e-6
+                for h in 1e-6 * np.eye(2)
+            ]
         ).T
         if abs(np.linalg.det(jacobian)) < 1e-9:
             return None
@@ -122,5 +140,7 @@ def test_a_map_states_the_moments_and_is_verified() -> None:
 
 
 def test_stable_counts_are_refused_by_name() -> None:
-    with pytest.raises(ConfigError, match="a moment that depends on another unknown has no potential"):
+    with pytest.raises(
+        ConfigError, match="a moment that depends on another unknown has no potential"
+    ):
         ptmcad.slice_from_mapping({**TWO_BARS, "count": "stable"})

@@ -1,4 +1,6 @@
-"""The curves of slices with free lengths: no true fold, cone or free-length point may lie outside their enclosures."""
+"""The curves of slices with free lengths: no true fold, cone or free-length point may lie outside
+their enclosures.
+"""
 
 from __future__ import annotations
 
@@ -30,20 +32,31 @@ LOADED = {"F3": "-1/10", "F4": "-1/10"}
 def slice_of(free: str, x: str = "rho", y: str = "L2", **values: str) -> Slice:
     """The paper's mechanism in unit stiffness, axes ``x`` and ``y``, all free lengths the same."""
     names = ("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x")
-    parameters = {name: constant(Fraction(values.get(name, "1" if name[0] != "F" else "0"))) for name in names}
+    parameters = {
+        name: constant(Fraction(values.get(name, "1" if name[0] != "F" else "0"))) for name in names
+    }
     parameters |= {f"l0_{i}": constant(Fraction(free)) for i in (1, 2, 3)}
     parameters |= {x: axis(0), y: axis(1)}
-    return Slice("test", ptm(), (Axis(x, Fraction(1, 20), Fraction(2)), Axis(y, Fraction(0), Fraction(2))), parameters)
+    return Slice(
+        "test",
+        ptm(),
+        (Axis(x, Fraction(1, 20), Fraction(2)), Axis(y, Fraction(0), Fraction(2))),
+        parameters,
+    )
 
 
 def derivatives(z: Vector, free: float, load: float) -> tuple[Vector, Vector]:
-    """Gradient and Hessian of the energy in (th1, th2), spring by spring; z = (rho, L2, th1, th2), L1 = k = 1.
+    """Gradient and Hessian of the energy in (th1, th2), spring by spring; z = (rho, L2, th1, th2),
+    L1 = k = 1.
 
     At one point, or at as many as z has columns.
     """
     rho, bar, th1, th2 = z
     a3, da3 = np.array([np.cos(th1), np.sin(th1)]), np.array([-np.sin(th1), np.cos(th1)])
-    arm, darm = bar * np.array([-np.cos(th2), np.sin(th2)]), bar * np.array([np.sin(th2), np.cos(th2)])
+    arm, darm = (
+        bar * np.array([-np.cos(th2), np.sin(th2)]),
+        bar * np.array([np.sin(th2), np.cos(th2)]),
+    )
     zero, base = np.zeros_like(a3), np.array([rho, np.zeros_like(rho)])
     slope1, slope2 = -load * da3[1], -load * darm[1]
     h11, h12, h22 = load * a3[1], np.zeros_like(rho), load * arm[1]
@@ -63,7 +76,9 @@ def derivatives(z: Vector, free: float, load: float) -> tuple[Vector, Vector]:
 
 
 def refine(f: Callable[[Vector], Vector], z: Vector) -> Vector | None:
-    """Newton's least change to a zero of f, which takes points as columns; None when it does not get there."""
+    """Newton's least change to a zero of f, which takes points as columns; None when it does not
+    get there.
+    """
     around = np.concatenate([1e-6 * np.eye(len(z)), -1e-6 * np.eye(len(z))], axis=1)
     for _ in range(40):
         value = f(z)
@@ -94,12 +109,16 @@ def fold_points(free: float, load: float, seed: int, number: int) -> list[Vector
     return found
 
 
-def rectangles(all_curves: tuple[CriticalCurve, ...], centre: Vector, half: float, area: float) -> Vector:
+def rectangles(
+    all_curves: tuple[CriticalCurve, ...], centre: Vector, half: float, area: float
+) -> Vector:
     """The enclosure over a small square of the plane: rows low x, low y, high x, high y."""
     window = np.array([[*(centre - half), *(centre + half)]])
     parts = []
     for curve in all_curves:
-        boxes = search_curve(curve.system.arguments(), curve.start(window), area, 20_000, curve.importance()).left()
+        boxes = search_curve(
+            curve.system.arguments(), curve.start(window), area, 20_000, curve.importance()
+        ).left()
         v = boxes.shape[1] // 2
         parts.append(boxes[:, [0, 1, v, v + 1]])
     return np.concatenate(parts)
@@ -114,7 +133,9 @@ def covers(found: Vector, p: Vector, slack: float) -> bool:
     pytest.param("1/5", "0", 2, marks=pytest.mark.slow),
 ])  # fmt: skip
 def test_true_folds_lie_in_the_enclosures(free: str, load: str, number: int) -> None:
-    """Folds found by Newton's method on derivatives that share no code with the engine; they err by less than 1e-8."""
+    """Folds found by Newton's method on derivatives that share no code with the engine; they err by
+    less than 1e-8.
+    """
     s = slice_of(free, F3=load, F4=load)
     every, stable = curves(s, Count.TOTAL), curves(s, Count.STABLE)
     for z in fold_points(float(Fraction(free)), float(Fraction(load)), 5, number):
@@ -125,7 +146,9 @@ def test_true_folds_lie_in_the_enclosures(free: str, load: str, number: int) -> 
 
 
 def test_absorption_by_the_cone_lies_in_the_enclosure() -> None:
-    """At l3 = 0 the pull of springs 1 and 2 and the loads on A3 and A4 has the size of the free length."""
+    """At l3 = 0 the pull of springs 1 and 2 and the loads on A3 and A4 has the size of the free
+    length.
+    """
     free, load = 0.2, -0.1
 
     def defect(rho: float, bar: float, side: float) -> float:
@@ -134,7 +157,10 @@ def test_absorption_by_the_cone_lies_in_the_enclosure() -> None:
         base = np.array([rho, 0.0])
         t1, t2 = np.array([-joint[1], joint[0]]), np.array([-joint[1], joint[0] - rho]) / bar
         forces = []
-        for anchor, t in ((base, t1), (np.zeros(2), t2)):  # spring 2 pulls A3 to A2, spring 1 pulls A4 to A1
+        for anchor, t in (
+            (base, t1),
+            (np.zeros(2), t2),
+        ):  # spring 2 pulls A3 to A2, spring 1 pulls A4 to A1
             d = anchor - joint
             forces.append(((1 - free / np.hypot(*d)) * d + [0, load]) @ t)
         # spring 3 pulls A3 by free * u and A4 by -free * u
@@ -145,7 +171,9 @@ def test_absorption_by_the_cone_lies_in_the_enclosure() -> None:
     rng, seen = np.random.default_rng(3), 0
     while seen < 12:
         bar, side = rng.uniform(0.3, 1.8), float(rng.choice([-1.0, 1.0]))
-        steps = [float(r) for r in np.linspace(0.1, 1.9, 60) if abs(1 - bar) + 0.02 < r < 1 + bar - 0.02]
+        steps = [
+            float(r) for r in np.linspace(0.1, 1.9, 60) if abs(1 - bar) + 0.02 < r < 1 + bar - 0.02
+        ]
         for start, end in pairwise(steps):
             low, high = start, end
             if defect(low, bar, side) * defect(high, bar, side) < 0:
@@ -159,7 +187,9 @@ def test_absorption_by_the_cone_lies_in_the_enclosure() -> None:
 
 
 def test_enclosures_are_thin() -> None:
-    """A fold's enclosure over a square is a small part of it, so the tests above are not passed by covering all."""
+    """A fold's enclosure over a square is a small part of it, so the tests above are not passed by
+    covering all.
+    """
     z = fold_points(0.2, -0.1, 5, 1)[0]
     found = rectangles(curves(slice_of("1/5", **LOADED), Count.TOTAL), z[:2], 0.013, 1e-9)
     assert np.prod(found[:, 2:] - found[:, :2], axis=1).sum() < 0.1 * 0.026**2
@@ -172,7 +202,11 @@ def test_creases_are_the_lines_where_a_spring_can_have_no_length() -> None:
         ("crease where spring A2A3 has no length", (1.0, 0.7)),
     ):
         assert covers(rectangles((total[name],), np.array(p), 0.01, 1e-7), np.array(p), 0.0)
-    assert not len(rectangles((total["crease where spring A2A3 has no length"],), np.array([0.9, 0.7]), 0.01, 1e-7))
+    assert not len(
+        rectangles(
+            (total["crease where spring A2A3 has no length"],), np.array([0.9, 0.7]), 0.01, 1e-7
+        )
+    )
 
 
 def test_curves_of_each_count() -> None:
@@ -200,4 +234,6 @@ def test_formulas_of_the_fold_agree_with_the_energy() -> None:
         z = rng.uniform([0.2, 0.2, -3, -3], [1.9, 1.9, 3, 3])
         slope, h = derivatives(z, 0.2, -0.1)
         assert run(program(tape), z, z, low, high, 0, len(tape))
-        np.testing.assert_allclose(low[tape.outputs[0]], [*slope, *h.ravel(), np.linalg.det(h)], rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(
+            low[tape.outputs[0]], [*slope, *h.ravel(), np.linalg.det(h)], rtol=1e-9, atol=1e-9
+        )

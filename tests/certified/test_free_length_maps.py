@@ -1,4 +1,6 @@
-"""Certified maps of the shipped slices with free lengths, against the exact engine and a dense numerical search."""
+"""Certified maps of the shipped slices with free lengths, against the exact engine and a dense
+numerical search.
+"""
 
 from __future__ import annotations
 
@@ -29,13 +31,16 @@ def random_points(slice: Slice, number: int, seed: int) -> list[tuple[Fraction, 
     points = []
     for _ in range(number):
         x, y = (
-            axis.low + (axis.high - axis.low) * Fraction(generator.randrange(1, 10**9), 10**9) for axis in slice.axes
+            axis.low + (axis.high - axis.low) * Fraction(generator.randrange(1, 10**9), 10**9)
+            for axis in slice.axes
         )
         points.append((x, y))
     return points
 
 
-def differing(result: RegionMap, number: int, seed: int, grid: int) -> list[tuple[float, float, object, object]]:
+def differing(
+    result: RegionMap, number: int, seed: int, grid: int
+) -> list[tuple[float, float, object, object]]:
     """The points at which the map's count is not that of the search."""
     slice, wrong = result.slice, []
     which = slice.count.value
@@ -45,7 +50,9 @@ def differing(result: RegionMap, number: int, seed: int, grid: int) -> list[tupl
         if count is None:
             assert told.status is Status.UNDECIDED
             continue
-        values = {name: float(expression.evaluate(x, y)) for name, expression in slice.parameters.items()}
+        values = {
+            name: float(expression.evaluate(x, y)) for name, expression in slice.parameters.items()
+        }
         # a coarse search may miss some; a finer one has the last word
         if not any(dense_search(values, fineness)[which] == count for fineness in (grid, 4 * grid)):
             wrong.append((float(x), float(y), count, dense_search(values, 4 * grid)[which]))
@@ -63,12 +70,17 @@ def agree_with_exact(name: str, free: str | None, tolerance: str) -> None:
     if free is None:
         result = shipped_certified(name, tolerance)
     else:
-        result = certified(slice_from_options(CONFIGS / f"{name}.yaml", sets=[f"l0={free}"]), tolerance)
+        result = certified(
+            slice_from_options(CONFIGS / f"{name}.yaml", sets=[f"l0={free}"]), tolerance
+        )
     window = (slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low)
     assert result.undetermined <= Fraction(tolerance)
     for stable in {region.stable for region in exact.regions}:
         low = sum(region.area[0] for region in result.regions if region.stable == stable)
-        true = [sum(region.area[k] for region in exact.regions if region.stable == stable) for k in (0, 1)]
+        true = [
+            sum(region.area[k] for region in exact.regions if region.stable == stable)
+            for k in (0, 1)
+        ]
         assert low <= true[1]
         assert true[0] <= low + result.undetermined * window
     for x, y in random_points(slice, 1000, 5):
@@ -91,13 +103,19 @@ def test_the_engines_agree_on_every_slice_of_the_paper(name: str, free: str | No
 
 
 def check_free02(result: RegionMap, tolerance: Fraction) -> None:
-    """Counts and areas are those of REFERENCE, from 160 x 160 grids and a map with 0.01 % undetermined."""
+    """Counts and areas are those of REFERENCE, from 160 x 160 grids and a map with 0.01 %
+    undetermined.
+    """
     assert result.status is Status.CERTIFIED
     assert result.undetermined <= tolerance
     for count, known in ((1, Fraction("2.569")), (2, Fraction("1.329"))):
         low = sum(r.area[0] for r in result.regions if r.stable == count)
         # what is undetermined of the window, whose area is 3.9, may belong to it
-        assert low - Fraction("0.002") < known < low + Fraction(39, 10) * result.undetermined + Fraction("0.002")
+        assert (
+            low - Fraction("0.002")
+            < known
+            < low + Fraction(39, 10) * result.undetermined + Fraction("0.002")
+        )
     assert RegionMap.from_json(result.to_json()) == result
     assert differing(result, 12, 3, 40) == []
 
@@ -119,7 +137,9 @@ def test_free02_has_the_known_counts_and_areas() -> None:
 def test_free02_resumed_has_the_known_counts_and_areas() -> None:
     """The largest number of stable equilibria, 3, has a tiny region near (0.22, 1)."""
     coarse = shipped_certified("free02", "1/50")
-    check_free02(ptmcad.classify(coarse.slice, tolerance=Fraction(1, 200), resume=coarse), Fraction(1, 200))
+    check_free02(
+        ptmcad.classify(coarse.slice, tolerance=Fraction(1, 200), resume=coarse), Fraction(1, 200)
+    )
 
 
 def test_jobs_do_not_change_the_map() -> None:
@@ -138,7 +158,9 @@ def test_a_limit_leaves_a_map_from_which_the_search_goes_on() -> None:
     partial, timeout = None, 1
     while partial is None:  # as long as the limit comes before anything is decided
         with pytest.raises(LimitReached) as stopped:
-            ptmcad.classify(slice, engine="certified", tolerance=Fraction(1, 10**13), timeout=timeout)
+            ptmcad.classify(
+                slice, engine="certified", tolerance=Fraction(1, 10**13), timeout=timeout
+            )
         partial, timeout = stopped.value.partial, 2 * timeout
     assert isinstance(partial, RegionMap)
     assert partial.status is Status.PARTIAL
@@ -157,7 +179,9 @@ def test_a_search_that_hardly_begins_keeps_the_map_it_goes_on_from() -> None:
     slice = load(CONFIGS / "fig4.yaml")
     known = shipped_certified("fig4", "1/100")
     with pytest.raises(LimitReached) as stopped:
-        ptmcad.classify(slice, engine="certified", tolerance=Fraction(1, 10**5), timeout=0.01, resume=known)
+        ptmcad.classify(
+            slice, engine="certified", tolerance=Fraction(1, 10**5), timeout=0.01, resume=known
+        )
     assert isinstance(stopped.value.partial, RegionMap)
     assert stopped.value.partial.undetermined <= known.undetermined
 
@@ -166,9 +190,14 @@ def test_a_search_that_hardly_begins_keeps_the_map_it_goes_on_from() -> None:
 @pytest.mark.slow_cases("L1")
 @pytest.mark.slow
 def test_a_slice_that_is_a_crease_has_total_counts(bar: str) -> None:
-    """A spring has no length on a circle of configurations at each point: it points along a line that turns."""
+    """A spring has no length on a circle of configurations at each point: it points along a line
+    that turns.
+    """
     slice = slice_from_options(
-        slice="rho,F", ranges=["rho=1:2", "F=-10:-5"], sets=[f"{bar}=rho", "F3=F", "l0=1/5"], count="total"
+        slice="rho,F",
+        ranges=["rho=1:2", "F=-10:-5"],
+        sets=[f"{bar}=rho", "F3=F", "l0=1/5"],
+        count="total",
     )
     found = ptmcad.classify(slice, tolerance="1/20", jobs=1)
     assert found.cells
@@ -213,5 +242,7 @@ TOUCHING = {
 def test_slices_that_only_touch_the_limits_of_the_domain(name: str) -> None:
     """Signs that are allowed, zeros among them: the certified counts are those of a dense search."""
     parameters, axes = TOUCHING[name]
-    slice = ptmcad.slice_from_mapping({"parameters": {"L1": 1, "L2": 1, "k": 100, **parameters}, "axes": axes})
+    slice = ptmcad.slice_from_mapping(
+        {"parameters": {"L1": 1, "L2": 1, "k": 100, **parameters}, "axes": axes}
+    )
     assert not differing(certified(slice, "1/5"), 40, 3, 60)

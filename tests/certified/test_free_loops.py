@@ -1,6 +1,8 @@
-"""Closed loops on springs with free lengths: maps and poses against a search along the loop's own angle.
+"""Closed loops on springs with free lengths: maps and poses against a search along the loop's own
+angle.
 
-The hypotheses of Theorem 5 of docs/soundness.md are dropped one by one; each time a map or a count is wrong then.
+The hypotheses of Theorem 5 of docs/soundness.md are dropped one by one; each time a map or a count
+is wrong then.
 """
 
 from __future__ import annotations
@@ -37,14 +39,18 @@ from ptmcad.show.report.tape import tape
 pytest.importorskip("numba")
 
 RECORD = yaml.safe_load(
-    (Path(__file__).parents[2] / "configs" / "mechanisms" / "four-bar-free.yaml").read_text(encoding="utf-8")
+    (Path(__file__).parents[2] / "configs" / "mechanisms" / "four-bar-free.yaml").read_text(
+        encoding="utf-8"
+    )
 )
 FOUR_BAR: dict[str, Any] = {key: value for key, value in RECORD.items() if key != "reference"}
 ANCHORED: dict[str, Any] = {
     "name": "anchored",
     "mechanism": FOUR_BAR["mechanism"]
     | {
-        "parameters": {name: p for name, p in FOUR_BAR["mechanism"]["parameters"].items() if name != "k2"}
+        "parameters": {
+            name: p for name, p in FOUR_BAR["mechanism"]["parameters"].items() if name != "k2"
+        }
         | {"x": {"default": 0}, "y": {"default": 0}},
         "points": FOUR_BAR["mechanism"]["points"] | {"C": ["x", "y"]},
         "springs": [{"between": ["C", "Q"], "k": "k1", "free": "l0"}],
@@ -82,12 +88,19 @@ def energy_of(p: Mapping[str, float]) -> Energy:
 
 def random_points(slice: ptmcad.Slice, seed: int) -> list[tuple[Fraction, Fraction]]:
     rng = random.Random(seed)
-    shares = [(Fraction(rng.randrange(1, 10**6), 10**6), Fraction(rng.randrange(1, 10**6), 10**6)) for _ in range(400)]
+    shares = [
+        (Fraction(rng.randrange(1, 10**6), 10**6), Fraction(rng.randrange(1, 10**6), 10**6))
+        for _ in range(400)
+    ]
     (one, two) = slice.axes
-    return [(one.low + u * (one.high - one.low), two.low + v * (two.high - two.low)) for u, v in shares]
+    return [
+        (one.low + u * (one.high - one.low), two.low + v * (two.high - two.low)) for u, v in shares
+    ]
 
 
-def wrong_counts(m: RegionMap, number: int = POINTS, seed: int = 5) -> list[tuple[Fraction, Fraction]]:
+def wrong_counts(
+    m: RegionMap, number: int = POINTS, seed: int = 5
+) -> list[tuple[Fraction, Fraction]]:
     """Of so many random points outside of the cover those at which the search finds another count."""
     first, second = m.slice.axis_names
     found, tried = [], 0
@@ -150,15 +163,23 @@ def test_poses_are_the_critical_points_along_the_loop() -> None:
         p = values_at(slice, x, y)
         poses = ptmcad.solve(ANCHORED, x=x, y=y)
         assert (len(poses.equilibria), poses.stable) == counts_along(p, energy_of(p))
-        assert len({pose.energy.text(8) for pose in poses.equilibria if pose.energy}) == len(poses.equilibria)
+        assert len({pose.energy.text(8) for pose in poses.equilibria if pose.energy}) == len(
+            poses.equilibria
+        )
 
 
 def test_a_relaxed_spring_is_told() -> None:
-    """Of an unloaded loop on one spring: its force and the energy are zero, to 100 digits, and the pose is stable."""
+    """Of an unloaded loop on one spring: its force and the energy are zero, to 100 digits, and the
+    pose is stable.
+    """
     poses = ptmcad.solve(ANCHORED | {"parameters": {}}, x="3/2", y=1)
-    relaxed = [pose for pose in poses.equilibria if abs(pose.springs[0].force.high) < Fraction(1, 10**100)]
+    relaxed = [
+        pose for pose in poses.equilibria if abs(pose.springs[0].force.high) < Fraction(1, 10**100)
+    ]
     assert len(relaxed) == poses.stable == 4
-    assert all(pose.energy is not None and abs(pose.energy.high) < Fraction(1, 10**100) for pose in relaxed)
+    assert all(
+        pose.energy is not None and abs(pose.energy.high) < Fraction(1, 10**100) for pose in relaxed
+    )
     assert all(pose.stable and pose.admissible is None for pose in relaxed)
     assert len(poses.equilibria) == 8
 
@@ -168,7 +189,8 @@ LOOSE: dict[str, tuple[str, float, float]] = {
     "k1": ("stiffness", 0.5, 2), "k2": ("stiffness", 0.2, 2), "F": ("force", -2, 2), "G": ("force", -2, 2),
     "x": ("number", -1, 3), "y": ("number", -2, 2), "l1": ("free length", 0, 1.5), "l2": ("free length", 0, 1.5),
 }  # fmt: skip
-"""Kinds and ranges of what a random four-bar is made of: C = (x, y) holds the second crank's end."""
+"""Kinds and ranges of what a random four-bar is made of: C = (x, y) holds the second crank's end.
+"""
 
 
 def random_slice(seed: int) -> ptmcad.Slice:
@@ -189,7 +211,9 @@ def random_slice(seed: int) -> ptmcad.Slice:
             {"between": ["C", "Q"], "k": "k1", "free": "l1"}, {"between": ["B0", "P"], "k": "k2", "free": "l2"},
         ],
     }  # fmt: skip
-    values = {name: between(low, high) for name, (_, low, high) in LOOSE.items() if name not in axes}
+    values = {
+        name: between(low, high) for name, (_, low, high) in LOOSE.items() if name not in axes
+    }
     record = {"name": "loose", "mechanism": mechanism, "parameters": values, "axes": axes}
     return ptmcad.slice_from_mapping(record | {"count": rng.choice(["total", "stable"])})
 
@@ -207,21 +231,29 @@ def test_random_four_bars(seed: int) -> None:
         decided += 1
         p = values_at(slice, x, y)
 
-        def energy(px: Numbers, py: Numbers, qx: Numbers, qy: Numbers, p: dict[str, float] = p) -> Numbers:
+        def energy(
+            px: Numbers, py: Numbers, qx: Numbers, qy: Numbers, p: dict[str, float] = p
+        ) -> Numbers:
             first = np.hypot(qx - p["x"], qy - p["y"]) - p["l1"]
             second = np.hypot(px - p["b"], py) - p["l2"]
-            work: Numbers = (p["k1"] * first**2 + p["k2"] * second**2) / 2 - p["F"] * py - p["G"] * qy
+            work: Numbers = (
+                (p["k1"] * first**2 + p["k2"] * second**2) / 2 - p["F"] * py - p["G"] * qy
+            )
             return work
 
         total, stable = counts_along(p, energy, 20001)
         said = m.cells[cell]
-        assert (said.total, said.stable) == ((None, stable) if slice.count is Count.STABLE else (total, None)), (x, y)
+        assert (said.total, said.stable) == (
+            (None, stable) if slice.count is Count.STABLE else (total, None)
+        ), (x, y)
     assert decided > 0.9 * POINTS
 
 
 @pytest.mark.slow
 def test_intervals_along_a_line() -> None:
-    """With stable counts; and an operation range is where most poses are stable, as without free lengths."""
+    """With stable counts; and an operation range is where most poses are stable, as without free
+    lengths.
+    """
     slice = slice_of("four-bar-free")
     found = certified_intervals(slice, "F", {"G": "18/5"}, 10)
     assert len(found.intervals) == 3
@@ -244,7 +276,9 @@ def test_a_map_of_an_angle_is_that_of_the_poses() -> None:
 
 
 CRANK: dict[str, Any] = yaml.safe_load(
-    (Path(__file__).parents[2] / "configs" / "mechanisms" / "slider-crank.yaml").read_text(encoding="utf-8")
+    (Path(__file__).parents[2] / "configs" / "mechanisms" / "slider-crank.yaml").read_text(
+        encoding="utf-8"
+    )
 )
 
 
@@ -255,7 +289,9 @@ def crank(unknowns: Mapping[str, str]) -> dict[str, Any]:
 
 
 def crank_counts(weight: float, moment: float) -> tuple[int, int]:
-    """Along the crank's angle, for either way of assembling; the moment's work grows with the turns."""
+    """Along the crank's angle, for either way of assembling; the moment's work grows with the
+    turns.
+    """
     th = np.linspace(-np.pi, np.pi, 20001)
     total = minima = 0
     for side in (1, -1):
@@ -263,11 +299,16 @@ def crank_counts(weight: float, moment: float) -> tuple[int, int]:
         energy = (np.hypot(x - 1, 1) - 1 / 3) ** 2 / 2 + weight * np.sin(th) - moment * th
         rising = np.diff(energy) > 0  # the same after a turn
         before = np.roll(rising, 1)
-        total, minima = total + int((rising != before).sum()), minima + int((rising & ~before).sum())
+        total, minima = (
+            total + int((rising != before).sum()),
+            minima + int((rising & ~before).sum()),
+        )
     return total, minima
 
 
-@pytest.mark.parametrize("unknowns", [{"th": "angle", "x": "length"}, {"x": "length", "th": "angle"}], ids=str)
+@pytest.mark.parametrize(
+    "unknowns", [{"th": "angle", "x": "length"}, {"x": "length", "th": "angle"}], ids=str
+)
 @pytest.mark.slow_cases("{'th': 'angle', 'x': 'length'}")
 def test_a_slider_in_any_order_of_the_unknowns(unknowns: dict[str, str]) -> None:
     """Bounds of the slider follow from the loop; the determinant's sign from the order."""
@@ -277,7 +318,9 @@ def test_a_slider_in_any_order_of_the_unknowns(unknowns: dict[str, str]) -> None
         poses = ptmcad.solve(record, W=x, M=y)
         assert (len(poses.equilibria), poses.stable) == crank_counts(float(x), float(y))
     # as many minima as maxima are along a closed curve: which pose is stable is told by energies
-    ordered = sorted(ptmcad.solve(record, W="1/3", M=0).equilibria, key=lambda pose: pose.known_energy.center)
+    ordered = sorted(
+        ptmcad.solve(record, W="1/3", M=0).equilibria, key=lambda pose: pose.known_energy.center
+    )
     assert ordered[0].stable is True
     assert ordered[-1].stable is False
     stable = ptmcad.classify(slice, tolerance="1/50")
@@ -333,7 +376,9 @@ def test_what_is_not_computed_is_refused() -> None:
         "points": mechanism["points"] | {"R": ["b + 2*L2*cos(th3)", "sin(th3)"]},
         "loads": mechanism["loads"] | {"R": [0, "F"]},
     }
-    with pytest.raises(ConfigError, match=r"free lengths in closed loops .* one degree of freedom, not 2"):
+    with pytest.raises(
+        ConfigError, match=r"free lengths in closed loops .* one degree of freedom, not 2"
+    ):
         ptmcad.slice_from_mapping(FOUR_BAR | {"mechanism": two_free})
     with pytest.raises(ConfigError, match="choose certified or auto"):
         ptmcad.classify(slice_of("four-bar-free"), engine="exact")
@@ -344,18 +389,26 @@ def without_curves(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
     complete = engine.curves
 
     def some(*given: Any, **options: Any) -> tuple[CriticalCurve, ...]:
-        return tuple(curve for curve in complete(*given, **options) if not curve.name.startswith(names))
+        return tuple(
+            curve for curve in complete(*given, **options) if not curve.name.startswith(names)
+        )
 
     monkeypatch.setattr(engine, "curves", some)
 
 
 @pytest.mark.slow
 def test_without_flat_loops_counts_are_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A fold at which the tangent is not zero is not all: at b = L1 + L2 + L3 = 37/10 the whole loop comes to be."""
+    """A fold at which the tangent is not zero is not all: at b = L1 + L2 + L3 = 37/10 the whole
+    loop comes to be.
+    """
     original = plain_curves.system
 
     def bent(
-        equations: list[Formula], unknowns: Any, vanishing: Any, nonnegative: Sequence[Formula] = (), **more: Any
+        equations: list[Formula],
+        unknowns: Any,
+        vanishing: Any,
+        nonnegative: Sequence[Formula] = (),
+        **more: Any,
     ) -> Any:
         closed = equations[-3]  # the loop's equation, the slope and the determinant
         slopes = [closed.graph.derivative(closed, k) for k in unknowns[2:4]]
@@ -363,10 +416,14 @@ def test_without_flat_loops_counts_are_wrong(monkeypatch: pytest.MonkeyPatch) ->
         return original(equations, unknowns, vanishing, [*nonnegative, far], **more)
 
     monkeypatch.setattr(plain_curves, "system", bent)
-    wrong = ptmcad.classify(slice_of("flat", count="total", axes={"b": ["7/2", 4], "l0": [0, 1]}), tolerance="1/20")
+    wrong = ptmcad.classify(
+        slice_of("flat", count="total", axes={"b": ["7/2", 4], "l0": [0, 1]}), tolerance="1/20"
+    )
     assert wrong_counts(wrong, 40)
     monkeypatch.undo()
-    right = ptmcad.classify(slice_of("flat", count="total", axes={"b": ["7/2", 4], "l0": [0, 1]}), tolerance="1/20")
+    right = ptmcad.classify(
+        slice_of("flat", count="total", axes={"b": ["7/2", 4], "l0": [0, 1]}), tolerance="1/20"
+    )
     assert not wrong_counts(right, 40)
     assert {0, 2} <= {cell.total for cell in right.cells}
 
@@ -377,8 +434,12 @@ MET = {"x": Fraction(2), "y": Fraction(6, 5)}
 
 
 @pytest.mark.slow
-def test_where_a_spring_has_no_length_there_is_an_equilibrium_less(monkeypatch: pytest.MonkeyPatch) -> None:
-    """On the circle itself, which a map has to leave out: beside it the peak is a smooth one, and counts."""
+def test_where_a_spring_has_no_length_there_is_an_equilibrium_less(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """On the circle itself, which a map has to leave out: beside it the peak is a smooth one, and
+    counts.
+    """
     slice = slice_of("anchored", **SMALL)
     complete = ptmcad.classify(slice, tolerance="1/20")
     assert complete.locate(**MET).cell is None
@@ -394,7 +455,9 @@ def test_where_a_spring_has_no_length_there_is_an_equilibrium_less(monkeypatch: 
 
 @pytest.mark.slow
 def test_without_short_springs_counts_are_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Folds at which a spring is shorter than an eighth of what is usual have a search of their own."""
+    """Folds at which a spring is shorter than an eighth of what is usual have a search of their
+    own.
+    """
     slice = slice_of("anchored", **SMALL)
     assert not wrong_counts(ptmcad.classify(slice, tolerance="1/50"))
     without_curves(monkeypatch, "fold with spring")
@@ -406,7 +469,17 @@ def test_the_equations_are_the_energy_s_slope_along_the_loop() -> None:
     problem = problem_of(slice_of("four-bar-free"))
     assert problem.closing == 1 and not problem.is_gradient
     assert all(not f.terms for cone in problem.cones for pair in cone.weights[:1] for f in pair)
-    p = {"L1": 1.0, "L2": 1.2, "L3": 1.5, "b": 2.0, "k1": 1.0, "k2": 1.0, "F": 1.0, "G": 1.5, "l0": 0.5}
+    p = {
+        "L1": 1.0,
+        "L2": 1.2,
+        "L3": 1.5,
+        "b": 2.0,
+        "k1": 1.0,
+        "k2": 1.0,
+        "F": 1.0,
+        "G": 1.5,
+        "l0": 0.5,
+    }
     energy, step = energy_of(p), 1e-5
 
     def place(t: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
@@ -437,7 +510,9 @@ def value_of(counter: Any, equation: int, t: Numbers) -> float:
 
 @pytest.mark.slow
 def test_springs_side_by_side_in_a_loop_are_the_one_spring_that_they_are() -> None:
-    """From C to Q with k1, and to a point 3/2 as far with k1: k1 (1 + 9/4), and of the free lengths l0 (1 + 3/2)."""
+    """From C to Q with k1, and to a point 3/2 as far with k1: k1 (1 + 9/4), and of the free lengths
+    l0 (1 + 3/2).
+    """
     mechanism: dict[str, Any] = ANCHORED["mechanism"]
     beyond = ["x + a*(b + L2*cos(th2) - x)", "y + a*(L2*sin(th2) - y)"]
     several = mechanism | {
@@ -447,7 +522,9 @@ def test_springs_side_by_side_in_a_loop_are_the_one_spring_that_they_are() -> No
     }
     alone = mechanism | {"springs": [{"between": ["C", "Q"], "k": "13/4*k1", "free": "10/13*l0"}]}
     window = {"axes": {"x": [1, 3], "y": [-1, 1]}, "count": "stable"}
-    one, two = (ptmcad.slice_from_mapping(ANCHORED | window | {"mechanism": m}) for m in (alone, several))
+    one, two = (
+        ptmcad.slice_from_mapping(ANCHORED | window | {"mechanism": m}) for m in (alone, several)
+    )
     many = certified_map(two, Options(tolerance=Fraction(1, 10), jobs=1))
     found = plain_counter(one)
     assert len({cell.stable for cell in many.cells}) > 2

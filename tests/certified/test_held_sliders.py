@@ -1,4 +1,6 @@
-"""Sliders that springs alone hold, on guides in any direction: bounds and counts against a search of the test's own."""
+"""Sliders that springs alone hold, on guides in any direction: bounds and counts against a search
+of the test's own.
+"""
 
 from __future__ import annotations
 
@@ -88,7 +90,10 @@ def problems(slice: Slice) -> tuple[Problem, ...]:
 def hull(slice: Slice) -> list[tuple[float, float]]:
     """The ranges of all branches in one."""
     found = [known_ranges(problem, slice.axes) for problem in problems(slice)]
-    return [(min(low for low, _ in ends), max(high for _, high in ends)) for ends in zip(*found, strict=True)]
+    return [
+        (min(low for low, _ in ends), max(high for _, high in ends))
+        for ends in zip(*found, strict=True)
+    ]
 
 
 def within(found: Found, ranges: list[tuple[float, float]], reals: list[int]) -> bool:
@@ -100,7 +105,9 @@ def index(found: list[Found], unknowns: int) -> tuple[int, ...]:
 
 
 def agrees(values: dict[str, Fraction], counted: Sequence[int]) -> bool:
-    """Whether counts are those of the search, which goes on while it knows of fewer: peaks are reached from nearby."""
+    """Whether counts are those of the search, which goes on while it knows of fewer: peaks are
+    reached from nearby.
+    """
     found: list[Found] = []
     for starts, span in ((400, inf), (4_000, 3.0), (40_000, 3.0), (400_000, 1.0)):
         found = solutions(searched("pair"), values, starts, starts, span)
@@ -151,7 +158,9 @@ def test_a_map_at_irrational_guides_has_the_counts_of_a_search() -> None:
     assert result.undetermined < 0.05
     fixed = {name: Fraction(value) for name, value in PAIR["parameters"].items()}
     seen = set()
-    for force, free in ((Fraction(u, 9), Fraction(v, 11)) for u in (-17, -4, 5, 16) for v in (2, 9, 15, 21)):
+    for force, free in (
+        (Fraction(u, 9), Fraction(v, 11)) for u in (-17, -4, 5, 16) for v in (2, 9, 15, 21)
+    ):
         there = result.locate(F=force, l=free)
         if there.index is not None:
             assert agrees(fixed | {"F": force, "l": free}, there.index)
@@ -162,10 +171,16 @@ def test_a_map_at_irrational_guides_has_the_counts_of_a_search() -> None:
 @pytest.mark.parametrize(
     ("record", "reals"), [pytest.param(TURNED, [1, 2], marks=pytest.mark.slow), (THREE, [0, 1, 2])]
 )
-def test_bounds_with_a_guide_that_turns_and_of_three_sliders(record: dict[str, Any], reals: list[int]) -> None:
+def test_bounds_with_a_guide_that_turns_and_of_three_sliders(
+    record: dict[str, Any], reals: list[int]
+) -> None:
     ranges = hull(ptmcad.slice_from_mapping(record))
     assert all(-100 < low <= high < 100 for low, high in ranges)
-    for force, free in ((Fraction(1), Fraction(2)), (Fraction(-1), Fraction(1, 2)), (Fraction(0), Fraction(7, 5))):
+    for force, free in (
+        (Fraction(1), Fraction(2)),
+        (Fraction(-1), Fraction(1, 2)),
+        (Fraction(0), Fraction(7, 5)),
+    ):
         found = solutions(searched(record["name"]), {"F": force, "l": free}, 30, seed=2)
         assert found
         assert all(within(f, ranges, reals) for f in found)
@@ -176,7 +191,9 @@ FAR = {"a": Fraction(1, 1000), "F": Fraction(3, 2)}
 
 
 def test_a_window_over_parallel_guides_has_no_bound() -> None:
-    """The guides are parallel at a = 0, where no equilibrium is, and as near as one likes to it they are far away."""
+    """The guides are parallel at a = 0, where no equilibrium is, and as near as one likes to it
+    they are far away.
+    """
     whole = ptmcad.slice_from_mapping(SLANTED)
     assert not all(abs(end) < 1e30 for ends in hull(whole) for end in ends)
     with pytest.raises(ConfigError, match="no bound of the unknowns x, y"):
@@ -186,7 +203,9 @@ def test_a_window_over_parallel_guides_has_no_bound() -> None:
     assert within(found, hull(slice_at(SLANTED, FAR)), [0, 1])
 
 
-def test_without_regularity_all_over_the_window_a_bound_is_false(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_regularity_all_over_the_window_a_bound_is_false(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """With the determinant at one point in the place of the whole window equilibria are beyond."""
     empty = bounds.is_empty
 
@@ -204,7 +223,9 @@ def test_without_regularity_all_over_the_window_a_bound_is_false(monkeypatch: py
 @pytest.mark.slow_cases("without the springs")
 def test_without_what_pulls_a_bound_is_false(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The reach of springs with free lengths, and forces, count."""
-    fixed = {name: Fraction(value) for name, value in PAIR["parameters"].items()} | {"l": Fraction(1)}
+    fixed = {name: Fraction(value) for name, value in PAIR["parameters"].items()} | {
+        "l": Fraction(1)
+    }
     free = Fraction(50) if way == "without the springs" else Fraction(1)
     force = Fraction(90) if way == "without the loads" else Fraction(0)
     slice = slice_at(PAIR, fixed | {"l": free, "r": free, "F": force})
@@ -217,7 +238,10 @@ def test_without_what_pulls_a_bound_is_false(way: str, monkeypatch: pytest.Monke
 
         def less(polynomials: Any, weights: Any) -> Any:
             rest, *others = whole(polynomials, weights)
-            return [TrigonometricPolynomial({k: c for k, c in rest.terms.items() if not k[1][-1]}), *others]
+            return [
+                TrigonometricPolynomial({k: c for k, c in rest.terms.items() if not k[1][-1]}),
+                *others,
+            ]
 
         monkeypatch.setattr(bounds, "scaled_together", less)
     assert not all(within(f, hull(slice), [0, 1]) for f in found)

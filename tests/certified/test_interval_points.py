@@ -1,4 +1,6 @@
-"""Counts at a rational point, proved by intervals: known answers, the exact engine, and an independent dense search."""
+"""Counts at a rational point, proved by intervals: known answers, the exact engine, and an
+independent dense search.
+"""
 
 from __future__ import annotations
 
@@ -27,8 +29,13 @@ UNIT = {"L1": Q(1), "k1": Q(1), "k2": Q(1), "k3": Q(1), "F3x": Q(0), "F4x": Q(0)
 def counter(**values: Q) -> BranchCounter:
     """Counts in the plane of rho and L2; every other parameter is a number."""
     given = UNIT | values
-    parameters = {name: axis(0) * 0 + value for name, value in given.items()} | {"rho": axis(0), "L2": axis(1)}
-    return plain_counter(Slice("test", ptm(), (Axis("rho", Q(0), Q(2)), Axis("L2", Q(0), Q(2))), parameters))
+    parameters = {name: axis(0) * 0 + value for name, value in given.items()} | {
+        "rho": axis(0),
+        "L2": axis(1),
+    }
+    return plain_counter(
+        Slice("test", ptm(), (Axis("rho", Q(0), Q(2)), Axis("L2", Q(0), Q(2))), parameters)
+    )
 
 
 def equal_springs(free: Q, force: Q, **more: Q) -> BranchCounter:
@@ -41,15 +48,24 @@ def equal_springs(free: Q, force: Q, **more: Q) -> BranchCounter:
         pytest.param("0.96859", "1.00609", "0.2", "-0.1", 12, 2, id="REFERENCE, more than 6: 12"),
         pytest.param("1.20609", "1", "1.01487", "-0.1", 26, 8, id="REFERENCE: 26 with 8 stable"),
         pytest.param("0.75609", "1", "1.43487", "0", 30, 10, id="issue: 30 with 10 stable"),
-        pytest.param("0.7", "1.5", "0.2", "-0.1", 6, 2, id="REFERENCE, reproduction of 5.2: 6 with 2 stable"),
+        pytest.param(
+            "0.7", "1.5", "0.2", "-0.1", 6, 2, id="REFERENCE, reproduction of 5.2: 6 with 2 stable"
+        ),
     ],
 )
 @pytest.mark.slow_cases("REFERENCE, more than 6: 12", "REFERENCE: 26 with 8 stable")
 def test_known_counts(rho: str, l2: str, free: str, force: str, total: int, stable: int) -> None:
     counts = equal_springs(Q(free), Q(force))
     found = counts.at(Q(rho), Q(l2), Count.TOTAL)
-    assert found.decided and (found.total, found.stable, len(found.solutions)) == (total, stable, total)
-    assert found.index is not None and found.index[0] - found.index[1] + found.index[2] + found.cones == 0
+    assert found.decided and (found.total, found.stable, len(found.solutions)) == (
+        total,
+        stable,
+        total,
+    )
+    assert (
+        found.index is not None
+        and found.index[0] - found.index[1] + found.index[2] + found.cones == 0
+    )
     assert counts.at(Q(rho), Q(l2), Count.STABLE).stable == stable
 
 
@@ -76,7 +92,11 @@ def compare_with_dense_search(seed: int, points: int) -> None:
         found, admissible = counts.at(x, y, Count.INDEX), counts.at(x, y, Count.ADMISSIBLE)
         values = values_at(counts.branches[0].slice, x, y)
         assert found.decided and admissible.decided, values
-        for grid in (40, 80, 300):  # the search may miss some, so a difference has to stay with more starts
+        for grid in (
+            40,
+            80,
+            300,
+        ):  # the search may miss some, so a difference has to stay with more starts
             seen = dense_search({name: float(value) for name, value in values.items()}, grid)
             if seen["index"] == found.index and seen["admissible"] == admissible.admissible:
                 break
@@ -102,7 +122,13 @@ def compare_with_exact(seed: int, points: int) -> None:
         kinds = [pose.index for pose in exact.equilibria]
         for free in (Q(0), Q(1, 10**12)):
             found = counter(F3=f3, F4=f4, l0_1=free, l0_2=free, l0_3=free).at(x, y, Count.INDEX)
-            assert found.index == (kinds.count(0), kinds.count(1), kinds.count(2)), (x, y, f3, f4, free)
+            assert found.index == (kinds.count(0), kinds.count(1), kinds.count(2)), (
+                x,
+                y,
+                f3,
+                f4,
+                free,
+            )
 
 
 def test_agrees_with_the_exact_engine_as_free_lengths_vanish() -> None:
@@ -138,7 +164,8 @@ def test_bisection_to_a_fold_goes_beyond_floats() -> None:
 @pytest.mark.parametrize(
     ("free", "l1", "rho", "l2", "index"),
     [
-        # rho = L1 = L2 is a double point: two springs have no length in a flat pose, where all its poses are narrow
+        # rho = L1 = L2 is a double point: two springs have no length in a flat pose, where all its
+        # poses are narrow
         pytest.param(
             (Q(23, 5 * 10**10), Q(23, 5 * 10**10), Q(0)), Q(3, 4), Q(2337421877420497, 3116562500000000),
             Q(1168710937170709, 1558281250000000), (2, 3, 1), id="within 2 l0 of rho = L1 = L2",
@@ -158,7 +185,9 @@ def test_bisection_to_a_fold_goes_beyond_floats() -> None:
 def test_points_within_a_few_free_lengths_of_singular_lines(
     free: tuple[Q, Q, Q], l1: Q, rho: Q, l2: Q, index: tuple[int, int, int]
 ) -> None:
-    """Indices by an independent search in doubles with lengths written as differences from the line."""
+    """Indices by an independent search in doubles with lengths written as differences from the
+    line.
+    """
     counts = counter(L1=l1, F3=Q(0), F4=Q(0), **{f"l0_{k}": free[k - 1] for k in (1, 2, 3)})
     assert counts.at(rho, l2, Count.INDEX).index == index
 
@@ -175,7 +204,9 @@ def test_boxes_are_disjoint_and_hold_one_zero_each() -> None:
     for number, a in enumerate(found.solutions):
         assert a.radius > 0
         for b in found.solutions[:number]:
-            assert any(abs(u - v) > a.radius + b.radius for u, v in zip(a.center, b.center, strict=True))
+            assert any(
+                abs(u - v) > a.radius + b.radius for u, v in zip(a.center, b.center, strict=True)
+            )
     equations = counts.branches[0].equations
     for solution in found.solutions:
         box = [ball(Q("1.20609"), Q("1.20609")), ball(Q(1), Q(1))]
@@ -185,7 +216,8 @@ def test_boxes_are_disjoint_and_hold_one_zero_each() -> None:
 
 
 def test_a_cone_appears_at_its_exact_place() -> None:
-    # unloaded, L1 = L2 = 1, rho = 1/2: |g| s12 = rho^2 H (1 - l0) and l0 s12 = l0 rho H, equal at l0 = 1/3
+    # unloaded, L1 = L2 = 1, rho = 1/2: |g| s12 = rho^2 H (1 - l0) and l0 s12 = l0 rho H, equal at
+    # l0 = 1/3
     given = UNIT | {"L2": Q(1), "rho": Q(1, 2), "F3": Q(0), "F4": Q(0)}
     for free, count, regular in ((Q(33, 100), 0, True), (Q(1, 3), 0, False), (Q(34, 100), 2, True)):
         found = peaks(given | {f"l0_{i}": free for i in (1, 2, 3)})
@@ -193,7 +225,15 @@ def test_a_cone_appears_at_its_exact_place() -> None:
 
 
 def test_without_a_free_length_of_spring_3_there_is_no_cone() -> None:
-    given = UNIT | {"L2": Q(1), "rho": Q(1, 2), "F3": Q(0), "F4": Q(0), "l0_1": Q(1), "l0_2": Q(1), "l0_3": Q(0)}
+    given = UNIT | {
+        "L2": Q(1),
+        "rho": Q(1, 2),
+        "F3": Q(0),
+        "F4": Q(0),
+        "l0_1": Q(1),
+        "l0_2": Q(1),
+        "l0_3": Q(0),
+    }
     assert peaks(given).count == 0
 
 
@@ -206,7 +246,9 @@ def test_symmetries(rho: Q, l2: Q, first: Q, third: Q, load: int) -> None:
     """Swapping the sides with their loads, turning the loads round, and scaling change no count."""
     f3, f4 = Q(load, 20), Q(-1, 10)
     counts = counter(F3=f3, F4=f4, l0_1=first, l0_2=Q(1, 5), l0_3=third).at(rho, l2, Count.INDEX)
-    swapped = counter(F3=f4, F4=f3, l0_1=Q(1, 5), l0_2=first, l0_3=third, L1=l2).at(rho, Q(1), Count.INDEX)
+    swapped = counter(F3=f4, F4=f3, l0_1=Q(1, 5), l0_2=first, l0_3=third, L1=l2).at(
+        rho, Q(1), Count.INDEX
+    )
     turned = counter(F3=-f3, F4=-f4, l0_1=first, l0_2=Q(1, 5), l0_3=third).at(rho, l2, Count.INDEX)
     scaled = counter(
         F3=f3 * 2, F4=f4 * 2, l0_1=first * 2, l0_2=Q(2, 5), l0_3=third * 2, L1=Q(2)

@@ -1,4 +1,6 @@
-"""Slices that are their own mirror image: the folds on and off the mirror, and limits of minima on it."""
+"""Slices that are their own mirror image: the folds on and off the mirror, and limits of minima on
+it.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +55,9 @@ def is_own_image(slice: Slice) -> bool:
 
 
 def energy(slice: Slice, x: Fraction, y: Fraction) -> PaperEnergy:
-    return energy_at(lambda n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0))
+    return energy_at(
+        lambda n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0)
+    )
 
 
 def test_what_is_its_own_image() -> None:
@@ -73,8 +77,12 @@ def newton(slice: Slice, x: float, z: Floats, on_the_mirror: bool) -> Floats | N
 
     def equations(z: Floats) -> Floats:
         angles = (z[1], z[1]) if on_the_mirror else (z[1], z[2])
-        d = energy(slice, Fraction(x), Fraction(float(z[0])))(*(arb(float(angle)) for angle in angles))
-        found = (d.e1, d.e11 - d.e12) if on_the_mirror else (d.e1, d.e2, d.e11 * d.e22 - d.e12 * d.e21)
+        d = energy(slice, Fraction(x), Fraction(float(z[0])))(
+            *(arb(float(angle)) for angle in angles)
+        )
+        found = (
+            (d.e1, d.e11 - d.e12) if on_the_mirror else (d.e1, d.e2, d.e11 * d.e22 - d.e12 * d.e21)
+        )
         return np.array([float(v.mid()) for v in found])
 
     z = z[:2] if on_the_mirror else z
@@ -82,7 +90,9 @@ def newton(slice: Slice, x: float, z: Floats, on_the_mirror: bool) -> Floats | N
         if not -29 < z[0] < -0.1:
             return None
         value = equations(z)
-        jacobian = np.array([(equations(z + h) - equations(z - h)) / 2e-7 for h in 1e-7 * np.eye(len(z))]).T
+        jacobian = np.array(
+            [(equations(z + h) - equations(z - h)) / 2e-7 for h in 1e-7 * np.eye(len(z))]
+        ).T
         if abs(np.linalg.det(jacobian)) < 1e-12:
             return None
         move = np.linalg.solve(jacobian, value)
@@ -93,13 +103,17 @@ def newton(slice: Slice, x: float, z: Floats, on_the_mirror: bool) -> Floats | N
 
 
 def folds(slice: Slice, number: int, kind: str) -> list[Floats]:
-    """Points (x, y, th1, th2) with a Hessian that is singular and positive semidefinite: pitchforks, or other folds."""
+    """Points (x, y, th1, th2) with a Hessian that is singular and positive semidefinite:
+    pitchforks, or other folds.
+    """
     rng, found = np.random.default_rng(6), list[Floats]()
     while len(found) < number:
         start = np.array([rng.uniform(-25, -1), *rng.uniform(-3, 3, 2)])
         point = newton(slice, float(rng.uniform(0.2, 1.9)), start, kind == "pitchfork")
         if point is not None and (kind == "off the mirror") == (halves(point)[1] > 0.01):
-            d = energy(slice, *(Fraction(float(v)) for v in point[:2]))(*(arb(float(v)) for v in point[2:]))
+            d = energy(slice, *(Fraction(float(v)) for v in point[:2]))(
+                *(arb(float(v)) for v in point[2:])
+            )
             if d.e11 > 1e-3 and d.e22 > 1e-3:
                 found.append(point)
     return found
@@ -114,7 +128,9 @@ def halves(point: Floats) -> tuple[float, float]:
 
 def left_around(curve: CriticalCurve, x: float, y: float) -> Floats:
     window = np.array([[x - 0.02, y - 0.2, x + 0.011, y + 0.3]])
-    return search_curve(curve.system.arguments(), curve.start(window), 1e-5, 50_000, curve.importance()).left()
+    return search_curve(
+        curve.system.arguments(), curve.start(window), 1e-5, 50_000, curve.importance()
+    ).left()
 
 
 def is_kept(found: tuple[CriticalCurve, ...], point: Floats) -> bool:
@@ -126,12 +142,18 @@ def is_kept(found: tuple[CriticalCurve, ...], point: Floats) -> bool:
         known = here[: boxes.shape[1] // 2]
         if len(known) == 3 and d > 1e-9:
             continue  # it is not on the mirror
-        if ((boxes[:, : len(known)] <= known + 1e-9) & (boxes[:, len(known) :] >= known - 1e-9)).all(axis=1).any():
+        if (
+            ((boxes[:, : len(known)] <= known + 1e-9) & (boxes[:, len(known) :] >= known - 1e-9))
+            .all(axis=1)
+            .any()
+        ):
             return True
     return False
 
 
-@pytest.mark.parametrize("kind", few(["pitchfork", "on the mirror", "off the mirror"], "pitchfork", "on the mirror"))
+@pytest.mark.parametrize(
+    "kind", few(["pitchfork", "on the mirror", "off the mirror"], "pitchfork", "on the mirror")
+)
 @pytest.mark.slow_cases("pitchfork")
 def test_the_search_keeps_known_folds(kind: str) -> None:
     slice = slice_of()
@@ -143,7 +165,9 @@ def test_the_search_keeps_known_folds(kind: str) -> None:
 
 
 @pytest.mark.slow
-def test_on_a_slice_that_is_not_its_own_image_folds_would_be_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_a_slice_that_is_not_its_own_image_folds_would_be_lost(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """What the hypothesis is for."""
     slice = slice_of(F4="9*F/10")
     points = folds(slice, 3, "off the mirror")
@@ -152,7 +176,9 @@ def test_on_a_slice_that_is_not_its_own_image_folds_would_be_lost(monkeypatch: p
 
 
 def test_a_minimum_that_two_springs_without_length_absorb_is_kept() -> None:
-    """At rho = L the ends of springs 1 and 2 are at their pivots for th = 0, and both push as hard as the loads do."""
+    """At rho = L the ends of springs 1 and 2 are at their pivots for th = 0, and both push as hard
+    as the loads do.
+    """
     slice = ptmcad.slice_from_mapping(
         {
             "parameters": {"L1": 1, "L2": 1, "k": 100, "F3": "F", "F4": "F", "l0": "1/5"},
@@ -160,7 +186,9 @@ def test_a_minimum_that_two_springs_without_length_absorb_is_kept() -> None:
         }
     )
     counter = plain_counter(slice)
-    inside, beyond = (counter.at(Fraction(1), y, Count.STABLE).stable for y in (Fraction(-19), Fraction(-21)))
+    inside, beyond = (
+        counter.at(Fraction(1), y, Count.STABLE).stable for y in (Fraction(-19), Fraction(-21))
+    )
     assert inside is not None
     assert beyond is not None
     assert inside != beyond
@@ -178,24 +206,36 @@ def test_a_minimum_that_two_springs_without_length_absorb_is_kept() -> None:
         pytest.param({"rho": ["1/2", "3/2"], "l0": ["0", "1/2"]}, 60, marks=pytest.mark.slow),
     ],
 )
-def test_maps_with_and_without_mirror_images_do_not_contradict(axes: dict[str, list[str]], points: int) -> None:
+def test_maps_with_and_without_mirror_images_do_not_contradict(
+    axes: dict[str, list[str]], points: int
+) -> None:
     load = "F" if "F" in axes else "-10"
-    parameters = {"L1": "1", "L2": "1", "k": "100", "F3": load, "F4": load} | ({"l0": "1/5"} if "F" in axes else {})
+    parameters = {"L1": "1", "L2": "1", "k": "100", "F3": load, "F4": load} | (
+        {"l0": "1/5"} if "F" in axes else {}
+    )
     slice = slice_from_mapping({"name": "s", "parameters": parameters, "axes": axes})
     given = {"engine": "certified", "tolerance": "1/40", "jobs": 1}
     quick = ptmcad.classify(slice, **given)  # type: ignore[arg-type]
     slow = ptmcad.classify(slice, without=["mirror-images"], **given)  # type: ignore[arg-type]
     for one, other in ((quick, slow), (slow, quick)):
         at = [dict(zip(slice.axis_names, cell.sample, strict=True)) for cell in one.cells]
-        told = [(other.locate(**p).stable, cell.stable) for p, cell in zip(at, one.cells, strict=True)]
+        told = [
+            (other.locate(**p).stable, cell.stable) for p, cell in zip(at, one.cells, strict=True)
+        ]
         assert sum(a is not None for a, _ in told) > len(told) // 2
         assert all(a in (None, b) for a, b in told)
     rng = random.Random(7)
     for _ in range(points):
-        x, y = (a.low + (a.high - a.low) * Fraction(rng.randrange(1, 10**6), 10**6) for a in slice.axes)
+        x, y = (
+            a.low + (a.high - a.low) * Fraction(rng.randrange(1, 10**6), 10**6) for a in slice.axes
+        )
         count = quick.locate(**dict(zip(slice.axis_names, (x, y), strict=True))).stable
-        values = {name: float(expression.evaluate(x, y)) for name, expression in slice.parameters.items()}
-        assert count is None or any(dense_search(values, grid)["stable"] == count for grid in (12, 48))
+        values = {
+            name: float(expression.evaluate(x, y)) for name, expression in slice.parameters.items()
+        }
+        assert count is None or any(
+            dense_search(values, grid)["stable"] == count for grid in (12, 48)
+        )
 
 
 def test_without_free_lengths_the_map_is_the_exact_engines() -> None:
@@ -210,13 +250,18 @@ def test_without_free_lengths_the_map_is_the_exact_engines() -> None:
     window = Fraction(39, 20) * 40
     for count in {region.stable for region in true.regions}:
         low = sum((r.area[0] for r in proved.regions if r.stable == count), Fraction(0))
-        known = [sum((r.area[k] for r in true.regions if r.stable == count), Fraction(0)) for k in (0, 1)]
+        known = [
+            sum((r.area[k] for r in true.regions if r.stable == count), Fraction(0)) for k in (0, 1)
+        ]
         assert low <= known[1]
         assert known[0] <= low + proved.undetermined * window
 
 
 def test_admissible_counts_have_the_same_curves() -> None:
-    names = [curve.name for curve in curves(replace(slice_of(), count=Count.ADMISSIBLE), Count.ADMISSIBLE)]
+    names = [
+        curve.name
+        for curve in curves(replace(slice_of(), count=Count.ADMISSIBLE), Count.ADMISSIBLE)
+    ]
     assert [name.split()[0] for name in names[:3]] == ["fold", "pitchfork", "fold"]
     assert len(names) == 9
     assert [c.name for c in curves(slice_of(), Count.STABLE, frozenset({"mirror-images"}))] == [

@@ -59,7 +59,9 @@ def test_the_last_map_is_foreseen_from_those_before() -> None:
 
 
 def test_on_a_busy_machine_more_time_is_kept() -> None:
-    """By the clock all takes ten times what it does by the processor's; but a third of the time is enough."""
+    """By the clock all takes ten times what it does by the processor's; but a third of the time is
+    enough.
+    """
     clock, work = Clock(), Clock()
     long, short = Pace(clock() + 100, clock, work), Pace(clock() + 12, clock, work)
     clock.now += 5
@@ -116,7 +118,9 @@ def window() -> ptmcad.Slice:
 def stopped(
     monkeypatch: pytest.MonkeyPatch, seconds: float, phase: str, length: float
 ) -> tuple[float, RegionMap | None, list[RegionMap]]:
-    """Run until so many seconds by a clock by which one phase takes long: what is left, the map, those on the way."""
+    """Run until so many seconds by a clock by which one phase takes long: what is left, the map,
+    those on the way.
+    """
     clock = Clock()
     deadline = clock() + seconds
     handed: list[RegionMap] = []
@@ -132,7 +136,8 @@ def stopped(
             patch.setattr(engine, phase, clock.slowed(getattr(engine, phase), length))
         with pytest.raises(LimitReached) as limit:
             engine.certified_map(
-                window(), Options(tolerance=Fraction(1, 10**14), deadline=deadline, jobs=1, partial=hand)
+                window(),
+                Options(tolerance=Fraction(1, 10**14), deadline=deadline, jobs=1, partial=hand),
             )
     found = limit.value.partial
     assert found is None or isinstance(found, RegionMap)
@@ -150,7 +155,9 @@ def stopped(
     ],
 )
 def test_the_time_limit_is_kept_in_every_phase(monkeypatch: pytest.MonkeyPatch, phase: str) -> None:
-    """Whatever part of a map takes three seconds, the last map is made before the limit, and is the best."""
+    """Whatever part of a map takes three seconds, the last map is made before the limit, and is the
+    best.
+    """
     loading.load()
     left, found, handed = stopped(monkeypatch, 40, phase, 3.0)
     assert left > 0
@@ -164,22 +171,30 @@ def test_the_time_limit_is_kept_in_every_phase(monkeypatch: pytest.MonkeyPatch, 
 
 @pytest.mark.slow
 def test_counts_are_left_out_before_the_limit_is_missed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each count at a point takes ten seconds: what is not counted is undetermined, and the map is there in time."""
+    """Each count at a point takes ten seconds: what is not counted is undetermined, and the map is
+    there in time.
+    """
     from ptmcad.certified.plain.points import BranchCounter
 
     clock = Clock()
     monkeypatch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
     monkeypatch.setattr(BranchCounter, "at", clock.slowed(BranchCounter.at, 10.0))
     deadline = clock() + 16
-    result = engine.certified_map(window(), Options(tolerance=Fraction(99, 100), deadline=deadline, jobs=1))
+    result = engine.certified_map(
+        window(), Options(tolerance=Fraction(99, 100), deadline=deadline, jobs=1)
+    )
     assert clock.now <= deadline + 10
     assert len(result.cells) == 2
 
 
-def test_before_anything_is_decided_the_message_says_that_there_is_no_map(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_before_anything_is_decided_the_message_says_that_there_is_no_map(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     clock = Clock()
     monkeypatch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
-    with pytest.raises(LimitReached, match="before anything was decided: there is no map to save yet") as limit:
+    with pytest.raises(
+        LimitReached, match="before anything was decided: there is no map to save yet"
+    ) as limit:
         engine.certified_map(window(), Options(deadline=clock() + MIN_RESERVE / 2, jobs=1))
     assert limit.value.partial is None
 
@@ -197,7 +212,9 @@ def test_the_bar_of_a_search_only_grows() -> None:
     told: list[tuple[str, int, int]] = []
     ptmcad.classify(window(), tolerance="1/5", jobs=1, progress=lambda *what: told.append(what))
     done = [done for _, done, _ in told]
-    assert done == sorted(done) and 0 < done[-1] < PARTS and {total for _, _, total in told} == {PARTS}
+    assert (
+        done == sorted(done) and 0 < done[-1] < PARTS and {total for _, _, total in told} == {PARTS}
+    )
     assert all(re.fullmatch(r"undetermined [0-9.]+ %", stage) for stage, _, _ in told)
 
 
@@ -207,15 +224,22 @@ def test_what_is_compiled_is_counted_and_timed() -> None:
     with install_listener("numba:compile", compiling):
         assert njit(lambda x: x + 1)(1) == 2
     ready = sum(bool(function.overloads) for function in FUNCTIONS)
-    assert told == [("compiling the certified engine, once on this machine:", ready, len(FUNCTIONS))] * 2
+    assert (
+        told
+        == [("compiling the certified engine, once on this machine:", ready, len(FUNCTIONS))] * 2
+    )
     assert compiling.seconds > 0
     loading.load()
     assert loading.load() == 0
 
 
 @pytest.mark.parametrize(("before", "during"), [(700, loading.MIN_GARBAGE), (10**6, 10**6), (0, 0)])
-def test_garbage_is_looked_for_less_while_compiling(before: int, during: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A caller's own threshold comes back, also when compiling ends by an exception; 0 is a collector switched off."""
+def test_garbage_is_looked_for_less_while_compiling(
+    before: int, during: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A caller's own threshold comes back, also when compiling ends by an exception; 0 is a
+    collector switched off.
+    """
     usual = gc.get_threshold()
 
     def functions(_slanted: bool) -> Iterator[None]:
@@ -259,4 +283,8 @@ def test_nothing_is_compiled_after_loading() -> None:
 
 def test_a_tolerance_below_all_floats_has_a_way_to_it() -> None:
     way = SearchProgress(0.0)
-    assert [way.at(share, 0.0) for share in (1.0, 1e-300, 0.0)] == [0, 975, PARTS]  # of 307.65 powers of ten
+    assert [way.at(share, 0.0) for share in (1.0, 1e-300, 0.0)] == [
+        0,
+        975,
+        PARTS,
+    ]  # of 307.65 powers of ten

@@ -1,4 +1,6 @@
-"""Springs side by side (Lemma S7): they answer as the one spring that they are together, and the checker agrees."""
+"""Springs side by side (Lemma S7): they answer as the one spring that they are together, and the
+checker agrees.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,10 @@ from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.terms import monomials
 
 Springs = list[dict[str, Any]]
-TOGETHER: Springs = [{"between": ["A", "P"], "k": 3, "free": "2/3"}, {"between": ["B", "P"], "k": 1, "free": "1/3"}]
+TOGETHER: Springs = [
+    {"between": ["A", "P"], "k": 3, "free": "2/3"},
+    {"between": ["B", "P"], "k": 1, "free": "1/3"},
+]
 """1 (l - 1)^2 + 2 (l - 1/2)^2 is 3 (l - 2/3)^2 and a constant."""
 APART: dict[str, Springs] = {
     "same ends": [
@@ -62,7 +67,13 @@ def bead(springs: Springs, count: str = "index") -> dict[str, Any]:
             "name": "bead",
             "parameters": {"F": {"kind": "force"}, "G": {"kind": "force"}},
             "unknowns": {"x": "length", "y": "length"},
-            "points": {"A": [0, 0], "B": [2, 0], "P": ["x", "y"], "M": ["x/2", "y/2"], "N": ["-2*x", "-2*y"]},
+            "points": {
+                "A": [0, 0],
+                "B": [2, 0],
+                "P": ["x", "y"],
+                "M": ["x/2", "y/2"],
+                "N": ["-2*x", "-2*y"],
+            },
             "springs": springs,
             "loads": {"P": ["F", "G"]},
         },
@@ -79,9 +90,13 @@ def poses(springs: Springs, force: Fraction, up: Fraction) -> Poses:
 
 @pytest.mark.parametrize("how", list(APART))
 def test_springs_side_by_side_are_one_cone(how: str) -> None:
-    """Of engine and checker: they take off twice what the first one of them alone would per its length."""
+    """Of engine and checker: they take off twice what the first one of them alone would per its
+    length.
+    """
     slice = ptmcad.slice_from_mapping(bead(APART[how]))
-    strength = {"AN": Fraction(1)}.get(next(s for s in ("AN", "AP") if s in named(how)), Fraction(2))
+    strength = {"AN": Fraction(1)}.get(
+        next(s for s in ("AN", "AP") if s in named(how)), Fraction(2)
+    )
     pulls = {cone.name.count("+"): cone.pull.constant() for cone in problem_of(slice).cones}
     assert pulls == {0: Fraction(1, 3), 1: strength}
     checked = {cone.name.count("+"): cone.pull for cone in form_of(slice).cones}
@@ -97,9 +112,13 @@ def named(how: str) -> list[str]:
 @pytest.mark.fast_cases("to a point between-index")
 def test_they_have_the_map_of_the_one_spring(how: str, count: str) -> None:
     options = Options(tolerance=Fraction(1, 50), jobs=1)
-    one, many = (certified_map(ptmcad.slice_from_mapping(bead(s, count)), options) for s in (TOGETHER, APART[how]))
+    one, many = (
+        certified_map(ptmcad.slice_from_mapping(bead(s, count)), options)
+        for s in (TOGETHER, APART[how])
+    )
     assert many.undetermined < Fraction(1, 50)
-    # the boxes may differ, where the first spring is longer: not what is counted, nor the bounds of what it covers
+    # the boxes may differ, where the first spring is longer: not what is counted, nor the bounds of
+    # what it covers
     assert len(one.regions) == len(many.regions)
     for r, s in zip(one.regions, many.regions, strict=True):
         assert (r.stable, r.total, r.index) == (s.stable, s.total, s.index)
@@ -119,13 +138,17 @@ forces = st.fractions(min_value=-2, max_value=2, max_denominator=16)
 
 @settings(max_examples=examples(15), deadline=None)
 @given(st.sampled_from(list(APART)), forces, forces)
-def test_they_have_the_equilibria_of_the_one_spring(how: str, force: Fraction, up: Fraction) -> None:
+def test_they_have_the_equilibria_of_the_one_spring(
+    how: str, force: Fraction, up: Fraction
+) -> None:
     one, many = poses(TOGETHER, force, up), poses(APART[how], force, up)
     assert one.status is many.status
     pairs = list(zip(one.equilibria, many.equilibria, strict=True))
     assert [a.index for a, _ in pairs] == [b.index for _, b in pairs]
     for a, b in pairs:
-        assert all(max(p.low, q.low) <= min(p.high, q.high) for p, q in zip(a.reals, b.reals, strict=True))
+        assert all(
+            max(p.low, q.low) <= min(p.high, q.high) for p, q in zip(a.reals, b.reals, strict=True)
+        )
 
 
 def test_apart_nothing_is_decided(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -141,7 +164,9 @@ def test_a_vector_the_other_way_is_as_long() -> None:
 
 
 def test_a_rational_equilibrium_has_its_exact_numbers() -> None:
-    """At x = 2/3 one spring has its free length and the load balances the other: nothing but arithmetic tells so."""
+    """At x = 2/3 one spring has its free length and the load balances the other: nothing but
+    arithmetic tells so.
+    """
     found = poses(TOGETHER, Fraction(-1), Fraction(0))
     forces = [[spring.force.exact for spring in pose.springs] for pose in found.equilibria]
     assert [Fraction(0), Fraction(1)] in forces
@@ -149,7 +174,12 @@ def test_a_rational_equilibrium_has_its_exact_numbers() -> None:
 
 SCALED: dict[str, Any] = {
     "unknowns": {"x": "length", "y": "length"},
-    "parameters": {"F": {"kind": "force"}, "a": {"kind": "length"}, "b": {"kind": "length"}, "c": {}},
+    "parameters": {
+        "F": {"kind": "force"},
+        "a": {"kind": "length"},
+        "b": {"kind": "length"},
+        "c": {},
+    },
     "points": {
         "A": [0, 0],
         "B": [2, 0],
@@ -164,11 +194,17 @@ SCALED: dict[str, Any] = {
 NEAR: dict[str, Any] = {"between": ["B", "P"], "k": 1, "free": "1/3"}
 
 
-def scaled(ends: str, axes: dict[str, Any], parameters: dict[str, Any], count: str = "stable") -> ptmcad.Slice:
+def scaled(
+    ends: str, axes: dict[str, Any], parameters: dict[str, Any], count: str = "stable"
+) -> ptmcad.Slice:
     """Springs to these points from A, all with k l0 = 1/2."""
     springs = [{"between": ["A", end], "k": 2, "free": "1/4"} for end in ends]
     values = {name: parameters.get(name, 1) for name in SCALED["parameters"] if name not in axes}
-    record = {"mechanism": {**SCALED, "springs": [*springs, NEAR]}, "axes": axes, "parameters": values}
+    record = {
+        "mechanism": {**SCALED, "springs": [*springs, NEAR]},
+        "axes": axes,
+        "parameters": values,
+    }
     return ptmcad.slice_from_mapping({**record, "name": "scaled", "count": count})
 
 
@@ -187,16 +223,32 @@ OVER_A = {"F": [-3, 1], "a": [1, 2]}
         ("NP", {"F": [-2, 2], "t": [1, 2]}, {"b": "t/2"}, "1 + 1/2*y", {("b",): "1/2", (): "1/2"}),
         # a d and -b d, of which neither is a polynomial times the other
         ("MN", {"a": [1, 2], "b": [0, 3]}, {}, "1/2*y + 1/2*x", {("a",): "1/2", ("b",): "1/2"}),
-        ("PMN", {"a": [1, 2], "b": [0, 3]}, {}, "1/2 + 1/2*y + 1/2*x", {("a",): "1/2", ("b",): "1/2", (): "1/2"}),
+        (
+            "PMN",
+            {"a": [1, 2], "b": [0, 3]},
+            {},
+            "1/2 + 1/2*y + 1/2*x",
+            {("a",): "1/2", ("b",): "1/2", (): "1/2"},
+        ),
         # negative all over the window
         ("PC", {"F": [-2, 2], "c": [-2, 0]}, {}, "1/2 - 1/2*y", {("c",): "-1/2", (): "1/2"}),
         # parallel at every point of the slice, not for other parameters
-        ("PS", {"F": [-2, 2], "t": [1, 2]}, {"a": "t", "b": "t"}, "1/2 + 1/2*y", {("a",): "1/2", (): "1/2"}),
+        (
+            "PS",
+            {"F": [-2, 2], "t": [1, 2]},
+            {"a": "t", "b": "t"},
+            "1/2 + 1/2*y",
+            {("a",): "1/2", (): "1/2"},
+        ),
         ("PS", {"F": [-2, 2], "c": [1, 2]}, {"a": "3/2", "b": "3/2"}, "5/4", {(): "5/4"}),
     ],
 )
 def test_the_ratio_is_a_function_of_the_axes(
-    ends: str, axes: dict[str, Any], parameters: dict[str, Any], engine: str, checker: dict[tuple[str, ...], str]
+    ends: str,
+    axes: dict[str, Any],
+    parameters: dict[str, Any],
+    engine: str,
+    checker: dict[tuple[str, ...], str],
 ) -> None:
     slice = scaled(ends, axes, parameters)
     told = {cone.name.count("+"): cone.pull.to_text() for cone in problem_of(slice).cones}
@@ -204,7 +256,8 @@ def test_the_ratio_is_a_function_of_the_axes(
     found = {cone.name.count("+"): cone.pull for cone in form_of(slice).cones}
     assert found.keys() == told.keys()
     pull = {
-        tuple(n for n, power in names for _ in range(power)): str(c) for c, names in monomials(found[len(ends) - 1])
+        tuple(n for n, power in names for _ in range(power)): str(c)
+        for c, names in monomials(found[len(ends) - 1])
     }
     assert pull == checker
 
@@ -230,7 +283,9 @@ def test_what_is_parallel_or_turns_at_some_points_only_stays_apart(
 @pytest.mark.parametrize("ends", ["PM", "MP"])
 @pytest.mark.slow_cases("MP")
 def test_the_checker_confirms_a_ratio_that_is_an_axis(ends: str) -> None:
-    """Apart, they leave the map undetermined around the loads that balance them where both are short."""
+    """Apart, they leave the map undetermined around the loads that balance them where both are
+    short.
+    """
     result = certified_map(scaled(ends, OVER_A, {}), Options(tolerance=Fraction(1, 50), jobs=1))
     assert result.undetermined < Fraction(1, 50)
     report = verify(result, boxes=4)

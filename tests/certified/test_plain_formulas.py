@@ -1,4 +1,6 @@
-"""Plain formulas: any mechanism or potential with one to three unknowns, derived from its description."""
+"""Plain formulas: any mechanism or potential with one to three unknowns, derived from its
+description.
+"""
 
 from __future__ import annotations
 
@@ -81,10 +83,14 @@ PENDULUM: dict[str, Any] = {
     "axes": {"a": [0, 3], "W": [-4, 4]},
     "count": "index",
 }
-NO_LENGTH = [f"{what} where spring k{n} has no length" for n, what in enumerate(("crease", "crease", "point"), 1)]
+NO_LENGTH = [
+    f"{what} where spring k{n} has no length"
+    for n, what in enumerate(("crease", "crease", "point"), 1)
+]
 PLAIN_PTM: dict[str, Any] = {
     "name": "plain_ptm",
-    "mechanism": {key: value for key, value in RECORD.items() if key != "symmetries"} | {"name": "plain_ptm"},
+    "mechanism": {key: value for key, value in RECORD.items() if key != "symmetries"}
+    | {"name": "plain_ptm"},
     "parameters": {"L1": 1, "k": 100, "l0": "1/5", "F3": -10, "F4": -10},
     "axes": {"rho": ["1/20", 2], "L2": [0, 2]},
     "count": "index",
@@ -124,7 +130,9 @@ def test_other_counts_of_the_truss_agree(fixed: str) -> None:
 def test_bound_of_a_length_is_proved_or_the_slice_refused() -> None:
     slice = _slice(VON_MISES)
     ((low, high),) = ranges(problem_of(slice), slice.axes)
-    assert low == -high and 1.5 < high <= 4  # 2 h = f + 2 h/l with |f| < 1 has no solution beyond 3/2
+    assert (
+        low == -high and 1.5 < high <= 4
+    )  # 2 h = f + 2 h/l with |f| < 1 has no solution beyond 3/2
     ramp = {"name": "ramp", "system": {"unknowns": {"x": "real"}, "potential": "a*x + b*x^3"},
             "axes": {"a": [-1, 1], "b": [-1, 1]}}  # fmt: skip
     unbounded = slice_from_mapping(ramp)
@@ -154,7 +162,10 @@ def _minima(a: float, load: float, samples: int = 4000) -> int:
 @pytest.mark.slow
 def test_two_angles_without_free_lengths_agree_with_the_exact_engine() -> None:
     slice = _slice(CHAIN)
-    exact, certified = ptmcad.classify(slice), ptmcad.classify(slice, engine="certified", tolerance="1/200")
+    exact, certified = (
+        ptmcad.classify(slice),
+        ptmcad.classify(slice, engine="certified", tolerance="1/200"),
+    )
     for index in {region.index for region in exact.regions}:
         low, high = _bounds(certified, index=index)
         assert low <= sum(r.area[1] for r in exact.regions if r.index == index)
@@ -170,35 +181,56 @@ def test_three_angles_have_the_index_counts_of_three_dimensions() -> None:
     assert result.undetermined <= Fraction(1, 100)
     assert {cell.index for cell in result.cells} == {(1, 3, 3, 1), (1, 3, 4, 2)}
     for cell in result.cells:
-        exact = ptmcad.solve(model=result.slice.model, G="1/3", k=cell.sample[0], F=cell.sample[1], digits=3)
+        exact = ptmcad.solve(
+            model=result.slice.model, G="1/3", k=cell.sample[0], F=cell.sample[1], digits=3
+        )
         found = [pose.index for pose in exact.equilibria]
         assert tuple(found.count(k) for k in range(4)) == cell.index
 
 
-POINTS = [("7/10", "3/2"), ("11/10", "6/5"), ("1/2", "1/3"), ("9/10", "19/20"), ("3/2", "1/2"), ("1/5", "1/4")]
+POINTS = [
+    ("7/10", "3/2"),
+    ("11/10", "6/5"),
+    ("1/2", "1/3"),
+    ("9/10", "19/20"),
+    ("3/2", "1/2"),
+    ("1/5", "1/4"),
+]
 
 
 @pytest.mark.parametrize("l0", ["0", "1/5", "1/2"])
 @pytest.mark.slow_cases("1/2")
-def test_plain_and_refined_formulas_count_the_same_equilibria_of_the_papers_mechanism(l0: str) -> None:
+def test_plain_and_refined_formulas_count_the_same_equilibria_of_the_papers_mechanism(
+    l0: str,
+) -> None:
     plain = _slice(PLAIN_PTM, parameters={**PLAIN_PTM["parameters"], "l0": l0})
     refined = _slice(PLAIN_PTM, mechanism="ptm", parameters={**PLAIN_PTM["parameters"], "l0": l0})
     counters = [point_counter(plain), point_counter(refined)]
     for x, y in POINTS:
         first, second = (counter.at(Fraction(x), Fraction(y), Count.INDEX) for counter in counters)
         assert first.decided and second.decided
-        assert (first.total, first.stable, first.index) == (second.total, second.stable, second.index), (x, y)
+        assert (first.total, first.stable, first.index) == (
+            second.total,
+            second.stable,
+            second.index,
+        ), (x, y)
         stable = counters[0].at(Fraction(x), Fraction(y), Count.STABLE)
         assert stable.decided and stable.stable == first.stable
 
 
 def _boxes(slice: Slice, area: float) -> int:
-    """How many boxes the curves of a slice take until each box that is left projects to that share of the window."""
+    """How many boxes the curves of a slice take until each box that is left projects to that share
+    of the window.
+    """
     total = 0
-    window = np.array([[*(float(axis.low) for axis in slice.axes), *(float(axis.high) for axis in slice.axes)]])
+    window = np.array(
+        [[*(float(axis.low) for axis in slice.axes), *(float(axis.high) for axis in slice.axes)]]
+    )
     share = area * float((window[0, 2] - window[0, 0]) * (window[0, 3] - window[0, 1]))
     for curve in curves(slice, slice.count):
-        found = search_curve(curve.system.arguments(), curve.start(window), share, 10**6, curve.importance())
+        found = search_curve(
+            curve.system.arguments(), curve.start(window), share, 10**6, curve.importance()
+        )
         assert not len(found.waiting)
         total += found.used
     return total
@@ -207,7 +239,9 @@ def _boxes(slice: Slice, area: float) -> int:
 @pytest.mark.parametrize(("count", "factor"), [("stable", 1.2), ("index", 1.6)])
 @pytest.mark.slow_cases("index-1.6")
 @pytest.mark.slow
-def test_plain_formulas_take_hardly_more_boxes_than_the_refined_ones(count: str, factor: float) -> None:
+def test_plain_formulas_take_hardly_more_boxes_than_the_refined_ones(
+    count: str, factor: float
+) -> None:
     plain, refined = (
         _boxes(_slice(PLAIN_PTM, mechanism=mechanism, count=count), 4.0**-3)
         for mechanism in (PLAIN_PTM["mechanism"], "ptm")
@@ -219,11 +253,15 @@ def test_plain_formulas_take_hardly_more_boxes_than_the_refined_ones(count: str,
 def test_map_by_plain_formulas_agrees_with_the_one_by_refined_formulas() -> None:
     window = {"rho": ["3/5", "6/5"], "L2": ["6/5", "9/5"]}
     maps = [
-        ptmcad.classify(_slice(PLAIN_PTM, mechanism=mechanism, axes=window, count="stable"), tolerance="1/20")
+        ptmcad.classify(
+            _slice(PLAIN_PTM, mechanism=mechanism, axes=window, count="stable"), tolerance="1/20"
+        )
         for mechanism in (PLAIN_PTM["mechanism"], "ptm")
     ]
     for one, other in (maps, maps[::-1]):
-        located = [(cell, other.locate(rho=cell.sample[0], L2=cell.sample[1])) for cell in one.cells]
+        located = [
+            (cell, other.locate(rho=cell.sample[0], L2=cell.sample[1])) for cell in one.cells
+        ]
         assert all(at.stable in (cell.stable, None) for cell, at in located)
     stable = [{cell.stable for cell in one.cells} for one in maps]
     assert stable[0] == stable[1]
@@ -238,7 +276,10 @@ def test_minima_need_the_chart_of_a_spring_that_depends_on_both_angles_alone() -
     fold = "fold of a stable equilibrium"
     names = [curve.name for curve in curves(_slice(PLAIN_PTM), Count.STABLE)]
     assert names == [fold, f"{fold} with spring k3 short"]
-    every = [curve.name for curve in curves(_slice(PLAIN_PTM), Count.STABLE, frozenset({"cones-and-creases"}))]
+    every = [
+        curve.name
+        for curve in curves(_slice(PLAIN_PTM), Count.STABLE, frozenset({"cones-and-creases"}))
+    ]
     assert every == [*names, *(name.replace("crease", "point") for name in NO_LENGTH)]
 
 
@@ -255,7 +296,13 @@ def test_harmonics_are_in_normal_form() -> None:
 
 @pytest.mark.parametrize(
     ("entries", "negative"),
-    [([1, 0, 0, 1], 0), ([0, 1, 1, 0], 1), ([-1, 2, 2, -5], 2), ([1, 1, 1, 1], None), ([arb(0, 1), 0, 0, 1], None)],
+    [
+        ([1, 0, 0, 1], 0),
+        ([0, 1, 1, 0], 1),
+        ([-1, 2, 2, -5], 2),
+        ([1, 1, 1, 1], None),
+        ([arb(0, 1), 0, 0, 1], None),
+    ],
 )
 def test_inertia(entries: list[Any], negative: int | None) -> None:
     assert inertia(arb_mat(2, 2, entries)) == negative
@@ -265,19 +312,27 @@ def test_what_the_plain_formulas_do_not_take_is_refused_by_name() -> None:
     four: dict[str, Any] = {"unknowns": {f"t{n}": "angle" for n in range(4)},
                             "potential": "cos(t0) + a*cos(t1) + b*cos(t2) + cos(t3)"}  # fmt: skip
     with pytest.raises(ConfigError, match="up to 3 unknowns"):
-        plain_counter(slice_from_mapping({"name": "four", "system": four, "axes": {"a": [1, 2], "b": [1, 2]}}))
+        plain_counter(
+            slice_from_mapping({"name": "four", "system": four, "axes": {"a": [1, 2], "b": [1, 2]}})
+        )
     upwards = slice_from_mapping(PENDULUM)
     with pytest.raises(
-        GeometryError, match="a free length must not be negative in the whole window, but l0 is -1/2 at"
+        GeometryError,
+        match="a free length must not be negative in the whole window, but l0 is -1/2 at",
     ):
-        certified_map(replace(upwards, parameters={**upwards.parameters, "l0": constant(Fraction(-1, 2))}))
+        certified_map(
+            replace(upwards, parameters={**upwards.parameters, "l0": constant(Fraction(-1, 2))})
+        )
 
 
 def test_equations_without_a_potential_are_counted() -> None:
     cusp = {"name": "cusp", "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
             "axes": {"a": [-2, 2], "b": [-2, 2]}}  # fmt: skip
     slice = slice_from_mapping(cusp)
-    exact, certified = ptmcad.classify(slice), ptmcad.classify(slice, engine="certified", tolerance="1/100")
+    exact, certified = (
+        ptmcad.classify(slice),
+        ptmcad.classify(slice, engine="certified", tolerance="1/100"),
+    )
     for cell in certified.cells:
         assert exact.locate(a=cell.sample[0], b=cell.sample[1]).total == cell.total
     assert {cell.total for cell in certified.cells} == {1, 3}
@@ -302,7 +357,9 @@ def test_poses_of_the_truss() -> None:
         h = float(pose.reals[0].center)
         length = (h * h + 0.25) ** 0.5
         assert 2 * h * (1 - 1 / length) == pytest.approx(0.1, abs=1e-9)
-        assert float(pose.eigenvalues[0].center) == pytest.approx(2 - 2 * 0.25 / length**3, rel=1e-9)
+        assert float(pose.eigenvalues[0].center) == pytest.approx(
+            2 - 2 * 0.25 / length**3, rel=1e-9
+        )
 
 
 def test_poses_by_plain_and_refined_formulas_agree() -> None:
@@ -310,11 +367,15 @@ def test_poses_by_plain_and_refined_formulas_agree() -> None:
     plain, refined = solve(PLAIN_PTM, at), ptmcad.solve(**at)
     assert len(plain.equilibria) == len(refined.equilibria) == 6
     for one, other in zip(plain.equilibria, refined.equilibria, strict=True):
-        for first, second in zip((*one.angles, *one.eigenvalues), (*other.angles, *other.eigenvalues), strict=True):
+        for first, second in zip(
+            (*one.angles, *one.eigenvalues), (*other.angles, *other.eigenvalues), strict=True
+        ):
             assert first.text(10) == second.text(10)
 
 
-def test_a_number_that_is_zero_without_a_reason_is_enclosed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_number_that_is_zero_without_a_reason_is_enclosed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """A third spring, from the side, is relaxed at h = 4/5 with the others, by another equation.
 
     That h is rational and all slopes vanish is the only proof.
@@ -324,12 +385,17 @@ def test_a_number_that_is_zero_without_a_reason_is_enclosed(monkeypatch: pytest.
     record["mechanism"]["springs"].append({"between": ["C", "P"], "k": 1, "free": "9/4"})
     model = _slice(record).model
     found = ptmcad.solve(model=model, l0=1, a="3/5", f=0)
-    assert [0, 0, 0] in [[spring.force.exact for spring in pose.springs] for pose in found.equilibria]
+    assert [0, 0, 0] in [
+        [spring.force.exact for spring in pose.springs] for pose in found.equilibria
+    ]
     monkeypatch.setattr(rational, "_real", lambda ball: ((Fraction(1),), ball - 1))  # a false guess
     found = ptmcad.solve(model=model, l0=1, a="3/5", f=0)
     assert found.status is Status.CERTIFIED
     tiny = Fraction(1, 10**100)
-    assert any(all(-tiny < s.force.low < s.force.high < tiny for s in pose.springs) for pose in found.equilibria)
+    assert any(
+        all(-tiny < s.force.low < s.force.high < tiny for s in pose.springs)
+        for pose in found.equilibria
+    )
     assert ptmcad.solve(model=model, l0=1, a="3/5", f="1/100").status is Status.CERTIFIED
 
 

@@ -1,4 +1,6 @@
-"""What the plain formulas say of springs: determinants bent by them, and what holds at equilibria only."""
+"""What the plain formulas say of springs: determinants bent by them, and what holds at equilibria
+only.
+"""
 
 from __future__ import annotations
 
@@ -66,14 +68,20 @@ def values(formulas: Sequence[Formula], at: NDArray[np.float64]) -> NDArray[np.f
 
 
 def matrix(at: SpringChart, point: NDArray[np.float64]) -> NDArray[np.float64]:
-    return values([entry for row in at.hessian for entry in row], point).reshape(len(at.hessian), -1)
+    return values([entry for row in at.hessian for entry in row], point).reshape(
+        len(at.hessian), -1
+    )
 
 
 @pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
 @pytest.mark.slow_cases("mechanism1")
-def test_determinant_with_each_spring_to_the_first_power_is_that_of_the_matrix(mechanism: dict[str, Any]) -> None:
+def test_determinant_with_each_spring_to_the_first_power_is_that_of_the_matrix(
+    mechanism: dict[str, Any],
+) -> None:
     _, at = charts(mechanism)
-    assert values([at.determinant()], POINT)[0] == pytest.approx(np.linalg.det(matrix(at, POINT)), rel=1e-9)
+    assert values([at.determinant()], POINT)[0] == pytest.approx(
+        np.linalg.det(matrix(at, POINT)), rel=1e-9
+    )
 
 
 @pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
@@ -95,7 +103,9 @@ def test_determinant_in_a_chart_is_that_times_the_length(mechanism: dict[str, An
         point = POINT.copy()
         point[phi] = atan2(y, x)
         length = hypot(x, y)
-        found = values([turned.determinant(), turned.aligned, turned.cones[s].extent, *turned.equations], point)
+        found = values(
+            [turned.determinant(), turned.aligned, turned.cones[s].extent, *turned.equations], point
+        )
         assert found[0] == pytest.approx(np.linalg.det(matrix(direct, POINT)) * length, rel=1e-9)
         assert found[1:3] == pytest.approx([0, length], abs=1e-12)
         assert found[3:] == pytest.approx(values(direct.equations, POINT), rel=1e-9)
@@ -123,18 +133,24 @@ def test_what_holds_at_equilibria_holds_there_and_nowhere_else(mechanism: dict[s
     exact = [at.determinant(), *principal_minors(at.hessian)]
     there = [at.determinant(at_equilibrium=True), *principal_minors(at.matrix_at_equilibrium())]
     times = [f for s in range(number) for f in at.diagonal_times_length(s)]
-    diagonal = [at.cones[s].extent * at.hessian[i][i] for s in range(number) for i in at.cones[s].active]
+    diagonal = [
+        at.cones[s].extent * at.hessian[i][i] for s in range(number) for i in at.cones[s].active
+    ]
     zero = [*at.dependent, *at.balances]
     for point in equilibria(at, 4):
         # only equal operands of meets give a value
-        assert values(_open(there + times), point) == pytest.approx(values(exact + diagonal, point), rel=1e-4, abs=1e-4)
+        assert values(_open(there + times), point) == pytest.approx(
+            values(exact + diagonal, point), rel=1e-4, abs=1e-4
+        )
         assert values(zero, point) == pytest.approx([0.0] * len(zero), abs=1e-6)
     assert abs(values(zero, POINT)).min() > 1e-6
     assert values(_open(there), POINT) != pytest.approx(values(exact, POINT), rel=1e-2)
 
 
 def _open(formulas: Sequence[Formula]) -> list[Formula]:
-    """The formulas with the second operand of each meet, the one that holds at equilibria, in its place."""
+    """The formulas with the second operand of each meet, the one that holds at equilibria, in its
+    place.
+    """
     graph = formulas[0].graph
     made: dict[int, Formula] = {}
     for node in list(graph.nodes):
@@ -164,7 +180,9 @@ def test_moment_on_bodies_that_turn_is_that_of_the_equations(mechanism: dict[str
         x, y = values(charted.cones[s].vector, POINT)
         point = POINT.copy()
         point[2 + len(at.equations)] = atan2(y, x)
-        again = values([charted.turned[0].moment, charted.turned[0].stiffness, *charted.along], point)
+        again = values(
+            [charted.turned[0].moment, charted.turned[0].stiffness, *charted.along], point
+        )
         assert again == pytest.approx([moment, stiffness, 0, 0], rel=1e-9, abs=1e-12)
 
 
@@ -185,7 +203,9 @@ def test_determinants_by_turning_and_levelled_hold_at_equilibria() -> None:
         determinant = np.linalg.det(matrix(at, point))
         lengths, (_, second) = values(at.lengths, point), values(at.scales, point)
         found = values(_open([by_turning, at.levelled()]), point)
-        assert found == pytest.approx([determinant * second, determinant * lengths.prod()], rel=1e-4, abs=1e-4)
+        assert found == pytest.approx(
+            [determinant * second, determinant * lengths.prod()], rel=1e-4, abs=1e-4
+        )
 
 
 def test_a_matrix_that_is_not_symmetric_has_no_determinant_by_turning() -> None:
@@ -202,11 +222,15 @@ def test_no_equation_has_a_formula_in_it_that_holds_at_equilibria_only() -> None
 
 
 def test_a_spring_that_nothing_balances_tells_no_direction() -> None:
-    """Two springs to opposite pivots: without the second one's free length the rest of the first one's equation is 0.
+    """Two springs to opposite pivots: without the second one's free length the rest of the first
+    one's equation is 0.
 
-    Where the first one's stiffness is zero, every configuration is an equilibrium, which 0/0 must not exclude.
+    Where the first one's stiffness is zero, every configuration is an equilibrium, which 0/0 must
+    not exclude.
     """
-    springs = [{"between": [end, "P"], "k": "k", "free": free} for end, free in (("A", "1/2"), ("B", 0))]
+    springs = [
+        {"between": [end, "P"], "k": "k", "free": free} for end, free in (("A", "1/2"), ("B", 0))
+    ]
     opposite = slice_from_mapping({
         "name": "opposite",
         "mechanism": {
@@ -221,19 +245,27 @@ def test_a_spring_that_nothing_balances_tells_no_direction() -> None:
     })  # fmt: skip
     problem = problem_of(opposite)
     assert [cone.name for cone in problem.cones] == ["k"]
-    tape = record([[entry for row in chart(geometry(problem)).matrix_at_equilibrium() for entry in row]])
+    tape = record(
+        [[entry for row in chart(geometry(problem)).matrix_at_equilibrium() for entry in row]]
+    )
     assert int(Operation.DIVIDE) not in tape.operations
 
 
 def test_equations_are_divided_by_what_is_positive_in_the_open_window() -> None:
     slice = slice_from_mapping(PLAIN_PTM)
     assert common_factors(problem_of(slice), slice.axes) == (constant(1), axis(1))
-    assert common_factors(problem_of(slice_from_mapping(THREE_BARS)), slice.axes) == (axis(0), axis(1), constant(1))
+    assert common_factors(problem_of(slice_from_mapping(THREE_BARS)), slice.axes) == (
+        axis(0),
+        axis(1),
+        constant(1),
+    )
 
 
 @pytest.mark.parametrize(("low", "factor"), [(0, 4 * axis(1)), (1, 4 * axis(1)), (-1, constant(1))])
 def test_a_factor_that_may_be_zero_stays(low: int, factor: Any) -> None:
-    """Where it is zero every configuration is an equilibrium: without the factor the map would have counts there."""
+    """Where it is zero every configuration is an equilibrium: without the factor the map would have
+    counts there.
+    """
     slice = factored(low)
     (found,) = common_factors(problem_of(slice), slice.axes)
     assert found.is_constant == factor.is_constant and (found / factor).is_constant
@@ -241,7 +273,9 @@ def test_a_factor_that_may_be_zero_stays(low: int, factor: Any) -> None:
 
 def factored(low: int) -> Slice:
     system = {"unknowns": {"t": "angle"}, "potential": "b*cos(t) + a*b*cos(2*t)"}
-    return slice_from_mapping({"name": "f", "system": system, "axes": {"a": [0, 1], "b": [low, 2]}, "count": "index"})
+    return slice_from_mapping(
+        {"name": "f", "system": system, "axes": {"a": [0, 1], "b": [low, 2]}, "count": "index"}
+    )
 
 
 def test_points_at_which_all_configurations_are_equilibria_stay_undetermined() -> None:
@@ -252,6 +286,9 @@ def test_points_at_which_all_configurations_are_equilibria_stay_undetermined() -
 
 def test_a_negative_factor_is_taken_out_with_its_sign() -> None:
     slice = factored(-1)
-    below = tuple(a if k == 0 else type(a)(a.name, Fraction(-2), Fraction(0)) for k, a in enumerate(slice.axes))
+    below = tuple(
+        a if k == 0 else type(a)(a.name, Fraction(-2), Fraction(0))
+        for k, a in enumerate(slice.axes)
+    )
     factor = common_factor(problem_of(slice).equations, below)  # type: ignore[arg-type]
     assert factor.evaluate(Fraction(1, 2), Fraction(-1)) > 0

@@ -1,4 +1,6 @@
-"""The certified engine counts by whatever predicate a kind of count has: here heights in the place of lengths."""
+"""The certified engine counts by whatever predicate a kind of count has: here heights in the place
+of lengths.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,9 @@ ENGINES = [
 
 
 @pytest.mark.parametrize(("record", "engine"), ENGINES)
-def test_stable_equilibria_above_the_ground(record: str, engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stable_equilibria_above_the_ground(
+    record: str, engine: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The map's counts are those of poses at random points; either engine answers where it can."""
     kind = KINDS[Count.ADMISSIBLE]
     assert kind.predicate is not None
@@ -38,19 +42,24 @@ def test_stable_equilibria_above_the_ground(record: str, engine: str, monkeypatc
     slice = load(record)
     accuracy = {} if engine == "exact" else {"tolerance": "1/10"}
     found = ptmcad.classify(slice, count="admissible", engine=engine, jobs=1, **accuracy)
-    assert (found.cover is None) == (engine == "exact") and len({region.admissible for region in found.regions}) > 1
+    assert (found.cover is None) == (engine == "exact") and len(
+        {region.admissible for region in found.regions}
+    ) > 1
     mechanism = slice.model.whole
     assert mechanism is not None
     choose = random.Random(41)
     for _ in range(30):
         at = {
-            axis.name: axis.low + (axis.high - axis.low) * Fraction(choose.randint(1, 999), 1000) for axis in slice.axes
+            axis.name: axis.low + (axis.high - axis.low) * Fraction(choose.randint(1, 999), 1000)
+            for axis in slice.axes
         }
         place = found.locate(at)
         if place.admissible is None:
             continue
         values = {name: value.evaluate(*at.values()) for name, value in slice.parameters.items()}
-        poses = [pose for pose in poses_at(slice.model, values, 12).equilibria if pose.stable is True]
+        poses = [
+            pose for pose in poses_at(slice.model, values, 12).equilibria if pose.stable is True
+        ]
         high = [all(pose.nodes[name][1].low > 0 for name in mechanism.moving) for pose in poses]
         assert place.admissible == high.count(True), at
     if record == "four-bar":

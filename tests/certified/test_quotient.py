@@ -80,8 +80,8 @@ CART = {
         {"between": ["B", "E"], "k": 2}, {"between": ["B", "N"], "k": 2},
     ],
 }  # fmt: skip
-"""Two sliders and a bar above them: a reflection takes each slider to its negative, and the bar's angle to pi less it;
-springs are each other's images."""
+"""Two sliders and a bar above them: a reflection takes each slider to its negative, and the bar's
+angle to pi less it; springs are each other's images."""
 TWINS = {
     "parameters": {"k": {"kind": "stiffness"}, "F": {"kind": "force"}, "l": {"kind": "length"}},
     "unknowns": {"a": "angle", "b": "angle"},
@@ -109,7 +109,12 @@ def slice_of(name: str, **loads: object) -> Slice:
     given = {p: "2" for p in MECHANISMS[name]["parameters"] if p not in WINDOWS[name]}
     mechanism = MECHANISMS[name] | ({"loads": loads} if loads else {})
     return slice_from_mapping(
-        {"name": name, "mechanism": {"name": name, **mechanism}, "parameters": given, "axes": WINDOWS[name]}
+        {
+            "name": name,
+            "mechanism": {"name": name, **mechanism},
+            "parameters": given,
+            "axes": WINDOWS[name],
+        }
     )
 
 
@@ -146,7 +151,11 @@ def cases(name: str) -> list[tuple[MirrorFrame, int]]:
     slice = slice_of(name)
     problem = problem_of(slice)
     change, *_ = mirrors(slice, problem)
-    return [(f, lead) for f in frames(problem, change, ranges(problem, slice.axes)) for lead in range(len(f.reaches))]
+    return [
+        (f, lead)
+        for f in frames(problem, change, ranges(problem, slice.axes))
+        for lead in range(len(f.reaches))
+    ]
 
 
 @pytest.mark.parametrize("name", MECHANISMS)
@@ -159,7 +168,9 @@ def test_formulas_are_the_energys_derivatives(name: str) -> None:
         at = coordinates(frame, lead)
         near = opening(at, [s.vector for s in chart(exact, unknowns=at.unknowns()).cones])
         numbers = [Fraction(rng.randint(100, 900), 1000) for _ in range(3 + len(frame.places))]
-        x, y = (a.low + (a.high - a.low) * share for a, share in zip(slice.axes, numbers, strict=False))
+        x, y = (
+            a.low + (a.high - a.low) * share for a, share in zip(slice.axes, numbers, strict=False)
+        )
         *free, r = numbers[2 : 3 + len(frame.ranges)]
         shares = numbers[3 + len(frame.ranges) :][: len(at.w) - 1]
         tape = record([[near.slope, *near.ratios, near.bend, *near.mixed, *(f for row in near.by_even for f in row),
@@ -178,7 +189,9 @@ def test_formulas_are_the_energys_derivatives(name: str) -> None:
 
 
 def reference(name: str, at: Coordinates, given: dict[str, mpf], point: list[mpf]) -> list[mpf]:
-    """The derivatives of an `Opening` by difference quotients, at even coordinates, c, and the shares in turn."""
+    """The derivatives of an `Opening` by difference quotients, at even coordinates, c, and the
+    shares in turn.
+    """
     size, others, lead = len(at.evens), range(len(at.w) - 1), at.lead
 
     def u(*z: mpf) -> mpf:
@@ -213,7 +226,11 @@ def test_the_stiffness_on_the_fixed_points_is_the_hessians() -> None:
     tape = record([[across, block]])
     with ctx.workprec(200):
         for share in (1, 3, 4):
-            run = run_arb(tape, [ball_of(Fraction(-3, 2)), ball_of(Fraction(1, 3)), ball_of(Fraction(share, 2))], 200)
+            run = run_arb(
+                tape,
+                [ball_of(Fraction(-3, 2)), ball_of(Fraction(1, 3)), ball_of(Fraction(share, 2))],
+                200,
+            )
             one, other = (run[int(k)] for k in tape.outputs[0])
             assert abs(one - other) < arb(2) ** -150
 
@@ -224,8 +241,12 @@ def test_three_odd_unknowns_have_a_chart_each_about_every_fixed_point() -> None:
     assert names == ["pitchfork", "fold", "fold", "fold"] * 8 + ["fold"] * 2 + ["point"] * 2
 
 
-def test_a_half_of_a_window_says_the_same_as_the_whole_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Forces on three cables whose mirror image is across, and two axes that an exchange of unknowns exchanges."""
+def test_a_half_of_a_window_says_the_same_as_the_whole_of_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Forces on three cables whose mirror image is across, and two axes that an exchange of
+    unknowns exchanges.
+    """
     truss = {
         "name": "pair", "unknowns": {"u": "real", "v": "real"}, "parameters": {"a": {}, "b": {}},
         "potential": "u^4 + v^4 - u^2 - v^2 + u*v/2 + a*u + b*v",
@@ -243,26 +264,39 @@ def test_a_half_of_a_window_says_the_same_as_the_whole_of_it(monkeypatch: pytest
             patched.setattr("ptmcad.certified.engine.halving", lambda slice: None)
             whole = ptmcad.classify(slice, **given)
         assert half.undetermined <= Fraction(tolerance)
-        assert ["one half of the window" in str(found.plan[-1]) for found in (half, whole)] == [True, False]
+        assert ["one half of the window" in str(found.plan[-1]) for found in (half, whole)] == [
+            True,
+            False,
+        ]
         counter, known = plain_counter(slice), 0
         for _ in range(25):
-            x, y = (a.low + (a.high - a.low) * Fraction(rng.randrange(1, 10**4), 10**4) for a in slice.axes)
+            x, y = (
+                a.low + (a.high - a.low) * Fraction(rng.randrange(1, 10**4), 10**4)
+                for a in slice.axes
+            )
             for point in ((x, y), change.at((x, y))):
                 at = dict(zip(slice.axis_names, point, strict=True))
                 one, other = half.locate(**at), whole.locate(**at)
                 if one.stable is not None:
                     known += 1
                     assert counter.at(*point, slice.count).stable == one.stable
-                    assert other.stable in (None, one.stable) and other.admissible in (None, one.admissible)
+                    assert other.stable in (None, one.stable) and other.admissible in (
+                        None,
+                        one.admissible,
+                    )
         assert known > 35
         assert ptmcad.verify(half).ok
 
 
 def test_pitchforks_along_a_line_of_all_equilibria() -> None:
-    """By the quotient, where one involution keeps the line, with the counts that were known between them."""
+    """By the quotient, where one involution keeps the line, with the counts that were known between
+    them.
+    """
     slice = load(SHIPPED / "free-load.yaml")
     found = certified_intervals(slice, "rho", {"F": "-10"}, 10)
-    assert [change.proved for change in found.changes if change.names == ("pitchfork",)] == [True] * 5
+    assert [change.proved for change in found.changes if change.names == ("pitchfork",)] == [
+        True
+    ] * 5
     assert [interval.index for interval in found.intervals] == [
         (2, 5, 1), (3, 6, 1), (2, 5, 1), (2, 4, 1), (2, 3, 1), (2, 4, 2), (2, 6, 4),
         (2, 6, 4), (2, 4, 2), (2, 3, 1), (1, 2, 1), (2, 3, 1), (2, 4, 1), (2, 3, 1),
@@ -270,10 +304,14 @@ def test_pitchforks_along_a_line_of_all_equilibria() -> None:
 
 
 def test_a_spring_without_length_in_a_configuration_that_is_its_own_image() -> None:
-    """At rho = L1 - L2 the bars are in a line, and so is a curve of configurations whose spring has no length: that
-    spring's direction is a variable there, and pitchforks with a short one are proved beside it."""
+    """At rho = L1 - L2 the bars are in a line, and so is a curve of configurations whose spring has
+    no length: that spring's direction is a variable there, and pitchforks with a short one are
+    proved beside it."""
     slice = load(SHIPPED / "free02-unloaded.yaml")
-    slice = replace(slice, axes=(replace(slice.axes[0], low=Fraction("0.16"), high=Fraction("0.182")), slice.axes[1]))
+    slice = replace(
+        slice,
+        axes=(replace(slice.axes[0], low=Fraction("0.16"), high=Fraction("0.182")), slice.axes[1]),
+    )
     found = certified_intervals(slice, "rho", {"L2": "5/6"}, 10)
     assert [(change.names, change.proved) for change in found.changes] == [
         (("point where spring A3A4 has no length",), True), (("pitchfork",), True)
@@ -282,9 +320,18 @@ def test_a_spring_without_length_in_a_configuration_that_is_its_own_image() -> N
     assert [interval.index for interval in found.intervals] == [(2, 4, 2), (2, 5, 1), (2, 6, 2)]
 
 
-def test_what_is_undecided_along_a_line_is_not_looked_at_closely_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A mass on a spring turns freely without its weight: that is undecided once, and nothing else is lost."""
-    record = {"name": "mass", "mechanism": MASS, "axes": {"W": [0, 20], "c": [10, 80]}, "count": "stable"}
+def test_what_is_undecided_along_a_line_is_not_looked_at_closely_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A mass on a spring turns freely without its weight: that is undecided once, and nothing else
+    is lost.
+    """
+    record = {
+        "name": "mass",
+        "mechanism": MASS,
+        "axes": {"W": [0, 20], "c": [10, 80]},
+        "count": "stable",
+    }
     slice, calls, search = slice_from_mapping(record), list[int](), line.isolate
 
     def counted(*arguments: Any) -> Any:
@@ -315,20 +362,32 @@ def test_a_map_with_three_odd_unknowns() -> None:
 
 
 def test_a_line_without_a_springs_length_parts_no_regions() -> None:
-    """Over rho = 1 two springs can lose their lengths; the count of stable equilibria stays what it is."""
+    """Over rho = 1 two springs can lose their lengths; the count of stable equilibria stays what it
+    is.
+    """
     found = ptmcad.classify("free-load", tolerance="1/200")
     left, right = (found.locate(rho=rho, F="-20") for rho in ("99/100", "101/100"))
     assert left.region is not None
     assert left.region == right.region
 
 
-@pytest.mark.parametrize(("height", "found"), [("2", 0), ("3", 1)], ids=["at C's reach", "out of it"])
-def test_a_spring_without_length_where_all_unknowns_are_fixed_leaves_no_quotient(height: str, found: int) -> None:
-    """Two bars that stand upright below A: with coordinates about that pose no map of them would end."""
+@pytest.mark.parametrize(
+    ("height", "found"), [("2", 0), ("3", 1)], ids=["at C's reach", "out of it"]
+)
+def test_a_spring_without_length_where_all_unknowns_are_fixed_leaves_no_quotient(
+    height: str, found: int
+) -> None:
+    """Two bars that stand upright below A: with coordinates about that pose no map of them would
+    end.
+    """
     mechanism = {
         "parameters": {"f": {"kind": "free length", "default": "1/2"}, "W": {"kind": "force"}},
         "unknowns": {"v": "angle", "u": "angle"},
-        "points": {"A": [0, height], "B": ["sin(u)", "cos(u)"], "C": ["sin(u) + sin(v)", "cos(u) + cos(v)"]},
+        "points": {
+            "A": [0, height],
+            "B": ["sin(u)", "cos(u)"],
+            "C": ["sin(u) + sin(v)", "cos(u) + cos(v)"],
+        },
         "springs": [{"between": ["A", "C"], "k": 1, "free": "f"}],
         "torsion": [{"angle": "u", "k": "1/2"}],
         "loads": {"C": [0, "-W"]},

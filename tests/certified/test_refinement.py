@@ -1,4 +1,6 @@
-"""Refinement of enclosures: where there is nothing to enclose, and where an exception breaks into any statement."""
+"""Refinement of enclosures: where there is nothing to enclose, and where an exception breaks into
+any statement.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,9 @@ def lost(enclosures: list[CurveEnclosure]) -> int:
 
 
 def broken_at(statement: int, enclosures: list[CurveEnclosure]) -> bool:
-    """Refine once, with a KeyboardInterrupt before so many statements of the module are done; whether it came."""
+    """Refine once, with a KeyboardInterrupt before so many statements of the module are done;
+    whether it came.
+    """
     left = statement
 
     def trace(frame: FrameType, event: str, _argument: Any) -> Any:
@@ -84,7 +88,9 @@ def test_an_exception_at_any_statement_loses_no_box(monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.parametrize("times", [1, 2, 4])
-def test_a_lack_of_threads_or_memory_loses_no_box(monkeypatch: pytest.MonkeyPatch, times: int) -> None:
+def test_a_lack_of_threads_or_memory_loses_no_box(
+    monkeypatch: pytest.MonkeyPatch, times: int
+) -> None:
     enclosures = circle(monkeypatch)
     submit, calls = ThreadPoolExecutor.submit, []
 

@@ -1,4 +1,6 @@
-"""Equilibria whose unknowns are related, such as bars folded onto each other: what may be zero is enclosed closely."""
+"""Equilibria whose unknowns are related, such as bars folded onto each other: what may be zero is
+enclosed closely.
+"""
 
 from __future__ import annotations
 
@@ -22,12 +24,16 @@ CHAIN: dict[str, Any] = {
         "P": ["cos(th1)", "sin(th1)"],
         "Q": ["cos(th1) + cos(th2)", "sin(th1) + sin(th2)"],
     },
-    "springs": [{"between": ["A", "Q"], "k": 1, "free": "l0"}, {"between": ["B", "Q"], "k": 2, "free": "l0"}],
+    "springs": [
+        {"between": ["A", "Q"], "k": 1, "free": "l0"},
+        {"between": ["B", "Q"], "k": 2, "free": "l0"},
+    ],
     "torsion": [{"angle": "th2 - th1", "k": "1/10"}],
     "moments": {"th1": "M", "th2": "N"},
     "loads": {"P": ["W", 0]},
 }
-"""Two bars of length 1 from (0, 0), and an elbow whose spring is at rest where they are stretched."""
+"""Two bars of length 1 from (0, 0), and an elbow whose spring is at rest where they are stretched.
+"""
 
 
 def chain(changed: dict[str, Any] | None = None, **parameters: object) -> Poses:
@@ -49,8 +55,9 @@ def folded(poses: Poses) -> list[Pose]:
 @pytest.mark.parametrize("moment", [0, "1/7"])
 @pytest.mark.slow_cases("0")
 def test_a_chain_folded_onto_its_pivot_ends_there(moment: object) -> None:
-    """Q is the pivot whatever the angle is; and the forces on Q, (5 - 1/2) (3, 4)/5 + 2 (sqrt 5 - 1/2) (-1, 2)/sqrt 5,
-    turn the first bar with the moment against the one given, and the second one the other way.
+    """Q is the pivot whatever the angle is; and the forces on Q, (5 - 1/2) (3, 4)/5 + 2 (sqrt
+    5 - 1/2) (-1, 2)/sqrt 5, turn the first bar with the moment against the one given, and the
+    second one the other way.
     """
     found = folded(chain(M=moment, N=f"-{moment}"))
     assert len(found) == 2
@@ -65,7 +72,9 @@ def test_a_chain_folded_onto_its_pivot_ends_there(moment: object) -> None:
 
 
 def test_the_elbows_of_a_stretched_chain_are_at_rest() -> None:
-    """Of three bars: all elbows are, or half a turn from it, at eight equilibria; at the others both are bent."""
+    """Of three bars: all elbows are, or half a turn from it, at eight equilibria; at the others
+    both are bent.
+    """
     ends = [f"{wave}(th1) + {wave}(th2) + {wave}(th3)" for wave in ("cos", "sin")]
     three = {
         "parameters": {"l0": {"kind": "free length"}},
@@ -75,11 +84,17 @@ def test_the_elbows_of_a_stretched_chain_are_at_rest() -> None:
         "torsion": [{"angle": "th2 - th1", "k": "1/10"}, {"angle": "th3 - th2", "k": "1/10"}],
     }
     found = ptmcad.solve(model=ptmcad.Mechanism(three), l0="1/2").equilibria
-    turns = [next((n for n in (0, 180) if nearly(t.degrees, n)), None) for pose in found for t in pose.torsion]
+    turns = [
+        next((n for n in (0, 180) if nearly(t.degrees, n)), None)
+        for pose in found
+        for t in pose.torsion
+    ]
     told = list(zip(turns[::2], turns[1::2], strict=True))
     assert [told.count(turns) for turns in ((0, 0), (0, 180), (180, 0), (180, 180))] == [2, 2, 2, 2]
     assert told.count((None, None)) == 4
-    assert [nearly(t.moment, 0) for pose in found for t in pose.torsion] == [n is not None for n in turns]
+    assert [nearly(t.moment, 0) for pose in found for t in pose.torsion] == [
+        n is not None for n in turns
+    ]
 
 
 @pytest.mark.parametrize(
@@ -89,7 +104,10 @@ def test_the_elbows_of_a_stretched_chain_are_at_rest() -> None:
         {"M": "1e-70"},
         {"springs": [*CHAIN["springs"], {"between": ["A", "P"], "k": "1e-70", "free": 1}]},
         # the load takes off all of the spring's energy but its free length's part
-        {"springs": [*CHAIN["springs"], {"between": ["C", "P"], "k": "1e-70", "free": 1}], "W": "-5e-70"},
+        {
+            "springs": [*CHAIN["springs"], {"between": ["C", "P"], "k": "1e-70", "free": 1}],
+            "W": "-5e-70",
+        },
         {"torsion": [{"angle": "th1 - pi/2", "k": "1e-70"}]},
     ],
 )
@@ -105,15 +123,21 @@ def test_a_chain_that_is_nearly_folded_is_not_taken_for_one_that_is(change: dict
 
 
 def test_a_second_angle_that_is_the_negative_of_the_first() -> None:
-    """Between A and B, on one line with the pivot, 3 - x - 1/2 = 2 (x - 1 - 1/2) at x = 11/6: bent to either side."""
+    """Between A and B, on one line with the pivot, 3 - x - 1/2 = 2 (x - 1 - 1/2) at x = 11/6: bent
+    to either side.
+    """
     level = {"points": {**CHAIN["points"], "A": [3, 0], "B": [1, 0]}, "torsion": []}
-    bent = [pose for pose in chain(level).equilibria if abs(float(pose.nodes["Q"][0]) - 11 / 6) < 1e-6]
+    bent = [
+        pose for pose in chain(level).equilibria if abs(float(pose.nodes["Q"][0]) - 11 / 6) < 1e-6
+    ]
     assert [nearly(pose.nodes["Q"][1], 0) for pose in bent] == [True, True]
     assert [float(pose.cosines_sines[0]) for pose in bent] == pytest.approx([11 / 12] * 2)
 
 
 def test_a_second_angle_that_is_a_quarter_turn_more_than_the_first() -> None:
-    """The second bar by the angle to the other axis: where both are in line, Z is the difference of two ends."""
+    """The second bar by the angle to the other axis: where both are in line, Z is the difference of
+    two ends.
+    """
     points = {
         **CHAIN["points"],
         "Q": ["cos(th1) + sin(th2)", "sin(th1) - cos(th2)"],
@@ -123,7 +147,9 @@ def test_a_second_angle_that_is_a_quarter_turn_more_than_the_first() -> None:
     stretched = [pose for pose in found if abs(float(pose.nodes["Z"][0])) < 1e-6]
     assert [nearly(pose.nodes["Z"][0], 0) for pose in stretched] == [True, True]
     # the ends of the others are beside each other where Q is the pivot
-    assert [[nearly(c, 0) for c in pose.nodes["Q"]] for pose in found if pose not in stretched] == [[True, True]] * 2
+    assert [[nearly(c, 0) for c in pose.nodes["Q"]] for pose in found if pose not in stretched] == [
+        [True, True]
+    ] * 2
 
 
 def sliders(free: object, load: object) -> Poses:
@@ -131,7 +157,14 @@ def sliders(free: object, load: object) -> Poses:
     model = {
         "parameters": {"W": {"kind": "force"}},
         "unknowns": {"s": "length", "t": "length"},
-        "points": {"O": [0, 0], "A": [2, 0], "B": [0, 2], "G": ["s", "s"], "H": ["t", "t"], "Z": ["s - t", "s + t"]},
+        "points": {
+            "O": [0, 0],
+            "A": [2, 0],
+            "B": [0, 2],
+            "G": ["s", "s"],
+            "H": ["t", "t"],
+            "Z": ["s - t", "s + t"],
+        },
         "springs": [
             {"between": ["A", "G"], "k": 1, "free": "1/3"},
             {"between": ["B", "H"], "k": 1, "free": "1/3"},
@@ -152,7 +185,9 @@ def test_sliders_that_are_at_the_same_height_because_of_the_same_forces() -> Non
     assert nearly(pose.nodes["Z"][0], 0) and not nearly(pose.nodes["Z"][1], 0)
 
 
-@pytest.mark.parametrize(("free", "load"), [("1/3", "1e-70"), (Fraction(1, 3) + Fraction(1, 10**70), 0)])
+@pytest.mark.parametrize(
+    ("free", "load"), [("1/3", "1e-70"), (Fraction(1, 3) + Fraction(1, 10**70), 0)]
+)
 def test_sliders_that_are_nearly_at_the_same_height(free: object, load: object) -> None:
     """The spring along the line is a push on one side of it, with an irrational direction."""
     (pose,) = sliders(str(free), load).equilibria

@@ -1,4 +1,6 @@
-"""Maps with slanted pieces: against the exact engine, as files, checked, and shifted so that they are wrong."""
+"""Maps with slanted pieces: against the exact engine, as files, checked, and shifted so that they
+are wrong.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ TOLERANCE = Fraction(1, 10**9)
 
 @cache
 def fine() -> RegionMap:
-    return ptmcad.classify(ptmcad.load(CONFIGS / "fig4.yaml"), engine="certified", tolerance=TOLERANCE)
+    return ptmcad.classify(
+        ptmcad.load(CONFIGS / "fig4.yaml"), engine="certified", tolerance=TOLERANCE
+    )
 
 
 @cache
@@ -44,13 +48,17 @@ def test_error_costs_almost_nothing_where_curves_are_smooth() -> None:
 def test_areas_and_counts_are_those_of_the_exact_engine() -> None:
     for count in (1, 2):
         known = [[r.area for r in m.regions if r.stable == count] for m in (fine(), true())]
-        (low, high), (exact_low, exact_high) = ((sum(a for a, _ in k), sum(b for _, b in k)) for k in known)
+        (low, high), (exact_low, exact_high) = (
+            (sum(a for a, _ in k), sum(b for _, b in k)) for k in known
+        )
         assert low <= exact_high
         assert exact_low <= high
         assert high - low < Fraction(1, 10**7)
     rng = random.Random(4)
     for _ in range(20):
-        at = {name: Fraction(rng.randrange(1, 2 * 10**6), 10**6) for name in true().slice.axis_names}
+        at = {
+            name: Fraction(rng.randrange(1, 2 * 10**6), 10**6) for name in true().slice.axis_names
+        }
         assert fine().locate(at).stable == true().locate(at).stable
 
 
@@ -62,7 +70,10 @@ def test_points_next_to_tubes_have_the_exact_engines_counts() -> None:
     for patch in rng.sample(cover.patches, 30):
         left, right, bottom, top = patch.frame
         for _ in range(4):
-            u, v = (Fraction(rng.randrange(64 * a + 1, 64 * b), 64) for a, b in ((left, right), (bottom, top)))
+            u, v = (
+                Fraction(rng.randrange(64 * a + 1, 64 * b), 64)
+                for a, b in ((left, right), (bottom, top))
+            )
             at = {
                 axis.name: axis.low + (axis.high - axis.low) * w / cover.steps
                 for axis, w in zip(fine().slice.axes, (u, v), strict=True)
@@ -93,7 +104,11 @@ def test_the_map_is_verified_and_tubes_beside_the_curves_are_not() -> None:
     assert cover is not None
     by = cover.steps // 50  # all tubes moved, as far as they stay what they are
     moved = tuple(
-        Patch(p.frame, p.along, tuple(Tube(t.half, tuple(c + by for c in t.controls)) for t in p.tubes))
+        Patch(
+            p.frame,
+            p.along,
+            tuple(Tube(t.half, tuple(c + by for c in t.controls)) for t in p.tubes),
+        )
         for p in cover.patches
     )
     false = replace(fine(), cover=replace(cover, patches=moved))
@@ -107,5 +122,7 @@ def test_it_is_drawn_and_gone_on_from() -> None:
     exact = true().grid(24)
     same = (grid.stable == exact.stable).mean()
     assert same > 0.99
-    again = ptmcad.classify(fine().slice, engine="certified", tolerance=Fraction(1, 10), resume=fine())
+    again = ptmcad.classify(
+        fine().slice, engine="certified", tolerance=Fraction(1, 10), resume=fine()
+    )
     assert again.cover == fine().cover

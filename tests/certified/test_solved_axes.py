@@ -1,4 +1,6 @@
-"""Axes that are solved for: the quotients are the equations', and no solution is lost, least where a slope vanishes."""
+"""Axes that are solved for: the quotients are the equations', and no solution is lost, least where
+a slope vanishes.
+"""
 
 from __future__ import annotations
 
@@ -37,10 +39,21 @@ LINEAR = {
 
 
 def slice_of(horizontal: str, vertical: str, **given: str) -> Slice:
-    parameters = {"L1": "1", "L2": "3/2", "k1": "100", "k2": "90", "k3": "80", "l0_1": "1/5", "l0_3": "1/4"} | given
+    parameters = {
+        "L1": "1",
+        "L2": "3/2",
+        "k1": "100",
+        "k2": "90",
+        "k3": "80",
+        "l0_1": "1/5",
+        "l0_3": "1/4",
+    } | given
     if "l0" in (horizontal, vertical):
         parameters = {n: v for n, v in parameters.items() if not n.startswith("l0_")}
-    window = {horizontal: ["1/20", "2"], vertical: ["0" if vertical.startswith("l0") else "-30", "1"]}
+    window = {
+        horizontal: ["1/20", "2"],
+        vertical: ["0" if vertical.startswith("l0") else "-30", "1"],
+    }
     if vertical == "k3":
         parameters.pop("k3")
         window[vertical] = ["10", "100"]
@@ -68,7 +81,12 @@ def test_rest_and_slope_are_the_equation(axis: str) -> None:
     rng = random.Random(2)
     for formula, quotient in found:
         for _ in range(5):
-            point = [rng.uniform(0.1, 2), rng.uniform(0.1, 1), rng.uniform(-3, 3), rng.uniform(-3, 3)]
+            point = [
+                rng.uniform(0.1, 2),
+                rng.uniform(0.1, 1),
+                rng.uniform(-3, 3),
+                rng.uniform(-3, 3),
+            ]
             whole, rest, slope = values([formula, quotient.rest, quotient.slope], point)
             assert abs(rest + slope * point[1] - whole) < 1e-9 * (1 + abs(whole))
             point[1] += 7
@@ -85,7 +103,9 @@ def test_what_is_not_linear_is_left_alone() -> None:
 
 
 def test_a_solution_at_which_the_slope_is_zero_is_kept() -> None:
-    """t (y - 1) = 0 and x + t y = 0 at t = 0 and x = 0, whatever y is: the rests are zero there, too."""
+    """t (y - 1) = 0 and x + t y = 0 at t = 0 and x = 0, whatever y is: the rests are zero there,
+    too.
+    """
     graph = Graph()
     x, y, t = (graph.variable(k) for k in range(3))
     equations = [t * y - t, x + t * y]
@@ -101,7 +121,8 @@ def test_a_solution_at_which_the_slope_is_zero_is_kept() -> None:
 
 
 def equilibria_over_two_linear_axes(number: int) -> tuple[EquationSystem, list[Floats]]:
-    """The equations of equilibrium over axes F and l0, and solutions: the angles by chance, the axes by Cramer's rule.
+    """The equations of equilibrium over axes F and l0, and solutions: the angles by chance, the
+    axes by Cramer's rule.
 
     Some angles are right, where the slope of a load is zero, or zero, where a spring is short.
     """
@@ -117,7 +138,10 @@ def equilibria_over_two_linear_axes(number: int) -> tuple[EquationSystem, list[F
     gradient = [graph.derivative(e, axis) for e in m.equations for axis in (0, 1)]
     rng, found = random.Random(4), list[Floats]()
     while len(found) < number:
-        angles = [rng.choice([rng.uniform(-3, 3), np.pi / 2, 1e-3, rng.uniform(-0.1, 0.1)]) for _ in range(2)]
+        angles = [
+            rng.choice([rng.uniform(-3, 3), np.pi / 2, 1e-3, rng.uniform(-0.1, 0.1)])
+            for _ in range(2)
+        ]
         e1, e2, *j = values([*m.equations, *gradient], [0.0, 0.0, *angles])
         determinant = j[0] * j[3] - j[1] * j[2]
         if abs(determinant) > 1e-6:
@@ -148,18 +172,24 @@ def test_contraction_keeps_equilibria_and_tells_the_axes() -> None:
 
 @pytest.mark.slow
 def test_the_search_takes_fewer_boxes() -> None:
-    """On a part of a slice with an axis l0, in which the curve is regular; without what is solved it takes many."""
+    """On a part of a slice with an axis l0, in which the curve is regular; without what is solved
+    it takes many.
+    """
     slice = slice_of("rho", "l0", F3="-10", F4="-10")
     curve = curves(slice, Count.STABLE)[0]
     with_all = curve.system.arguments()
     without = with_all._replace(solved=np.empty((0, 3), np.int64), solved_end=0)
     window = curve.start(np.array([[0.5, 0.3, 1.5, 0.6]]))
-    used = [search_curve(a, window, 1e-4, 10**6, curve.importance()).used for a in (with_all, without)]
+    used = [
+        search_curve(a, window, 1e-4, 10**6, curve.importance()).used for a in (with_all, without)
+    ]
     assert used[0] < 0.8 * used[1]
 
 
 def test_a_value_that_is_given_is_not_narrowed() -> None:
-    """On a line one axis is floats around a number: what the equations say of it would leave the number out."""
+    """On a line one axis is floats around a number: what the equations say of it would leave the
+    number out.
+    """
     curve = curves(slice_of("rho", "F", F3="F", F4="F"), Count.STABLE)[0]
     assert set(curve.system.solved[:, 0].tolist()) == {1}
     assert set(on_line(curve.system, 1).solved[:, 0].tolist()) == {1}

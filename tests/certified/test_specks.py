@@ -31,7 +31,9 @@ EMPTY = np.array([[0.5, 0.5, 0.501, 0.51], [-0.3, 0.1, -0.299, 0.1001], [1.5, -2
 
 
 def curves() -> list[CurveEnclosure]:
-    """The unit circle with the small one, and a line, all of them enclosed; with boxes that hold nothing."""
+    """The unit circle with the small one, and a line, all of them enclosed; with boxes that hold
+    nothing.
+    """
     graph = Graph()
     x, y = graph.variable(0), graph.variable(1)
 
@@ -41,7 +43,10 @@ def curves() -> list[CurveEnclosure]:
 
     both = circle(0.0, 1.0) * circle(AT, SMALL)
     line = x - graph.constant(1.75)
-    made = [CriticalCurve(name, "", system([f], (0, 1)), ()) for name, f in (("circles", both), ("line", line))]
+    made = [
+        CriticalCurve(name, "", system([f], (0, 1)), ())
+        for name, f in (("circles", both), ("line", line))
+    ]
     found = begin(made, np.array([[-2.0, -2.0, 2.0, 2.0]]))
     assert refine(found, AREA, 1)
     for enclosure in found:
@@ -69,7 +74,9 @@ def middles(boxes: Boxes) -> np.ndarray:
 
 
 def test_what_meets() -> None:
-    """All intervals with ends from 0 to 3, against closed intervals by definition; a third variable does not count."""
+    """All intervals with ends from 0 to 3, against closed intervals by definition; a third variable
+    does not count.
+    """
     spans = [(a, b) for a, b in product(range(4), repeat=2) if a <= b]
     sides = np.array(list(product(spans, repeat=2)), dtype=float)  # of shape (k, axis, end)
     rectangles = np.concatenate([sides[:, :, 0], sides[:, :, 1]], axis=1)
@@ -77,7 +84,10 @@ def test_what_meets() -> None:
     boxes = np.concatenate([sides[:, :, 0], third, sides[:, :, 1], third], axis=1)
     found = meeting(rectangles, boxes)
     for i, j in product(range(0, len(sides), 3), range(len(sides))):
-        common = [range(max(a[0], b[0]), min(a[1], b[1]) + 1) for a, b in zip(*sides[[i, j]].astype(int), strict=True)]
+        common = [
+            range(max(a[0], b[0]), min(a[1], b[1]) + 1)
+            for a, b in zip(*sides[[i, j]].astype(int), strict=True)
+        ]
         assert found[i, j] == all(map(len, common))
 
 
@@ -87,7 +97,9 @@ def test_what_no_curve_enters_is_taken_away_and_nothing_else(thin: bool) -> None
     cover = LATTICE.cover(box_rectangles(enclosures))
     if thin:
         strips = thinning(enclosures, LATTICE, 1).cover(0.01)
-        cover = Cover(cover.steps, tuple(sorted({*strips.rectangles, *LATTICE.cover(EMPTY).rectangles})))
+        cover = Cover(
+            cover.steps, tuple(sorted({*strips.rectangles, *LATTICE.cover(EMPTY).rectangles}))
+        )
     assert covered(cover, points()).all() and covered(cover, middles(EMPTY)).all()
     found = without_specks(components(cover), enclosures, LATTICE, AREA).cover
     assert covered(found, points()).all()

@@ -23,10 +23,17 @@ SMALL = st.integers(-3, 3)
 NEAR = st.sampled_from([Q(0), Q(1, 10**40), Q(1, 3), Q(-2), Q(10**9)])
 
 
-@given(st.lists(st.tuples(SMALL, NEAR), min_size=2, max_size=4), st.lists(SMALL, min_size=6, max_size=6))
+@given(
+    st.lists(st.tuples(SMALL, NEAR), min_size=2, max_size=4),
+    st.lists(SMALL, min_size=6, max_size=6),
+)
 @settings(max_examples=examples(60))
-def test_eigenvalues_that_are_known_by_construction(chosen: list[tuple[int, Q]], turns: list[int]) -> None:
-    """Q D Q' with Cayley's rational rotation Q = (I - S) (I + S)^-1; D has entries that are equal, or nearly."""
+def test_eigenvalues_that_are_known_by_construction(
+    chosen: list[tuple[int, Q]], turns: list[int]
+) -> None:
+    """Q D Q' with Cayley's rational rotation Q = (I - S) (I + S)^-1; D has entries that are equal,
+    or nearly.
+    """
     size = len(chosen)
     values = sorted(n + d for n, d in chosen)
     skew, rest = fmpq_mat(size, size), iter(turns)
@@ -48,9 +55,12 @@ def test_eigenvalues_that_are_known_by_construction(chosen: list[tuple[int, Q]],
 
 
 @pytest.mark.parametrize(
-    ("corner", "ends"), [([-1, 1, 1, -1], (-2, 0)), ([1, 1, 1, 1], (0, 2)), ([1, 0, 0, -1], (-1, 1))]
+    ("corner", "ends"),
+    [([-1, 1, 1, -1], (-2, 0)), ([1, 1, 1, 1], (0, 2)), ([1, 0, 0, -1], (-1, 1))],
 )
-def test_wide_balls_enclose_the_eigenvalues_of_their_corners(corner: list[int], ends: tuple[int, int]) -> None:
+def test_wide_balls_enclose_the_eigenvalues_of_their_corners(
+    corner: list[int], ends: tuple[int, int]
+) -> None:
     """All entries of 3 I are known to 1/4 only: corners move the eigenvalues by up to 1/2."""
     wide = arb_mat(2, 2, [arb(3 * (k in (0, 3)), 0.25) for k in range(4)])
     for ball, end in zip(ordered_eigenvalues(wide), ends, strict=True):
@@ -58,15 +68,20 @@ def test_wide_balls_enclose_the_eigenvalues_of_their_corners(corner: list[int], 
 
 
 def test_nothing_is_said_of_a_matrix_that_is_not_finite() -> None:
-    assert not any(ball.is_finite() for ball in ordered_eigenvalues(arb_mat(2, 2, [1, 0, 0, arb.nan()])))
+    assert not any(
+        ball.is_finite() for ball in ordered_eigenvalues(arb_mat(2, 2, [1, 0, 0, arb.nan()]))
+    )
 
 
 def sliders(number: int) -> dict[str, Any]:
-    """Sliders on guides of their own, each with one spring along its guide: the Hessian is the identity everywhere."""
+    """Sliders on guides of their own, each with one spring along its guide: the Hessian is the
+    identity everywhere.
+    """
     return {
         "parameters": {"F": {"kind": "force"}, "l": {"kind": "free length"}},
         "unknowns": {f"x{n}": "length" for n in range(number)},
-        "points": {f"A{n}": [0, n] for n in range(number)} | {f"S{n}": [f"x{n}", n] for n in range(number)},
+        "points": {f"A{n}": [0, n] for n in range(number)}
+        | {f"S{n}": [f"x{n}", n] for n in range(number)},
         "springs": [{"between": [f"A{n}", f"S{n}"], "k": 1, "free": "l"} for n in range(number)],
         "loads": {f"S{n}": [f"F/{n + 3}", 0] for n in range(number)},
     }
@@ -81,11 +96,16 @@ def test_a_hessian_that_is_the_identity_has_index_and_stability(number: int) -> 
     for pose in found.equilibria:
         assert pose.stable
         assert all(value.low <= 1 <= value.high for value in pose.eigenvalues)
-        assert [value.text(5) for value in pose.eigenvalues] in (["1.0000"] * number, ["1"] * number)
+        assert [value.text(5) for value in pose.eigenvalues] in (
+            ["1.0000"] * number,
+            ["1"] * number,
+        )
 
 
 def test_two_pendulums_alike_have_equal_irrational_eigenvalues() -> None:
-    """Two that do not know of each other: with the four poses of one, 16, of index 0, 1 and 2 as 4, 8 and 4."""
+    """Two that do not know of each other: with the four poses of one, 16, of index 0, 1 and 2 as 4,
+    8 and 4.
+    """
     alike = {
         "parameters": {"l0": {"kind": "free length"}, "W": {"kind": "force"}},
         "unknowns": {"th": "angle", "phi": "angle"},
@@ -93,11 +113,18 @@ def test_two_pendulums_alike_have_equal_irrational_eigenvalues() -> None:
         "springs": [{"between": ["A", end], "k": 1, "free": "l0"} for end in "PQ"],
         "loads": {end: {"weight": "W"} for end in "PQ"},
     }
-    alone = {**alike, "unknowns": {"th": "angle"}, "points": {n: alike["points"][n] for n in "AP"}} | {
+    alone = {
+        **alike,
+        "unknowns": {"th": "angle"},
+        "points": {n: alike["points"][n] for n in "AP"},
+    } | {
         "springs": alike["springs"][:1],
         "loads": {"P": {"weight": "W"}},
     }
-    one, both = (ptmcad.solve(model=ptmcad.Mechanism(record), l0=3, W="1/5").equilibria for record in (alone, alike))
+    one, both = (
+        ptmcad.solve(model=ptmcad.Mechanism(record), l0=3, W="1/5").equilibria
+        for record in (alone, alike)
+    )
     texts = sorted(pose.eigenvalues[0].text(8) for pose in one)
     assert len(texts) == 4
     assert [sum(pose.index == n for pose in both) for n in range(3)] == [4, 8, 4]

@@ -1,4 +1,6 @@
-"""The potential that a certified map states, evaluated as text, against the poses that were solved another way."""
+"""The potential that a certified map states, evaluated as text, against the poses that were solved
+another way.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,10 @@ ARM: dict[str, Any] = {
         "parameters": {"M": {}, "F": {"kind": "force"}, "c": {"kind": "stiffness", "default": 2}},
         "unknowns": {"th": "angle", "s": "length"},
         "points": {"O": [0, 0], "A": [2, 1], "B": ["s", 0], "P": ["cos(th)", "sin(th)"]},
-        "springs": [{"between": ["A", "P"], "k": 1, "free": "1/2"}, {"between": ["B", "P"], "k": "c"}],
+        "springs": [
+            {"between": ["A", "P"], "k": 1, "free": "1/2"},
+            {"between": ["B", "P"], "k": "c"},
+        ],
         "torsion": [{"angle": "2*th", "k": "c", "rest": {"cos": "3/5", "sin": "-4/5"}}],
         "loads": {"P": ["F", "1/3"]},
     },
@@ -39,7 +44,12 @@ def test_the_stated_potential_is_level_at_every_equilibrium(moments: dict[str, s
     model = ptmcad.slice_from_mapping(record).model
     at = {"F": "1/4", "c": "2"} | ({"M": "1/3"} if moments else {})
     text = compile(system_text(model).potential.replace("^", "**"), "potential", "eval")
-    known: dict[str, Any] = {"cos": cos, "sin": sin, "sqrt": sqrt, **{n: eval(v) for n, v in at.items()}}
+    known: dict[str, Any] = {
+        "cos": cos,
+        "sin": sin,
+        "sqrt": sqrt,
+        **{n: eval(v) for n, v in at.items()},
+    }
     poses = poses_at(model, point_from_mapping(at, model), 12).equilibria
     assert poses
 

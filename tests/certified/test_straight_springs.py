@@ -1,4 +1,6 @@
-"""Springs on one line each (Lemma S6): counts against every side solved by itself, maps against known areas."""
+"""Springs on one line each (Lemma S6): counts against every side solved by itself, maps against
+known areas.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +55,10 @@ def sliding(guide: str, count: str = "index", **axes: list[Any]) -> dict[str, An
             },
             "unknowns": {"x": "length"},
             "points": {"O": [0, 0], "S": [f"{ex}*x", f"{ey}*x"], "A": [f"{ex}*a", f"{ey}*a"]},
-            "springs": [{"between": ["O", "S"], "k": 1, "free": "l"}, {"between": ["A", "S"], "k": "K", "free": "m"}],
+            "springs": [
+                {"between": ["O", "S"], "k": 1, "free": "l"},
+                {"between": ["A", "S"], "k": "K", "free": "m"},
+            ],
             "loads": {"S": [f"{ex}*F", f"{ey}*F"]},
         },
         "axes": axes or {"F": [-1, 1], "a": [0, 1]},
@@ -80,13 +85,19 @@ YOKE: dict[str, Any] = {
     "axes": {"F": [-1, 1], "a": [-1, 1]},
     "count": "index",
 }
-"""The crank of a Scotch yoke: a pin in an upright slot, whose slider a spring pulls along its guide."""
+"""The crank of a Scotch yoke: a pin in an upright slot, whose slider a spring pulls along its
+guide.
+"""
 
 
 def counted(record: dict[str, Any], **values: Fraction) -> Any:
     model = ptmcad.slice_from_mapping(record).model
-    defaults = {name: Fraction(p.default) for name, p in model.parameters.items() if p.default is not None}
-    return plain_counter(point_slice(model, defaults | values)).at(Fraction(0), Fraction(0), Count.INDEX)
+    defaults = {
+        name: Fraction(p.default) for name, p in model.parameters.items() if p.default is not None
+    }
+    return plain_counter(point_slice(model, defaults | values)).at(
+        Fraction(0), Fraction(0), Count.INDEX
+    )
 
 
 small = st.fractions(min_value=-2, max_value=2, max_denominator=8)
@@ -98,13 +109,17 @@ lengths = st.fractions(min_value=Fraction(1, 8), max_value=2, max_denominator=8)
 def test_a_slider_has_the_equilibria_of_every_side(
     guide: str, free: Fraction, other: Fraction, stiff: Fraction, a: Fraction, force: Fraction
 ) -> None:
-    """On each side of both kinks forces are linear, k (s - l) + K (s - a - m) = F, and s has to be on these sides."""
+    """On each side of both kinks forces are linear, k (s - l) + K (s - a - m) = F, and s has to be
+    on these sides.
+    """
     norm, found = GUIDES[guide], 0
     assume(a)
     for one, two in product((1, -1), repeat=2):
-        s = (float(force) + one * float(free) / norm + float(stiff) * (float(a) + two * float(other) / norm)) / (
-            1 + float(stiff)
-        )
+        s = (
+            float(force)
+            + one * float(free) / norm
+            + float(stiff) * (float(a) + two * float(other) / norm)
+        ) / (1 + float(stiff))
         sides = one * s, two * (s - float(a))
         assume(all(abs(side) > 1e-6 for side in sides))
         found += min(sides) > 0
@@ -117,7 +132,9 @@ def test_a_slider_has_the_equilibria_of_every_side(
 
 
 def yoke_by_algebra(a: Fraction, free: Fraction, force: Fraction, up: Fraction) -> Iterator[bool]:
-    """Of each equilibrium whether it is a minimum: on either side a quartic in t = tan(th/2), its roots in balls."""
+    """Of each equilibrium whether it is a minimum: on either side a quartic in t = tan(th/2), its
+    roots in balls.
+    """
     t = fmpq_poly([0, 1])
     at, length, across, above = (from_fraction(v) for v in (a, free, force, up))
     one, c, s = t * t + 1, 1 - t * t, 2 * t
@@ -142,7 +159,9 @@ def yoke_by_algebra(a: Fraction, free: Fraction, force: Fraction, up: Fraction) 
 
 @settings(max_examples=examples(40), deadline=None)
 @given(small, lengths, small, small)
-def test_a_yoke_has_the_index_that_algebra_tells(a: Fraction, free: Fraction, force: Fraction, up: Fraction) -> None:
+def test_a_yoke_has_the_index_that_algebra_tells(
+    a: Fraction, free: Fraction, force: Fraction, up: Fraction
+) -> None:
     assume(abs(a) != 1 and up != 0)
     minima = list(yoke_by_algebra(a, free, force, up))
     count = counted(YOKE, a=a, l=free, F=force, G=up)
@@ -151,19 +170,28 @@ def test_a_yoke_has_the_index_that_algebra_tells(a: Fraction, free: Fraction, fo
 
 
 def test_smoothing_has_the_peak_at_the_kink_as_one_more() -> None:
-    """With sqrt(s^2 + eps) for |s| equilibria are those that are counted and, where the kink outweighs, its peak."""
+    """With sqrt(s^2 + eps) for |s| equilibria are those that are counted and, where the kink
+    outweighs, its peak.
+    """
     x = np.linspace(-4, 4, 800001)
     for force, free in product((-1.3, -0.7, 0.2, 0.9), (0.5, 1.0)):
         slope = x - free * x / np.sqrt(x * x + 1e-8) - force
         smooth = int(np.count_nonzero(np.sign(slope[1:]) != np.sign(slope[:-1])))
-        values = {"l": Fraction(free), "F": Fraction(force), "K": Fraction(1, 10**9), "m": Fraction(0)}
+        values = {
+            "l": Fraction(free),
+            "F": Fraction(force),
+            "K": Fraction(1, 10**9),
+            "m": Fraction(0),
+        }
         assert counted(sliding("1, 0"), **values).total + (abs(force) < free) == smooth
 
 
 @cache
 def map_of(guide: str, count: str) -> RegionMap:
     slice = ptmcad.slice_from_mapping(sliding(guide, count, F=["-3/2", "3/2"], l=[0, 1]))
-    alone = replace(slice, parameters={**slice.parameters, "K": slice.parameters["K"] * 0 + Fraction(1, 10**6)})
+    alone = replace(
+        slice, parameters={**slice.parameters, "K": slice.parameters["K"] * 0 + Fraction(1, 10**6)}
+    )
     return certified_map(alone, Options(tolerance=Fraction(1, 50), jobs=1))
 
 
@@ -175,19 +203,27 @@ def test_a_map_has_the_area_between_two_lines(guide: str, count: str) -> None:
     areas = map_of(guide, count).regions
     two = [r for r in areas if 2 in (r.total, r.stable)]
     true = 1 / GUIDES[guide]
-    assert sum(float(r.area[0]) for r in two) - 1e-4 <= true <= sum(float(r.area[1]) for r in two) + 1e-4
+    assert (
+        sum(float(r.area[0]) for r in two) - 1e-4
+        <= true
+        <= sum(float(r.area[1]) for r in two) + 1e-4
+    )
     assert map_of(guide, count).undetermined < Fraction(1, 50)
 
 
 def test_without_sides_nothing_is_decided(monkeypatch: pytest.MonkeyPatch) -> None:
-    """If a spring on a line may have any direction, as others may, its solutions are not told apart."""
+    """If a spring on a line may have any direction, as others may, its solutions are not told
+    apart.
+    """
     assert counted(YOKE, F=Fraction(1, 5)).decided
     monkeypatch.setattr(plain_points, "branches", lambda problem, _: (problem,))
     assert not counted(YOKE, F=Fraction(1, 5)).decided
 
 
 def test_without_the_kinks_a_map_is_false(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The lemma's boundaries s = 0 are needed: without them one cell has points with one and with two equilibria."""
+    """The lemma's boundaries s = 0 are needed: without them one cell has points with one and with
+    two equilibria.
+    """
     monkeypatch.setattr(plain_curves, "_boundaries", lambda *_: iter(()))
     slice = ptmcad.slice_from_mapping(sliding("1, 0", "total", F=["-3/2", "3/2"], l=[0, 1]))
     assert len(certified_map(slice, Options(tolerance=Fraction(1, 50), jobs=1)).regions) == 1
@@ -197,7 +233,9 @@ def test_without_the_sides_as_conditions_counts_are_false(monkeypatch: pytest.Mo
     """An equilibrium of the energy continued across the kink is none of the mechanism."""
 
     def unconditional(problem: Any, axes: Any) -> Any:
-        return tuple(replace(branch, inequalities=(), where="") for branch in branches(problem, axes))
+        return tuple(
+            replace(branch, inequalities=(), where="") for branch in branches(problem, axes)
+        )
 
     values = {"F": Fraction(3), "a": Fraction(1, 3), "m": Fraction(1, 4)}
     assert counted(sliding("1, 0"), **values).total == 1
@@ -210,13 +248,19 @@ def lines(slice: Slice) -> int:
 
 
 def test_a_line_needs_a_direction_everywhere() -> None:
-    """Where e is zero the spring has no length in any configuration, and there are no equilibria by definition."""
+    """Where e is zero the spring has no length in any configuration, and there are no equilibria by
+    definition.
+    """
     record = sliding("c, s", F=[-1, 1], t=[-1, 1])
     mechanism = record["mechanism"]
     mechanism["parameters"] |= {"c": {"kind": "number"}, "s": {"kind": "number"}}
     turned = {**record, "parameters": {"c": "(1 - t^2)/(1 + t^2)", "s": "2*t/(1 + t^2)", "m": 1}}
     assert lines(ptmcad.slice_from_mapping(turned)) == 4
-    vanishing = {**record, "axes": {"t": [-1, 1], "F": [-1, 1]}, "parameters": {"c": "t", "s": "F", "m": 1}}
+    vanishing = {
+        **record,
+        "axes": {"t": [-1, 1], "F": [-1, 1]},
+        "parameters": {"c": "t", "s": "F", "m": 1},
+    }
     assert lines(ptmcad.slice_from_mapping(vanishing)) == 1
     away = {**vanishing, "axes": {"t": ["1/2", 1], "F": [-1, 1]}}
     assert lines(ptmcad.slice_from_mapping(away)) == 4
@@ -224,7 +268,13 @@ def test_a_line_needs_a_direction_everywhere() -> None:
 
 def test_equal_maps_whatever_the_guide() -> None:
     """A slanted guide is the mechanism turned, whether its direction is a number or a parameter."""
-    at = {"l": Fraction(1), "m": Fraction(1, 2), "K": Fraction(2), "a": Fraction(1, 2), "F": Fraction(1, 4)}
+    at = {
+        "l": Fraction(1),
+        "m": Fraction(1, 2),
+        "K": Fraction(2),
+        "a": Fraction(1, 2),
+        "F": Fraction(1, 4),
+    }
     straight, slanted = (counted(sliding(guide), **at) for guide in ("1, 0", "3/5, 4/5"))
     assert straight.index == slanted.index
 
@@ -252,7 +302,9 @@ LOOP: dict[str, Any] = {
 
 
 def loop_by_samples(force: float, up: float, free: float = 0.5) -> tuple[int, int]:
-    """Equilibria and minima on both ways of assembling it, from the energy on a fine grid of crank angles."""
+    """Equilibria and minima on both ways of assembling it, from the energy on a fine grid of crank
+    angles.
+    """
     total = stable = 0
     th = (np.arange(400000) + 0.37) * (2 * np.pi / 400000)
     for sign in (1, -1):
@@ -262,7 +314,8 @@ def loop_by_samples(force: float, up: float, free: float = 0.5) -> tuple[int, in
         high = (energy > np.roll(energy, 1)) & (energy > np.roll(energy, -1))
         peaks = int(np.count_nonzero(np.sign(s) != np.sign(np.roll(s, 1))))
         kinks = sum(
-            bool(high[max(k - 2, 0) : k + 3].any()) for k in np.flatnonzero(np.sign(s) != np.sign(np.roll(s, 1)))
+            bool(high[max(k - 2, 0) : k + 3].any())
+            for k in np.flatnonzero(np.sign(s) != np.sign(np.roll(s, 1)))
         )
         assert peaks in (0, 2)
         total += int(low.sum() + high.sum()) - kinks
@@ -290,19 +343,28 @@ PAIR: dict[str, Any] = {
         },
         "unknowns": {"x": "length", "y": "length"},
         "points": {"O": [0, 0], "S": ["x", 0], "T": ["y", 0]},
-        "springs": [{"between": ["O", "S"], "k": 1, "free": 1}, {"between": ["S", "T"], "k": 2, "free": "m"}],
+        "springs": [
+            {"between": ["O", "S"], "k": 1, "free": 1},
+            {"between": ["S", "T"], "k": 2, "free": "m"},
+        ],
         "loads": {"S": ["F", 0], "T": ["G", 0]},
     },
     "axes": {"F": [-1, 1], "m": [0, 1]},
     "count": "index",
 }
-"""Two sliders on one guide: a spring holds the first one, and another spring the second one by the first."""
+"""Two sliders on one guide: a spring holds the first one, and another spring the second one by the
+first.
+"""
 
 
-@pytest.mark.parametrize(("force", "free"), [("1/10", "1/2"), ("-5/4", "1/2"), ("1/10", "1/7"), ("3/2", "1/10")])
+@pytest.mark.parametrize(
+    ("force", "free"), [("1/10", "1/2"), ("-5/4", "1/2"), ("1/10", "1/7"), ("3/2", "1/10")]
+)
 @pytest.mark.slow_cases("1/10-1/2", "-5/4-1/2")
 def test_two_sliders_have_the_equilibria_of_every_side(force: str, free: str) -> None:
     """x = F + G + p and y - x = G/2 + q m on the sides p, q, exactly."""
     f, m, g = Fraction(force), Fraction(free), Fraction(1, 3)
-    true = sum(p * (f + g + p) > 0 and q * (g / 2 + q * m) > 0 for p, q in product((1, -1), repeat=2))
+    true = sum(
+        p * (f + g + p) > 0 and q * (g / 2 + q * m) > 0 for p, q in product((1, -1), repeat=2)
+    )
     assert counted(PAIR, F=f, m=m, G=g).index == (true, 0, 0)

@@ -23,7 +23,9 @@ COEFFICIENTS = st.fractions(-3, 3, max_denominator=8)
 
 
 def polynomial_curve(p: list[Fraction], q: list[Fraction], kind: str) -> EquationSystem:
-    """x = p(t), y = q(t), as two equations in x, y, t; or two others that hold there, linear or curved in x and y."""
+    """x = p(t), y = q(t), as two equations in x, y, t; or two others that hold there, linear or
+    curved in x and y.
+    """
     graph = Graph()
     x, y, t = (graph.variable(k) for k in range(3))
 
@@ -78,12 +80,22 @@ def test_points_of_a_curve_are_in_pieces_of_its_strips(
         t = Fraction(low) + (Fraction(high) - Fraction(low)) * k / 40
         x, y = value(p, t), value(q, t)
         if box[0, 0] <= x <= box[0, 3] and box[0, 1] <= y <= box[0, 4]:
-            assert any(r[0] <= x <= r[2] and r[1] <= y <= r[3] for r in rectangles.tolist()), (t, x, y)
+            assert any(r[0] <= x <= r[2] and r[1] <= y <= r[3] for r in rectangles.tolist()), (
+                t,
+                x,
+                y,
+            )
 
 
 @settings(deadline=None, max_examples=examples(200))
-@given(st.fractions(-1, 1, max_denominator=100), st.sampled_from((0.5, 0.1, 1e-3)), st.sampled_from((inf, 1e-3, 0.0)))
-def test_points_of_a_circle_are_in_pieces_of_its_strips(s: Fraction, width: float, area: float) -> None:
+@given(
+    st.fractions(-1, 1, max_denominator=100),
+    st.sampled_from((0.5, 0.1, 1e-3)),
+    st.sampled_from((inf, 1e-3, 0.0)),
+)
+def test_points_of_a_circle_are_in_pieces_of_its_strips(
+    s: Fraction, width: float, area: float
+) -> None:
     """x^2 + y^2 = 1, t = y: the strip's slope is uncertain here, and nothing else is."""
 
     def point(s: Fraction) -> tuple[Fraction, Fraction]:
@@ -102,14 +114,20 @@ def test_points_of_a_circle_are_in_pieces_of_its_strips(s: Fraction, width: floa
 
 
 def test_the_finest_pieces_of_a_smooth_curve_are_as_thin_as_it_is_bent() -> None:
-    """A box of half the width has a strip of a quarter of the thickness, so pieces of an eighth of the area."""
+    """A box of half the width has a strip of a quarter of the thickness, so pieces of an eighth of
+    the area.
+    """
     p, q = [Fraction(0), Fraction(1), Fraction(1, 2)], [Fraction(1), Fraction(2), Fraction(-1)]
     areas = []
     for width in (0.02, 0.01, 0.005):
-        found = strips(polynomial_curve(p, q, "mixed").arguments(), box_around(p, q, 0.3, 0.3 + width))
+        found = strips(
+            polynomial_curve(p, q, "mixed").arguments(), box_around(p, q, 0.3, 0.3 + width)
+        )
         rectangles = pieces(found, 0.0)
         assert len(rectangles) > 8
-        exact = float(((rectangles[:, 2] - rectangles[:, 0]) * (rectangles[:, 3] - rectangles[:, 1])).sum())
+        exact = float(
+            ((rectangles[:, 2] - rectangles[:, 0]) * (rectangles[:, 3] - rectangles[:, 1])).sum()
+        )
         assert exact <= 1.001 * areas_of_pieces(found, 0.0).sum()
         areas.append(exact)
     assert areas[1] < 0.3 * areas[0]
@@ -119,7 +137,9 @@ def test_the_finest_pieces_of_a_smooth_curve_are_as_thin_as_it_is_bent() -> None
 @pytest.mark.parametrize("area", few([1e-2, 1e-4, 1e-6, 2e-7], 1e-2, 1e-4, 1e-6))
 @pytest.mark.slow_cases("1e-06")
 def test_covers_of_strips_are_as_thin_as_was_asked(area: float) -> None:
-    """The diagonal of the unit square, in 2^15 strips without thickness; 1/(2n) is the least area of n rectangles."""
+    """The diagonal of the unit square, in 2^15 strips without thickness; 1/(2n) is the least area
+    of n rectangles.
+    """
     ends = np.linspace(0, 1, 2**15 + 1)
     diagonal = np.zeros((2**15, 11))
     diagonal[:, 0] = diagonal[:, 1] = ends[:-1]
@@ -136,12 +156,16 @@ def test_covers_of_strips_are_as_thin_as_was_asked(area: float) -> None:
 
 def test_a_box_without_solutions_has_no_strip() -> None:
     p, q = [Fraction(0), Fraction(1)], [Fraction(0), Fraction(1)]
-    found = strips(polynomial_curve(p, q, "plain").arguments(), np.array([[0.0, 0.5, 0.0, 0.1, 0.6, 0.1]]))
+    found = strips(
+        polynomial_curve(p, q, "plain").arguments(), np.array([[0.0, 0.5, 0.0, 0.1, 0.6, 0.1]])
+    )
     assert len(found) == 0
 
 
 def test_a_box_with_an_unbounded_derivative_stays_whole() -> None:
-    """x = 1/t over an interval with t = 0: the natural test cannot exclude it, and nothing linear can be said."""
+    """x = 1/t over an interval with t = 0: the natural test cannot exclude it, and nothing linear
+    can be said.
+    """
     graph = Graph()
     x, y, t = (graph.variable(k) for k in range(3))
     curve = system([x - graph.constant(Fraction(1)) / t, y - t], (0, 1, 2))

@@ -1,4 +1,6 @@
-"""Equilibria of symmetric mechanisms with free lengths: exact numbers of those at rational points, and enclosures."""
+"""Equilibria of symmetric mechanisms with free lengths: exact numbers of those at rational points,
+and enclosures.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,10 @@ JAW: dict[str, Any] = {
     "unknowns": {"th": "angle", "phi": "angle"},
     "points": {"A": [-1, 1], "B": [1, 1], "P": ["sin(th)", "cos(th)"]},
     "bodies": {"jaw": {"at": "P", "angle": "phi + pi/2", "points": {"Q": [1, 0]}}},
-    "springs": [{"between": ["A", "Q"], "k": 10, "free": "l0"}, {"between": ["B", "Q"], "k": 10, "free": "l0"}],
+    "springs": [
+        {"between": ["A", "Q"], "k": 10, "free": "l0"},
+        {"between": ["B", "Q"], "k": 10, "free": "l0"},
+    ],
     "torsion": [{"angle": "th", "k": 2}, {"angle": "phi - th", "k": 1}],
     "loads": {"Q": [0, "-F"]},
 }
@@ -34,7 +39,9 @@ def with_anchor(x: object) -> Model:
 
 
 def test_an_upright_pendulum_by_hand() -> None:
-    """At th = 0 the spring has length 2: E = (2 - 1/2)^2/2 + 1, E'' = 3 - (1/2) 3/2 - 1; at th = pi length 4."""
+    """At th = 0 the spring has length 2: E = (2 - 1/2)^2/2 + 1, E'' = 3 - (1/2) 3/2 - 1; at th = pi
+    length 4.
+    """
     up, down = ptmcad.solve(model=ptmcad.Mechanism(PENDULUM), l0="1/2", W=1).equilibria
     assert (up.energy.exact, up.eigenvalues[0].exact) == (Fraction(17, 8), Fraction(5, 4))
     assert (up.angles[0].exact, up.springs[0].length.exact, up.nodes["P"][0].exact) == (0, 2, 0)
@@ -50,7 +57,9 @@ def test_a_mechanism_that_is_nearly_symmetric_is_not_taken_for_one_that_is() -> 
 
 
 def test_a_pose_that_no_symmetry_explains_is_proved_by_its_gradient() -> None:
-    """3-4-5: the spring pulls with 9/2 along (3, 4)/5 at th = 0, and the load takes the part across the bar."""
+    """3-4-5: the spring pulls with 9/2 along (3, 4)/5 at th = 0, and the load takes the part across
+    the bar.
+    """
     balanced = {**PENDULUM, "points": {**PENDULUM["points"], "A": [3, 5]}, "loads": {"P": ["W", 0]}}
     poses = ptmcad.solve(model=ptmcad.Mechanism(balanced), l0="1/2", W="-27/10")
     (up,) = (pose for pose in poses.equilibria if pose.stable)
@@ -58,7 +67,9 @@ def test_a_pose_that_no_symmetry_explains_is_proved_by_its_gradient() -> None:
 
 
 def test_a_cosine_that_is_a_short_decimal_by_accident_has_digits() -> None:
-    """A = (0, 2): E = (r - 1)^2/2 + (2/3) cos th with r^2 = 5 - 4 cos th is flat at r = 3/2, cos th = 11/16."""
+    """A = (0, 2): E = (r - 1)^2/2 + (2/3) cos th with r^2 = 5 - 4 cos th is flat at r = 3/2, cos
+    th = 11/16.
+    """
     short = {**PENDULUM, "points": {**PENDULUM["points"], "A": [0, 2]}}
     poses = ptmcad.solve(model=ptmcad.Mechanism(short), digits=8, l0=1, W="2/3")
     bent = [pose for pose in poses.equilibria if pose.stable]
@@ -67,7 +78,9 @@ def test_a_cosine_that_is_a_short_decimal_by_accident_has_digits() -> None:
 
 
 def test_a_jaw_with_torsion_springs_and_free_lengths() -> None:
-    """Two mirrored stable poses, and four with both angles 0 or pi; checked by the gradient in doubles elsewhere."""
+    """Two mirrored stable poses, and four with both angles 0 or pi; checked by the gradient in
+    doubles elsewhere.
+    """
     poses = ptmcad.solve(model=ptmcad.Mechanism(JAW), l0="1/2", F=2)
     assert [pose.index for pose in poses.equilibria] == [0, 0, 1, 1, 1, 2]
     one, other, *upright = poses.equilibria
@@ -93,7 +106,9 @@ def test_poses_are_followed_from_a_symmetric_start() -> None:
 
 def nearly(number: Enclosure | None, value: Fraction | int) -> bool:
     """Whether a number is proved to be a value but for 1e-12."""
-    return number is not None and abs(number.low - value) < Fraction(1, 10**12) > abs(number.high - value)
+    return number is not None and abs(number.low - value) < Fraction(1, 10**12) > abs(
+        number.high - value
+    )
 
 
 def test_a_relaxed_spring_has_nearly_its_free_length() -> None:
@@ -102,7 +117,11 @@ def test_a_relaxed_spring_has_nearly_its_free_length() -> None:
     assert [pose.stable for pose in poses] == [True, True, False, False]
     for pose in poses[:2]:
         spring = pose.springs[0]
-        assert nearly(spring.length, Fraction(12, 5)) and nearly(spring.force, 0) and nearly(pose.energy, 0)
+        assert (
+            nearly(spring.length, Fraction(12, 5))
+            and nearly(spring.force, 0)
+            and nearly(pose.energy, 0)
+        )
         assert pose.admissible is None, "whether the spring is longer than that is not decided"
         assert float(pose.cosines_sines[0]) == pytest.approx((10 - 2.4**2) / 6)
 
@@ -111,7 +130,10 @@ TRUSS = {
     "parameters": {"a": {"kind": "length"}, "b": {"kind": "length"}, "f": {"kind": "force"}},
     "unknowns": {"h": "length"},
     "points": {"A": ["-a", 0], "B": ["b", 0], "P": [0, "h"]},
-    "springs": [{"between": ["A", "P"], "k": 1, "free": 1}, {"between": ["B", "P"], "k": 1, "free": 1}],
+    "springs": [
+        {"between": ["A", "P"], "k": 1, "free": 1},
+        {"between": ["B", "P"], "k": 1, "free": 1},
+    ],
     "loads": {"P": [0, "f"]},
 }
 """Von Mises's truss, where b = a."""
@@ -119,7 +141,9 @@ TRUSS = {
 
 @pytest.mark.parametrize("a", ["3/5", "1/3"])
 def test_springs_that_are_relaxed_together_by_the_same_equation(a: str) -> None:
-    """Both halves of a symmetric truss without load have length 1 at h^2 = 1 - a^2, one equation for one unknown."""
+    """Both halves of a symmetric truss without load have length 1 at h^2 = 1 - a^2, one equation
+    for one unknown.
+    """
     stable, *others = ptmcad.solve(model=ptmcad.Mechanism(TRUSS), a=a, b=a, f=0).equilibria
     assert [pose.stable for pose in others] == [True, False]
     for pose in (stable, others[0]):
@@ -129,7 +153,9 @@ def test_springs_that_are_relaxed_together_by_the_same_equation(a: str) -> None:
 
 
 def test_an_unknown_may_have_the_name_of_a_number() -> None:
-    """The truss with its height called energy: at a = 3/5 without load the springs are relaxed at 4/5."""
+    """The truss with its height called energy: at a = 3/5 without load the springs are relaxed at
+    4/5.
+    """
     points = {"A": ["-a", 0], "B": ["b", 0], "P": [0, "energy"]}
     named = {**TRUSS, "unknowns": {"energy": "length"}, "points": points}
     stable, *_ = ptmcad.solve(model=ptmcad.Mechanism(named), a="3/5", b="3/5", f=0).equilibria
@@ -138,12 +164,16 @@ def test_an_unknown_may_have_the_name_of_a_number() -> None:
 
 
 def test_springs_that_are_relaxed_together_by_symmetry() -> None:
-    """A plate between four springs, level where all are relaxed: three equations in two unknowns, one where phi = 0."""
+    """A plate between four springs, level where all are relaxed: three equations in two unknowns,
+    one where phi = 0.
+    """
     plate = {
         "parameters": {"f": {"kind": "force"}},
         "unknowns": {"h": "length", "phi": "angle"},
         "points": {"A": [-2, 0], "B": [2, 0], "P": [0, "h"]},
-        "bodies": {"plate": {"at": "P", "angle": "phi", "points": {"Q": ["-1/2", 0], "R": ["1/2", 0]}}},
+        "bodies": {
+            "plate": {"at": "P", "angle": "phi", "points": {"Q": ["-1/2", 0], "R": ["1/2", 0]}}
+        },
         "springs": [
             {"between": pair, "k": 1, "free": free}
             for pair, free in (
@@ -159,22 +189,27 @@ def test_springs_that_are_relaxed_together_by_symmetry() -> None:
     relaxed = [pose for pose in poses.equilibria if nearly(pose.energy, 0)]
     assert len(relaxed) == 2
     for pose in relaxed:
-        assert all(nearly(s.length, Fraction(n, 10)) for s, n in zip(pose.springs, (21, 21, 29, 29), strict=True))
+        assert all(
+            nearly(s.length, Fraction(n, 10))
+            for s, n in zip(pose.springs, (21, 21, 29, 29), strict=True)
+        )
         assert float(pose.reals[0]) ** 2 == pytest.approx(2.16)
         assert pose.angles[0].exact == 0
 
 
 def test_springs_that_are_nearly_relaxed_together_are_not() -> None:
     """With b next to a the springs' equations contradict each other."""
-    pose = ptmcad.solve(model=ptmcad.Mechanism(TRUSS), a="3/5", b=Fraction(3, 5) + Fraction(1, 10**40), f=0).equilibria[
-        0
-    ]
+    pose = ptmcad.solve(
+        model=ptmcad.Mechanism(TRUSS), a="3/5", b=Fraction(3, 5) + Fraction(1, 10**40), f=0
+    ).equilibria[0]
     assert all(0 < abs(float(spring.force)) < 1e-38 for spring in pose.springs)
 
 
 @pytest.mark.parametrize("digits", [6, 7, 8])
 def test_a_number_that_may_be_halfway_between_two_texts_has_one_digit_more(digits: int) -> None:
-    """A pendulum's eigenvalue a^2 sin^2/l^2 = 0.99474375, which nothing explains, at seven digits; in a file, too."""
+    """A pendulum's eigenvalue a^2 sin^2/l^2 = 0.99474375, which nothing explains, at seven digits;
+    in a file, too.
+    """
     pendulum = {
         "parameters": {"a": {"kind": "length"}, "f": {"kind": "force"}},
         "unknowns": {"th": "angle"},
@@ -189,8 +224,14 @@ def test_a_number_that_may_be_halfway_between_two_texts_has_one_digit_more(digit
 
 
 @pytest.mark.parametrize("change", [{"W": "1e-60"}, {"M": "1e-60"}])
-def test_a_spring_that_is_nearly_relaxed_is_not_taken_for_one_that_is(change: dict[str, str]) -> None:
-    moved = {**PENDULUM, "parameters": {**PENDULUM["parameters"], "M": {"kind": "force"}}, "moments": {"th": "M"}}
+def test_a_spring_that_is_nearly_relaxed_is_not_taken_for_one_that_is(
+    change: dict[str, str],
+) -> None:
+    moved = {
+        **PENDULUM,
+        "parameters": {**PENDULUM["parameters"], "M": {"kind": "force"}},
+        "moments": {"th": "M"},
+    }
     at = {"W": "0", "M": "0", **change}
     pose = ptmcad.solve(model=ptmcad.Mechanism(moved), l0="12/5", **at).equilibria[0]
     assert 0 < abs(float(pose.springs[0].force)) < 1e-58
@@ -218,7 +259,12 @@ def test_springs_of_which_one_is_relaxed() -> None:
 LEANING: dict[str, Any] = {
     "parameters": {"l0": {"kind": "free length"}, "F": {"kind": "force"}},
     "unknowns": {"th": "angle"},
-    "points": {"O": [0, 0], "A": [2, 1], "P": ["cos(th)", "sin(th)"], "Z": ["cos(th) - 2*sin(th)", "3*cos(th)^2"]},
+    "points": {
+        "O": [0, 0],
+        "A": [2, 1],
+        "P": ["cos(th)", "sin(th)"],
+        "Z": ["cos(th) - 2*sin(th)", "3*cos(th)^2"],
+    },
     "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
     "loads": {"P": [0, "F"]},
 }
@@ -231,7 +277,10 @@ FOLDED: dict[str, Any] = {
         "B": ["cos(th)", "sin(th)"],
         "C": ["cos(th) + cos(th + bend)", "sin(th) + sin(th + bend)"],
     },
-    "springs": [{"between": ["A", "B"], "k": 1, "free": "1/10"}, {"between": ["A", "C"], "k": 1, "free": "1/10"}],
+    "springs": [
+        {"between": ["A", "B"], "k": 1, "free": "1/10"},
+        {"between": ["A", "C"], "k": 1, "free": "1/10"},
+    ],
     "loads": {"C": [0, "F"]},
 }
 
@@ -241,14 +290,20 @@ def test_what_is_zero_by_a_mirror_along_no_axis_is_enclosed() -> None:
     poses = ptmcad.solve(model=ptmcad.Mechanism(LEANING), l0="1/2", F=0)
     assert all(nearly(pose.nodes["Z"][0], 0) for pose in poses.equilibria)
     assert [pose.nodes["Z"][1].text(8) for pose in poses.equilibria] == ["2.4000000"] * 2
-    assert [pose.cosines_sines[0].text(8) for pose in poses.equilibria] == ["0.89442719", "-0.89442719"]
+    assert [pose.cosines_sines[0].text(8) for pose in poses.equilibria] == [
+        "0.89442719",
+        "-0.89442719",
+    ]
 
 
 @pytest.mark.parametrize("load", ["1e-12", "1e-60", "1e-75"])
 def test_what_is_nearly_zero_beside_a_slanted_mirror_is_not_told_as_zero(load: str) -> None:
     """Enclosed without zero, however near it is."""
     poses = ptmcad.solve(model=ptmcad.Mechanism(LEANING), l0="1/2", F=load)
-    assert all(pose.nodes["Z"][0].exact is None and abs(float(pose.nodes["Z"][0])) < 1e-11 for pose in poses.equilibria)
+    assert all(
+        pose.nodes["Z"][0].exact is None and abs(float(pose.nodes["Z"][0])) < 1e-11
+        for pose in poses.equilibria
+    )
 
 
 def test_a_number_that_no_proof_tells_from_zero_is_enclosed() -> None:
@@ -262,10 +317,14 @@ def test_a_number_that_no_proof_tells_from_zero_is_enclosed() -> None:
 
 
 def test_a_chain_folded_along_a_line_ends_in_its_pivot() -> None:
-    """Two bars of length 1 from O, the second by its angle to the first; by hand, C = O at the folded ones."""
+    """Two bars of length 1 from O, the second by its angle to the first; by hand, C = O at the
+    folded ones.
+    """
     poses = ptmcad.solve(model=ptmcad.Mechanism(FOLDED), F=0)
     assert [pose.index for pose in poses.equilibria] == [0, 0, 1, 1, 1, 2]
-    ends = [tuple(nearly(coordinate, 0) for coordinate in pose.nodes["C"]) for pose in poses.equilibria]
+    ends = [
+        tuple(nearly(coordinate, 0) for coordinate in pose.nodes["C"]) for pose in poses.equilibria
+    ]
     assert ends == [(False, False)] * 3 + [(True, True)] * 2 + [(False, False)]
     assert [spring.length.text(6) for spring in poses.equilibria[0].springs] == ["0.500000"] * 2
 
@@ -276,8 +335,8 @@ LONG = Fraction(333333333333333333333333333340, 10**30 + 1)
 
 @pytest.mark.parametrize("load", ["27/10", "2.7" + 140 * "0" + "1"])
 def test_a_rational_equilibrium_of_thirty_digits(load: str) -> None:
-    """P is (3, 4) from A, where the spring pulls with 9/2: as the load does, but for one in 10^141, which is within
-    the ball by which the place is guessed.
+    """P is (3, 4) from A, where the spring pulls with 9/2: as the load does, but for one in 10^141,
+    which is within the ball by which the place is guessed.
     """
     x, y = LONG, 1 / LONG
     bead = {
@@ -297,12 +356,18 @@ def test_a_rational_equilibrium_of_thirty_digits(load: str) -> None:
 
 @pytest.mark.parametrize("half", [Fraction(333333333333340, 10**15 + 1), LONG])
 def test_a_rational_angle_of_thirty_digits(half: Fraction) -> None:
-    """By the tangent of its half, or by its cosine and sine; the load takes what the spring pulls across the bar."""
+    """By the tangent of its half, or by its cosine and sine; the load takes what the spring pulls
+    across the bar.
+    """
     c, s = (1 - half**2) / (1 + half**2), 2 * half / (1 + half**2)
     load = Fraction(9, 2) * (Fraction(3, 5) * c - Fraction(4, 5) * s) / c
     balanced = {
         **PENDULUM,
-        "points": {"A": [str(s - 3), str(c - 4)], "P": ["sin(th)", "cos(th)"], "Z": [f"cos(th) - {c}", 1]},
+        "points": {
+            "A": [str(s - 3), str(c - 4)],
+            "P": ["sin(th)", "cos(th)"],
+            "Z": [f"cos(th) - {c}", 1],
+        },
         "loads": {"P": ["W", 0]},
     }
     poses = ptmcad.solve(model=ptmcad.Mechanism(balanced), l0="1/2", W=str(load)).equilibria

@@ -48,11 +48,20 @@ def test_coefficients_of_all_operations_hold_those_of_arb() -> None:
     try:
         for wide in (0.0, 0.125):
             for _ in range(20):
-                given = np.array([[rng.uniform(0.5, 2)] + [rng.uniform(-1, 1) for _ in range(ORDER)] for _ in (0, 1)])
+                given = np.array(
+                    [
+                        [rng.uniform(0.5, 2)] + [rng.uniform(-1, 1) for _ in range(ORDER)]
+                        for _ in (0, 1)
+                    ]
+                )
                 values = series(len(tape), ORDER)
                 extend(program(tape), given - wide, given + wide, values, 0, ORDER, len(tape))
-                there = [[arb(c + wide * rng.choice((-1, 0, 1))) for c in row] for row in given.tolist()]
-                for place, expected in zip(tape.outputs[0], by_arb(*map(arb_series, there)), strict=True):
+                there = [
+                    [arb(c + wide * rng.choice((-1, 0, 1))) for c in row] for row in given.tolist()
+                ]
+                for place, expected in zip(
+                    tape.outputs[0], by_arb(*map(arb_series, there)), strict=True
+                ):
                     for k in range(ORDER + 1):
                         low, high = values.low[place, k], values.high[place, k]
                         assert arb(low) <= expected[k] <= arb(high)
@@ -71,12 +80,14 @@ def exponential(order: int, most: float, end: float = 0.5) -> Tubes:
          for k in range(16) for a, b in [(end * (k - 8) / 8, end * (k - 7) / 8)]]
     )  # fmt: skip
     limits = (order, most, 4000)
-    return tubes(curve.arguments(), curve.alone().arguments(), boxes, np.ones(3), (0, -end, end), limits)
+    return tubes(
+        curve.arguments(), curve.alone().arguments(), boxes, np.ones(3), (0, -end, end), limits
+    )
 
 
 def test_a_tube_holds_its_curve_and_is_thinner_with_a_higher_order() -> None:
-    """About the middle the polynomial leaves t^(n + 1)/(1 - x), which the half width has to cover: red if the bound of
-    the next coefficient over the whole interval is left out."""
+    """About the middle the polynomial leaves t^(n + 1)/(1 - x), which the half width has to cover:
+    red if the bound of the next coefficient over the whole interval is left out."""
     widths = []
     for order in (3, 6, 12):
         found = exponential(order, 0.5, 0.3)
@@ -84,7 +95,10 @@ def test_a_tube_holds_its_curve_and_is_thinner_with_a_higher_order() -> None:
         for k in range(-40, 41):
             x = Fraction(3 * k, 400)
             t = (x - Fraction(found.middle)) / Fraction(found.radius)
-            center = sum((Fraction(c) * t**j for j, c in enumerate(found.coefficients[0].tolist())), Fraction(0))
+            center = sum(
+                (Fraction(c) * t**j for j, c in enumerate(found.coefficients[0].tolist())),
+                Fraction(0),
+            )
             assert abs(1 / (1 - x) - center) <= Fraction(found.half[0])
         widths.append(float(found.half[0]))
     assert widths[0] > 20 * widths[1] > 400 * widths[2]
@@ -108,5 +122,12 @@ def test_where_the_curve_turns_back_no_tube_is_found() -> None:
     x, y = graph.variable(0), graph.variable(1)
     curve = system([x - y.squared()], (0, 1))
     boxes = np.array([[-0.01, -0.5, 0.25, 0.5]])
-    found = tubes(curve.arguments(), curve.alone().arguments(), boxes, np.ones(2), (0, -0.01, 0.25), (8, 1e-3, 300))
+    found = tubes(
+        curve.arguments(),
+        curve.alone().arguments(),
+        boxes,
+        np.ones(2),
+        (0, -0.01, 0.25),
+        (8, 1e-3, 300),
+    )
     assert found.left > 0

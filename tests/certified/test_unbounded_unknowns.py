@@ -1,4 +1,6 @@
-"""Systems of which no bound of an unknown is proved over the window: the certified engine refuses them by its name."""
+"""Systems of which no bound of an unknown is proved over the window: the certified engine refuses
+them by its name.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ ANY = {"unknowns": PAIR, "equations": ["x*(y - a)", "x^2 - b*x"]}
 @pytest.mark.parametrize(("system", "name"), [(LEAVING, "x"), (ANY, "y")])
 def test_an_unknown_without_a_bound_is_named(system: dict[str, Any], name: str) -> None:
     record = {"name": "unbounded", "system": system, "axes": {"a": [-2, 2], "b": [1, 2]}}
-    with pytest.raises(ConfigError, match=f"no bound of the unknown {name} could be proved .* choose exact"):
+    with pytest.raises(
+        ConfigError, match=f"no bound of the unknown {name} could be proved .* choose exact"
+    ):
         ptmcad.classify(record, engine="certified", tolerance="1/20", jobs=1)
 
 

@@ -1,4 +1,6 @@
-"""``ptmcad classify`` with the certified engine: a stand-in that gives a map made by hand, and, slowly, the engine."""
+"""``ptmcad classify`` with the certified engine: a stand-in that gives a map made by hand, and,
+slowly, the engine.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +52,9 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         if options.progress is not None:
             options.progress("undetermined 28 %", 1, 2)
         if "stop" in calls:
-            raise LimitReached("the time limit was reached", partial=certified_map(slice.count, Status.PARTIAL))
+            raise LimitReached(
+                "the time limit was reached", partial=certified_map(slice.count, Status.PARTIAL)
+            )
         return replace(certified_map(slice.count), slice=slice, timings={"curves": 1.0})
 
     compiled, module = ModuleType("ptmcad.formulas.compiled"), ModuleType("ptmcad.certified.engine")
@@ -65,9 +69,15 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     return calls
 
 
-def test_a_map_that_contradicts_itself_is_not_gone_on_from(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Without its rectangles the cells of a map are not parted, and everything would pass as decided."""
-    false = replace(certified_map(), slice=free_slice(), cover=Cover(certified_map().cover.steps, ()))
+def test_a_map_that_contradicts_itself_is_not_gone_on_from(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without its rectangles the cells of a map are not parted, and everything would pass as
+    decided.
+    """
+    false = replace(
+        certified_map(), slice=free_slice(), cover=Cover(certified_map().cover.steps, ())
+    )
     path = tmp_path / "false.json"
     path.write_text(false.to_json(), encoding="utf-8")
     assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(path)]) == 2
@@ -77,7 +87,9 @@ def test_a_map_that_contradicts_itself_is_not_gone_on_from(tmp_path: Path, capsy
 def test_the_check_of_a_map_to_go_on_from_is_part_of_the_time_limit(
     engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """The check is made to take 1000 seconds by the clock that is read; of 3600 there are 2600 left."""
+    """The check is made to take 1000 seconds by the clock that is read; of 3600 there are 2600
+    left.
+    """
     assert run(["classify", *HAND, "--out", str(tmp_path)]) == 0
     clock = {"ahead": 0}
     real = time.monotonic
@@ -126,16 +138,35 @@ def test_a_result_to_files_and_on_from_it(
     assert lines[-1] == f"written   {tmp_path / SAVED}"
     stored = RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8"))
     assert stored == replace(certified_map(), slice=stored.slice)
-    assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED), "--jobs", "1"]) == 0
+    assert (
+        run(
+            [
+                "classify",
+                *HAND,
+                "--out",
+                str(tmp_path),
+                "--resume",
+                str(tmp_path / SAVED),
+                "--jobs",
+                "1",
+            ]
+        )
+        == 0
+    )
     assert engine["options"].resume.cover == certified_map().cover
     assert engine["options"].jobs == 1
 
 
 def test_compilation_is_told_apart(
-    engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    engine: dict[str, Any],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     taken = [38.0, 0.0, 0.0, 0.0]
-    monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", lambda progress, options: taken.pop(0))
+    monkeypatch.setattr(
+        sys.modules["ptmcad.certified.loading"], "load", lambda progress, options: taken.pop(0)
+    )
     assert run(["classify", *HAND, "--out", str(tmp_path)]) == 0
     assert " s, of which 38 s compilation (once); 28 % undetermined;" in capsys.readouterr().out
     timings = json.loads((tmp_path / SAVED).read_text(encoding="utf-8"))["timings"]
@@ -148,16 +179,25 @@ def test_the_engine_is_compiled_beforehand(
     engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     taken = [12.34, 0.0]
-    monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", lambda progress, options: taken.pop(0))
+    monkeypatch.setattr(
+        sys.modules["ptmcad.certified.loading"], "load", lambda progress, options: taken.pop(0)
+    )
     assert run(["warm-up"]) == run(["warm-up"]) == 0
     said = capsys.readouterr().out.splitlines()
-    assert said == ["the certified engine is compiled (12.3 s)", "the certified engine was compiled already"]
+    assert said == [
+        "the certified engine is compiled (12.3 s)",
+        "the certified engine was compiled already",
+    ]
 
 
-def test_areas_cost_nothing(engine: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_areas_cost_nothing(
+    engine: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["classify", *HAND, "--out", str(tmp_path), "--no-areas"]) == 0
     said = capsys.readouterr()
-    assert said.err == "note: --no-areas has no effect here: this engine gets areas at no extra cost\n"
+    assert (
+        said.err == "note: --no-areas has no effect here: this engine gets areas at no extra cost\n"
+    )
     assert "\nareas     1: " in said.out
 
 
@@ -172,10 +212,15 @@ def test_the_time_limit_saves_the_map_so_far(
         f"go on with --resume {place}"
     )
     assert capsys.readouterr().err == f"{said}\n"
-    assert RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8")).status is Status.PARTIAL
+    assert (
+        RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8")).status is Status.PARTIAL
+    )
     del engine["stop"]
     assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED)]) == 0
-    assert RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8")).status is Status.CERTIFIED
+    assert (
+        RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8")).status
+        is Status.CERTIFIED
+    )
     engine["stop"] = True
     assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED)]) == 3
     assert "slice-rho-L2.partial.json, because" in capsys.readouterr().err
@@ -204,9 +249,12 @@ def test_tolerances_are_checked_by_name(tmp_path: Path, capsys: pytest.CaptureFi
 
 
 @pytest.mark.parametrize(
-    ("stage", "shown"), [("undetermined 1.3 %", "] undetermined 1.3 %, "), ("counts", "] counts 6 of 24, ")]
+    ("stage", "shown"),
+    [("undetermined 1.3 %", "] undetermined 1.3 %, "), ("counts", "] counts 6 of 24, ")],
 )
-def test_the_progress_bar_shows_the_undetermined_share(stage: str, shown: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_progress_bar_shows_the_undetermined_share(
+    stage: str, shown: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     terminal = io.StringIO()
     monkeypatch.setattr(terminal, "isatty", lambda: True)
     monkeypatch.setattr(sys, "stderr", terminal)
@@ -255,11 +303,25 @@ main()
 """
 
 
-def _stand_in(folder: Path, work: str, *options: str, stop: signal.Signals | None = None) -> tuple[int, str]:
-    """Run the program with this work, and end it by a signal when it has arrived where it stays; status and message."""
+def _stand_in(
+    folder: Path, work: str, *options: str, stop: signal.Signals | None = None
+) -> tuple[int, str]:
+    """Run the program with this work, and end it by a signal when it has arrived where it stays;
+    status and message.
+    """
     program = STAND_IN.replace("{work}", work)
-    arguments = [str(folder), str(Path(__file__).parents[1]), "classify", *HAND, "--out", str(folder / "out"), *options]
-    with subprocess.Popen([sys.executable, "-c", program, *arguments], cwd=ROOT, stderr=subprocess.PIPE) as running:
+    arguments = [
+        str(folder),
+        str(Path(__file__).parents[1]),
+        "classify",
+        *HAND,
+        "--out",
+        str(folder / "out"),
+        *options,
+    ]
+    with subprocess.Popen(
+        [sys.executable, "-c", program, *arguments], cwd=ROOT, stderr=subprocess.PIPE
+    ) as running:
         while stop is not None and not (folder / "arrived").exists():
             assert running.poll() is None, running.communicate()
             time.sleep(0.02)
@@ -274,13 +336,19 @@ HOW_ENDED = {
     signal.SIGTERM: "terminated (SIGTERM)",
     signal.SIGHUP: "the terminal was closed (SIGHUP)",
 }
-forked = pytest.mark.skipif(not hasattr(os, "fork"), reason="without fork the command line is not watched")
+forked = pytest.mark.skipif(
+    not hasattr(os, "fork"), reason="without fork the command line is not watched"
+)
 
 
 @forked
-@pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda s: s.name)
+@pytest.mark.parametrize(
+    "stop", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda s: s.name
+)
 @pytest.mark.slow_cases("SIGINT", "SIGHUP")
-def test_a_signal_saves_the_best_map_and_says_how_to_go_on(tmp_path: Path, stop: signal.Signals) -> None:
+def test_a_signal_saves_the_best_map_and_says_how_to_go_on(
+    tmp_path: Path, stop: signal.Signals
+) -> None:
     status, said = _stand_in(tmp_path, "search = arrived", stop=stop)
     place = tmp_path / "out" / SAVED
     assert status == 128 + stop
@@ -292,20 +360,29 @@ def test_a_signal_saves_the_best_map_and_says_how_to_go_on(tmp_path: Path, stop:
 
 @forked
 def test_a_signal_before_the_first_map_says_that_there_is_none(tmp_path: Path) -> None:
-    status, said = _stand_in(tmp_path, "def load(progress, options):\n    arrived()", stop=signal.SIGTERM)
+    status, said = _stand_in(
+        tmp_path, "def load(progress, options):\n    arrived()", stop=signal.SIGTERM
+    )
     why = "the engine was still being loaded or compiled"
-    assert (status, said) == (143, f"terminated (SIGTERM); there was no partial map to save yet: {why}\n")
+    assert (status, said) == (
+        143,
+        f"terminated (SIGTERM); there was no partial map to save yet: {why}\n",
+    )
     assert not list((tmp_path / "out").iterdir())
 
 
 def test_compiling_is_no_part_of_the_time_limit(
     engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """It takes 1000 seconds by the clock that is read, the limit is 600: for both processes 600 are left after it."""
+    """It takes 1000 seconds by the clock that is read, the limit is 600: for both processes 600 are
+    left after it.
+    """
     clock = {"ahead": 0}
     monotonic, counter = time.monotonic, perf_counter
     monkeypatch.setattr(time, "monotonic", lambda: monotonic() + clock["ahead"])
-    monkeypatch.setattr("ptmcad.ask.classification.perf_counter", lambda: counter() + clock["ahead"])
+    monkeypatch.setattr(
+        "ptmcad.ask.classification.perf_counter", lambda: counter() + clock["ahead"]
+    )
 
     def load(progress: object, options: object) -> float:
         clock["ahead"] += 1000
@@ -322,7 +399,9 @@ def test_compiling_is_no_part_of_the_time_limit(
         os.close(write)
     with open(read, "rb") as pipe:
         told = [
-            (topic, float(texts[0])) for topic, texts in received(bytearray(pipe.read())) if topic is Topic.DEADLINE
+            (topic, float(texts[0]))
+            for topic, texts in received(bytearray(pipe.read()))
+            if topic is Topic.DEADLINE
         ]
     first, stopped, again = (at for _, at in told)
     taken = monotonic() - begun
@@ -340,9 +419,13 @@ def test_compiling_is_no_part_of_the_time_limit(
 
 @forked
 @pytest.mark.parametrize("options", [["--timeout", "1000"], []], ids=["time", "signal"])
-def test_a_complete_map_is_not_lost_while_its_pictures_are_drawn(tmp_path: Path, options: list[str]) -> None:
+def test_a_complete_map_is_not_lost_while_its_pictures_are_drawn(
+    tmp_path: Path, options: list[str]
+) -> None:
     out_of_time = "from ptmcad.process.handover import Topic, send; send(Topic.DEADLINE, repr(time.monotonic()), '1 s')"
-    work = f"def draw(result, path, **how):\n    {out_of_time if options else 'pass'}\n    arrived()"
+    work = (
+        f"def draw(result, path, **how):\n    {out_of_time if options else 'pass'}\n    arrived()"
+    )
     stop = None if options else signal.SIGINT
     status, said = _stand_in(tmp_path, work, "--format", "json,png", *options, stop=stop)
     assert status == (3 if options else 130)
@@ -355,7 +438,9 @@ def test_a_complete_map_is_not_lost_while_its_pictures_are_drawn(tmp_path: Path,
 def test_a_run_that_goes_on_from_a_map_does_not_replace_it_by_a_worse_one() -> None:
     before = replace(certified_map(status=Status.PARTIAL), slice=free_slice())
     better = replace(before, undetermined=before.undetermined / 2)
-    with pytest.raises(LimitReached, match="the map to go on from has no more, and is kept") as limit:
+    with pytest.raises(
+        LimitReached, match="the map to go on from has no more, and is kept"
+    ) as limit:
         _resumed_and_stopped(better, before)
     assert limit.value.partial == better
     with pytest.raises(LimitReached) as limit:
@@ -377,7 +462,9 @@ def _resumed_and_stopped(earlier: RegionMap, found: RegionMap) -> None:
     loading.load = lambda progress, options: 0.0  # type: ignore[attr-defined]
     module.certified_map = stand_in  # type: ignore[attr-defined]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(sys.modules, "ptmcad.formulas.compiled", ModuleType("ptmcad.formulas.compiled"))
+        patch.setitem(
+            sys.modules, "ptmcad.formulas.compiled", ModuleType("ptmcad.formulas.compiled")
+        )
         patch.setitem(sys.modules, "ptmcad.certified.loading", loading)
         patch.setitem(sys.modules, "ptmcad.certified.engine", module)
         ptmcad.classify(earlier.slice, resume=earlier, partial=handed.append)
@@ -416,7 +503,9 @@ def _command(folder: Path, *options: str) -> list[str]:
 
 def _done(folder: Path, *options: str) -> str:
     """Run to the end; the text of the result."""
-    done = subprocess.run(_command(folder, *options), cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        _command(folder, *options), cwd=ROOT, capture_output=True, text=True, check=False
+    )
     assert (done.returncode, done.stderr) == (0, "")
     return (folder / SAVED).read_text(encoding="utf-8")
 
@@ -443,9 +532,13 @@ def test_the_engine_stopped_by_ctrl_c_and_gone_on_with(tmp_path: Path) -> None:
         stopped.send_signal(signal.SIGINT)
         _, errors = stopped.communicate()
     assert stopped.returncode == 130
-    assert re.match(r"interrupted; partial map \([0-9.e-]+ % undetermined\) saved to ", errors.decode())
+    assert re.match(
+        r"interrupted; partial map \([0-9.e-]+ % undetermined\) saved to ", errors.decode()
+    )
     assert "--resume" in errors.decode()
-    partial = RegionMap.from_json((tmp_path / "slice-rho-L2.partial.json").read_text(encoding="utf-8"))
+    partial = RegionMap.from_json(
+        (tmp_path / "slice-rho-L2.partial.json").read_text(encoding="utf-8")
+    )
     assert partial.status is Status.PARTIAL
     with pytest.raises(ConfigError, match="axes differs"):
         ptmcad.classify(free_slice(), resume=partial)

@@ -47,7 +47,9 @@ FAULTS = [
 ]
 
 
-def test_all_faults_are_printed_one_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_all_faults_are_printed_one_a_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "bad.yaml"
     path.write_text(BAD, encoding="utf-8")
     assert run(["check", str(path)]) == 2
@@ -75,17 +77,32 @@ def test_values_are_checked_together_and_faults_do_not_follow_from_others() -> N
         slice_from_mapping({
             "parameters": {"L1": "q", "k2": "1 - L1", "L2": -1, "k3": 0}, "axes": {"rho": [0, 2], "u": [0, 1]},
         })  # fmt: skip
-    assert [fault.key for fault in caught.value.faults] == ["parameters.L1", "parameters.L2", "parameters.k3"]
+    assert [fault.key for fault in caught.value.faults] == [
+        "parameters.L1",
+        "parameters.L2",
+        "parameters.k3",
+    ]
 
 
 @pytest.mark.parametrize(
     ("name", "parts"),
     [
-        ("fig4", ["mechanism   ptm", "th1 (angle), th2 (angle)", "6 complex ones", "engine      exact", "F3 = -10"]),
+        (
+            "fig4",
+            [
+                "mechanism   ptm",
+                "th1 (angle), th2 (angle)",
+                "6 complex ones",
+                "engine      exact",
+                "F3 = -10",
+            ],
+        ),
         ("free02", ["not counted", "engine      certified", "l0 = 1/5"]),
     ],
 )
-def test_a_right_record_is_told(name: str, parts: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_right_record_is_told(
+    name: str, parts: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["check", str(CONFIGS / f"{name}.yaml")]) == 0
     out = capsys.readouterr().out
     assert all(part in out for part in parts)
@@ -93,7 +110,9 @@ def test_a_right_record_is_told(name: str, parts: list[str], capsys: pytest.Capt
 
 def test_a_system_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "cusp.yaml"
-    path.write_text("system: {unknowns: {x: real}, equations: [x^3 - a*x + b]}\naxes: {a: [0, 1], b: [0, 1]}\n")
+    path.write_text(
+        "system: {unknowns: {x: real}, equations: [x^3 - a*x + b]}\naxes: {a: [0, 1], b: [0, 1]}\n"
+    )
     assert run(["check", str(path)]) == 0
     out = capsys.readouterr().out
     assert "system      system" in out
@@ -110,17 +129,25 @@ def test_loading_knows_all_faults(tmp_path: Path) -> None:
 
 
 def chain(**further: Any) -> dict[str, Any]:
-    record = yaml.safe_load((CONFIGS / "mechanisms" / "three-bar-chain.yaml").read_text(encoding="utf-8"))
+    record = yaml.safe_load(
+        (CONFIGS / "mechanisms" / "three-bar-chain.yaml").read_text(encoding="utf-8")
+    )
     return {**record, "mechanism": record["mechanism"] | further}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("record", [chain(), chain(moments={"th1": "1/3"})], ids=["loaded", "turned"])
+@pytest.mark.parametrize(
+    "record", [chain(), chain(moments={"th1": "1/3"})], ids=["loaded", "turned"]
+)
 def test_an_exact_map_that_takes_long_is_foretold(record: dict[str, Any]) -> None:
-    """Three bars have 20 complex solutions, with a constant moment too; the certified engine takes both."""
+    """Three bars have 20 complex solutions, with a constant moment too; the certified engine takes
+    both.
+    """
     slice = slice_from_mapping(record)
     text = warning(slice)
-    assert text.startswith("the equations have 20 complex solutions") and "--engine certified" in text
+    assert (
+        text.startswith("the equations have 20 complex solutions") and "--engine certified" in text
+    )
     assert text.endswith(check(slice).cost)
 
 
@@ -136,10 +163,18 @@ def test_classify_says_at_once_that_it_will_take_long(
         raise ConfigError("nothing is computed here")
 
     monkeypatch.setattr(classification, "region_map", unreached)
-    asked = ["classify", str(CONFIGS / "mechanisms" / "three-bar-chain.yaml"), "--out", str(tmp_path)]
+    asked = [
+        "classify",
+        str(CONFIGS / "mechanisms" / "three-bar-chain.yaml"),
+        "--out",
+        str(tmp_path),
+    ]
     assert run(asked) == 2
     first, *_, last = capsys.readouterr().err.splitlines()
-    assert first.startswith("note: the equations have 20 complex solutions") and "--engine certified" in first
+    assert (
+        first.startswith("note: the equations have 20 complex solutions")
+        and "--engine certified" in first
+    )
     assert "nothing is computed" in last
     assert run([*asked, "--engine", "certified"]) == 2
     assert "note" not in capsys.readouterr().err
@@ -149,7 +184,11 @@ def test_classify_says_at_once_that_it_will_take_long(
 @pytest.mark.parametrize(
     "equations",
     [
-        ["(a+sin(t)+cos(u)+sin(v)+b)^10", "(a+sin(t)+cos(u)+cos(v)+b)^10", "(a+cos(t)+cos(u)+cos(v)+b)^10"],
+        [
+            "(a+sin(t)+cos(u)+sin(v)+b)^10",
+            "(a+sin(t)+cos(u)+cos(v)+b)^10",
+            "(a+cos(t)+cos(u)+cos(v)+b)^10",
+        ],
         ["sin(60*t + u) - a", "cos(u + v) - a*b", "sin(v) - b"],
     ],
     ids=["many terms", "a high degree"],
@@ -176,7 +215,9 @@ def test_equations_with_long_parameters_are_not_waited_for(monkeypatch: pytest.M
         "axes": {"u": [0, 2], "v": [0, 3]},
     })  # fmt: skip
     found = check(slice)
-    assert found.engine == "certified" and found.cost.startswith("not known: with such long expressions")
+    assert found.engine == "certified" and found.cost.startswith(
+        "not known: with such long expressions"
+    )
 
 
 def test_long_numbers_are_shown_short(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -214,10 +255,14 @@ def test_a_proof_that_takes_long_is_ended(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(checking, "MAX_SECONDS", 0.001)
     found = check(slice)
     assert found.complex_solutions == 1
-    assert found.cost.startswith("not known: at 5 points") and found.cost.endswith("not proved in the time")
+    assert found.cost.startswith("not known: at 5 points") and found.cost.endswith(
+        "not proved in the time"
+    )
 
 
-def test_the_law_of_torsion_springs_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_law_of_torsion_springs_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "hinge.yaml"
     path.write_text(
         "mechanism:\n  parameters: {W: {kind: force}, c: {kind: number}}\n  unknowns: {th: angle}\n"
@@ -227,18 +272,25 @@ def test_the_law_of_torsion_springs_is_told(tmp_path: Path, capsys: pytest.Captu
     )
     assert run(["check", str(path)]) == 0
     out = capsys.readouterr().out
-    assert "torsion     energy k (1 - cos(angle - rest)), moment k sin(angle - rest): for small angles" in out
+    assert (
+        "torsion     energy k (1 - cos(angle - rest)), moment k sin(angle - rest): for small angles"
+        in out
+    )
     assert run(["check", str(CONFIGS / "fig4.yaml")]) == 0
     assert "torsion" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
-    ("value", "unused"), [("0", True), ("Q - Q", False), ("Q*(", False)], ids=["not named", "named", "not readable"]
+    ("value", "unused"),
+    [("0", True), ("Q - Q", False), ("Q*(", False)],
+    ids=["not named", "named", "not readable"],
 )
 def test_an_axis_that_nothing_names_is_told_beside_other_faults(
     value: str, unused: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "q.yaml").write_text(f"axes: {{rho: [2, 1], Q: [0, 1]}}\nparameters: {{L1: {value}}}\n")
+    (tmp_path / "q.yaml").write_text(
+        f"axes: {{rho: [2, 1], Q: [0, 1]}}\nparameters: {{L1: {value}}}\n"
+    )
     assert run(["check", str(tmp_path / "q.yaml")]) == 2
     told = capsys.readouterr().err
     assert "axes.rho" in told

@@ -1,4 +1,6 @@
-"""Faults that ``ptmcad check`` tells: each with its place, none that follows from another, none left out."""
+"""Faults that ``ptmcad check`` tells: each with its place, none that follows from another, none
+left out.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,9 @@ def test_every_fault_keeps_its_place_however_many_there_are(
     found = [fault for fault in faults_of(text, tmp_path, capsys) if "there is no point" in fault]
     assert len(found) == min(springs, MAX_FAULTS)
     for n, fault in enumerate(found):
-        assert fault.startswith(f"{5 + n}: mechanism.springs.{n + 1}.between: there is no point 'Z'")
+        assert fault.startswith(
+            f"{5 + n}: mechanism.springs.{n + 1}.between: there is no point 'Z'"
+        )
 
 
 FREE = """\
@@ -48,12 +52,20 @@ count: total
 @pytest.mark.parametrize(
     ("parts", "start", "remedy"),
     [
-        (("{x: length, y: length}", "[x, y]", "[]", "{x: F*x}"), "3: mechanism.unknowns.x: no bound", "narrow the win"),
+        (
+            ("{x: length, y: length}", "[x, y]", "[]", "{x: F*x}"),
+            "3: mechanism.unknowns.x: no bound",
+            "narrow the win",
+        ),
     ],
     ids=["no bound"],
 )
 def test_what_free_lengths_do_not_go_with_is_told_with_its_place(
-    parts: tuple[str, ...], start: str, remedy: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    parts: tuple[str, ...],
+    start: str,
+    remedy: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     (fault,) = faults_of(FREE % parts, tmp_path, capsys)
     assert fault.startswith(start) and remedy in fault and "choose exact" not in fault
@@ -66,7 +78,10 @@ SLICE = "axes: {rho: [0, 1], L2: [1, 2]}\n"
     ("text", "starts"),
     [
         ("parameters: {k: -1}\n" + SLICE, ["1: parameters.k: k is -1"]),
-        ("parameters: {l0: -1, k2: -2}\n" + SLICE, ["1: parameters.k2: k2 is -2", "1: parameters.l0: l0 is -1"]),
+        (
+            "parameters: {l0: -1, k2: -2}\n" + SLICE,
+            ["1: parameters.k2: k2 is -2", "1: parameters.l0: l0 is -1"],
+        ),
         (
             "mechanism:\n  unknowns: {th: angle}\n  points: 7\n  bodies: {b: {at: O, angle: th, points: {Q: [1, 0]}}}\n"
             "  springs: [{between: [A, P], k: 1}]\n  loads: {P: [0, 1]}\n" + SLICE,
@@ -78,7 +93,11 @@ SLICE = "axes: {rho: [0, 1], L2: [1, 2]}\n"
         ),
         (
             SLICE + "units: {length: 5, mass: kg, force: []}\n",
-            ["2: units.length: a unit", "2: units.mass: unknown", "2: units.force: expected a text"],
+            [
+                "2: units.length: a unit",
+                "2: units.mass: unknown",
+                "2: units.force: expected a text",
+            ],
         ),
         (
             "parameters: {F3: F}\nfree: {F: [-10, 0]}\nmembers: [5, x, -3, 1/0, -3]\n" + SLICE,
@@ -96,13 +115,22 @@ SLICE = "axes: {rho: [0, 1], L2: [1, 2]}\n"
         ("axes: [rho, L2]\n", ["1: axes: expected two axes"]),
         ("axes:\n", ["1: axes: expected two axes"]),
         ("axes: {}\n", ["1: axes: 0 axes are given"]),
-        ("axes: {rho: 2, L2: [0]}\n", ["1: axes.rho: expected a range", "1: axes.L2: expected a range"]),
+        (
+            "axes: {rho: 2, L2: [0]}\n",
+            ["1: axes.rho: expected a range", "1: axes.L2: expected a range"],
+        ),
         ("parameters: {k: 1}\n", ["1: axes: is missing"]),
-        ("system: {unknowns: x, equations: [x^2]}\n" + SLICE, ["1: system.unknowns: expected a mapping"]),
+        (
+            "system: {unknowns: x, equations: [x^2]}\n" + SLICE,
+            ["1: system.unknowns: expected a mapping"],
+        ),
         ("free: F\n" + SLICE, ["1: free: expected one parameter with its range"]),
         (
             "parameters: {k1: L1*rho, L1: k1 + t}\n" + SLICE,
-            ["1: parameters.L1: unknown name 't'", "1: parameters.L1: the definition goes round in a circle"],
+            [
+                "1: parameters.L1: unknown name 't'",
+                "1: parameters.L1: the definition goes round in a circle",
+            ],
         ),
         (
             "parameters: {k1: L1 +, L2: 2*(}\naxes: {rho: [0, 1], W: [1, 2]}\n",
@@ -111,9 +139,16 @@ SLICE = "axes: {rho: [0, 1], L2: [1, 2]}\n"
         (
             "mechanism: {unknowns: {th: angel}, points: {P: [cos(th), 0]}}\n"
             "system: {unknowns: {x: real}, equations: [x^2 - a*]}\n" + SLICE,
-            ["1: mechanism.unknowns.th: ", "2: system.equations.1: ", "2: system: a record is about"],
+            [
+                "1: mechanism.unknowns.th: ",
+                "2: system.equations.1: ",
+                "2: system: a record is about",
+            ],
         ),
-        ("mechanism: nosuch.yaml\n" + SLICE, ["1: mechanism: 'nosuch.yaml': there is no such file"]),
+        (
+            "mechanism: nosuch.yaml\n" + SLICE,
+            ["1: mechanism: 'nosuch.yaml': there is no such file"],
+        ),
     ],
 )
 def test_faults_are_told_together_and_none_that_follows_from_another(
@@ -123,7 +158,9 @@ def test_faults_are_told_together_and_none_that_follows_from_another(
     assert [fault[: len(start)] for fault, start in zip(found, starts, strict=True)] == starts
 
 
-def test_every_fault_of_a_list_of_aliases_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_fault_of_a_list_of_aliases_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     text = (
         "mechanism:\n  parameters:\n    L: {}\n    k:\n      kind: stiffness\n      alias:\n        - L\n        - k1\n"
         "        - 2k\n        - k1\n        - cos\n  unknowns: {th: angle}\n\n"
@@ -161,7 +198,10 @@ axes: {a: [-1, 2], b: [-1, 2]}
     ("free", "start"),
     [
         ("1", "9: parameters.L: a length must be positive in the whole window, but L is"),
-        ("1 - a", "7: mechanism.springs.2.free: a free length must not be negative in the whole window"),
+        (
+            "1 - a",
+            "7: mechanism.springs.2.free: a free length must not be negative in the whole window",
+        ),
     ],
 )
 def test_what_the_geometry_asks_for_is_told_with_its_place(
@@ -193,8 +233,14 @@ mechanism:
         ("-1", "a stiffness is positive, but this is -1"),
         ("0", "a stiffness is positive, but this is 0"),
         ("0*L", "a stiffness is positive, but this is 0*L = 0"),
-        ("W - 1", "a stiffness must be positive in the whole window, but W - 1 is -1/4 at L = 1, W = 3/4"),
-        ("L - 3", "a stiffness must be positive in the whole window, but L - 3 is -2 at L = 1, W = 3/2"),
+        (
+            "W - 1",
+            "a stiffness must be positive in the whole window, but W - 1 is -1/4 at L = 1, W = 3/4",
+        ),
+        (
+            "L - 3",
+            "a stiffness must be positive in the whole window, but L - 3 is -2 at L = 1, W = 3/2",
+        ),
     ],
 )
 def test_a_stiffness_written_in_a_spring_is_proved_positive(
@@ -214,17 +260,25 @@ def test_a_free_length_written_in_a_spring_is_proved_not_negative(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (fault,) = faults_of(SPRUNG % ("", "1", "L - 1", "1") + AXES, tmp_path, capsys)
-    assert fault.startswith("6: mechanism.springs.1.free: a free length must not be negative in the whole window")
+    assert fault.startswith(
+        "6: mechanism.springs.1.free: a free length must not be negative in the whole window"
+    )
 
 
-def test_a_stiffness_is_positive_at_a_single_point_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_stiffness_is_positive_at_a_single_point_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "sprung.yaml"
-    path.write_text(SPRUNG % ("", "W - 1", "0", "1") + "axes: {L: [0, 2], W: [2, 3]}\n", encoding="utf-8")
+    path.write_text(
+        SPRUNG % ("", "W - 1", "0", "1") + "axes: {L: [0, 2], W: [2, 3]}\n", encoding="utf-8"
+    )
     assert run(["solve", str(path), "--at", "L=1,W=2"]) == 0
     capsys.readouterr()
     assert run(["solve", str(path), "--at", "L=1,W=1/2"]) == 2
     err = capsys.readouterr().err
-    assert f"{path}:6: mechanism.springs.1.k: a stiffness is positive, but this is W - 1 = -1/2" in err
+    assert (
+        f"{path}:6: mechanism.springs.1.k: a stiffness is positive, but this is W - 1 = -1/2" in err
+    )
 
 
 PTM = "mechanism: ptm\naxes: {rho: [0, 2], L2: [0, 2]}\n"
@@ -290,23 +344,35 @@ def test_no_fault_keeps_others_from_being_told(
     assert [fault[: len(start)] for fault, start in zip(found, starts, strict=True)] == starts
 
 
-def test_a_long_expression_is_shown_around_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_long_expression_is_shown_around_what_is_wrong(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     long = "+".join(["L*L"] * 30)
     (fault,) = faults_of(SPRUNG % ("", f"{long}+q", "0", "1") + AXES, tmp_path, capsys)
     shown = fault.partition("(character 121 of ")[2]
     assert shown.startswith("'...*L+L*L+") and shown.endswith("+q')") and len(shown) < 70
 
 
-def test_a_model_without_parameters_is_not_asked_for_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    found = faults_of("mechanism: {}\nparameters: {L: 1}\naxes: {a: [0, 1], b: [0, 1]}\n", tmp_path, capsys)
+def test_a_model_without_parameters_is_not_asked_for_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = faults_of(
+        "mechanism: {}\nparameters: {L: 1}\naxes: {a: [0, 1], b: [0, 1]}\n", tmp_path, capsys
+    )
     assert "2: parameters.L: unknown parameter 'L': mechanism has none" in found
 
 
 @pytest.mark.parametrize(
     ("spring", "says"),
     [
-        ("springs: [{between: [A, P], k: 1}, {between: [A, O], k: 1}]", "springs.2: the length of AO is constant"),
-        ("springs: [{between: [A, P], k: 1}, {between: [O, P], k: L}]", "springs.2: the length of OP is constant"),
+        (
+            "springs: [{between: [A, P], k: 1}, {between: [A, O], k: 1}]",
+            "springs.2: the length of AO is constant",
+        ),
+        (
+            "springs: [{between: [A, P], k: 1}, {between: [O, P], k: L}]",
+            "springs.2: the length of OP is constant",
+        ),
         ("torsion: [{angle: th - th, k: L}]", "torsion.1: no unknown changes its angle"),
     ],
 )
@@ -324,8 +390,14 @@ def test_a_spring_that_does_nothing_is_a_fault(
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("name: x\naxes:\n\trho: [0, 1]\n", "3: is not YAML: a tab stands where YAML takes spaces only"),
-        ("name: x\ntitle: @x\n", "2: is not YAML: the character '@' cannot stand at the beginning of a value"),
+        (
+            "name: x\naxes:\n\trho: [0, 1]\n",
+            "3: is not YAML: a tab stands where YAML takes spaces only",
+        ),
+        (
+            "name: x\ntitle: @x\n",
+            "2: is not YAML: the character '@' cannot stand at the beginning of a value",
+        ),
     ],
 )
 def test_a_character_that_yaml_does_not_take_is_named(
@@ -342,7 +414,10 @@ LINE = "system:\n  unknowns: {x: real}\n  equations: [%s]\n  stable: [%s]\naxes:
     ("text", "start"),
     [
         (LINE % ("(x - a)^2", "x"), "1: system: the slice lies inside the discriminant variety"),
-        (LINE % ("x^3 - a*x + b", "x^3 - a*x + b"), "4: system.stable.1: at every point of the slice"),
+        (
+            LINE % ("x^3 - a*x + b", "x^3 - a*x + b"),
+            "4: system.stable.1: at every point of the slice",
+        ),
         (
             "mechanism:\n  parameters: {L: {kind: length}, l0: {kind: free length, default: 1}}\n"
             "  unknowns: {a: angle, b: angle, c: angle, d: angle, p: angle, q: angle}\n"
@@ -377,7 +452,10 @@ def test_what_an_engine_refuses_of_an_option_names_the_option(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "good.yaml"
-    path.write_text("axes: {a: [-1, 2], b: [-1, 2]}\nparameters: {L2: 1 + a^2, rho: 1 + b^2}\n", encoding="utf-8")
+    path.write_text(
+        "axes: {a: [-1, 2], b: [-1, 2]}\nparameters: {L2: 1 + a^2, rho: 1 + b^2}\n",
+        encoding="utf-8",
+    )
     given = ["--set", "L1=(a - b)^2 + 10^-30*(a + b)"]
     assert run(["classify", str(path), *given, "--out", str(tmp_path)]) == 2
     assert capsys.readouterr().err.startswith("error: --set L1: a length must be positive")

@@ -1,4 +1,6 @@
-"""The command line's own logic, with a stand-in for the engine; and the real engine where it is there."""
+"""The command line's own logic, with a stand-in for the engine; and the real engine where it is
+there.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,9 @@ from ptmcad.show import render
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG4 = ROOT / "configs" / "fig4.yaml"
-needs_engine = pytest.mark.skipif(find_spec("ptmcad.ask.classification") is None, reason="the engine is not built yet")
+needs_engine = pytest.mark.skipif(
+    find_spec("ptmcad.ask.classification") is None, reason="the engine is not built yet"
+)
 
 
 class StandIn:
@@ -53,7 +57,9 @@ class StandIn:
 
 @pytest.fixture
 def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """Replace the engine and the pictures; the dictionary receives the arguments and may hold what to raise."""
+    """Replace the engine and the pictures; the dictionary receives the arguments and may hold what
+    to raise.
+    """
     calls: dict[str, Any] = {}
 
     def region_map(slice: Any, options: Options) -> StandIn:
@@ -64,7 +70,9 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
             raise calls["raise"]
         return StandIn(slice.name)
 
-    def draw(result: StandIn, path: Path, *, samples: bool = False, dpi: int = 150, **_how: object) -> None:
+    def draw(
+        result: StandIn, path: Path, *, samples: bool = False, dpi: int = 150, **_how: object
+    ) -> None:
         calls["samples"] = samples
         path.write_text(f"picture of {result.name}")
         if "draw raises" in calls:
@@ -90,7 +98,9 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_files_and_table(engine: dict[str, Any], tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_files_and_table(
+    engine: dict[str, Any], tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "new" / "folder"
     status = run(["classify", str(FIG4), "--out", str(out), "--samples", "--jobs", "2", "--area-tolerance", "1e-9",
                   "--timeout", "5", "--engine", "exact", "--count", "index"])  # fmt: skip
@@ -103,16 +113,26 @@ def test_files_and_table(engine: dict[str, Any], tmp_path: Path, capfd: pytest.C
     assert captured.out == f"{question}\ntable of fig4\nwritten   {written}\n"
     assert captured.err == "note: --jobs has no effect here: the exact engine uses one thread\n"
     options = engine["options"]
-    assert (options.engine, options.jobs, options.timeout, engine["samples"]) == ("exact", 2, 5.0, True)
+    assert (options.engine, options.jobs, options.timeout, engine["samples"]) == (
+        "exact",
+        2,
+        5.0,
+        True,
+    )
     assert options.area_tolerance == Fraction(1, 10**9)
     assert engine["slice"].count.value == "index"
 
 
 def test_slice_options_formats_and_explain(
-    engine: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    engine: dict[str, Any],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert run(["classify", "--slice", "L2,rho", "--format", "JSON", "--explain", "--no-timings"]) == 0
+    assert (
+        run(["classify", "--slice", "L2,rho", "--format", "JSON", "--explain", "--no-timings"]) == 0
+    )
     assert names(tmp_path) == ["slice-L2-rho.json"]
     assert json.loads((tmp_path / "slice-L2-rho.json").read_text())["timings"] is False
     lines = capfd.readouterr().out.splitlines()
@@ -127,8 +147,14 @@ def test_slice_options_formats_and_explain(
         (["classify", "missing.yaml"], "error: missing.yaml: there is no such file"),
         (["classify"], "error: give a problem record"),
         (["classify", "--slice", "L2,rho", "--set", "L1=0"], "error: --set L1: L1 is 0"),
-        (["classify", "--slice", "L2,rho", "--area-tolerance", "2"], "error: --area-tolerance: 2 is not between"),
-        (["classify", "--slice", "L2,rho", "--format", "gif"], "gif is not among json, png, svg, pdf"),
+        (
+            ["classify", "--slice", "L2,rho", "--area-tolerance", "2"],
+            "error: --area-tolerance: 2 is not between",
+        ),
+        (
+            ["classify", "--slice", "L2,rho", "--format", "gif"],
+            "gif is not among json, png, svg, pdf",
+        ),
         (["classify", "--slice", "L2,rho", "--format", ","], "nothing is not among"),
         (["classify", "--slice", "L2,rho", "--timeout", "-1"], "not a positive number of seconds"),
         (["classify", "--slice", "L2,rho", "--jobs", "0"], "--jobs"),
@@ -166,7 +192,9 @@ def test_the_folder_is_checked_before_the_computation(
     assert capfd.readouterr().err.count("error: ") == 3
 
 
-@pytest.mark.skipif(hasattr(os, "geteuid") and os.geteuid() == 0, reason="root may write everywhere")
+@pytest.mark.skipif(
+    hasattr(os, "geteuid") and os.geteuid() == 0, reason="root may write everywhere"
+)
 def test_a_folder_without_permission(tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
     try:
@@ -182,7 +210,11 @@ def test_a_folder_without_permission(tmp_path: Path) -> None:
     ids=["disk full", "Ctrl-C"],
 )
 def test_a_failed_picture_leaves_the_old_files(
-    engine: dict[str, Any], tmp_path: Path, capfd: pytest.CaptureFixture[str], error: BaseException, status: int
+    engine: dict[str, Any],
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+    error: BaseException,
+    status: int,
 ) -> None:
     for suffix in ("json", "png"):
         (tmp_path / f"fig4.{suffix}").write_text("old")
@@ -232,7 +264,9 @@ def test_sigterm_removes_the_temporary_files(tmp_path: Path) -> None:
         "main()\n"
     )
     (tmp_path / "fig4.json").write_text("old")
-    process = subprocess.Popen([sys.executable, "-c", program], cwd=ROOT, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-c", program], cwd=ROOT, stderr=subprocess.PIPE, text=True
+    )
     deadline = time.monotonic() + 30
     while not any(path.read_text() == "half" for path in tmp_path.glob("*/*.png")):
         assert time.monotonic() < deadline, "nothing was drawn"
@@ -256,7 +290,9 @@ def test_what_is_no_file_is_not_replaced(tmp_path: Path) -> None:
             lambda name=name: check_writable(tmp_path, ("c.json", name)),
             lambda name=name: write_files(tmp_path, {name: text_writer("new")}),
         ):
-            with pytest.raises(OutputError, match=rf"{name} is no regular file, so no file can be written there"):
+            with pytest.raises(
+                OutputError, match=rf"{name} is no regular file, so no file can be written there"
+            ):
                 attempt()
     write_files(tmp_path, {"c.json": text_writer("new")})
     assert names(tmp_path) == ["a.json", "b.json", "c.json"]
@@ -283,7 +319,9 @@ def test_write_files_replaces_all_or_none(tmp_path: Path) -> None:
 @pytest.mark.slow_cases("| head -c0")
 def test_a_table_that_can_not_be_printed_is_no_traceback(redirection: str) -> None:
     command = f"exec '{sys.executable}' -m ptmcad --help {redirection}"
-    done = subprocess.run(["sh", "-c", command], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        ["sh", "-c", command], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     assert "Traceback" not in done.stderr
     assert "Exception ignored" not in done.stderr
     if redirection == ">/dev/full":
@@ -324,7 +362,9 @@ LONG = (
 )
 DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value length:k1", "--path", "--quantity th1",
               "--surface", "--no-ranges")  # fmt: skip
-"""In commands that the tests of README.md, of `ptmcad range`, its branches, fields, films and surfaces run too."""
+"""In commands that the tests of README.md, of `ptmcad range`, its branches, fields, films and
+surfaces run too.
+"""
 
 
 @pytest.mark.usefixtures("coarse")
@@ -357,8 +397,24 @@ def test_help_examples_about_a_result_run(
         Path("out").mkdir()
         Path("out/fig4.bench.json").symlink_to(ROOT / "docs" / "benchmarks" / "fig4.bench.json")
     if "loads.json" in example:
-        Path("free.yaml").write_text("name: loads\n" + FAMILY.replace("sweep:", "free:"), encoding="utf-8")
-        assert run(["classify", "free.yaml", "--changes", "--members", "2", "--no-areas", "--format", "json"]) == 0
+        Path("free.yaml").write_text(
+            "name: loads\n" + FAMILY.replace("sweep:", "free:"), encoding="utf-8"
+        )
+        assert (
+            run(
+                [
+                    "classify",
+                    "free.yaml",
+                    "--changes",
+                    "--members",
+                    "2",
+                    "--no-areas",
+                    "--format",
+                    "json",
+                ]
+            )
+            == 0
+        )
     assert run(shlex.split(example)) == 0
 
 
@@ -367,7 +423,13 @@ def test_help_examples_have_known_options(monkeypatch: pytest.MonkeyPatch, tmp_p
     monkeypatch.chdir(tmp_path)
     for folder in ("configs", "docs"):
         Path(folder).symlink_to(ROOT / folder)
-    for name in ("slice-L2-rho.json", "heavier.json", "measured.csv", "points.csv", "out/fig4.bench.json"):
+    for name in (
+        "slice-L2-rho.json",
+        "heavier.json",
+        "measured.csv",
+        "points.csv",
+        "out/fig4.bench.json",
+    ):
         Path(name).parent.mkdir(exist_ok=True)
         Path(name).touch()
     for example in help_examples():
@@ -377,7 +439,9 @@ def test_help_examples_have_known_options(monkeypatch: pytest.MonkeyPatch, tmp_p
         command.make_context(name, arguments)
 
 
-@pytest.mark.parametrize("example", [e for e in help_examples() if e.startswith("classify") and "--free" not in e])
+@pytest.mark.parametrize(
+    "example", [e for e in help_examples() if e.startswith("classify") and "--free" not in e]
+)
 def test_help_examples_run(
     engine: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, example: str
 ) -> None:
@@ -391,13 +455,29 @@ def test_start_up_is_lean() -> None:
         "import sys, ptmcad.cli, ptmcad.cli.classify, ptmcad.question.config\n"
         "print([m for m in ('numpy', 'flint', 'sympy', 'matplotlib', 'asyncio') if m in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    )
     assert done.stdout.strip() == "[]"
 
 
 @needs_engine
 def test_the_engine_is_reached(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    assert run(["classify", "--slice", "L2,rho", "--out", str(tmp_path), "--format", "json", "--no-timings"]) == 0
+    assert (
+        run(
+            [
+                "classify",
+                "--slice",
+                "L2,rho",
+                "--out",
+                str(tmp_path),
+                "--format",
+                "json",
+                "--no-timings",
+            ]
+        )
+        == 0
+    )
     assert names(tmp_path) == ["slice-L2-rho.json"]
     assert capfd.readouterr().out.strip()
 
@@ -405,6 +485,14 @@ def test_the_engine_is_reached(tmp_path: Path, capfd: pytest.CaptureFixture[str]
 @pytest.mark.slow
 def test_pictures_of_a_window_narrower_than_any_float(tmp_path: Path) -> None:
     """1e-400 is no floating-point number."""
-    options = ["classify", "--slice", "L2,rho", "--range", "rho=1/2:1/2+1e-400", "--out", str(tmp_path)]
+    options = [
+        "classify",
+        "--slice",
+        "L2,rho",
+        "--range",
+        "rho=1/2:1/2+1e-400",
+        "--out",
+        str(tmp_path),
+    ]
     assert run([*options, "--format", "json,png"]) == 0
     assert {path.suffix for path in tmp_path.iterdir()} == {".json", ".png"}

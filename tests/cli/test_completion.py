@@ -29,7 +29,12 @@ def asked(shell: str, *words: str, cwd: Path | None = None) -> list[str]:
     """What the program answers; the last word is the one that is being typed."""
     environment = os.environ | {"_PTMCAD_COMPLETE": f"{shell}_complete"} | request(shell, *words)
     done = subprocess.run(
-        [sys.executable, "-m", "ptmcad"], env=environment, cwd=cwd, capture_output=True, text=True, check=False
+        [sys.executable, "-m", "ptmcad"],
+        env=environment,
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert (done.returncode, done.stderr) == (0, "")
     return [line for line in done.stdout.splitlines() if line]
@@ -51,7 +56,9 @@ def test_every_shell_is_answered() -> None:
     assert [line.partition("\t")[0] for line in asked("fish", "cl")] == ["plain,classify"]
 
 
-def told(words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> list[str]:
+def told(
+    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> list[str]:
     """What bash is told, asked for in this process."""
     for name, value in request("bash", *words).items():
         monkeypatch.setenv(name, value)
@@ -61,7 +68,9 @@ def told(words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captu
     return values_in([line for line in out.splitlines() if line])
 
 
-def test_all_commands_and_one_option(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_all_commands_and_one_option(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert told([""], monkeypatch, capsys) == list(COMMANDS)
     assert told(["verify", "--bo"], monkeypatch, capsys) == ["--boxes"]
 
@@ -69,7 +78,13 @@ def test_all_commands_and_one_option(monkeypatch: pytest.MonkeyPatch, capsys: py
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_the_script_of_a_shell(shell: str) -> None:
     environment = os.environ | {"_PTMCAD_COMPLETE": f"{shell}_source"}
-    done = subprocess.run([sys.executable, "-m", "ptmcad"], env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-m", "ptmcad"],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert f"_PTMCAD_COMPLETE={shell}_complete" in done.stdout and done.stderr == ""
 
 
@@ -78,7 +93,11 @@ def test_the_script_of_a_shell(shell: str) -> None:
 def test_no_request_of_a_shell(value: str) -> None:
     environment = os.environ | {"_PTMCAD_COMPLETE": value}
     done = subprocess.run(
-        [sys.executable, "-m", "ptmcad"], env=environment, capture_output=True, text=True, check=False
+        [sys.executable, "-m", "ptmcad"],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == "error: _PTMCAD_COMPLETE is no request of bash, zsh or fish: unset it\n"
@@ -101,7 +120,10 @@ def test_no_request_of_a_shell(value: str) -> None:
     ],
 )
 def test_values(
-    words: list[str], values: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    words: list[str],
+    values: list[str],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     found = told(words, monkeypatch, capsys)
     assert found[: len(values)] == values and (values or not found)
@@ -123,8 +145,12 @@ def test_files(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
 def test_bash_itself(tmp_path: Path) -> None:
-    """The script as bash runs it: what it would put at the cursor, and whether a space would follow."""
-    (tmp_path / "ptmcad").write_text(f"#!/bin/sh\nexec {sys.executable} -m ptmcad\n", encoding="utf-8")
+    """The script as bash runs it: what it would put at the cursor, and whether a space would
+    follow.
+    """
+    (tmp_path / "ptmcad").write_text(
+        f"#!/bin/sh\nexec {sys.executable} -m ptmcad\n", encoding="utf-8"
+    )
     (tmp_path / "ptmcad").chmod(0o755)
     program = (
         'eval "$(_PTMCAD_COMPLETE=bash_source ptmcad)"\n'
@@ -133,7 +159,9 @@ def test_bash_itself(tmp_path: Path) -> None:
         "_ptmcad_completion ptmcad; printf '%s\\n' \"${COMPREPLY[@]}\"\n"
     )
     environment = os.environ | {"PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}"}
-    done = subprocess.run(["bash", "-c", program], env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        ["bash", "-c", program], env=environment, capture_output=True, text=True, check=True
+    )
     assert done.stdout.splitlines()[-2:] == ["-o nospace", "rho="]
 
 
@@ -147,10 +175,14 @@ def test_values_of_maps_and_palettes_are_proposed(
         assert "length:k1" in told(["map", given, "--value", "len"], monkeypatch, capsys)
     assert told(["map", FIG4, "--pose", "sa"], monkeypatch, capsys) == ["saddle:"]
     assert told(["plot", str(stored), "--palette", ""], monkeypatch, capsys) == ["default", "grey"]
-    assert told(["plot", str(stored), "--palette", "white,or"], monkeypatch, capsys) == ["white,orange"]
+    assert told(["plot", str(stored), "--palette", "white,or"], monkeypatch, capsys) == [
+        "white,orange"
+    ]
 
 
-def test_options_without_effect_on_pictures_say_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_options_without_effect_on_pictures_say_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     stored = tmp_path / "fig2.json"
     stored.write_text(shipped("fig2").to_json())
     assert run(["plot", str(stored), "--format", "csv", "--size", "3x3in"]) == 0

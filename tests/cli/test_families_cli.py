@@ -29,7 +29,15 @@ COARSE = ("--boundary-tolerance", "1/20")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("family")
     (folder / "loads.yaml").write_text(RECORD)
-    arguments = ["classify", str(folder / "loads.yaml"), "--out", str(folder), "--format", "json,csv", "--no-areas"]
+    arguments = [
+        "classify",
+        str(folder / "loads.yaml"),
+        "--out",
+        str(folder),
+        "--format",
+        "json,csv",
+        "--no-areas",
+    ]
     assert run([*arguments, *COARSE]) == 0
     return folder
 
@@ -43,7 +51,9 @@ def test_members_have_files_of_their_own_and_the_family_names_them(folder: Path)
     assert len(list(folder.glob("loads-F*.csv"))) == 6
 
 
-def test_a_family_is_verified_member_by_member(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_family_is_verified_member_by_member(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["verify", str(folder / "loads.json")]) == 0
     out = capsys.readouterr().out
     assert "F = -40\n" in out
@@ -57,8 +67,19 @@ def test_a_family_is_verified_member_by_member(folder: Path, capsys: pytest.Capt
     assert run(["verify", str(damaged / "loads.json")]) == 1
 
 
-def test_a_family_is_drawn_again(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["plot", str(folder / "loads.json"), "--out", str(tmp_path), "--format", "svg", "--style", "beamer"]
+def test_a_family_is_drawn_again(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = [
+        "plot",
+        str(folder / "loads.json"),
+        "--out",
+        str(tmp_path),
+        "--format",
+        "svg",
+        "--style",
+        "beamer",
+    ]
     assert run(arguments) == 0
     text = (tmp_path / "loads.svg").read_text()
     assert {path.name for path in tmp_path.iterdir()} == {"loads.svg", "loads-3d.svg"}
@@ -70,14 +91,19 @@ def test_a_family_is_drawn_again(folder: Path, tmp_path: Path, capsys: pytest.Ca
     assert "give a member's file" in capsys.readouterr().err
 
 
-def test_another_map_under_a_members_name_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_another_map_under_a_members_name_is_refused(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = folder / "swapped.json"
     data = json.loads((folder / "loads.json").read_text())
     data["members"][0]["file"] = data["members"][1]["file"]
     path.write_text(json.dumps(data))
     for command in ("verify", "plot"):
         assert run([command, str(path)]) == 2
-        assert "is not the member at F = -40 that swapped.json names: F3 is -10, not -40" in capsys.readouterr().err
+        assert (
+            "is not the member at F = -40 that swapped.json names: F3 is -10, not -40"
+            in capsys.readouterr().err
+        )
 
 
 def test_numbers_alone_are_written_too(tmp_path: Path) -> None:
@@ -92,7 +118,10 @@ def test_numbers_alone_are_written_too(tmp_path: Path) -> None:
 
 def test_two_free_parameters_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["classify", "--slice", "rho,L2", "--free", "F3=-10:-5", "--free", "F4=-3:-2"]) == 2
-    assert "--free: a family has one free parameter: `ptmcad sweep` goes through several" in capsys.readouterr().err
+    assert (
+        "--free: a family has one free parameter: `ptmcad sweep` goes through several"
+        in capsys.readouterr().err
+    )
 
 
 def test_a_member_has_ranges(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -104,10 +133,16 @@ def test_a_member_has_ranges(folder: Path, capsys: pytest.CaptureFixture[str]) -
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda data: data | {"format": "ptmcad-family/2"}, "not 'ptmcad-family/1'; it needs a newer ptmcad"),
+        (
+            lambda data: data | {"format": "ptmcad-family/2"},
+            "not 'ptmcad-family/1'; it needs a newer ptmcad",
+        ),
         (lambda data: data | {"members": []}, "do not increase"),
         (lambda data: data | {"members": data["members"][::-1]}, "do not increase"),
-        (lambda data: data | {"members": [{"value": "1", "file": "../loads-F-10.json"}]}, "a file beside it"),
+        (
+            lambda data: data | {"members": [{"value": "1", "file": "../loads-F-10.json"}]},
+            "a file beside it",
+        ),
         (lambda data: data | {"members": [{"value": "-1", "file": "none.json"}]}, "none.json"),
         (lambda data: data | {"free": {"name": "F"}}, "free lacks the key 'low'"),
         (lambda data: {k: v for k, v in data.items() if k != "title"}, "lacks the key 'title'"),
@@ -157,10 +192,19 @@ def test_a_member_between_the_changes_and_the_changes_in_the_file(disc: Path) ->
         (lambda found: found | {"complete": "yes"}, "changes.complete is not true or false"),
         (lambda found: found | {"between": found["between"][1:]}, "do not lie between"),
         (lambda found: found | {"between": [found["between"][0]] * 4}, "do not lie between"),
-        (lambda found: found | {"found": [{"value": {"low": "0", "high": "1/10"}, "words": []}]}, "not exact"),
-        (lambda found: found | {"others": [{"low": "1", "high": "0"}]}, "lacks the key 'polynomial'"),
+        (
+            lambda found: found | {"found": [{"value": {"low": "0", "high": "1/10"}, "words": []}]},
+            "not exact",
+        ),
+        (
+            lambda found: found | {"others": [{"low": "1", "high": "0"}]},
+            "lacks the key 'polynomial'",
+        ),
         (lambda found: found | {"at_ends": [[], [3]]}, "is not a text"),
-        (lambda found: {k: v for k, v in found.items() if k != "between"}, "lacks the key 'between'"),
+        (
+            lambda found: {k: v for k, v in found.items() if k != "between"},
+            "lacks the key 'between'",
+        ),
     ],
 )
 def test_damaged_changes_are_refused(disc: Path, change: object, message: str) -> None:
@@ -208,16 +252,43 @@ def test_a_boundary_surface_is_drawn_and_written_as_a_mesh(
     assert own == {path.name for path in tmp_path.iterdir() if not path.name.startswith("disc-c")}
     assert "between 0 and 2" in (tmp_path / "disc-3d.svg").read_text()
     ply = (tmp_path / "disc.ply").read_text()
-    assert run(["plot", str(tmp_path / "disc.json"), "--format", "ply", "--out", str(tmp_path / "again")]) == 0
+    assert (
+        run(
+            [
+                "plot",
+                str(tmp_path / "disc.json"),
+                "--format",
+                "ply",
+                "--out",
+                str(tmp_path / "again"),
+            ]
+        )
+        == 0
+    )
     assert (tmp_path / "again" / "disc.ply").read_text() == ply
-    assert run(["plot", str(tmp_path / "disc.json"), "--surface", "--out", str(tmp_path / "again")]) == 0
-    assert {path.name for path in (tmp_path / "again").iterdir()} == {"disc.ply", "disc.png", "disc-3d.png"}
+    assert (
+        run(["plot", str(tmp_path / "disc.json"), "--surface", "--out", str(tmp_path / "again")])
+        == 0
+    )
+    assert {path.name for path in (tmp_path / "again").iterdir()} == {
+        "disc.ply",
+        "disc.png",
+        "disc-3d.png",
+    }
 
 
 def test_without_a_surface_the_picture_is_a_stack_and_a_mesh_needs_no_option(
     disc: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    common = ["classify", str(disc / "disc.yaml"), "--out", str(tmp_path), "--no-areas", "--members", "1/2,3/2"]
+    common = [
+        "classify",
+        str(disc / "disc.yaml"),
+        "--out",
+        str(tmp_path),
+        "--no-areas",
+        "--members",
+        "1/2,3/2",
+    ]
     assert run([*common, "--format", "svg,obj"]) == 0
     assert "between 0 and 2" not in (tmp_path / "disc-3d.svg").read_text()
     assert (tmp_path / "disc.obj").read_text().startswith("# boundary surface over a, b, c")
@@ -227,23 +298,47 @@ def test_without_a_surface_the_picture_is_a_stack_and_a_mesh_needs_no_option(
     assert "--surface has no effect here: no picture and no mesh" in told.err
     assert "boundary surface" not in told.out
     for asked, message in (
-        (["plot", str(tmp_path / "disc.json"), "--surface"], "disc.json: a sheet must not reach past a change"),
-        (["plot", str(tmp_path / "disc-c1_2.json"), "--format", "ply"], "ply is for a family's boundary surface"),
-        (["classify", "--slice", "L2,rho", "--format", "obj", "--out", str(tmp_path)], "add --free NAME=LO:HI"),
+        (
+            ["plot", str(tmp_path / "disc.json"), "--surface"],
+            "disc.json: a sheet must not reach past a change",
+        ),
+        (
+            ["plot", str(tmp_path / "disc-c1_2.json"), "--format", "ply"],
+            "ply is for a family's boundary surface",
+        ),
+        (
+            ["classify", "--slice", "L2,rho", "--format", "obj", "--out", str(tmp_path)],
+            "add --free NAME=LO:HI",
+        ),
     ):
         assert run(asked) == 2
         assert message in capsys.readouterr().err
-    plain = ["classify", "--slice", "L2,rho", "--surface", "--format", "json", "--no-areas", "--out", str(tmp_path)]
+    plain = [
+        "classify",
+        "--slice",
+        "L2,rho",
+        "--surface",
+        "--format",
+        "json",
+        "--no-areas",
+        "--out",
+        str(tmp_path),
+    ]
     assert run(plain) == 0
     assert "--surface has no effect here: no parameter is free" in capsys.readouterr().err
     assert run(["plot", str(tmp_path / "disc-c1_2.json"), "--surface", "--format", "svg"]) == 0
     assert "--surface has no effect here: this is one map" in capsys.readouterr().err
 
 
-def test_changes_are_verified_and_what_is_not_is_said(disc: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_changes_are_verified_and_what_is_not_is_said(
+    disc: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["verify", str(disc / "disc.json")]) == 0
     out = " ".join(capsys.readouterr().out.split())
-    assert "3 changes, compared with members 1/1000000 of the range away on both sides; 8 random members" in out
+    assert (
+        "3 changes, compared with members 1/1000000 of the range away on both sides; 8 random members"
+        in out
+    )
     assert "not checked changes complete" in out
 
 
@@ -259,13 +354,18 @@ def _moved(found: dict[str, Any], number: int, by: Fraction) -> dict[str, Any]:
     """A rational change elsewhere."""
     value = Fraction(found["found"][number]["value"]["low"]) + by
     polynomial = [str(-value.numerator), str(value.denominator)]
-    moved = found["found"][number] | {"value": {"polynomial": polynomial, "low": str(value), "high": str(value)}}
+    moved = found["found"][number] | {
+        "value": {"polynomial": polynomial, "low": str(value), "high": str(value)}
+    }
     return found | {"found": [*found["found"][:number], moved, *found["found"][number + 1 :]]}
 
 
 def _added(found: dict[str, Any], value: str) -> dict[str, Any]:
     """A change between the first two, where nothing changes."""
-    one = {"value": {"polynomial": [f"-{value[0]}", value[2]], "low": value, "high": value}, "words": ["it changes"]}
+    one = {
+        "value": {"polynomial": [f"-{value[0]}", value[2]], "low": value, "high": value},
+        "words": ["it changes"],
+    }
     other = found["between"][1] | {"value": "3/4"}
     return found | {
         "found": [found["found"][0], one, *found["found"][1:]],
@@ -285,7 +385,9 @@ def _side_forgotten(found: dict[str, Any], side: str) -> dict[str, Any]:
     """What touches a side is said to be what lies beside it."""
     inner = found["between"][2]
     sides = inner["arrangement"]["sides"]
-    forged = inner | {"arrangement": inner["arrangement"] | {"sides": sides | {side: sides[side][:1]}}}
+    forged = inner | {
+        "arrangement": inner["arrangement"] | {"sides": sides | {side: sides[side][:1]}}
+    }
     return found | {"between": [*found["between"][:2], forged, *found["between"][3:]]}
 
 
@@ -305,7 +407,9 @@ FORGED: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
 
 
 @pytest.mark.parametrize("forgery", FORGED)
-def test_forged_changes_are_refused(disc: Path, forgery: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_forged_changes_are_refused(
+    disc: Path, forgery: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     data = json.loads((disc / "disc.json").read_text())
     # of the members one is enough here: they are verified elsewhere
     data |= {"changes": FORGED[forgery](data["changes"]), "members": data["members"][:1]}
@@ -326,7 +430,9 @@ def test_other_commands_ask_for_a_member(folder: Path, capsys: pytest.CaptureFix
     assert "family      of 2 such slices, F from -40 to 0" in capsys.readouterr().out
 
 
-def test_what_is_wrong_with_a_member_names_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_wrong_with_a_member_names_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     record = tmp_path / "slope.yaml"
     record.write_text("system: {unknowns: {x: real}, equations: ['c*(x^3 + a*x + b)']}\n"
                       "axes: {a: [-1, 1], b: [-1, 1]}\nfree: {c: [0, 1]}\nmembers: [0, 1]\n")  # fmt: skip
@@ -334,9 +440,20 @@ def test_what_is_wrong_with_a_member_names_it(tmp_path: Path, capsys: pytest.Cap
     assert "(at c = 0)" in capsys.readouterr().err
 
 
-def test_a_time_limit_leaves_whole_members(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_time_limit_leaves_whole_members(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "loads.yaml").write_text(RECORD.replace("[-40, -10]", "40"))
-    limited = ["classify", str(tmp_path / "loads.yaml"), "--out", str(tmp_path), "--format", "json", "--timeout", ".3"]
+    limited = [
+        "classify",
+        str(tmp_path / "loads.yaml"),
+        "--out",
+        str(tmp_path),
+        "--format",
+        "json",
+        "--timeout",
+        ".3",
+    ]
     assert run(limited) == 3
     number = int(capsys.readouterr().err.partition("the maps of ")[2].partition(" of 40")[0])
     made = list(tmp_path.glob("loads-F*.json"))

@@ -1,7 +1,9 @@
-"""Hostile input at the command line, each case in a forked process of its own whose memory is limited.
+"""Hostile input at the command line, each case in a forked process of its own whose memory is
+limited.
 
-What is asked of each: exit status 2, one message of bounded length without a character that a terminal obeys, no code
-of the input run. The limit of the child's address space turns a blow-up of memory into a failure; a hang never ends.
+What is asked of each: exit status 2, one message of bounded length without a character that a
+terminal obeys, no code of the input run. The limit of the child's address space turns a blow-up of
+memory into a failure; a hang never ends.
 """
 
 from __future__ import annotations
@@ -49,7 +51,10 @@ def refused_fixture(limited: Limited, tmp_path: Path) -> Callable[[list[str]], s
 
 def yaml_bomb() -> str:
     lines = ["a: &a [x, x, x, x, x, x, x, x, x]"]
-    lines += [f"{b}: &{b} [{', '.join(['*' + a] * 9)}]" for a, b in zip("abcdefghijkl", "bcdefghijklm", strict=True)]
+    lines += [
+        f"{b}: &{b} [{', '.join(['*' + a] * 9)}]"
+        for a, b in zip("abcdefghijkl", "bcdefghijklm", strict=True)
+    ]
     return "\n".join(lines)
 
 
@@ -62,17 +67,28 @@ RECORDS: dict[str, tuple[str | bytes, str]] = {
     "10 MB": ("#" * 10_000_000, "is larger than 200000 bytes"),
     "10 MB in one value": (value("1" * 10_000_000), "is larger than"),
     "10^5 values": ("reference: {a: [" + "a," * 90_000 + "]}\n" + AXES, "more than 10000 values"),
-    "10^5 empty lists": ("reference: {a: [" + "[]," * 60_000 + "]}\n" + AXES, "more than 10000 values"),
+    "10^5 empty lists": (
+        "reference: {a: [" + "[]," * 60_000 + "]}\n" + AXES,
+        "more than 10000 values",
+    ),
     "10^5 keys": ("".join(f"{n}: 1\n" for n in range(20_000)), "more than 10000 values"),
     "a long key over many": (
-        "reference:\n  ? " + "k" * 90_000 + "\n  : {" + ", ".join(f"a{n}: 1" for n in range(9_000)) + "}\n" + AXES,
+        "reference:\n  ? "
+        + "k" * 90_000
+        + "\n  : {"
+        + ", ".join(f"a{n}: 1" for n in range(9_000))
+        + "}\n"
+        + AXES,
         "a key has more than 100 characters",
     ),
     "10^5 levels of lists": ("[" * 100_000, "levels of nesting"),
     "10^5 levels of mappings": ("{a: " * 40_000, "levels of nesting"),
     "10^5 levels of blocks": ("- " * 90_000, "levels of nesting"),
     "10^5 levels of keys": ("? " * 90_000, "levels of nesting"),
-    "10^4 directives": ("".join(f"%TAG !a{n}! b\n" for n in range(10_000)) + "---\n" + AXES, "starts with %"),
+    "10^4 directives": (
+        "".join(f"%TAG !a{n}! b\n" for n in range(10_000)) + "---\n" + AXES,
+        "starts with %",
+    ),
     "10^5 documents": ("---\n" * 40_000, "a second document"),
     "a long tag": (f"title: !{'x' * 150_000} a\n" + AXES, "is not accepted: leave it out"),
     "a Python object": ("!!python/object/apply:os.system ['touch pwned']", "the tag"),
@@ -118,7 +134,10 @@ RECORDS: dict[str, tuple[str | bytes, str]] = {
     "empty window": ("axes: {rho: [1, 1], L2: [0, 2]}", "is empty"),
     "reversed window": ("axes: {rho: [1, 1-1e-400], L2: [0, 2]}", "is reversed"),
     "infinite window": ("axes: {rho: [0, inf], L2: [0, 2]}", "not a number"),
-    "1e-400 wide, of a length below zero": ("axes: {rho: [-1e-400, 0], L2: [0, 2]}", "goes below zero"),
+    "1e-400 wide, of a length below zero": (
+        "axes: {rho: [-1e-400, 0], L2: [0, 2]}",
+        "goes below zero",
+    ),
     "null characters": (AXES + "\0", "is not YAML"),
     "escape codes": (AXES + '"\\e]0;title\\a\\e[31m": 1', "unknown key"),
     "escape codes in a value": (AXES + 'count: "\\e[31m\\n"', "is none of"),
@@ -135,7 +154,9 @@ RECORDS: dict[str, tuple[str | bytes, str]] = {
 @pytest.mark.parametrize("case", RECORDS)
 def test_records(tmp_path: Path, refused: Refused, case: str) -> None:
     content, part = RECORDS[case]
-    (tmp_path / "record.yaml").write_bytes(content if isinstance(content, bytes) else content.encode())
+    (tmp_path / "record.yaml").write_bytes(
+        content if isinstance(content, bytes) else content.encode()
+    )
     message = refused(["classify", "record.yaml"])
     assert message.startswith("error: record.yaml")
     assert part in message
@@ -210,14 +231,33 @@ def odd_files(tmp_path: Path, shipped: Callable[..., Any]) -> dict[str, str]:
 
 
 @pytest.mark.parametrize(
-    "kind", ["pipe", "loop", "sparse", "folder", "null", "zero", "full", "missing", "file as folder", "terminal"]
+    "kind",
+    [
+        "pipe",
+        "loop",
+        "sparse",
+        "folder",
+        "null",
+        "zero",
+        "full",
+        "missing",
+        "file as folder",
+        "terminal",
+    ],
 )
 @pytest.mark.parametrize(
     "command",
-    [["classify", ""], ["verify", ""], ["locate", "", "--at", "rho=1,L2=1"], ["locate", "good.json", "--csv", ""]],
+    [
+        ["classify", ""],
+        ["verify", ""],
+        ["locate", "", "--at", "rho=1,L2=1"],
+        ["locate", "good.json", "--csv", ""],
+    ],
     ids=["record", "verify", "locate", "points"],
 )
-def test_files_that_are_none(refused: Refused, files: dict[str, str], command: list[str], kind: str) -> None:
+def test_files_that_are_none(
+    refused: Refused, files: dict[str, str], command: list[str], kind: str
+) -> None:
     """A pipe has no writer: a plain open() would wait for one for ever."""
     message = refused([part or files[kind] for part in command])
     assert message.startswith(f"error: {files[kind]}")
@@ -242,7 +282,9 @@ def result_texts() -> dict[str, str | bytes]:
 
 
 @pytest.mark.parametrize("case", result_texts())
-@pytest.mark.parametrize("command", [["verify"], ["locate", "--at", "rho=1,L2=1"]], ids=["verify", "locate"])
+@pytest.mark.parametrize(
+    "command", [["verify"], ["locate", "--at", "rho=1,L2=1"]], ids=["verify", "locate"]
+)
 def test_results(tmp_path: Path, refused: Refused, command: list[str], case: str) -> None:
     content = result_texts()[case]
     (tmp_path / "r.json").write_bytes(content if isinstance(content, bytes) else content.encode())
@@ -256,8 +298,14 @@ POINTS: dict[str, tuple[str | bytes, str]] = {
     "an axis twice": ("rho,rho,L2\n1,2,3\n", "each once"),
     "a long line": ("rho,L2\n" + "1" * 10**7, "the line has more than 100000 bytes"),
     "10^6 columns": ("rho,L2" + "," * 10**6 + "\n1,1\n", "the line has more than"),
-    "a quotation mark that is never closed": ('rho,L2\n"' + "1\n" * 10**6, "is a quotation mark missing?"),
-    "many fields in a row of many lines": ('rho,L2\n"' + '","\n' * 10**6, "is a quotation mark missing?"),
+    "a quotation mark that is never closed": (
+        'rho,L2\n"' + "1\n" * 10**6,
+        "is a quotation mark missing?",
+    ),
+    "many fields in a row of many lines": (
+        'rho,L2\n"' + '","\n' * 10**6,
+        "is a quotation mark missing?",
+    ),
     "10^5 digits": ("rho,L2\n" + "9" * 90_000 + ",1\n", "characters, more than"),
     "a huge exponent": ("rho,L2\n1e999999999,1\n", "decimal exponent"),
     "escape codes": ("rho,L2\n\x1b[31m,1\n", "cannot be used"),
@@ -272,7 +320,9 @@ POINTS: dict[str, tuple[str | bytes, str]] = {
 @pytest.mark.parametrize("case", POINTS)
 def test_points(tmp_path: Path, refused: Refused, files: dict[str, str], case: str) -> None:
     content, part = POINTS[case]
-    (tmp_path / "points.csv").write_bytes(content if isinstance(content, bytes) else content.encode())
+    (tmp_path / "points.csv").write_bytes(
+        content if isinstance(content, bytes) else content.encode()
+    )
     assert part in refused(["locate", "good.json", "--csv", "points.csv"])
 
 

@@ -105,7 +105,11 @@ CASES = {
     "classify-1500 names",
 )
 def test_hostile_descriptions(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, case: str, command: str
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    case: str,
+    command: str,
 ) -> None:
     folder = tmp_path / "records"
     folder.mkdir()

@@ -1,8 +1,9 @@
 """Stored results and records with characters that no terminal, page or picture can take.
 
-A JSON file may spell half of a surrogate pair, a control character or a mark that turns the writing direction as an
-escape, in every text and key. What is asked: the reader refuses each with its place, and every command that reads a
-result says so in one printable line; texts that are only unusual stay as they are.
+A JSON file may spell half of a surrogate pair, a control character or a mark that turns the writing
+direction as an escape, in every text and key. What is asked: the reader refuses each with its
+place, and every command that reads a result says so in one printable line; texts that are only
+unusual stay as they are.
 """
 
 from __future__ import annotations
@@ -23,8 +24,16 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.question.config import load
 
-RECORD = "mechanism: ptm\nparameters: {L1: 1, F3: -10, F4: -10}\naxes: {rho: [2/5, 2/3], L2: [3/4, 1]}\n"
-HIDDEN = {"half of a pair": "\ud800", "escape": "\x1b[31m", "direction": "\u202e", "null": "\0", "line": "\u2028"}
+RECORD = (
+    "mechanism: ptm\nparameters: {L1: 1, F3: -10, F4: -10}\naxes: {rho: [2/5, 2/3], L2: [3/4, 1]}\n"
+)
+HIDDEN = {
+    "half of a pair": "\ud800",
+    "escape": "\x1b[31m",
+    "direction": "\u202e",
+    "null": "\0",
+    "line": "\u2028",
+}
 Place = tuple[str | int, ...]
 
 
@@ -34,7 +43,10 @@ def small_map(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     from ptmcad.ask.classification import classify
 
     file = tmp_path_factory.mktemp("record") / "small.yaml"
-    file.write_text(RECORD + 'reference: {source: "fig. 4,\\u00a0\\ttwo\\nlines", deep: {a: [b]}}\n', encoding="utf-8")
+    file.write_text(
+        RECORD + 'reference: {source: "fig. 4,\\u00a0\\ttwo\\nlines", deep: {a: [b]}}\n',
+        encoding="utf-8",
+    )
     document: dict[str, Any] = json.loads(classify(load(file)).to_json())
     return document
 
@@ -68,7 +80,9 @@ def with_text(document: dict[str, Any], place: Place, is_key: bool, more: str) -
 @pytest.mark.parametrize("kind", HIDDEN)
 @pytest.mark.slow_cases("direction", "escape")
 def test_no_text_of_a_result_has_a_hidden_character(stored: dict[str, Any], kind: str) -> None:
-    """In a reference, which is stored and never shown, directions and separators of lines are the citation's affair."""
+    """In a reference, which is stored and never shown, directions and separators of lines are the
+    citation's affair.
+    """
     places = list(texts(stored))
     assert len(places) > 100
     for place, is_key in places:
@@ -86,7 +100,11 @@ def test_no_text_of_a_result_has_a_hidden_character(stored: dict[str, Any], kind
     ("system", "potential"), ("plan", 0, "reason"), ("versions", "python"),
 ], ids=lambda place: place[1] if place[0] == "slice" else place[0])  # fmt: skip
 def test_commands_refuse_half_of_a_pair(
-    stored: dict[str, Any], tmp_path: Path, capfd: pytest.CaptureFixture[str], command: list[str], place: Place
+    stored: dict[str, Any],
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+    command: list[str],
+    place: Place,
 ) -> None:
     result, record = tmp_path / "r.json", tmp_path / "record.yaml"
     result.write_text(json.dumps(with_text(stored, place, False, "\ud800")), encoding="utf-8")
@@ -104,13 +122,18 @@ def test_commands_refuse_half_of_a_pair(
 
 def test_unusual_texts_stay(stored: dict[str, Any]) -> None:
     """A no-break space and line breaks in a citation, a tab in an expression."""
-    assert RegionMap.from_json(json.dumps(stored)).slice.reference["source"] == "fig. 4,\u00a0\ttwo\nlines"
+    assert (
+        RegionMap.from_json(json.dumps(stored)).slice.reference["source"]
+        == "fig. 4,\u00a0\ttwo\nlines"
+    )
     stored = with_text(stored, ("slice", "text", "F3"), False, "\t")
     assert RegionMap.from_json(json.dumps(stored)).slice.text["F3"].endswith("\t")
 
 
 @pytest.mark.parametrize("where", ['{source: "a\\a"}', '{a: {b: ["\\e[31m"]}}', '{a: {"b\\0": 1}}'])
-def test_a_record_has_no_reference_that_its_result_could_not_store(tmp_path: Path, where: str) -> None:
+def test_a_record_has_no_reference_that_its_result_could_not_store(
+    tmp_path: Path, where: str
+) -> None:
     """Otherwise the run's own result would be refused."""
     file = tmp_path / "r.yaml"
     file.write_text(RECORD + f"reference: {where}\n", encoding="utf-8")
@@ -126,11 +149,15 @@ def test_what_a_run_stores_it_can_read(stored: dict[str, Any], shipped: Callable
         assert RegionMap.from_json(whole.to_json()) == whole
 
 
-@pytest.mark.parametrize("command", [["report"], ["plot", "--format", "svg"]], ids=lambda command: command[0])
+@pytest.mark.parametrize(
+    "command", [["report"], ["plot", "--format", "svg"]], ids=lambda command: command[0]
+)
 def test_paths_are_printed_so_that_no_terminal_obeys_them(
     stored: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: list[str]
 ) -> None:
-    """click removes escape codes when the output is no terminal, so what is asked is what click is given."""
+    """click removes escape codes when the output is no terminal, so what is asked is what click is
+    given.
+    """
     result, folder, said = tmp_path / "r.json", tmp_path / "a\x1b[31m\u202eb", list[str]()
     result.write_text(json.dumps(stored), encoding="utf-8")
     monkeypatch.setattr("click.echo", lambda text, **_: said.append(str(text)))

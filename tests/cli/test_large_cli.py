@@ -1,4 +1,6 @@
-"""msolve as the command line sees it: what went wrong with it is one line, and it does not outlive the program."""
+"""msolve as the command line sees it: what went wrong with it is one line, and it does not outlive
+the program.
+"""
 
 from __future__ import annotations
 
@@ -58,7 +60,9 @@ def test_a_lost_root_is_one_line_of_warning(
     assert "4 solutions" in said.out
 
 
-def test_check_and_explain_say_whose_bases_are_used(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_and_explain_say_whose_bases_are_used(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert cli.run(["check", record(tmp_path, LARGE)]) == 0
     assert "bases       up to 216 solutions: by ptmcad while small, then" in capsys.readouterr().out
 
@@ -71,7 +75,9 @@ def test_msolve_ends_with_the_process_that_asks_it_even_if_that_is_killed(tmp_pa
         "from ptmcad.algebra.proved import quotient_by_msolve; from flint import fmpq; "
         "quotient_by_msolve([{(1,): fmpq(1)}], 1, 60)"
     )
-    with subprocess.Popen([sys.executable, "-c", program], env={**os.environ, "PATH": path}) as process:
+    with subprocess.Popen(
+        [sys.executable, "-c", program], env={**os.environ, "PATH": path}
+    ) as process:
         while not (noted.exists() and noted.read_text()):
             assert process.poll() is None
             time.sleep(0.02)

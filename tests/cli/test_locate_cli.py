@@ -38,7 +38,9 @@ def test_a_point(fig2: Path, capsys: pytest.CaptureFixture[str]) -> None:
         ("L2=3/2,rho=1.24999999999999999999999999999999999999999", "stable  2"),
     ],
 )
-def test_near_a_boundary(fig2: Path, at: str, status: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_near_a_boundary(
+    fig2: Path, at: str, status: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["locate", str(fig2), "--at", at]) == 0
     assert status in capsys.readouterr().out
 
@@ -56,7 +58,14 @@ def test_many_points(fig2: Path, tmp_path: Path, capsys: pytest.CaptureFixture[s
 
 @pytest.mark.parametrize(
     "arguments",
-    [[], ["--at", "rho=1"], ["--at", "rho"], ["--at", "rho=1,L2=x"], ["--at", "rho=1,L2=1,k=3"], ["--csv", "none.csv"]],
+    [
+        [],
+        ["--at", "rho=1"],
+        ["--at", "rho"],
+        ["--at", "rho=1,L2=x"],
+        ["--at", "rho=1,L2=1,k=3"],
+        ["--csv", "none.csv"],
+    ],
 )
 def test_bad_points(fig2: Path, arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["locate", str(fig2), *arguments]) == 2
@@ -72,7 +81,9 @@ def test_a_bad_row_is_named(fig2: Path, tmp_path: Path, capsys: pytest.CaptureFi
 
 @pytest.mark.parametrize("command", [["verify"], ["locate", "--at", "L2=1,rho=1"]])
 @pytest.mark.parametrize("damage", ["", "{}", "[]", "null", "{" * 100_000, "\0", "\udcff", "half"])
-def test_a_damaged_file(fig2: Path, command: list[str], damage: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_damaged_file(
+    fig2: Path, command: list[str], damage: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     text = fig2.read_text(encoding="utf-8")
     damaged = text[: len(text) // 2] if damage == "half" else damage
     fig2.write_bytes(damaged.encode("utf-8", "surrogateescape"))
@@ -88,7 +99,9 @@ def test_verify_accepts(fig2: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "signatures of trace forms" in capsys.readouterr().out
 
 
-def test_verify_rejects(tmp_path: Path, shipped: Callable[..., RegionMap], capsys: pytest.CaptureFixture[str]) -> None:
+def test_verify_rejects(
+    tmp_path: Path, shipped: Callable[..., RegionMap], capsys: pytest.CaptureFixture[str]
+) -> None:
     true = shipped("fig2")
     low, high = true.regions[0].area
     false = replace(true.regions[0], area=(low + Fraction(1, 2), high + Fraction(1, 2)))

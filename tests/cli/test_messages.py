@@ -60,7 +60,9 @@ def test_an_option_without_effect_says_so(
         ("name: x\n", "is damaged or not a ptmcad-region-map/2 file: "),
     ],
 )  # fmt: skip
-@pytest.mark.parametrize("command", [["locate", "--at", "rho=1,L2=1"], ["verify"], ["plot"], ["report"]])
+@pytest.mark.parametrize(
+    "command", [["locate", "--at", "rho=1,L2=1"], ["verify"], ["plot"], ["report"]]
+)
 def test_a_file_that_is_no_result(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str], text: str, said: str
 ) -> None:
@@ -70,10 +72,17 @@ def test_a_file_that_is_no_result(
     assert capsys.readouterr().err.startswith(f"error: {path}: {said}")
 
 
-@pytest.mark.parametrize("command", [["solve", "--at", "rho=1"], ["range", "--along", "rho", "--at", "L2=3/2"]])
-def test_a_folder_for_no_files(tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]) -> None:
+@pytest.mark.parametrize(
+    "command", [["solve", "--at", "rho=1"], ["range", "--along", "rho", "--at", "L2=3/2"]]
+)
+def test_a_folder_for_no_files(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]
+) -> None:
     assert run([*command, "--out", str(tmp_path)]) == 0
-    assert capsys.readouterr().err == "note: --out has no effect here: no file is written, see --format\n"
+    assert (
+        capsys.readouterr().err
+        == "note: --out has no effect here: no file is written, see --format\n"
+    )
 
 
 def test_an_unknown_axis(capsys: pytest.CaptureFixture[str]) -> None:
@@ -82,7 +91,9 @@ def test_an_unknown_axis(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().err == said
 
 
-def test_what_is_spared_on_every_slice_is_not_explained(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_spared_on_every_slice_is_not_explained(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     common = ["classify", FIG2, "--format", "json", "--out", str(tmp_path), "--explain"]
     assert run(common) == 0
     assert "import" not in capsys.readouterr().out
@@ -94,7 +105,11 @@ def test_what_is_spared_on_every_slice_is_not_explained(tmp_path: Path, capsys: 
 
 def test_the_time_line(shipped: Shipped) -> None:
     exact = replace(shipped("fig2"), timings={"total": 0.314})
-    assert table(exact).splitlines()[-1].startswith("time      0.31 s; nothing undetermined; area bounds")
+    assert (
+        table(exact)
+        .splitlines()[-1]
+        .startswith("time      0.31 s; nothing undetermined; area bounds")
+    )
     first = replace(exact, timings={"total": 24.9, COMPILATION: 38.0})
     assert "time      62.9 s, of which 38 s compilation (once); nothing" in table(first)
 
@@ -103,7 +118,9 @@ def test_no_curve_changes_the_count(shipped: Shipped) -> None:
     assert "curves    no curve changes the count" in table(replace(shipped("fig2"), components=()))
 
 
-def test_verify_shows_progress_on_a_terminal(shipped: Shipped, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_verify_shows_progress_on_a_terminal(
+    shipped: Shipped, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = tmp_path / "fig2.json"
     path.write_text(shipped("fig2").to_json(), encoding="utf-8")
     monkeypatch.setattr("ptmcad.cli.progress.PATIENCE", 0)

@@ -24,7 +24,9 @@ SCHEMA = json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="ut
 def test_a_record(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["range", FIG4, "--along", "rho", "--at", "L2=3/2"]) == 0
     out = capsys.readouterr().out
-    assert out.startswith("question  fig4: rho in [0, 2], L2 in [0, 2]; F3 = -10, F4 = -10; count stable\n")
+    assert out.startswith(
+        "question  fig4: rho in [0, 2], L2 in [0, 2]; F3 = -10, F4 = -10; count stable\n"
+    )
     assert "operation range: 0.4981306959 to 1.041432630, width 0.5433019346\n" in out
 
 
@@ -32,33 +34,83 @@ def test_a_record(capsys: pytest.CaptureFixture[str]) -> None:
     ("arguments", "line"),
     [
         (["--along", "rho", "--at", "L2=3/2"], "operation range: 0.25 to 1.25, width 1"),
-        (["--along", "rho", "--at", "L2=3/2,F3=-10,F4=-10"], "operation range: 0.4981306959 to 1.041432630"),
-        (["--along", "L2", "--at", "rho=1/2"], "operation range: 0 to 2, width 2 (its lower end is the window's edge)"),
+        (
+            ["--along", "rho", "--at", "L2=3/2,F3=-10,F4=-10"],
+            "operation range: 0.4981306959 to 1.041432630",
+        ),
+        (
+            ["--along", "L2", "--at", "rho=1/2"],
+            "operation range: 0 to 2, width 2 (its lower end is the window's edge)",
+        ),
         ([FIG4, "--along", "F3", "--at", "L2=3/2,rho=1"], "operation range: -16.51890610 to 0"),
-        ([FIG4, "--along", "k", "--at", "rho=1,L2=3/2", "--digits", "4"], "operation range: 75.22 to 200"),
-        ([FIG3, "--along", "rho", "--at", "F=-10"], "operation range: 0.2149411958 to 0.8034910267"),
-        ([FIG4, "--along", "rho", "--at", "L2=1", "--range", "rho=1/2:3/5"], "width 0.1 (the whole window)"),
+        (
+            [FIG4, "--along", "k", "--at", "rho=1,L2=3/2", "--digits", "4"],
+            "operation range: 75.22 to 200",
+        ),
+        (
+            [FIG3, "--along", "rho", "--at", "F=-10"],
+            "operation range: 0.2149411958 to 0.8034910267",
+        ),
+        (
+            [FIG4, "--along", "rho", "--at", "L2=1", "--range", "rho=1/2:3/5"],
+            "width 0.1 (the whole window)",
+        ),
         (["--along", "rho", "--at", "L2=9/10", "--range", "rho=3:4"], "operation range: none"),
     ],
     ids=lambda v: " ".join(v) if isinstance(v, list) else "",
 )
-def test_lines_of_all_kinds(arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_lines_of_all_kinds(
+    arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["range", *arguments]) == 0
     assert line in capsys.readouterr().out
 
 
 @pytest.mark.slow
 def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["--along", "rho", "--at", "L2=3/2", "--over", "L2", "--rows", "3", "--path", "7/10", "--pose", "1"]
-    assert run(["range", FIG4, *arguments, "--format", "json,svg", "--out", str(tmp_path), "--name", "x"]) == 0
+    arguments = [
+        "--along",
+        "rho",
+        "--at",
+        "L2=3/2",
+        "--over",
+        "L2",
+        "--rows",
+        "3",
+        "--path",
+        "7/10",
+        "--pose",
+        "1",
+    ]
+    assert (
+        run(
+            [
+                "range",
+                FIG4,
+                *arguments,
+                "--format",
+                "json,svg",
+                "--out",
+                str(tmp_path),
+                "--name",
+                "x",
+            ]
+        )
+        == 0
+    )
     assert {p.name for p in tmp_path.iterdir()} == {"x.json", "x.svg", "x-over.svg", "x-path.svg"}
     data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
     assert {"line", "over", "path"} <= set(data)
     assert data["over"]["maxima"][0]["at"]["decimal"] == "1"
-    assert "Intervals of rho: 0 to 0.4981307: 1 stable of 4" in (tmp_path / "x.svg").read_text(encoding="utf-8")
+    assert "Intervals of rho: 0 to 0.4981307: 1 stable of 4" in (tmp_path / "x.svg").read_text(
+        encoding="utf-8"
+    )
     out = capsys.readouterr().out
-    assert "widest operation range: width 0.5885498309, attained at L2 = 1, a critical value of L2" in out
+    assert (
+        "widest operation range: width 0.5885498309, attained at L2 = 1, a critical value of L2"
+        in out
+    )
     assert out.endswith(f", {tmp_path / 'x-path.svg'}, {tmp_path / 'x.json'}\n")
     assert "pose 1 at rho = 0.7" in out and "pose 2" not in out
 
@@ -76,10 +128,19 @@ def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         ([FIG4, "--along", "rho", "--at", "L2=0"], "infinitely many"),
         ([FIG4, "--along", "rho", "--at", "L2=-1"], "L2 = -1"),
         ([FIG4, "--along", "rho", "--at", "L2=nan"], "at L2"),
-        ([FIG4, "--along", "rho", "--at", "L2=1", "--pose", "1"], "--pose: chooses a pose to follow"),
+        (
+            [FIG4, "--along", "rho", "--at", "L2=1", "--pose", "1"],
+            "--pose: chooses a pose to follow",
+        ),
         ([FIG4, "--along", "rho", "--at", "L2=1", "--path", "x"], "--path"),
-        ([FIG4, "--along", "rho", "--at", "L2=1", "--path", "7"], "--path: 7 is not inside the window"),
-        ([FIG4, "--along", "rho", "--over", "L2", "--path", "1"], "--path: needs the value of the other axis too"),
+        (
+            [FIG4, "--along", "rho", "--at", "L2=1", "--path", "7"],
+            "--path: 7 is not inside the window",
+        ),
+        (
+            [FIG4, "--along", "rho", "--over", "L2", "--path", "1"],
+            "--path: needs the value of the other axis too",
+        ),
         ([FIG4, "--along", "rho", "--over", "rho"], "rho"),
         ([FIG4, "--along", "q", "--at", "L2=1"], "q"),
         ([FIG4, "--along", "rho", "--at", "L2=1", "--format", "gif"], "gif is not among"),
@@ -98,7 +159,9 @@ def test_bad_input(arguments: list[str], message: str, capsys: pytest.CaptureFix
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=14), st.floats(0.001, 0.03))
 def test_labels_keep_apart_and_inside(places: list[float], half: float) -> None:
-    """Centres are in order, two halves apart, and whole labels lie within the bar, where there is room for all."""
+    """Centres are in order, two halves apart, and whole labels lie within the bar, where there is
+    room for all.
+    """
     centers = spread(sorted(places), half)
     if 2 * half * len(places) <= 1:
         assert all(b - a >= 2 * half - 1e-9 for a, b in pairwise(centers))
@@ -111,14 +174,29 @@ def test_labels_keep_apart_and_inside(places: list[float], half: float) -> None:
 FREE02 = str(ROOT / "configs" / "free02.yaml")
 
 
-def test_a_line_with_free_lengths_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_line_with_free_lengths_as_json(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     pytest.importorskip("numba")
-    arguments = [FREE02, "--along", "rho", "--at", "L2=3/2", "--range", "rho=3/10:3/5", "--format", "json"]
+    arguments = [
+        FREE02,
+        "--along",
+        "rho",
+        "--at",
+        "L2=3/2",
+        "--range",
+        "rho=3/10:3/5",
+        "--format",
+        "json",
+    ]
     assert run(["range", *arguments, "--out", str(tmp_path), "--name", "x"]) == 0
     data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
     intervals = data["enclosed"]["intervals"]
-    assert [(i["total"], i["stable"], i["index"]) for i in intervals] == [(4, 1, [1, 2, 1]), (6, 2, [2, 3, 1])]
+    assert [(i["total"], i["stable"], i["index"]) for i in intervals] == [
+        (4, 1, [1, 2, 1]),
+        (6, 2, [2, 3, 1]),
+    ]
     assert intervals[0]["high"] == intervals[1]["low"] == data["enclosed"]["changes"][0]["at"]
     assert intervals[0]["high"]["decimal"] == "0.4634527060"
     # each count that is said is compared, also where another version's answer need not be today's
@@ -133,12 +211,20 @@ def test_a_line_with_free_lengths_as_json(tmp_path: Path, capsys: pytest.Capture
 
 
 @pytest.mark.parametrize(
-    "at", [pytest.param([], marks=pytest.mark.slow), ["--at", "L2=3/2"]], ids=["over alone", "with a line"]
+    "at",
+    [pytest.param([], marks=pytest.mark.slow), ["--at", "L2=3/2"]],
+    ids=["over alone", "with a line"],
 )
-def test_a_band_with_free_lengths(at: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_band_with_free_lengths(
+    at: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """At L2 = 3/2 the row's ends are those that `ptmcad range --at` gives."""
     pytest.importorskip("numba")
-    window = ["--range", "rho=3/10:7/5", *(["--range", "L2=1:2", "--rows", "1"] if at else ["--rows", "3"])]
+    window = [
+        "--range",
+        "rho=3/10:7/5",
+        *(["--range", "L2=1:2", "--rows", "1"] if at else ["--rows", "3"]),
+    ]
     asked = ["--along", "rho", "--over", "L2", *at, *window, "--digits", "6"]
     files = ["--format", "json,svg", "--out", str(tmp_path), "--name", "x"]
     assert run(["range", FREE02, *asked, *files]) == 0
@@ -148,7 +234,9 @@ def test_a_band_with_free_lengths(at: list[str], tmp_path: Path, capsys: pytest.
     assert "; nothing is proved of the values between them" in out
     data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
-    assert [row["value"] for row in data["bands"]["rows"]] == (["3/2"] if at else ["1/2", "1", "3/2"])
+    assert [row["value"] for row in data["bands"]["rows"]] == (
+        ["3/2"] if at else ["1/2", "1", "3/2"]
+    )
     assert ("enclosed" in data) == bool(at)
     picture = (tmp_path / "x-over.svg").read_text(encoding="utf-8")
     assert "bars: where there are at least two stable equilibria" in picture
@@ -166,5 +254,7 @@ def test_an_unknown_axis_is_told_by_the_option_that_named_it(
     asked: list[str], key: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(["range", str(ROOT / "configs" / "fig4.yaml"), *asked]) == 2
-    expected = f"error: {key}: unknown axis 'foo'; to introduce a new variable add --range foo=LO:HI\n"
+    expected = (
+        f"error: {key}: unknown axis 'foo'; to introduce a new variable add --range foo=LO:HI\n"
+    )
     assert capsys.readouterr().err == expected

@@ -28,16 +28,33 @@ def test_a_record_gives_what_is_left_open(capsys: pytest.CaptureFixture[str]) ->
     expected = solve(digits=20, rho="7/10", L2="3/2", F3=-10, F4=-10).table()
     assert capsys.readouterr().out == expected + "\n"
     assert run(["solve", FIG4, "--at", "rho=7/10,L2=3/2,F3=5", "--set", "k=2*50+1"]) == 0
-    assert capsys.readouterr().out == solve(digits=10, rho="7/10", L2="3/2", F3=5, F4=-10, k=101).table() + "\n"
+    assert (
+        capsys.readouterr().out
+        == solve(digits=10, rho="7/10", L2="3/2", F3=5, F4=-10, k=101).table() + "\n"
+    )
 
 
-def test_an_axis_that_is_no_parameter_is_part_of_the_point(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_axis_that_is_no_parameter_is_part_of_the_point(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     assert run(["solve", FIG3, "--at", "rho=1/5,F=-10"]) == 0
     assert capsys.readouterr().out == solve(digits=10, rho="1/5", F3=-10, F4=-10).table() + "\n"
 
 
-def test_json_is_written_with_the_digits_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["solve", "--at", "rho=1,L2=3/2", "--digits", "30", "--format", "json", "--out", str(tmp_path / "new")]
+def test_json_is_written_with_the_digits_asked_for(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = [
+        "solve",
+        "--at",
+        "rho=1,L2=3/2",
+        "--digits",
+        "30",
+        "--format",
+        "json",
+        "--out",
+        str(tmp_path / "new"),
+    ]
     assert run(arguments) == 0
     assert capsys.readouterr().out == f"written   {tmp_path / 'new' / 'poses.json'}\n"
     written = (tmp_path / "new" / "poses.json").read_text(encoding="utf-8")
@@ -59,7 +76,11 @@ def test_pictures_are_written_beside_the_json(tmp_path: Path) -> None:
         str(tmp_path),
     ]
     assert run(arguments) == 0
-    assert {path.name for path in tmp_path.iterdir()} == {"poses.json", "poses.svg", "poses-landscape.svg"}
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "poses.json",
+        "poses.svg",
+        "poses-landscape.svg",
+    }
     assert "<svg" in (tmp_path / "poses.svg").read_text(encoding="utf-8")
     assert (tmp_path / "poses.svg").read_bytes() != (tmp_path / "poses-landscape.svg").read_bytes()
 
@@ -70,7 +91,9 @@ def test_pictures_are_written_beside_the_json(tmp_path: Path) -> None:
     ids=["infinitely-many", "degenerate"],
 )
 @pytest.mark.slow_cases("degenerate")
-def test_special_points_are_answers(at: str, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_special_points_are_answers(
+    at: str, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """The exit status tells where there are no poses."""
     assert run(["solve", "--at", at, "--landscape", "--out", str(tmp_path)]) == status
     out, error = capsys.readouterr()
@@ -97,14 +120,22 @@ def test_special_points_are_answers(at: str, status: int, tmp_path: Path, capsys
         (["--at", "rho=1", "--digits", "0"], "--digits: "),
         (["--at", "rho=1", "--digits", "1001"], "--digits: "),
         (["--at", "rho=1", "--format", "gif"], "gif is not among table, json, png, svg, pdf"),
-        (["--at", "rho=1", "--format", "json", "--name", "../x"], "error: --name: '../x' cannot name a file"),
-        (["--at", "rho=1", "--format", "json", "--name", "COM1"], "error: --name: 'COM1' cannot name a file: Windows"),
+        (
+            ["--at", "rho=1", "--format", "json", "--name", "../x"],
+            "error: --name: '../x' cannot name a file",
+        ),
+        (
+            ["--at", "rho=1", "--format", "json", "--name", "COM1"],
+            "error: --name: 'COM1' cannot name a file: Windows",
+        ),
         (["missing.yaml", "--at", "rho=1"], "missing.yaml"),
         ([FIG4, "--at", "rho=1"], "error: --at: L2 is an axis of "),
         ([FIG3, "--at", "rho=1,F=L2"], "error: --at F: the value of this axis is a number"),
         ([FIG3, "--at", "rho=1,G=1"], "error: --at G: unknown parameter 'G'"),
     ],
-    ids=lambda value: " ".join(Path(part).name for part in value) if isinstance(value, list) else "",
+    ids=lambda value: (
+        " ".join(Path(part).name for part in value) if isinstance(value, list) else ""
+    ),
 )
 def test_bad_input_gets_one_message(
     arguments: list[str],
@@ -126,7 +157,10 @@ def test_an_unwritable_folder_is_told_before_anything_is_computed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "file").write_text("here already")
-    assert run(["solve", "--at", "rho=1", "--format", "table,json", "--out", str(tmp_path / "file")]) == 2
+    assert (
+        run(["solve", "--at", "rho=1", "--format", "table,json", "--out", str(tmp_path / "file")])
+        == 2
+    )
     captured = capsys.readouterr()
     assert "cannot be made" in captured.err
     assert captured.out == ""
@@ -135,7 +169,22 @@ def test_an_unwritable_folder_is_told_before_anything_is_computed(
 def test_the_json_is_the_same_every_time(tmp_path: Path) -> None:
     texts = set()
     for name in ("a", "b"):
-        assert run(["solve", "--at", "F3=-10,F4x=3", "--format", "json", "--out", str(tmp_path), "--name", name]) == 0
+        assert (
+            run(
+                [
+                    "solve",
+                    "--at",
+                    "F3=-10,F4x=3",
+                    "--format",
+                    "json",
+                    "--out",
+                    str(tmp_path),
+                    "--name",
+                    name,
+                ]
+            )
+            == 0
+        )
         texts.add((tmp_path / f"{name}.json").read_text(encoding="utf-8"))
     assert len(texts) == 1
     assert json.loads(texts.pop())["parameters"]["F4x"] == "3"

@@ -1,4 +1,6 @@
-"""``ptmcad mechanisms`` and ``ptmcad init``: what is listed can be named, and what is written runs as it is."""
+"""``ptmcad mechanisms`` and ``ptmcad init``: what is listed can be named, and what is written runs
+as it is.
+"""
 
 from __future__ import annotations
 
@@ -14,14 +16,17 @@ from ptmcad.cli.mechanisms import starter_model
 from ptmcad.model import Mechanism, ptm
 from ptmcad.question.config.starters import NAMES
 
-# known by construction, see `pendulum` below; of a cubic 4 a^3 = 27 b^2: 2 * integral of sqrt(4 a^3/27) from 0 to 2
+# known by construction, see `pendulum` below; of a cubic 4 a^3 = 27 b^2: 2 * integral of
+# sqrt(4 a^3/27) from 0 to 2
 STABLE = {"ptm": {1, 2}, "pendulum": {1, 2}, "chain": {1, 2}, "platform": {1, 2}, "cusp": {1, 3}}
 AREAS = {"pendulum": 3 * pi / 8, "cusp": 2 * (4 / 27) ** 0.5 * 2**2.5 * 2 / 5, "ptm": 0.7463806752}
 
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.slow_cases("ptm", "platform", "chain")
-def test_what_init_writes_runs_as_it_is(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_init_writes_runs_as_it_is(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "mine.yaml"
     assert run(["init", name, "--out", str(path)]) == 0
     assert run(["check", str(path)]) == 0
@@ -29,8 +34,14 @@ def test_what_init_writes_runs_as_it_is(name: str, tmp_path: Path, capsys: pytes
     counts = [region.total if name == "cusp" else region.stable for region in result.regions]
     assert set(counts) == STABLE[name]
     if name in AREAS:
-        found = [region for region, count in zip(result.regions, counts, strict=True) if count == max(STABLE[name])]
-        assert float(sum(region.area[0] for region in found)) == pytest.approx(AREAS[name], rel=1e-3)
+        found = [
+            region
+            for region, count in zip(result.regions, counts, strict=True)
+            if count == max(STABLE[name])
+        ]
+        assert float(sum(region.area[0] for region in found)) == pytest.approx(
+            AREAS[name], rel=1e-3
+        )
     before = path.read_text(encoding="utf-8")
     capsys.readouterr()
     assert run(["init", name, "--out", str(path)]) == 2
@@ -42,7 +53,9 @@ def test_what_init_writes_runs_as_it_is(name: str, tmp_path: Path, capsys: pytes
 
 def test_a_record_names_a_built_in_mechanism() -> None:
     """And the result holds its description, which another version may have changed."""
-    slice = slice_from_mapping({"mechanism": "pendulum", "axes": {"H": ["-3/2", "3/2"], "W": [0, 1]}})
+    slice = slice_from_mapping(
+        {"mechanism": "pendulum", "axes": {"H": ["-3/2", "3/2"], "W": [0, 1]}}
+    )
     assert slice.model == starter_model("pendulum")
     again = RegionMap.from_json(classify(slice).to_json())
     assert again.slice == slice
@@ -82,10 +95,15 @@ def test_a_mechanism_by_an_option(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "--mechanism: unknown mechanism; did you mean 'pendulum'?" in capsys.readouterr().err
 
 
-def test_indices_of_one_angle_are_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_indices_of_one_angle_are_listed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "mine.yaml"
     assert run(["init", "pendulum", "--out", str(path)]) == 0
-    assert run(["classify", str(path), "--count", "index", "--format", "json", "--out", str(tmp_path)]) == 0
+    assert (
+        run(["classify", str(path), "--count", "index", "--format", "json", "--out", str(tmp_path)])
+        == 0
+    )
     assert "(2, 2)" in capsys.readouterr().out
 
 

@@ -1,4 +1,6 @@
-"""The plane geometry of covers, against a flood fill on a grid whose pixels are squares, lines and points."""
+"""The plane geometry of covers, against a flood fill on a grid whose pixels are squares, lines and
+points.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,9 @@ WINDOW = ((Fraction(1, 20), Fraction(2)), (Fraction(-7, 3), Fraction(5)))
 def rectangles(draw: st.DrawFn, steps: int) -> Rectangle:
     left, bottom = draw(st.integers(0, steps - 1)), draw(st.integers(0, steps - 1))
     # short ones mostly, so that they leave something open between them
-    width, tall = (draw(st.integers(1, max(1, steps // draw(st.sampled_from((1, 2, 4)))))) for _ in range(2))
+    width, tall = (
+        draw(st.integers(1, max(1, steps // draw(st.sampled_from((1, 2, 4)))))) for _ in range(2)
+    )
     return left, min(left + width, steps), bottom, min(bottom + tall, steps)
 
 
@@ -42,9 +46,11 @@ def covers(draw: st.DrawFn) -> Cover:
 
 @dataclass(frozen=True)
 class Flood:
-    """Pixel (2i+1, 2j+1) is a lattice square, pixels with an even coordinate are lines and points between them.
+    """Pixel (2i+1, 2j+1) is a lattice square, pixels with an even coordinate are lines and points
+    between them.
 
-    ``closed`` shows what lies in a rectangle; ``label`` numbers the connected parts of both kinds, -1 on the rim.
+    ``closed`` shows what lies in a rectangle; ``label`` numbers the connected parts of both kinds,
+    -1 on the rim.
     """
 
     closed: NDArray[np.bool_]
@@ -72,7 +78,11 @@ def flood(cover: Cover) -> Flood:
         while waiting:
             i, j = waiting.pop()
             for p, q in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
-                if not (0 <= p < n and 0 <= q < n) or label[p, q] >= 0 or closed[p, q] != closed[start]:
+                if (
+                    not (0 <= p < n and 0 <= q < n)
+                    or label[p, q] >= 0
+                    or closed[p, q] != closed[start]
+                ):
                     continue
                 if closed[p, q] or not rim[p, q]:
                     label[p, q] = fresh
@@ -108,7 +118,9 @@ def check_against_flood(cover: Cover) -> None:
             a = (slice(max(0, -di), n - max(0, di)), slice(max(0, -dj), n - max(0, dj)))
             b = (slice(max(0, di), n - max(0, -di)), slice(max(0, dj), n - max(0, -dj)))
             meet = ~grid.closed[a] & grid.closed[b] & (grid.label[a] >= 0)
-            near |= set(zip(grid.label[a][meet].tolist(), grid.label[b][meet].tolist(), strict=True))
+            near |= set(
+                zip(grid.label[a][meet].tolist(), grid.label[b][meet].tolist(), strict=True)
+            )
     assert {(label_of[c], cluster_label[k]) for c, k in found.touching} == near
 
 
@@ -134,7 +146,12 @@ def test_components_of_many_rectangles_are_those_of_a_flood_fill(seed: int) -> N
     for _ in range((6000, 2500, 300, 1500)[seed]):
         left, bottom = source.randrange(steps), source.randrange(steps)
         found.add(
-            (left, min(steps, left + source.randint(1, longest)), bottom, min(steps, bottom + source.randint(1, 4)))
+            (
+                left,
+                min(steps, left + source.randint(1, longest)),
+                bottom,
+                min(steps, bottom + source.randint(1, 4)),
+            )
         )
     check_against_flood(Cover(steps, tuple(sorted(found))))
 
@@ -144,7 +161,8 @@ def test_components_of_many_rectangles_are_those_of_a_flood_fill(seed: int) -> N
 def test_a_finer_lattice_scales_everything(cover: Cover, factor: int) -> None:
     """Coordinates of forty bits, and areas of eighty, are as exact as small ones."""
     finer = Cover(
-        cover.steps * factor, tuple((factor * a, factor * b, factor * c, factor * d) for a, b, c, d in cover.rectangles)
+        cover.steps * factor,
+        tuple((factor * a, factor * b, factor * c, factor * d) for a, b, c, d in cover.rectangles),
     )
     first, second = components(cover), components(finer)
     assert second.areas == tuple(factor**2 * area for area in first.areas)
@@ -165,11 +183,18 @@ def test_samples_are_in_their_components_and_rectangles_can_not_grow(cover: Cove
         for grown in ((left - 1, right, bottom, top), (left, right + 1, bottom, top),
                       (left, right, bottom - 1, top), (left, right, bottom, top + 1)):  # fmt: skip
             a, b, c, d = grown
-            assert min(grown) < 0 or max(grown) > cover.steps or grid.closed[2 * a + 1 : 2 * b, 2 * c + 1 : 2 * d].any()
+            assert (
+                min(grown) < 0
+                or max(grown) > cover.steps
+                or grid.closed[2 * a + 1 : 2 * b, 2 * c + 1 : 2 * d].any()
+            )
         (x0, x1), (y0, y1) = WINDOW
         across, up = (x1 - x0) / cover.steps, (y1 - y0) / cover.steps
         for x, y in samples(found, number, WINDOW):
-            assert found.locate((x - x0) / (x1 - x0) * cover.steps, (y - y0) / (y1 - y0) * cover.steps) == number
+            assert (
+                found.locate((x - x0) / (x1 - x0) * cover.steps, (y - y0) / (y1 - y0) * cover.steps)
+                == number
+            )
             assert left * across < x - x0 < right * across and bottom * up < y - y0 < top * up
 
 
@@ -183,7 +208,9 @@ def test_a_combined_cover_covers_the_same_with_no_more_rectangles(cover: Cover) 
 
 
 def test_many_rectangles_over_each_other_take_little_memory() -> None:
-    """As where a curve of solutions is double: 12 800 in 40 squares; each crosses all others of its square."""
+    """As where a curve of solutions is double: 12 800 in 40 squares; each crosses all others of its
+    square.
+    """
     generator = random.Random(5)
     found = []
     for k in range(40):
@@ -274,7 +301,16 @@ def test_a_full_cover_leaves_nothing() -> None:
 
 
 @pytest.mark.parametrize(
-    "rectangle", [(1, 1, 0, 2), (2, 1, 0, 2), (-1, 1, 0, 2), (0, 5, 0, 2), (0, 2, 3, 3), (0, 2, 0, 2**70), (0, 2, 0)]
+    "rectangle",
+    [
+        (1, 1, 0, 2),
+        (2, 1, 0, 2),
+        (-1, 1, 0, 2),
+        (0, 5, 0, 2),
+        (0, 2, 3, 3),
+        (0, 2, 0, 2**70),
+        (0, 2, 0),
+    ],
 )
 def test_what_is_no_rectangle_of_the_window_is_refused(rectangle: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match="rectangle"):
@@ -307,14 +343,22 @@ ends = st.one_of(
 
 
 @settings(max_examples=examples(300))
-@given(st.lists(st.tuples(ends, ends, ends, ends), max_size=6), st.sampled_from((1, 64, 2**24, MAX_STEPS)))
-def test_boxes_are_rounded_outward_by_less_than_two_steps(boxes: list[tuple[float, ...]], steps: int) -> None:
+@given(
+    st.lists(st.tuples(ends, ends, ends, ends), max_size=6),
+    st.sampled_from((1, 64, 2**24, MAX_STEPS)),
+)
+def test_boxes_are_rounded_outward_by_less_than_two_steps(
+    boxes: list[tuple[float, ...]], steps: int
+) -> None:
     for a, b, c, d in boxes:
         low, high = (min(a, b), min(c, d)), (max(a, b), max(c, d))
         found = from_boxes(WINDOW, [low], [high], steps).rectangles
         sides: list[tuple[Fraction, Fraction]] = []
         for first, last, (start, end) in zip(low, high, WINDOW, strict=True):
-            u, v = ((Fraction(min(max(x, -1e300), 1e300)) - start) / (end - start) * steps for x in (first, last))
+            u, v = (
+                (Fraction(min(max(x, -1e300), 1e300)) - start) / (end - start) * steps
+                for x in (first, last)
+            )
             sides.append((u, v))
         if not found:
             assert any(u >= steps or v <= 0 for u, v in sides)
@@ -325,11 +369,16 @@ def test_boxes_are_rounded_outward_by_less_than_two_steps(boxes: list[tuple[floa
 
 
 def test_boxes_are_sorted_and_each_rectangle_is_kept_once() -> None:
-    low, high = [[0.6, 0.1], [0.1, 0.6], [0.6, 0.1], [2.0, 0.1]], [[0.7, 0.2], [0.2, 0.7], [0.7, 0.2], [3.0, 0.2]]
+    low, high = (
+        [[0.6, 0.1], [0.1, 0.6], [0.6, 0.1], [2.0, 0.1]],
+        [[0.7, 0.2], [0.2, 0.7], [0.7, 0.2], [3.0, 0.2]],
+    )
     assert from_boxes(UNIT, low, high, 4).rectangles == ((0, 1, 2, 3), (2, 3, 0, 1))
 
 
-@pytest.mark.parametrize("scale", [Fraction(10) ** 400, Fraction(1, 10**400)], ids=["1e400", "1e-400"])
+@pytest.mark.parametrize(
+    "scale", [Fraction(10) ** 400, Fraction(1, 10**400)], ids=["1e400", "1e-400"]
+)
 def test_a_window_beyond_the_range_of_floats_is_rounded_exactly(scale: Fraction) -> None:
     window = ((-scale, scale), (Fraction(-1), Fraction(1)))
     found = from_boxes(window, [[0.0, 0.1]], [[5e-324, 0.4]], 8)
@@ -339,7 +388,9 @@ def test_a_window_beyond_the_range_of_floats_is_rounded_exactly(scale: Fraction)
 
 
 @pytest.mark.parametrize("box", [((0.0, math.nan), (1.0, 1.0)), ((0.5, 0.0), (0.25, 1.0))])
-def test_boxes_that_are_none_are_refused(box: tuple[tuple[float, float], tuple[float, float]]) -> None:
+def test_boxes_that_are_none_are_refused(
+    box: tuple[tuple[float, float], tuple[float, float]],
+) -> None:
     with pytest.raises(ValueError, match="low end"):
         from_boxes(UNIT, [box[0]], [box[1]], 8)
 
@@ -355,12 +406,19 @@ def test_the_simplest_fraction_has_the_least_denominator(a: Fraction, b: Fractio
 
 @pytest.mark.slow
 def test_two_hundred_thousand_overlapping_rectangles() -> None:
-    """A chain of overlapping squares along a circle, on the finest lattice: two components, whose areas are known."""
+    """A chain of overlapping squares along a circle, on the finest lattice: two components, whose
+    areas are known.
+    """
     number, half = 200_000, 2**23
     steps, radius = MAX_STEPS, MAX_STEPS // 4
     angles = [2 * math.pi * k / number for k in range(number)]
-    centres = [(steps // 2 + round(radius * math.cos(a)), steps // 2 + round(radius * math.sin(a))) for a in angles]
-    found = components(Cover(steps, tuple(sorted({(x - half, x + half, y - half, y + half) for x, y in centres}))))
+    centres = [
+        (steps // 2 + round(radius * math.cos(a)), steps // 2 + round(radius * math.sin(a)))
+        for a in angles
+    ]
+    found = components(
+        Cover(steps, tuple(sorted({(x - half, x + half, y - half, y + half) for x, y in centres})))
+    )
     assert len(found.areas) == 2
     assert len(found.cluster_areas) == 1
     inner = found.areas[found.locate(Fraction(steps, 2), Fraction(steps, 2)) or 0]
@@ -369,7 +427,11 @@ def test_two_hundred_thousand_overlapping_rectangles() -> None:
 
 
 def test_many_rectangles_need_longer_arrays() -> None:
-    """A diagonal of 5000 squares on the finest lattice: deep, and more parts than the arrays begin with."""
+    """A diagonal of 5000 squares on the finest lattice: deep, and more parts than the arrays begin
+    with.
+    """
     side = MAX_STEPS // 8192
-    cover = Cover(MAX_STEPS, tuple((k * side, (k + 1) * side, k * side, (k + 1) * side) for k in range(5000)))
+    cover = Cover(
+        MAX_STEPS, tuple((k * side, (k + 1) * side, k * side, (k + 1) * side) for k in range(5000))
+    )
     assert components(cover).cluster_areas == (5000 * side**2,)

@@ -1,4 +1,6 @@
-"""Covers with slanted pieces: exact sides, areas and components, against the checker's sweep and plain arithmetic."""
+"""Covers with slanted pieces: exact sides, areas and components, against the checker's sweep and
+plain arithmetic.
+"""
 
 from __future__ import annotations
 
@@ -90,7 +92,10 @@ def test_places_and_sides_agree_with_de_casteljau(patch: Patch, seed: int) -> No
     rng = random.Random(seed)
     (low, high), (bottom, top) = patch.ends, patch.heights
     for _ in range(20):
-        u, v = (a + (b - a) * Fraction(rng.randrange(1, 1000), 1000) for a, b in ((low, high), (bottom, top)))
+        u, v = (
+            a + (b - a) * Fraction(rng.randrange(1, 1000), 1000)
+            for a, b in ((low, high), (bottom, top))
+        )
         t = (u - low) / (high - low)
         away = [v - value(tube, t) for tube in patch.tubes]
         within = any(abs(a) <= tube.half for a, tube in zip(away, patch.tubes, strict=True))
@@ -117,7 +122,9 @@ def test_areas_of_parts_are_lower_bounds_and_near(patch: Patch) -> None:
         for k in range(columns):
             t = Fraction(2 * k + 1, 2 * columns)
             floor = (
-                Fraction(bottom) if number == 0 else value(patch.tubes[number - 1], t) + patch.tubes[number - 1].half
+                Fraction(bottom)
+                if number == 0
+                else value(patch.tubes[number - 1], t) + patch.tubes[number - 1].half
             )
             roof = (
                 Fraction(top)
@@ -127,7 +134,9 @@ def test_areas_of_parts_are_lower_bounds_and_near(patch: Patch) -> None:
             total += max(Fraction(0), min(roof, Fraction(top)) - max(floor, Fraction(bottom)))
         total *= Fraction(high - low, columns)
         assert abs(total - area) <= Fraction((top - bottom) * (high - low), 50)
-        assert area <= SlantedFrame(patch, 0).parts[number] <= area + 4 * (top - bottom + high - low)
+        assert (
+            area <= SlantedFrame(patch, 0).parts[number] <= area + 4 * (top - bottom + high - low)
+        )
 
 
 def test_a_tube_from_side_to_side_parts_the_window_and_drawn_steps_cover_it() -> None:
@@ -149,10 +158,14 @@ def test_a_tube_from_side_to_side_parts_the_window_and_drawn_steps_cover_it() ->
 
 
 def test_a_long_tube_is_drawn_in_more_steps() -> None:
-    """Of two tubes with the same slope, one over half of the window, what is drawn is beyond them by about as much."""
+    """Of two tubes with the same slope, one over half of the window, what is drawn is beyond them
+    by about as much.
+    """
     half, quarter, short = 2**19, 2**18, 2**12
     long = Patch((0, half, 0, half), 0, (Tube(5, (10, half - 10)),))
-    other = Patch((half + quarter, half + quarter + short, 0, short), 0, (Tube(5, (10, short - 10)),))
+    other = Patch(
+        (half + quarter, half + quarter + short, 0, short), 0, (Tube(5, (10, short - 10)),)
+    )
     beyond = []
     for patch in (long, other):
         drawn = shown(components(Cover(STEPS, (), (patch,))))
@@ -160,7 +173,9 @@ def test_a_long_tube_is_drawn_in_more_steps() -> None:
         covered = STEPS**2 - sum((b - a) * (d - c) for a, b, c, d in free.tolist())
         beyond.append(covered / (patch.frame[1] - patch.frame[0]) - 10)
     assert beyond[1] < 0.05 * short
-    assert beyond[0] < 8 * beyond[1]  # with as many steps for each tube it would be 128 times as much
+    assert (
+        beyond[0] < 8 * beyond[1]
+    )  # with as many steps for each tube it would be 128 times as much
 
 
 @pytest.mark.parametrize(
@@ -179,9 +194,15 @@ def test_what_is_no_patch_is_refused(patch: Patch, what: str) -> None:
 
 
 def test_a_tube_that_turns_outside_of_its_frame_would_part_it_in_three() -> None:
-    """Without the condition that tubes ascend, descend or stay inside, the lower part is not connected."""
+    """Without the condition that tubes ascend, descend or stay inside, the lower part is not
+    connected.
+    """
     patch = Patch((0, 64, 16, 64), 0, (Tube(1, (40, -40, 40)),))
-    assert tubes.place(patch, Fraction(1), Fraction(17)) == 0 == tubes.place(patch, Fraction(63), Fraction(17))
+    assert (
+        tubes.place(patch, Fraction(1), Fraction(17))
+        == 0
+        == tubes.place(patch, Fraction(63), Fraction(17))
+    )
     assert tubes.place(patch, Fraction(32), Fraction(17)) == 1
     with pytest.raises(ValueError, match="neither stays"):
         components(Cover(64, (), (patch,)))

@@ -1,4 +1,6 @@
-"""Counts at rational points: isolation, Hermite signatures, and an oracle that shares no code with the package."""
+"""Counts at rational points: isolation, Hermite signatures, and an oracle that shares no code with
+the package.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,9 @@ def oracle_counts(values: Values) -> tuple[int, int, int] | None:
 
 
 def random_values(generator: random.Random) -> Values:
-    """Simple numbers of all kinds: unequal springs, horizontal loads, loads that are zero or cancel, rho = 0."""
+    """Simple numbers of all kinds: unequal springs, horizontal loads, loads that are zero or
+    cancel, rho = 0.
+    """
 
     def number() -> Fraction:
         return Fraction(generator.randint(-9, 9), generator.randint(1, 7))
@@ -51,7 +55,9 @@ def random_values(generator: random.Random) -> Values:
         values["k1"] = values["k2"] = values["k3"]
     scale = generator.choice([1, 10, 100])
     values |= {n: number() / scale for n in ("F3", "F4")}
-    values |= {n: number() / scale if generator.random() < 0.5 else Fraction(0) for n in ("F3x", "F4x")}
+    values |= {
+        n: number() / scale if generator.random() < 0.5 else Fraction(0) for n in ("F3x", "F4x")
+    }
     special = generator.randint(0, 19)
     if special == 0:
         values["rho"] = Fraction(0)
@@ -71,7 +77,10 @@ def points(number: int, seed: int) -> list[Values]:
 
 def check_agreement(values: Values, with_oracle: bool) -> bool:
     """Whether the point was regular; the methods must agree there, and all refuse it otherwise."""
-    by_isolation, by_signature = counts(count_by_isolation, values), counts(count_by_signature, values)
+    by_isolation, by_signature = (
+        counts(count_by_isolation, values),
+        counts(count_by_signature, values),
+    )
     assert by_isolation == by_signature, values
     if by_isolation is not None:
         assert by_isolation[0] - by_isolation[1] + by_isolation[2] == 0
@@ -109,7 +118,9 @@ def test_methods_agree_at_every_sample_of(name: str) -> None:
     slice = load(CONFIGS / f"{name}.yaml")
     for cell in shipped(name).cells:
         values = {n: slice.parameters[n].evaluate(*cell.sample) for n in SYSTEM.ring.parameters}
-        assert cell.index == counts(count_by_isolation, values) == counts(count_by_signature, values)
+        assert (
+            cell.index == counts(count_by_isolation, values) == counts(count_by_signature, values)
+        )
         assert cell.index == oracle.count(values)
 
 
@@ -118,7 +129,9 @@ def test_methods_agree_at_every_sample_of(name: str) -> None:
 corner = st.sampled_from(
     [Fraction(1), Fraction(2), Fraction(1, 2), Fraction(3, 2), Fraction(1, 10**6), Fraction(10**6)]
 )
-length = st.one_of(corner, st.fractions(min_value=Fraction(1, 100), max_value=100, max_denominator=100))
+length = st.one_of(
+    corner, st.fractions(min_value=Fraction(1, 100), max_value=100, max_denominator=100)
+)
 force = st.one_of(
     st.sampled_from([Fraction(c) for c in ("0", "0", "-10", "10", "1e-9", "-1e9", "1/3")]),
     st.fractions(min_value=-50, max_value=50, max_denominator=20),
@@ -169,17 +182,27 @@ PLAIN = {n: Fraction(v) for n, v in {"L1": 1, "L2": 1, "rho": 1, "k1": 100, "k2"
     ids=lambda v: ",".join(f"{n}={x}" for n, x in v.items()) if isinstance(v, dict) else None,
 )  # fmt: skip
 @pytest.mark.parametrize(
-    "method", [count_by_isolation, count_by_signature, None], ids=["isolation", "signature", "oracle"]
+    "method",
+    [count_by_isolation, count_by_signature, None],
+    ids=["isolation", "signature", "oracle"],
 )
-def test_reference_points(method: object, changed: dict[str, str], index: tuple[int, int, int]) -> None:
-    """Unloaded: |L2 - 1| < 2 rho < L2 + 1 has two minima. Symmetric: sliver, rose, beyond the rose (REFERENCE)."""
+def test_reference_points(
+    method: object, changed: dict[str, str], index: tuple[int, int, int]
+) -> None:
+    """Unloaded: |L2 - 1| < 2 rho < L2 + 1 has two minima. Symmetric: sliver, rose, beyond the rose
+    (REFERENCE).
+    """
     values = PLAIN | {n: Fraction(v) for n, v in changed.items()}
     assert (counts(method, values) if method else oracle_counts(values)) == index
 
 
-@pytest.mark.parametrize("changed", [{"L2": "3/2", "rho": "1/4"}, {"L2": "3/2", "rho": "5/4"}, {"rho": "0"}])
+@pytest.mark.parametrize(
+    "changed", [{"L2": "3/2", "rho": "1/4"}, {"L2": "3/2", "rho": "5/4"}, {"rho": "0"}]
+)
 def test_degenerate_points_have_no_count(changed: dict[str, str]) -> None:
-    """On the lines 2 rho = |L2 - 1| and 2 rho = L2 + 1; and unloaded with rho = 0, where a motion is free."""
+    """On the lines 2 rho = |L2 - 1| and 2 rho = L2 + 1; and unloaded with rho = 0, where a motion
+    is free.
+    """
     values = PLAIN | {n: Fraction(v) for n, v in changed.items()}
     assert counts(count_by_isolation, values) is None
     assert counts(count_by_signature, values) is None
@@ -189,7 +212,9 @@ def test_degenerate_points_have_no_count(changed: dict[str, str]) -> None:
 @pytest.mark.parametrize("rho", ["81/65", "1/3", "1", "5/4", "13/10", "2"])
 @pytest.mark.parametrize("length", ["3/2", "1", "2/3"])
 def test_flat_equilibria(rho: str, length: str) -> None:
-    """Sines that are exactly zero: a ball around 0 has no integer power in python-flint 0.9, only products."""
+    """Sines that are exactly zero: a ball around 0 has no integer power in python-flint 0.9, only
+    products.
+    """
     values = PLAIN | {"rho": Fraction(rho), "L2": Fraction(length)}
     expected = oracle_counts(values)
     assert counts(count_by_signature, values) == expected

@@ -1,4 +1,6 @@
-"""Critical free lengths by algebra: the system against balls, msolve's answers read, and the counts on both sides."""
+"""Critical free lengths by algebra: the system against balls, msolve's answers read, and the counts
+on both sides.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ from ptmcad.studies.paper.squaring import Design, signed_solutions
 DESIGN: Design = ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10")
 
 
-def potential(rho: float, l1: float, l2: float, l0: float, f3: float, f4: float, a: float, b: float) -> float:
+def potential(
+    rho: float, l1: float, l2: float, l0: float, f3: float, f4: float, a: float, b: float
+) -> float:
     x3, y3, x4, y4 = l1 * cos(a), l1 * sin(a), rho - l2 * cos(b), l2 * sin(b)
     lengths = hypot(x4, y4), hypot(x3 - rho, y3), hypot(x3 - x4, y3 - y4)
     return sum((x - l0) ** 2 for x in lengths) / 2 - f3 * y3 - f4 * y4
@@ -30,7 +34,9 @@ def potential(rho: float, l1: float, l2: float, l0: float, f3: float, f4: float,
 @pytest.mark.parametrize("seed", [0, 1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3))])
 @pytest.mark.slow_cases("1")
 def test_equations_are_derivatives_of_the_potential(seed: int) -> None:
-    """Difference quotients of U/k from the nodes' coordinates; each polynomial up to one positive factor."""
+    """Difference quotients of U/k from the nodes' coordinates; each polynomial up to one positive
+    factor.
+    """
     random = Random(seed)
     exact = [Fraction(random.randint(1, 30), 10) for _ in range(5)]
     rho, l1, l2, f3, f4 = map(float, exact)
@@ -41,12 +47,16 @@ def test_equations_are_derivatives_of_the_potential(seed: int) -> None:
         free, a, b = random.uniform(0.5, 3), random.uniform(-3, 3), random.uniform(-3, 3)
         x3, y3, x4, y4 = l1 * cos(a), l1 * sin(a), rho - l2 * cos(b), l2 * sin(b)
         inverses = 1 / hypot(x4, y4), 1 / hypot(x3 - rho, y3), 1 / hypot(x3 - x4, y3 - y4)
-        at = dict(zip(map(str, UNKNOWNS), (*inverses, cos(a), sin(a), cos(b), sin(b), free), strict=True))
+        at = dict(
+            zip(map(str, UNKNOWNS), (*inverses, cos(a), sin(a), cos(b), sin(b), free), strict=True)
+        )
         values = [float(e.subs(at)) for e in equations]
         assert max(map(abs, values[:5])) < 1e-7
         h = 1e-3
 
-        def u(i: int, j: int, free: float = free, a: float = a, b: float = b, h: float = h) -> float:
+        def u(
+            i: int, j: int, free: float = free, a: float = a, b: float = b, h: float = h
+        ) -> float:
             return potential(rho, l1, l2, free, f3, f4, a + i * h, b + j * h)
 
         h11, h22 = ((u(i, j) - 2 * u(0, 0) + u(-i, -j)) / h**2 for i, j in ((1, 0), (0, 1)))
@@ -106,7 +116,9 @@ def test_a_time_limit_is_kept() -> None:
 @needs_msolve
 @pytest.mark.slow
 def test_fifty_two_critical_lengths_and_the_counts_around_them() -> None:
-    """52 real ones at rho = 7/10, L2 = 3/2, f = -1/10; over all signs exact counts change by 2 at each positive one."""
+    """52 real ones at rho = 7/10, L2 = 3/2, f = -1/10; over all signs exact counts change by 2 at
+    each positive one.
+    """
     found = critical_free_lengths(DESIGN)
     assert len(found) == 52
     signed = {(round(free.center, 20), signs) for free, signs in found}
@@ -126,7 +138,11 @@ def test_elimination_and_intervals_find_the_same_folds() -> None:
     pytest.importorskip("numba")
     axes = {"slice": "rho,l0", "ranges": ["l0=0:2"], "sets": ["L2=3/2", "F3=-10", "F4=-10"]}
     slice = slice_from_options(**axes)  # type: ignore[arg-type]
-    algebra = [free for free, signs in critical_free_lengths(DESIGN) if signs == (1, 1, 1) and 0 < free.center < 2]
+    algebra = [
+        free
+        for free, signs in critical_free_lengths(DESIGN)
+        if signs == (1, 1, 1) and 0 < free.center < 2
+    ]
     line = certified_intervals(slice, "l0", {"rho": "7/10"}, 10)
     folds = [c.at for c in line.changes if c.names == ("fold",)]
     assert len(algebra) == 7

@@ -1,4 +1,6 @@
-"""Every shipped slice against QEPCAD: its decomposition of the window, and the number of equilibria as a formula."""
+"""Every shipped slice against QEPCAD: its decomposition of the window, and the number of equilibria
+as a formula.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,16 @@ import pytest
 from support.few import few
 from support.maps import shipped
 from support.programs import ProgramError, needs_qepcad, needs_singular, qepcad_session
-from support.qepcad_cells import DISPLAY, Decomposition, compare, decided, decomposition, exactly, indices, window_cad
+from support.qepcad_cells import (
+    DISPLAY,
+    Decomposition,
+    compare,
+    decided,
+    decomposition,
+    exactly,
+    indices,
+    window_cad,
+)
 from support.sextic_question import Question, Task, Terms, question
 from support.singular_slice import SHIPPED, axes, counting_formulas
 
@@ -24,9 +35,13 @@ pytestmark = needs_qepcad
 QUICK = ("fig2", "fig3", "fig4", "rods")
 """Slices that QEPCAD decomposes in about two seconds or less."""
 LIFTED = ("fig2", "fig3", "forces", "rods")
-"""Slices on which QEPCAD lifts over the sections of the base axis too in seconds; fig. 4 takes it over a minute."""
+"""Slices on which QEPCAD lifts over the sections of the base axis too in seconds; fig. 4 takes it
+over a minute.
+"""
 WITH_SEXTIC = tuple(name for name in SHIPPED if name != "fig2")
-"""On fig. 2 theta2 = pi is an equilibrium everywhere, which t2 = tan(theta2/2) loses: see `support.sextic_question`."""
+"""On fig. 2 theta2 = pi is an equilibrium everywhere, which t2 = tan(theta2/2) loses: see
+`support.sextic_question`.
+"""
 
 
 def slow_unless(names: tuple[str, ...], quick: tuple[str, ...]) -> list[object]:
@@ -46,7 +61,8 @@ def cad(name: str) -> Decomposition:
 def test_open_cad_is_that_of_qepcad(name: str) -> None:
     """Critical values, walls of every stack with their components, and the number of open cells.
 
-    That QEPCAD has no further sections in the window is a fact about these slices, not a theorem: see `compare`.
+    That QEPCAD has no further sections in the window is a fact about these slices, not a theorem:
+    see `compare`.
     """
     result = shipped(name)
     found = compare(result, cad(name))
@@ -71,7 +87,9 @@ def with_stacks(result: RegionMap, number: int, *stacks: object) -> RegionMap:
 
 def without_critical_value(result: RegionMap, number: int = 0) -> RegionMap:
     values = result.critical_values
-    return replace(with_stacks(result, number), critical_values=(*values[:number], *values[number + 1 :]))
+    return replace(
+        with_stacks(result, number), critical_values=(*values[:number], *values[number + 1 :])
+    )
 
 
 def with_critical_value(result: RegionMap) -> RegionMap:
@@ -82,7 +100,9 @@ def with_critical_value(result: RegionMap) -> RegionMap:
 
 def with_moved_critical_value(result: RegionMap) -> RegionMap:
     first, *others = result.critical_values
-    return replace(result, critical_values=(replace(first, low=-first.high, high=-first.low), *others))
+    return replace(
+        result, critical_values=(replace(first, low=-first.high, high=-first.low), *others)
+    )
 
 
 def with_other_component(result: RegionMap) -> RegionMap:
@@ -93,7 +113,9 @@ def with_other_component(result: RegionMap) -> RegionMap:
 
 def with_other_root(result: RegionMap) -> RegionMap:
     first = result.stacks[0]
-    return with_stacks(result, 0, replace(first, walls=(Wall(first.walls[0].component, 1), *first.walls[1:])))
+    return with_stacks(
+        result, 0, replace(first, walls=(Wall(first.walls[0].component, 1), *first.walls[1:]))
+    )
 
 
 def without_cell(result: RegionMap) -> RegionMap:
@@ -111,8 +133,12 @@ def test_a_false_decomposition_is_noticed(mutation: Callable[[RegionMap], Region
 
 
 def nodal_cubic() -> RegionMap:
-    """(y-2)^2 = (x-2)^2 (x-1) over [0, 4]^2: a vertical tangent at x = 1, the node at x = 2, the edges at x = 3.47."""
-    curve = PlanePolynomial.of(((0, 2, 1), (0, 1, -4), (3, 0, -1), (2, 0, 5), (1, 0, -8), (0, 0, 8)))
+    """(y-2)^2 = (x-2)^2 (x-1) over [0, 4]^2: a vertical tangent at x = 1, the node at x = 2, the
+    edges at x = 3.47.
+    """
+    curve = PlanePolynomial.of(
+        ((0, 2, 1), (0, 1, -4), (3, 0, -1), (2, 0, 5), (1, 0, -8), (0, 0, 8))
+    )
     values = (
         CriticalValue((-1, 1), Fraction(1), Fraction(1), "vertical tangent"),
         CriticalValue((-2, 1), Fraction(2), Fraction(2), "node"),
@@ -120,7 +146,13 @@ def nodal_cubic() -> RegionMap:
     )
     two = (Wall(0, 0), Wall(0, 1))
     stacks = tuple(
-        Stack(n - 1 if n else None, n if n < 3 else None, Fraction(0), walls, tuple(range(len(walls) + 1)))
+        Stack(
+            n - 1 if n else None,
+            n if n < 3 else None,
+            Fraction(0),
+            walls,
+            tuple(range(len(walls) + 1)),
+        )
         for n, walls in enumerate(((), two, two, ()))
     )
     fig2 = shipped("fig2")
@@ -143,18 +175,25 @@ def test_nodal_cubic(full: bool) -> None:
 
 
 def test_a_critical_value_that_changes_no_wall_is_noticed() -> None:
-    """The node: on both sides are two walls of the same curve. Noticed by lifting over it, or by counting stacks."""
+    """The node: on both sides are two walls of the same curve. Noticed by lifting over it, or by
+    counting stacks.
+    """
     whole = nodal_cubic()
     false = replace(without_critical_value(whole, 1), cells=whole.cells[:5])
     found = compare(false, window_cad(false))
     assert not found.lifted
-    assert (found.qepcad_stacks, found.qepcad_cells) == (4, 8) != (len(false.stacks), len(false.cells))
+    assert (
+        (found.qepcad_stacks, found.qepcad_cells) == (4, 8) != (len(false.stacks), len(false.cells))
+    )
     with pytest.raises(AssertionError, match="branches meet"):
         compare(false, window_cad(false, full=True))
 
 
 def without_component(result: RegionMap) -> RegionMap:
-    return replace(result, components=(replace(result.components[0], left_out="dropped"), *result.components[1:]))
+    return replace(
+        result,
+        components=(replace(result.components[0], left_out="dropped"), *result.components[1:]),
+    )
 
 
 def with_other_coefficient(result: RegionMap) -> RegionMap:
@@ -167,7 +206,9 @@ def with_other_coefficient(result: RegionMap) -> RegionMap:
 @pytest.mark.parametrize("mutation", [without_component, with_other_coefficient])
 @pytest.mark.parametrize("name", ["fig2", "fig3"])
 @pytest.mark.slow_cases("fig3-without_component", "fig3-with_other_coefficient")
-def test_a_decomposition_of_other_curves_is_noticed(name: str, mutation: Callable[[RegionMap], RegionMap]) -> None:
+def test_a_decomposition_of_other_curves_is_noticed(
+    name: str, mutation: Callable[[RegionMap], RegionMap]
+) -> None:
     false = mutation(shipped(name))
     with pytest.raises(AssertionError):
         compare(false, window_cad(false))
@@ -188,7 +229,9 @@ def test_index_at_every_sample_by_singular_and_qepcad(name: str) -> None:
     assert axes(name) == shipped(name).slice.axis_names
     expected = [cell.index for cell in shipped(name).cells]
     assert all(index is not None for index in expected)
-    assert indices(counting_formulas(name, points(name)), expected) == [(True, True, True)] * len(expected)  # type: ignore[arg-type]
+    assert indices(counting_formulas(name, points(name)), expected) == [(True, True, True)] * len(
+        expected
+    )  # type: ignore[arg-type]
 
 
 @needs_singular
@@ -197,7 +240,9 @@ def test_a_false_index_is_noticed() -> None:
     cells = shipped("fig4").cells
     formulas = counting_formulas("fig4", points("fig4"))
     for n, change in enumerate(((1, 0, 0), (0, -1, 0), (0, 0, 1))):
-        false = [tuple(a + b for a, b in zip(cell.index or (), change, strict=True)) for cell in cells]
+        false = [
+            tuple(a + b for a, b in zip(cell.index or (), change, strict=True)) for cell in cells
+        ]
         truths = indices(formulas, false)  # type: ignore[arg-type]
         assert all(truth == tuple(k != n for k in range(3)) for truth in truths)
 
@@ -210,17 +255,25 @@ def at_point(terms: Terms, point: tuple[Fraction, Fraction]) -> str:
     coefficients: dict[int, Fraction] = {}
     for i, j, n, c in terms:
         coefficients[n] = coefficients.get(n, Fraction(0)) + scale * c * x**i * y**j
-    return " ".join(f"{'+' if c > 0 else '-'} {abs(c)} t^{n}" for n, c in coefficients.items() if c).removeprefix("+ ")
+    return " ".join(
+        f"{'+' if c > 0 else '-'} {abs(c)} t^{n}" for n, c in coefficients.items() if c
+    ).removeprefix("+ ")
 
 
 def sextic_counts(name: str, counts: list[tuple[int, int]]) -> list[bool]:
-    """For each cell whether at its sample there are exactly so many equilibria, and so many stable ones."""
+    """For each cell whether at its sample there are exactly so many equilibria, and so many stable
+    ones.
+    """
     asked = question(shipped(name).slice)
     assert isinstance(asked, Question)
     problems = []
     for point, (total, stable) in zip(points(name), counts, strict=True):
-        p, slope, v, w = (at_point(terms, point) for terms in (asked.sextic, asked.slope, asked.v, asked.w))
-        assert p.rstrip().endswith("t^6") or " t^6 " in p, f"theta2 = pi is an equilibrium at {point}"
+        p, slope, v, w = (
+            at_point(terms, point) for terms in (asked.sextic, asked.slope, asked.v, asked.w)
+        )
+        assert p.rstrip().endswith("t^6") or " t^6 " in p, (
+            f"theta2 = pi is an equilibrium at {point}"
+        )
         signs = rf"[[{v} > 0 /\ {w} > 0 /\ {slope} < 0] \/ [{v} < 0 /\ {w} < 0 /\ {slope} > 0]]"
         problems += [exactly(total, f"{p} = 0"), exactly(stable, rf"{p} = 0 /\ {signs}")]
     return decided(problems)
@@ -229,7 +282,9 @@ def sextic_counts(name: str, counts: list[tuple[int, int]]) -> list[bool]:
 @pytest.mark.parametrize("name", few(WITH_SEXTIC, "fig3", "fig4", "forces", "rods"))
 @pytest.mark.slow_cases("fig3", "fig4", "rods")
 def test_counts_at_every_sample_by_the_sextic(name: str) -> None:
-    assert all(sextic_counts(name, [(cell.total or 0, cell.stable or 0) for cell in shipped(name).cells]))
+    assert all(
+        sextic_counts(name, [(cell.total or 0, cell.stable or 0) for cell in shipped(name).cells])
+    )
 
 
 def test_false_counts_are_noticed_by_the_sextic() -> None:
@@ -252,12 +307,15 @@ def counted_cells(name: str, task: Task) -> Decomposition:
     return decomposition(output[0], ("y", "x", "t") if other else ("x", "y", "t"))
 
 
-def check_over_the_window(result: RegionMap, task: Task, cells: Decomposition, *, other: bool) -> None:
+def check_over_the_window(
+    result: RegionMap, task: Task, cells: Decomposition, *, other: bool
+) -> None:
     """QEPCAD's truth at the sample of each of its open cells is what the map says there.
 
-    On each of these cells the truth is constant, and they fill the window up to curves; and where the first axis is
-    the first variable for both, each of the map's cells contains one of them: QEPCAD's projection has the
-    discriminant of the sextic, in which every CRITICAL component is a factor, so its cells are finer.
+    On each of these cells the truth is constant, and they fill the window up to curves; and where
+    the first axis is the first variable for both, each of the map's cells contains one of them:
+    QEPCAD's projection has the discriminant of the sextic, in which every CRITICAL component is a
+    factor, so its cells are finer.
     """
     x_axis, y_axis = result.slice.axes
     located = set()
@@ -271,12 +329,20 @@ def check_over_the_window(result: RegionMap, task: Task, cells: Decomposition, *
         at = result.locate(**{x_axis.name: x, y_axis.name: y})
         assert at.status is Status.EXACT
         located.add(at.cell)
-        holds = {Task.SIX: at.total == 6, Task.FOUR: at.total == 4, Task.TWO_STABLE: at.stable == 2}[task]
+        holds = {
+            Task.SIX: at.total == 6,
+            Task.FOUR: at.total == 4,
+            Task.TWO_STABLE: at.stable == 2,
+        }[task]
         assert cell.truth == ("T" if holds else "F"), f"{task.value} at {x}, {y}"
     assert located
     if not other:
-        critical = {c.polynomial for c in result.components if c.kind is Kind.CRITICAL and not c.left_out}
-        assert critical <= set(cells.factors.values()), "a component that is no factor of the sextic's discriminant"
+        critical = {
+            c.polynomial for c in result.components if c.kind is Kind.CRITICAL and not c.left_out
+        }
+        assert critical <= set(cells.factors.values()), (
+            "a component that is no factor of the sextic's discriminant"
+        )
         if result.base == 0:
             assert located == set(range(len(result.cells)))
 
@@ -286,7 +352,8 @@ def quick_tasks() -> list[object]:
         pytest.param(
             name,
             task,
-            # the cells of fig4 are compared by another test; with the sextic they take as long as all the others
+            # the cells of fig4 are compared by another test; with the sextic they take as long as
+            # all the others
             marks=() if task is Task.SIX and name in QUICK and name != "fig4" else pytest.mark.slow,
             id=f"{name}-{task.value}",
         )
@@ -307,9 +374,13 @@ def with_false_total(result: RegionMap) -> RegionMap:
 
 
 @pytest.mark.parametrize("mutation", [with_false_total, with_other_coefficient])
-def test_a_false_count_over_the_window_is_noticed(mutation: Callable[[RegionMap], RegionMap]) -> None:
+def test_a_false_count_over_the_window_is_noticed(
+    mutation: Callable[[RegionMap], RegionMap],
+) -> None:
     with pytest.raises(AssertionError):
-        check_over_the_window(mutation(shipped("fig3")), Task.SIX, counted_cells("fig3", Task.SIX), other=False)
+        check_over_the_window(
+            mutation(shipped("fig3")), Task.SIX, counted_cells("fig3", Task.SIX), other=False
+        )
 
 
 @pytest.mark.parametrize(

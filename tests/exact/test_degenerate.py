@@ -1,4 +1,6 @@
-"""Slices at the limits of the method: refused with the right exception, or answered; never wrong and never a crash."""
+"""Slices at the limits of the method: refused with the right exception, or answered; never wrong
+and never a crash.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ RHO_L2 = {"rho": [0, 2], "L2": [0, 2]}
 
 def region_map(axes: dict[str, Any], count: str = "index", **parameters: Any) -> RegionMap:
     result = classify(
-        slice_from_mapping({"name": "case", "axes": axes, "parameters": parameters, "count": count}),
+        slice_from_mapping(
+            {"name": "case", "axes": axes, "parameters": parameters, "count": count}
+        ),
         area_tolerance="1/10",
     )
     check_structure(result)
@@ -129,9 +133,19 @@ def test_a_check_that_does_not_prove_says_what_it_saw() -> None:
 def test_what_degenerates_at_the_checks_sample_only_is_no_fault() -> None:
     """x^2 = a - 10/21 has a double solution at the first point that is tried, and nowhere else."""
     system = {"unknowns": X, "equations": ["x^2 - a + 10/21 + 0*b"]}
-    assert check(slice_from_mapping({"system": system, "axes": {"a": [0, 1], "b": [0, 1]}})).complex_solutions == 1
+    assert (
+        check(
+            slice_from_mapping({"system": system, "axes": {"a": [0, 1], "b": [0, 1]}})
+        ).complex_solutions
+        == 1
+    )
     excluded = {"unknowns": X, "equations": ["(x^2-a)^2*(x-b)"], "positive": ["x^2-a"]}
-    assert check(slice_from_mapping({"system": excluded, "axes": {"a": [0, 1], "b": [0, 1]}})).complex_solutions == 1
+    assert (
+        check(
+            slice_from_mapping({"system": excluded, "axes": {"a": [0, 1], "b": [0, 1]}})
+        ).complex_solutions
+        == 1
+    )
 
 
 def test_rho_zero_with_loads() -> None:
@@ -177,20 +191,27 @@ def test_stiffness_axes() -> None:
 @pytest.mark.parametrize("base", ["1", "0.4981313"])
 def test_a_window_of_width_1e_20(base: str) -> None:
     low = Fraction(base)
-    axes = {"rho": [str(low), str(low + Fraction(1, 10**20))], "L2": ["3/2", str(Fraction(3, 2) + Fraction(1, 10**20))]}
+    axes = {
+        "rho": [str(low), str(low + Fraction(1, 10**20))],
+        "L2": ["3/2", str(Fraction(3, 2) + Fraction(1, 10**20))],
+    }
     result = region_map(axes, F3=-10, F4=-10)
     assert len(result.regions) == 1
 
 
 @pytest.mark.slow
 def test_a_tiny_window_across_the_curve() -> None:
-    """Around the end 0.498131... at L2 = 3/2, found by bisection with the oracle: two regions in a window of 1e-20."""
+    """Around the end 0.498131... at L2 = 3/2, found by bisection with the oracle: two regions in a
+    window of 1e-20.
+    """
     fixed = {n: Fraction(v) for n, v in {"L1": 1, "L2": "3/2", "k1": 100, "k2": 100, "k3": 100, "F3": -10, "F4": -10,
                                          "F3x": 0, "F4x": 0}.items()}  # fmt: skip
     low, high = Fraction("0.49813"), Fraction("0.49814")
     while high - low > Fraction(1, 10**24):
         middle = (low + high) / 2
-        low, high = (middle, high) if oracle.count({**fixed, "rho": middle})[0] == 1 else (low, middle)
+        low, high = (
+            (middle, high) if oracle.count({**fixed, "rho": middle})[0] == 1 else (low, middle)
+        )
     half = Fraction(1, 2 * 10**20)
     axes = {
         "rho": [str(low - half), str(low + half)],
@@ -225,11 +246,15 @@ def test_tiny_loads(load: str) -> None:
     region_map(RHO_L2, F3=load, F4=load)
 
 
-@pytest.mark.parametrize("high", ["0.50000000001", "0.5000000000000000000001", "0.49999999999", "1/2"])
+@pytest.mark.parametrize(
+    "high", ["0.50000000001", "0.5000000000000000000001", "0.49999999999", "1/2"]
+)
 @pytest.mark.parametrize("axes", [("L2", "rho"), ("rho", "L2")], ids=",".join)
 @pytest.mark.slow_cases("L2,rho-0.5000000000000000000001", "rho,L2-0.50000000001")
 def test_critical_values_at_the_windows_edge(high: str, axes: tuple[str, str]) -> None:
-    """Unloaded lines meet at rho = 1/2, L2 = 0 and near it: just inside, on and just outside the edge."""
+    """Unloaded lines meet at rho = 1/2, L2 = 0 and near it: just inside, on and just outside the
+    edge.
+    """
     windows = {"L2": [0, 4], "rho": [0, high]}
     result = region_map({n: windows[n] for n in axes}, "stable")
     assert sorted(r.stable for r in result.regions).count(2) == 1  # type: ignore[type-var]
@@ -252,17 +277,27 @@ def test_a_time_limit_stops() -> None:
 
 @pytest.mark.parametrize(
     "options",
-    [{"engine": "guess"}, {"count": "none"}, {"area_tolerance": 0}, {"area_tolerance": "x"}, {"area_tolerance": 2}],
+    [
+        {"engine": "guess"},
+        {"count": "none"},
+        {"area_tolerance": 0},
+        {"area_tolerance": "x"},
+        {"area_tolerance": 2},
+    ],
 )
 def test_wrong_options(options: dict[str, Any]) -> None:
     with pytest.raises(ConfigError):
         classify(load(CONFIGS / "fig2.yaml"), **options)
 
 
-@pytest.mark.parametrize("stage", ["stages.discriminant_variety", "decomposition.project", "areas.region_areas"])
+@pytest.mark.parametrize(
+    "stage", ["stages.discriminant_variety", "decomposition.project", "areas.region_areas"]
+)
 @pytest.mark.slow_cases("stages.discriminant_variety", "areas.region_areas")
 def test_a_limit_leaves_the_best_map_so_far(stage: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever was reached is a partial map that can be written, read and asked, and gives no undecided count."""
+    """Whatever was reached is a partial map that can be written, read and asked, and gives no
+    undecided count.
+    """
     record = load(CONFIGS / "stiffness.yaml")
     expected = classify(record, area_tolerance="1/10").locate(k=100, rho="7/10")
 
@@ -301,4 +336,8 @@ def test_plain_decimals_with_long_coefficients() -> None:
     record = {"axes": {"L2": ["0", "4e-30"], "rho": ["0", "4e-30"]}, "parameters": {"L1": "1e-30"}}
     scaled = classify(slice_from_mapping(record))
     assert len(scaled.regions) == 4
-    assert min(r.area[0] for r in scaled.regions) <= Fraction("0.25e-60") <= min(r.area[1] for r in scaled.regions)
+    assert (
+        min(r.area[0] for r in scaled.regions)
+        <= Fraction("0.25e-60")
+        <= min(r.area[1] for r in scaled.regions)
+    )

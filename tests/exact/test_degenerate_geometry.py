@@ -1,9 +1,11 @@
-"""Degenerate geometry of the variety, by name, on slices of the mechanism: classified, located and verified.
+"""Degenerate geometry of the variety, by name, on slices of the mechanism: classified, located and
+verified.
 
-Without loads and with L1 = rho = 1 there are two stable equilibria where 1 < L2 < 3 and one elsewhere. So
-L2 = 1 + g(x, y)/1000 makes any plane curve g = 0 the variety, with two stable equilibria where g > 0. Loaded slices
-have rational singular points too (see `random_slices.singular`): cusps, and the point where the whole Hessian vanishes,
-which is isolated. The synthetic curves of `test_topology` have the same names.
+Without loads and with L1 = rho = 1 there are two stable equilibria where 1 < L2 < 3 and one
+elsewhere. So L2 = 1 + g(x, y)/1000 makes any plane curve g = 0 the variety, with two stable
+equilibria where g > 0. Loaded slices have rational singular points too (see
+`random_slices.singular`): cusps, and the point where the whole Hessian vanishes, which is isolated.
+The synthetic curves of `test_topology` have the same names.
 """
 
 from __future__ import annotations
@@ -30,8 +32,9 @@ Window = tuple[str, str, str, str]
 Ring = tuple[int, ...]
 
 CURVES: dict[str, tuple[str, Window, Ring, int, str]] = {
-    # name in the issue: the curve g = 0, the window, the regions' stable counts, the number of pairs of regions that
-    # share a wall, and what the origin is: on the variety, outside the window, or in a cell ("exact")
+    # name in the issue: the curve g = 0, the window, the regions' stable counts, the number of
+    # pairs of regions that share a wall, and what the origin is: on the variety, outside the
+    # window, or in a cell ("exact")
     "node": ("y^2-x^2*(x+1)", SQUARE, (1, 1, 2), 2, "on"),
     "node with one branch vertical": ("x*(y-x^2)", SQUARE, (1, 1, 2, 2), 4, "on"),
     "cusp": ("y^2-x^3", SQUARE, (1, 2), 1, "on"),
@@ -69,7 +72,9 @@ THIN_TWINS = tuple(f"a window of width 1e-30 around {place}" for place in TWINS)
 """Points around which wider windows are tried too."""
 
 
-def region_map(axes: dict[str, Any], parameters: dict[str, Any], count: str = "stable") -> RegionMap:
+def region_map(
+    axes: dict[str, Any], parameters: dict[str, Any], count: str = "stable"
+) -> RegionMap:
     record = {"name": "case", "axes": axes, "parameters": parameters, "count": count}
     result = classify(slice_from_mapping(record), area_tolerance="1/10")
     check_structure(result)
@@ -81,11 +86,17 @@ def region_map(axes: dict[str, Any], parameters: dict[str, Any], count: str = "s
 def separated(result: RegionMap) -> set[frozenset[int]]:
     """Pairs of regions that share a wall."""
     regions = [c.region for c in result.cells]
-    return {frozenset((regions[a.first], regions[a.second])) for a in result.adjacencies if a.merge is Merge.SEPARATED}
+    return {
+        frozenset((regions[a.first], regions[a.second]))
+        for a in result.adjacencies
+        if a.merge is Merge.SEPARATED
+    }
 
 
 def check_around(result: RegionMap, x: Fraction, y: Fraction, steps: tuple[Fraction, ...]) -> None:
-    """In eight directions: the oracle's counts, or on the variety where the oracle finds a singular equilibrium."""
+    """In eight directions: the oracle's counts, or on the variety where the oracle finds a singular
+    equilibrium.
+    """
     names = result.slice.axis_names
     found = 0
     for step, (a, b) in product(steps, product((-1, 0, 1), repeat=2)):
@@ -94,7 +105,9 @@ def check_around(result: RegionMap, x: Fraction, y: Fraction, steps: tuple[Fract
         if place.status in (Status.OUTSIDE, Status.ON_EDGE):
             assert any(not axis.low < at[axis.name] < axis.high for axis in result.slice.axes)
             continue
-        values = {n: e.evaluate(at[names[0]], at[names[1]]) for n, e in result.slice.parameters.items()}
+        values = {
+            n: e.evaluate(at[names[0]], at[names[1]]) for n, e in result.slice.parameters.items()
+        }
         if place.status is Status.ON_VARIETY:
             with pytest.raises(oracle.Degenerate):
                 oracle.count(values)
@@ -104,8 +117,12 @@ def check_around(result: RegionMap, x: Fraction, y: Fraction, steps: tuple[Fract
     assert found >= 2
 
 
-@pytest.mark.parametrize("swap", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["x,y", "y,x"])
-@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n in THIN_TWINS else n for n in CURVES])
+@pytest.mark.parametrize(
+    "swap", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["x,y", "y,x"]
+)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow) if n in THIN_TWINS else n for n in CURVES]
+)
 @pytest.mark.fast_cases(
     "node with one branch vertical-x,y",
     "cusp that opens upward-x,y",
@@ -170,8 +187,12 @@ def fixed(values: dict[str, Fraction], *axes: str) -> dict[str, str]:
     return {n: str(v) for n, v in values.items() if n not in axes}
 
 
-@pytest.mark.parametrize("axes", [("rho", "L2"), exchanged("L2", "rho"), ("F3", "F4")], ids=",".join)
-@pytest.mark.parametrize("cusp", [pytest.param(c, marks=[pytest.mark.slow] * (c != SYMMETRIC)) for c in CUSPS])
+@pytest.mark.parametrize(
+    "axes", [("rho", "L2"), exchanged("L2", "rho"), ("F3", "F4")], ids=",".join
+)
+@pytest.mark.parametrize(
+    "cusp", [pytest.param(c, marks=[pytest.mark.slow] * (c != SYMMETRIC)) for c in CUSPS]
+)
 @pytest.mark.slow_cases("fig. 4 with F = -60-F3,F4")
 def test_a_cusp_of_the_fold_curve(cusp: str, axes: tuple[str, str]) -> None:
     """Two more equilibria, one of them a saddle, in a tongue that ends in the cusp."""
@@ -183,7 +204,9 @@ def test_a_cusp_of_the_fold_curve(cusp: str, axes: tuple[str, str]) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("axes", [("rho", "L2"), ("L2", "rho"), ("F3", "F4")], ids=",".join)
 @pytest.mark.parametrize("cusp", CUSPS)
-def test_a_window_of_width_1e_30_around_a_cusp_of_the_fold_curve(cusp: str, axes: tuple[str, str]) -> None:
+def test_a_window_of_width_1e_30_around_a_cusp_of_the_fold_curve(
+    cusp: str, axes: tuple[str, str]
+) -> None:
     check_cusp(CUSPS[cusp], axes, Q(1, 10**30))
 
 
@@ -202,8 +225,12 @@ def check_cusp(values: dict[str, Fraction], axes: tuple[str, str], width: Fracti
     pytest.param(("rho", "L2"), "1/10", marks=pytest.mark.slow),
     pytest.param(("F3", "F4"), "1e-30", marks=pytest.mark.slow),
 ], ids=lambda given: given if isinstance(given, str) else ",".join(given))  # fmt: skip
-def test_an_isolated_point_where_the_whole_hessian_vanishes(axes: tuple[str, str], width: str) -> None:
-    """th1 + th2 = pi/2, sines 3/5 and 4/5, 2 rho = L1 c1 = L2 c2: an elliptic umbilic, cut where it has no width."""
+def test_an_isolated_point_where_the_whole_hessian_vanishes(
+    axes: tuple[str, str], width: str
+) -> None:
+    """th1 + th2 = pi/2, sines 3/5 and 4/5, 2 rho = L1 c1 = L2 c2: an elliptic umbilic, cut where it
+    has no width.
+    """
     values = {"L1": Q(1), "L2": Q(4, 3), "rho": Q(2, 5), "F3": Q(-320, 3), "F4": Q(-60)}
     result = region_map(around(values, Q(width), *axes), fixed(values, *axes), "index")
     assert [r.index for r in result.regions] == [(1, 2, 1)]
@@ -215,12 +242,19 @@ def test_an_isolated_point_where_the_whole_hessian_vanishes(axes: tuple[str, str
 @pytest.mark.parametrize("axes", [("rho", "F"), exchanged("F", "rho")], ids=",".join)
 @pytest.mark.slow
 def test_two_curves_touching_rose_and_astroid(axes: tuple[str, str]) -> None:
-    """fig. 3: they touch at 2 rho = -F/k = 1/sqrt(2); the regions in both and in neither share that point only."""
+    """fig. 3: they touch at 2 rho = -F/k = 1/sqrt(2); the regions in both and in neither share that
+    point only.
+    """
     windows = {"rho": ["3/10", "2/5"], "F": [-80, -60]}
-    result = region_map({n: windows[n] for n in axes}, {"L1": 1, "L2": 1, "F3": "F", "F4": "F"}, "index")
+    result = region_map(
+        {n: windows[n] for n in axes}, {"L1": 1, "L2": 1, "F3": "F", "F4": "F"}, "index"
+    )
     assert sorted(r.index for r in result.regions) == [(1, 2, 1), (1, 2, 1), (1, 3, 2), (2, 3, 1)]  # type: ignore[type-var]
     assert len(separated(result)) == 4
-    middle = {"rho": Q("0.35355339059327376220042218105242451964"), "F": Q("-70.710678118654752440084436210484903928")}
+    middle = {
+        "rho": Q("0.35355339059327376220042218105242451964"),
+        "F": Q("-70.710678118654752440084436210484903928"),
+    }
     check_around(result, *(middle[n] for n in axes), (Q(1, 10**37), Q(1, 10**4)))
 
 

@@ -31,7 +31,9 @@ def _space(terms: Terms, even: bool) -> Space:
     """Where the polynomial is positive the count is 1."""
 
     def count(value: fmpq, design: tuple[fmpq, fmpq]) -> int | None:
-        total = sum((c * value**i * design[0] ** j * design[1] ** k for (i, j, k), c in terms), fmpq(0))
+        total = sum(
+            (c * value**i * design[0] ** j * design[1] ** k for (i, j, k), c in terms), fmpq(0)
+        )
         return None if not total else int(total > 0)
 
     power = 2 if even else 1
@@ -69,9 +71,13 @@ def test_bounds_hold_and_close_in() -> None:
                 assert least <= longest_one + 1e-9
             if fine < fmpq(1, 128):
                 doubt.append(total - all_of_them)
-            halved = [(a, (a + b) / 2) if source.random() < 0.5 else ((a + b) / 2, b) for a, b in box]
+            halved = [
+                (a, (a + b) / 2) if source.random() < 0.5 else ((a + b) / 2, b) for a, b in box
+            ]
             box, fine = (halved[0], halved[1]), fine / 2
-    assert len(doubt) == 24 and sorted(doubt)[12] < 0.05, "bounds are near the true lengths over small boxes"
+    assert len(doubt) == 24 and sorted(doubt)[12] < 0.05, (
+        "bounds are near the true lengths over small boxes"
+    )
 
 
 def _float(value: fmpq) -> float:
@@ -84,9 +90,13 @@ def test_signs_over_boxes() -> None:
     assert sign(over(table, (unit, unit, unit))) == 1, "zero on the box's rim alone"
     mixed = over(table, ((fmpq(-1), fmpq(1)), (fmpq(-1), fmpq(0)), unit))
     assert sign(mixed) == 0
-    lower, upper = halves(over(table, ((fmpq(1), fmpq(3)), (fmpq(-3), fmpq(-2)), (fmpq(1), fmpq(2)))))
+    lower, upper = halves(
+        over(table, ((fmpq(1), fmpq(3)), (fmpq(-3), fmpq(-2)), (fmpq(1), fmpq(2))))
+    )
     assert (sign(lower), sign(upper)) == (0, 0)
-    lower, upper = halves(over(table, ((fmpq(0), fmpq(4)), (fmpq(-2), fmpq(-1)), (fmpq(1), fmpq(2)))))
+    lower, upper = halves(
+        over(table, ((fmpq(0), fmpq(4)), (fmpq(-2), fmpq(-1)), (fmpq(1), fmpq(2))))
+    )
     assert (sign(lower), sign(upper)) == (0, 1), "x > 2 with y z > -4"
 
 
@@ -106,7 +116,9 @@ def test_the_longest_of_several_intervals() -> None:
     assert found == ((fmpq(5, 8), fmpq(5, 8)), (fmpq(1), fmpq(1)))
     runs = refined(space, (WINDOW, WINDOW), space.whole(), fmpq(1, 64))
     assert [run.ends for run in runs] == [(fmpq(1, 4), fmpq(1, 2)), (fmpq(5, 8), fmpq(1))]
-    assert longest(space, runs) == fmpq(3, 8) == certain(space, runs) and measure(space, runs) == fmpq(5, 8)
+    assert longest(space, runs) == fmpq(3, 8) == certain(space, runs) and measure(
+        space, runs
+    ) == fmpq(5, 8)
 
 
 def test_runs_that_are_short_enough_still_count() -> None:

@@ -1,4 +1,6 @@
-"""What keeps extreme maps cheap: clusters of roots, branches that nearly meet, strips and cuts that follow scales."""
+"""What keeps extreme maps cheap: clusters of roots, branches that nearly meet, strips and cuts that
+follow scales.
+"""
 
 from __future__ import annotations
 
@@ -44,10 +46,14 @@ def polynomial(roots: list[Fraction]) -> fmpz_poly:
 @settings(max_examples=examples(60), deadline=None)
 @given(
     st.fractions(-3, 3, max_denominator=50),
-    st.lists(st.tuples(st.sampled_from([0, 1, 7, 30, 80]), st.integers(-9, 9)), min_size=1, max_size=6),
+    st.lists(
+        st.tuples(st.sampled_from([0, 1, 7, 30, 80]), st.integers(-9, 9)), min_size=1, max_size=6
+    ),
     st.lists(st.fractions(-4, 4, max_denominator=9), max_size=3),
 )
-def test_clusters_are_isolated(center: Fraction, near: list[tuple[int, int]], others: list[Fraction]) -> None:
+def test_clusters_are_isolated(
+    center: Fraction, near: list[tuple[int, int]], others: list[Fraction]
+) -> None:
     """Roots known by construction, some as near to each other as 10^-80."""
     roots = sorted({center + n * Fraction(1, 10**e) for e, n in near} | set(others))
     low, high = fmpq(-5), fmpq(5)
@@ -94,14 +100,25 @@ def test_a_cluster_takes_steps_like_the_logarithm_of_its_digits(tests_made: list
     for digits in (50, 100, 200, 400):
         tests_made.clear()
         third = Fraction(1, 3)
-        assert len(isolate(polynomial([third, third + Fraction(1, 10**digits), Fraction(2)]), fmpq(0), fmpq(3))) == 3
+        assert (
+            len(
+                isolate(
+                    polynomial([third, third + Fraction(1, 10**digits), Fraction(2)]),
+                    fmpq(0),
+                    fmpq(3),
+                )
+            )
+            == 3
+        )
         taken[digits] = len(tests_made)
     assert taken[400] < 100
     assert taken[400] <= 2 * taken[50]
 
 
 def far_cluster(center: int, pairs: list[tuple[int, int]], real: list[int]) -> fmpz_poly:
-    """Roots center + r and center + a +- b i, and the same mirrored, as the fibres of a map in a vast window have."""
+    """Roots center + r and center + a +- b i, and the same mirrored, as the fibres of a map in a
+    vast window have.
+    """
     p = polynomial([Fraction(center + r) for r in real])
     for a, b in set(pairs):
         p *= fmpz_poly([(center + a) ** 2 + b * b, -2 * (center + a), 1])
@@ -119,7 +136,9 @@ def far_cluster(center: int, pairs: list[tuple[int, int]], real: list[int]) -> f
 def test_clusters_far_out_are_isolated(
     e: int, n: int, pairs: list[tuple[int, int]], real: list[int], both: bool
 ) -> None:
-    """Real and complex roots together, 10^e away from their mirrored ones: known by construction, and Sturm's count."""
+    """Real and complex roots together, 10^e away from their mirrored ones: known by construction,
+    and Sturm's count.
+    """
     center = n * 10 ** max(e - 6, 1)
     p = far_cluster(center, pairs, real)
     low, high = fmpq(-(10**31) if both else 0), fmpq(10**31)
@@ -134,16 +153,32 @@ def test_a_cluster_far_out_takes_few_tests_at_any_distance(tests_made: list[int]
     """Bisection with steps that only follow Newton's method from the ends took 70 at 10^27."""
     for e in (9, 18, 27):
         tests_made.clear()
-        assert len(isolate(far_cluster(67 * 10**e, [(2, 1), (-2, 1)], [-1, 1]), fmpq(0), fmpq(10**30))) == 2
+        assert (
+            len(isolate(far_cluster(67 * 10**e, [(2, 1), (-2, 1)], [-1, 1]), fmpq(0), fmpq(10**30)))
+            == 2
+        )
         assert len(tests_made) <= 40
 
 
 @settings(max_examples=examples(40), deadline=None)
-@given(st.integers(1, 60), st.integers(10**299, 10**300), st.integers(10**299, 10**300), st.integers(0, 2))
-def test_long_polynomials_are_refined_to_the_same_root(digits: int, n: int, m: int, pairs: int) -> None:
-    """The root m/n with complex pairs beside it, for which balls are too wide: exact values have to stand in."""
+@given(
+    st.integers(1, 60),
+    st.integers(10**299, 10**300),
+    st.integers(10**299, 10**300),
+    st.integers(0, 2),
+)
+def test_long_polynomials_are_refined_to_the_same_root(
+    digits: int, n: int, m: int, pairs: int
+) -> None:
+    """The root m/n with complex pairs beside it, for which balls are too wide: exact values have to
+    stand in.
+    """
     line = fmpz_poly([-m, n])
-    p = line * (line**2 + 1 if pairs > 0 else fmpz_poly([10**310, 1])) * (line**2 + 2 if pairs > 1 else 1)
+    p = (
+        line
+        * (line**2 + 1 if pairs > 0 else fmpz_poly([10**310, 1]))
+        * (line**2 + 2 if pairs > 1 else 1)
+    )
     width = fmpq(1, 10**digits)
     short = refine(RealRoot(p, fmpq(0), fmpq(11)), width)
     assert short.high - short.low < width
@@ -155,9 +190,14 @@ def test_long_polynomials_are_refined_to_the_same_root(digits: int, n: int, m: i
     st.lists(st.lists(st.integers(-99, 99), min_size=1, max_size=4), min_size=3, max_size=5),
     st.integers(1, 40), st.integers(0, 40),
 )  # fmt: skip
-def test_balanced_units_change_discriminants_and_resultants_by_a_factor(rows: list[list[int]], a: int, b: int) -> None:
+def test_balanced_units_change_discriminants_and_resultants_by_a_factor(
+    rows: list[list[int]], a: int, b: int
+) -> None:
     """p(10^a u, 10^b v), whose coefficients are long: with and without other units."""
-    p = tuple(fmpz_poly([c * 10 ** (a * j + b * i) for j, c in enumerate(row)]) for i, row in enumerate(rows))
+    p = tuple(
+        fmpz_poly([c * 10 ** (a * j + b * i) for j, c in enumerate(row)])
+        for i, row in enumerate(rows)
+    )
     q = tuple(fmpz_poly([7, 10**a]) * 10 ** (b * i) for i in range(3))
     if not p[-1] or not any(p):
         return
@@ -165,8 +205,14 @@ def test_balanced_units_change_discriminants_and_resultants_by_a_factor(rows: li
         short, unit = balanced(long)
         left, right = own(long), own(short)
         stretched = fmpz_poly([c * unit**j for j, c in enumerate(right.coeffs())])
-        assert left * stretched.leading_coefficient() == stretched * left.leading_coefficient() if left else not right
-        assert sum(int(c.height_bits()) for f in short for c in f) <= sum(int(c.height_bits()) for f in long for c in f)
+        assert (
+            left * stretched.leading_coefficient() == stretched * left.leading_coefficient()
+            if left
+            else not right
+        )
+        assert sum(int(c.height_bits()) for f in short for c in f) <= sum(
+            int(c.height_bits()) for f in long for c in f
+        )
     ((shorter, *_), unit) = balanced([q])
     assert unit == 10**a and max(c.height_bits() for c in shorter) < 4
 
@@ -181,7 +227,9 @@ def by_solving(algebra: FibreAlgebra, form: tuple[int, ...]) -> list[fmpq_poly]:
     for _ in range(size - 1):
         powers.append(step * powers[-1])
     change = fmpq_mat(size, size, [powers[j][i, 0] for i in range(size) for j in range(size)])
-    targets = fmpq_mat(size, len(form), [m[i, 0] for i in range(size) for m in algebra.multiplication])
+    targets = fmpq_mat(
+        size, len(form), [m[i, 0] for i in range(size) for m in algebra.multiplication]
+    )
     solved = change.solve(targets)
     return [fmpq_poly([solved[i, k] for i in range(size)]) for k in range(len(form))]
 
@@ -190,9 +238,19 @@ def by_solving(algebra: FibreAlgebra, form: tuple[int, ...]) -> list[fmpq_poly]:
 def test_quotients_and_polynomials_give_the_same_points(digits: int) -> None:
     share = fmpq(int("1234567891" * 4) % 10**digits, 10**digits)
     forces = {"F3": -10 + share, "F4": -10 - share}
-    values = {"L1": 1, "L2": 1 + share, "rho": 1 - share / 3, "k1": 100, "k2": 100 + share, "k3": 100, **forces}
+    values = {
+        "L1": 1,
+        "L2": 1 + share,
+        "rho": 1 - share / 3,
+        "k1": 100,
+        "k2": 100 + share,
+        "k3": 100,
+        **forces,
+    }
     system = system_of("ptm")
-    algebra = point_system(system, {n: fmpq(values.get(n, 0)) for n in (*values, "F3x", "F4x")}).algebra
+    algebra = point_system(
+        system, {n: fmpq(values.get(n, 0)) for n in (*values, "F3x", "F4x")}
+    ).algebra
     found = univariate_representation(algebra)
     assert found is not None
     modulus = fmpq_poly(found.minimal)
@@ -203,8 +261,12 @@ def test_quotients_and_polynomials_give_the_same_points(digits: int) -> None:
 
 
 @pytest.mark.slow
-def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each fibre is isolated once; strips as wide as a window of 1e30 asks for are seen to be too wide beforehand."""
+def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each fibre is isolated once; strips as wide as a window of 1e30 asks for are seen to be too
+    wide beforehand.
+    """
     seen: list[tuple[object, ...]] = []
     rounds: list[int] = []
 
@@ -224,7 +286,9 @@ def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(monkeypatch:
         rounds.append(len(seen))
         return refined(*arguments)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(area, "by_component", lambda curves: {n: Counted(c) for n, c in found(curves).items()})
+    monkeypatch.setattr(
+        area, "by_component", lambda curves: {n: Counted(c) for n, c in found(curves).items()}
+    )
     monkeypatch.setattr(area, "_refine", followed)
     answer(chosen(["map-window-1e30"])[0].question)
     assert len(rounds) == 1
@@ -252,9 +316,17 @@ def test_the_simplest_rational_between_is_the_simplest(a: Fraction, b: Fraction)
 
 
 @settings(max_examples=examples(30), deadline=None)
-@given(st.integers(5, 60), st.fractions(-1, 1, max_denominator=8), st.fractions(0, 1, max_denominator=8))
-def test_arcs_enclose_the_integral_of_branches_that_nearly_meet(e: int, bend: Fraction, slope: Fraction) -> None:
-    """(v - s - b u - a u^2)^2 = 10^-e: both branches, whose integrals are known, by a tube that holds both or one."""
+@given(
+    st.integers(5, 60),
+    st.fractions(-1, 1, max_denominator=8),
+    st.fractions(0, 1, max_denominator=8),
+)
+def test_arcs_enclose_the_integral_of_branches_that_nearly_meet(
+    e: int, bend: Fraction, slope: Fraction
+) -> None:
+    """(v - s - b u - a u^2)^2 = 10^-e: both branches, whose integrals are known, by a tube that
+    holds both or one.
+    """
     gap = Fraction(1, 10 ** (e // 2 * 2))
     arc = fmpq_poly([fmpq(2), from_fraction(slope), from_fraction(bend)])
     scale = 64 * 10 ** (e // 2 * 2) * arc.denom() ** 2
@@ -289,7 +361,9 @@ def test_arcs_prove_nothing_where_a_branch_runs_through_the_tube() -> None:
         return RealRoot(fmpz_poly([0, 1]), fmpq(0), fmpq(0))
 
     with ctx.workprec(100):
-        assert arc_integral(in_v, branch, fmpq(0), fmpq(1), (fmpq(-2), fmpq(2)), fmpq(1, 100)) is None
+        assert (
+            arc_integral(in_v, branch, fmpq(0), fmpq(1), (fmpq(-2), fmpq(2)), fmpq(1, 100)) is None
+        )
 
 
 def test_refinement_keeps_the_root() -> None:
@@ -306,10 +380,14 @@ def usual_work() -> int:
     return work_of(FIG4)
 
 
-@pytest.mark.parametrize("force", [pytest.param(Fraction(1, 10**6), marks=pytest.mark.slow), Fraction(1, 10**20)])
+@pytest.mark.parametrize(
+    "force", [pytest.param(Fraction(1, 10**6), marks=pytest.mark.slow), Fraction(1, 10**20)]
+)
 @pytest.mark.slow
 def test_areas_next_to_a_limit_take_little_more_work(force: Fraction) -> None:
-    """The loaded curve runs along the unloaded lines, several branches within force^(2/3) of each other."""
+    """The loaded curve runs along the unloaded lines, several branches within force^(2/3) of each
+    other.
+    """
     nearly = Question({"F3": -force, "F4": -force}, FIG4.axes)
     assert work_of(nearly) <= 3 * usual_work()
 
@@ -342,15 +420,25 @@ def test_multiple_roots_are_refused_at_an_end_of_the_interval_too(roots: tuple[i
         try:
             found = isolate(product, fmpq(low), fmpq(high))
         except ValueError:
-            assert max(roots.count(low), roots.count(high)) > 1  # a multiple root at an end may be refused
+            assert (
+                max(roots.count(low), roots.count(high)) > 1
+            )  # a multiple root at an end may be refused
         else:
             assert len(found) == len(simple)
-            assert all(f.low <= from_fraction(r) <= f.high for f, r in zip(found, simple, strict=True))
+            assert all(
+                f.low <= from_fraction(r) <= f.high for f, r in zip(found, simple, strict=True)
+            )
 
 
 def test_series_beside_a_critical_abscissa_that_is_found_to_be_rational() -> None:
-    """Forces up to 1e9 on both sides of zero: F3 = 0 is critical, and known to be zero only when it is refined."""
-    record = {"mechanism": "ptm", "parameters": {"L1": 1, "L2": "3/2", "rho": "3/4", "k": 100}, "count": "stable"}
+    """Forces up to 1e9 on both sides of zero: F3 = 0 is critical, and known to be zero only when it
+    is refined.
+    """
+    record = {
+        "mechanism": "ptm",
+        "parameters": {"L1": 1, "L2": "3/2", "rho": "3/4", "k": 100},
+        "count": "stable",
+    }
     axes = {"F3": ["-1e9", "1e9"], "F4": ["-1e9", "1e9"]}
     wide = ptmcad.classify(slice_from_mapping({"name": "wide", **record, "axes": axes}))
     assert wide.status is Status.EXACT
@@ -368,19 +456,27 @@ GERMS = {
 @pytest.mark.parametrize("digits", [15, 40])
 @pytest.mark.parametrize("name", GERMS)
 @pytest.mark.slow_cases("two parabolas-40")
-def test_areas_between_branches_that_part_slowly_are_those_in_other_units(name: str, digits: int) -> None:
-    """A window of size 10^-digits, and the unit square with the equation in these units: the thinnest region's share
-    of the window is 10^-200 in one."""
+def test_areas_between_branches_that_part_slowly_are_those_in_other_units(
+    name: str, digits: int
+) -> None:
+    """A window of size 10^-digits, and the unit square with the equation in these units: the
+    thinnest region's share of the window is 10^-200 in one."""
     found = []
     for unit in (1, Fraction(1, 10**digits)):
-        germ = GERMS[name].replace("a", f"({unit}*a)").replace("b", f"({unit}*b)") if unit != 1 else GERMS[name]
+        germ = (
+            GERMS[name].replace("a", f"({unit}*a)").replace("b", f"({unit}*b)")
+            if unit != 1
+            else GERMS[name]
+        )
         side = [0, str(Fraction(1, 10**digits) / unit)]
         system = {"unknowns": {"z": "real"}, "equations": [f"z^2 - ({germ})"]}
         whole = (Fraction(1, 10**digits) / unit) ** 2
         regions = ptmcad.classify(
             slice_from_mapping({"name": "germ", "system": system, "axes": {"a": side, "b": side}})
         ).regions
-        found.append(sorted((r.total, *(bound / whole for bound in r.area)) for r in regions if r.area))
+        found.append(
+            sorted((r.total, *(bound / whole for bound in r.area)) for r in regions if r.area)
+        )
     tiny, unitary = found
     assert len(tiny) == len(unitary) > 1
     for (count, low, high), (other, least, most) in zip(tiny, unitary, strict=True):
@@ -390,20 +486,33 @@ def test_areas_between_branches_that_part_slowly_are_those_in_other_units(name: 
 
 
 def test_a_series_whose_last_coefficients_are_nearly_nothing_is_usable() -> None:
-    """Two circles in a window that begins 10^-20 and 10^-30 before their axes: a ratio underflowed in doubles."""
+    """Two circles in a window that begins 10^-20 and 10^-30 before their axes: a ratio underflowed
+    in doubles.
+    """
     equation = "z^2 - ((a^2 + b^2 - 1)*((a - 1/2)^2 + b^2 - 1/4))"
     system = {"unknowns": {"z": "real"}, "equations": [equation]}
     axes = {"b": ["-1e-20", 2], "a": ["-1e-30", 1]}
-    regions = ptmcad.classify(slice_from_mapping({"name": "circles", "system": system, "axes": axes})).regions
+    regions = ptmcad.classify(
+        slice_from_mapping({"name": "circles", "system": system, "axes": axes})
+    ).regions
     # the quarter disk without the half disk, and the half disk: each pi/8 but for slivers of 1e-20
     inside = sorted(r.area for r in regions if r.area and r.area[0] > Fraction(1, 100))
     for low, high in inside[:2]:
-        assert low - Fraction(1, 10**15) < Fraction(39269908169872415, 10**17) < high + Fraction(1, 10**15)
+        assert (
+            low - Fraction(1, 10**15)
+            < Fraction(39269908169872415, 10**17)
+            < high + Fraction(1, 10**15)
+        )
     assert len(inside) == 3
 
 
 def test_verify_reads_coefficients_of_fifty_digits() -> None:
     """A true map was called violated: its equations were said to be no formulas."""
-    system = {"unknowns": {"z": "real"}, "equations": [f"z^2 - (a^2 + b^2 - {10**50 + 1}/{10**50})"]}
-    stored = ptmcad.classify(slice_from_mapping({"name": "long", "system": system, "axes": {"a": [0, 2], "b": [0, 2]}}))
+    system = {
+        "unknowns": {"z": "real"},
+        "equations": [f"z^2 - (a^2 + b^2 - {10**50 + 1}/{10**50})"],
+    }
+    stored = ptmcad.classify(
+        slice_from_mapping({"name": "long", "system": system, "axes": {"a": [0, 2], "b": [0, 2]}})
+    )
     assert ptmcad.verify(stored).ok

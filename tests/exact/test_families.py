@@ -71,7 +71,10 @@ def _random_values(name: str, number: int) -> list[Fraction]:
 @pytest.mark.parametrize(
     ("name", "values"),
     [
-        ("equal loads", [Fraction(-10), Fraction(-1, 3), Fraction(0)]),  # without load a component splits off
+        (
+            "equal loads",
+            [Fraction(-10), Fraction(-1, 3), Fraction(0)],
+        ),  # without load a component splits off
         ("two loads, 446 terms", [Fraction(-10), Fraction(0)]),
         ("system with a condition", [Fraction(0), Fraction(1, 3), Fraction(-1)]),
         pytest.param("chain", [Fraction(1)], marks=pytest.mark.slow),
@@ -111,7 +114,9 @@ def test_a_basis_that_does_not_specialise_is_not_used() -> None:
 
 
 def test_divisions_on_the_way_are_noted() -> None:
-    """z (u^2 - 1) and (u - 1)(u - 2)(u - 3) meet in u = 1 but where z = 0: there the second one has three zeros."""
+    """z (u^2 - 1) and (u - 1)(u - 2)(u - 3) meet in u = 1 but where z = 0: there the second one has
+    three zeros.
+    """
     z, one = SPACE.gens()[2], SPACE.constant(1)
     first: UnknownPolynomial = {(2,): z, (0,): -z}
     second: UnknownPolynomial = {(3,): one, (2,): -6 * one, (1,): 11 * one, (0,): -6 * one}
@@ -137,12 +142,21 @@ def test_parameters_in_three_variables_are_the_members_own() -> None:
         x, y = Fraction(7, 5), Fraction(1, 70)
         for name, (above, below) in found.items():
             top, bottom = (
-                sum(int(c) * x ** int(i) * y ** int(j) * value ** int(k) for (i, j, k), c in p.terms())
+                sum(
+                    int(c) * x ** int(i) * y ** int(j) * value ** int(k)
+                    for (i, j, k), c in p.terms()
+                )
                 for p in (above, below)
             )
             assert Fraction(top) / bottom == member.parameters[name].evaluate(x, y)
 
 
 def test_springs_with_free_lengths_have_no_variety_in_common() -> None:
-    family = family_from({"axes": {"rho": [1, 2], "L2": [1, 2]}, "parameters": {"l0": "l"}, "free": {"l": ["1/10", 1]}})
+    family = family_from(
+        {
+            "axes": {"rho": [1, 2], "L2": [1, 2]},
+            "parameters": {"l0": "l"},
+            "free": {"l": ["1/10", 1]},
+        }
+    )
     assert in_common(family).variety is None

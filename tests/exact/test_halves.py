@@ -1,4 +1,6 @@
-"""Maps whose window an involution takes to itself: areas from one half are those of the whole window."""
+"""Maps whose window an involution takes to itself: areas from one half are those of the whole
+window.
+"""
 
 from __future__ import annotations
 
@@ -28,9 +30,18 @@ SYSTEMS = {
     "in the second axis, beside zero": (["x^3 - a*x + b - 3"], {"a": ["1/2", 2], "b": [2, 4]}),
     "in a point": (["x^3 - a*b*x + b"], {"a": [-2, 2], "b": [-1, 1]}),
     "exchange": (["x^2 + a*y - b", "y^2 + b*x - a"], {"a": [-2, 2], "b": [-2, 2]}),
-    "exchange beside the diagonal": (["x^2 + a*y - b + 3", "y^2 + (b - 3)*x - a"], {"a": [-1, 2], "b": [2, 5]}),
-    "exchange and reflection beside it": (["x^3 - x*(a - b + 3) + a*(b - 3)"], {"a": [-1, 2], "b": [1, 4]}),
-    "exchange and reflection": (["x^2 - a", "y^2 + b", "z^3 - z + a*b*x*y"], {"a": [-1, 2], "b": [-2, 1]}),
+    "exchange beside the diagonal": (
+        ["x^2 + a*y - b + 3", "y^2 + (b - 3)*x - a"],
+        {"a": [-1, 2], "b": [2, 5]},
+    ),
+    "exchange and reflection beside it": (
+        ["x^3 - x*(a - b + 3) + a*(b - 3)"],
+        {"a": [-1, 2], "b": [1, 4]},
+    ),
+    "exchange and reflection": (
+        ["x^2 - a", "y^2 + b", "z^3 - z + a*b*x*y"],
+        {"a": [-1, 2], "b": [-2, 1]},
+    ),
 }
 """Equations in x, y and z that an involution keeps, over a window."""
 
@@ -39,7 +50,10 @@ def _system(name: str) -> Slice:
     equations, axes = SYSTEMS[name]
     unknowns = {u: "real" for u in "xyz"[: len(equations)]}
     return slice_from_mapping(
-        {"system": {"unknowns": unknowns, "equations": equations, "parameters": NUMBERS}, "axes": axes}
+        {
+            "system": {"unknowns": unknowns, "equations": equations, "parameters": NUMBERS},
+            "axes": axes,
+        }
     )
 
 
@@ -48,10 +62,13 @@ def _record(name: str) -> Slice:
 
 
 @pytest.mark.parametrize(
-    "name", [*SYSTEMS, "rods", "mechanisms/slider-crank", "systems/kuramoto", "systems/orthogonal-3r"]
+    "name",
+    [*SYSTEMS, "rods", "mechanisms/slider-crank", "systems/kuramoto", "systems/orthogonal-3r"],
 )
 @pytest.mark.slow_cases("systems/kuramoto", "systems/orthogonal-3r", "mechanisms/slider-crank")
-def test_a_half_has_the_areas_of_the_whole_window(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_half_has_the_areas_of_the_whole_window(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     slice = _record(name)
     assert problem_of(slice).reflections
     half = exact_map(slice)
@@ -90,7 +107,11 @@ def test_the_plan_says_nothing_of_a_half_where_areas_are_those_of_the_whole_wind
 
 
 def _without_areas(found: RegionMap) -> tuple[object, ...]:
-    return found.cells, found.adjacencies, [(r.cells, r.total, r.stable, r.index, r.sample) for r in found.regions]
+    return (
+        found.cells,
+        found.adjacencies,
+        [(r.cells, r.total, r.stable, r.index, r.sample) for r in found.regions],
+    )
 
 
 @pytest.mark.parametrize("name", [*SYSTEMS, "rods", "forces", "systems/kuramoto"])

@@ -1,4 +1,6 @@
-"""Which curves of a system on the line are critical, which at infinity (Lazard and Rouillier's W_c and W_inf)."""
+"""Which curves of a system on the line are critical, which at infinity (Lazard and Rouillier's W_c
+and W_inf).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Every shipped slice against the answers under `reference:` in its record; the tests' ids name their source."""
+"""Every shipped slice against the answers under `reference:` in its record; the tests' ids name
+their source.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,9 @@ def cases(field: str, each: Callable[[Any], list[Any]] = lambda v: [v]) -> list[
         if field in slice.reference:
             source = str(slice.reference["source"]).split(";")[0]
             if field in slice.reference.get("computed", []):
-                source = "computed by ptmcad"  # an answer that keeps what was found, not a published one
+                source = (
+                    "computed by ptmcad"  # an answer that keeps what was found, not a published one
+                )
             for value in each(slice.reference[field]):
                 found.append(pytest.param(name, value, id=f"{name} [{source}]"))
     return found
@@ -44,7 +48,13 @@ def cases(field: str, each: Callable[[Any], list[Any]] = lambda v: [v]) -> list[
 
 def test_every_record_has_its_answers() -> None:
     for name, slice in SLICES.items():
-        missing = {"source", "regions", "regions_index", "area_stable_2", "intervals"} - slice.reference.keys()
+        missing = {
+            "source",
+            "regions",
+            "regions_index",
+            "area_stable_2",
+            "intervals",
+        } - slice.reference.keys()
         assert not missing, name
         assert {"variety", "curves"} & slice.reference.keys(), name
 
@@ -74,7 +84,11 @@ def test_number_of_regions_by_index(name: str, regions: str) -> None:
     for count in ("stable", "total", "index") for name in SLICES
 ])  # fmt: skip
 @pytest.mark.slow_cases(
-    "total-forces", "index-fig5-caption", "index-horizontal", "index-stiffness", "index-unequal-springs"
+    "total-forces",
+    "index-fig5-caption",
+    "index-horizontal",
+    "index-stiffness",
+    "index-unequal-springs",
 )
 def test_structure(count: str, name: str) -> None:
     check_structure(shipped(name, count, "1/10") if count != "stable" else shipped(name))
@@ -109,7 +123,12 @@ def test_area_to_nine_digits(name: str, printed: str) -> None:
     check_area(result, printed, Fraction(1, 10**9))
     low, high = area_of(result, 2)
     half = Fraction(1, 2 * 10 ** len(printed.partition(".")[2])) if "." in printed else Fraction(0)
-    assert Fraction(printed) - half - (high - low) <= low <= high <= Fraction(printed) + half + (high - low)
+    assert (
+        Fraction(printed) - half - (high - low)
+        <= low
+        <= high
+        <= Fraction(printed) + half + (high - low)
+    )
 
 
 def proportional(p: PlanePolynomial, text: str, names: tuple[str, str]) -> bool:
@@ -149,13 +168,21 @@ def test_curves_have_the_recorded_size(name: str, curves: list[dict[str, Any]]) 
 
 
 def half_unit(printed: str) -> Fraction:
-    """Half a unit of the last printed digit; next to nothing for a fraction, which is meant exactly."""
-    return Fraction(1, 2 * 10 ** len(printed.partition(".")[2])) if "." in printed else Fraction(1, 10**20)
+    """Half a unit of the last printed digit; next to nothing for a fraction, which is meant
+    exactly.
+    """
+    return (
+        Fraction(1, 2 * 10 ** len(printed.partition(".")[2]))
+        if "." in printed
+        else Fraction(1, 10**20)
+    )
 
 
 @pytest.mark.parametrize(("name", "interval"), cases("intervals", list))
 def test_interval_ends(name: str, interval: dict[str, Any]) -> None:
-    """At each printed end the count changes within half a unit of the last digit; located, and by the oracle."""
+    """At each printed end the count changes within half a unit of the last digit; located, and by
+    the oracle.
+    """
     slice = SLICES[name]
     count = Count(interval.get("count", slice.count.value))
     (fixed, value), along = next(iter(interval["at"].items())), interval["along"]
@@ -185,21 +212,32 @@ def _number(count: Count, index: tuple[int, int, int]) -> object:
 
 @pytest.mark.parametrize(("name", "interval"), cases("intervals", list))
 def test_no_other_end(name: str, interval: dict[str, Any]) -> None:
-    """Between the printed ends the count does not change: asked between all points of the variety on the line."""
+    """Between the printed ends the count does not change: asked between all points of the variety
+    on the line.
+    """
     slice = SLICES[name]
     count = Count(interval.get("count", slice.count.value))
     (_, value), along = next(iter(interval["at"].items())), interval["along"]
     base = 1 - slice.axis_names.index(along)
     window = slice.axes[1 - base]
     low, high = from_fraction(window.low), from_fraction(window.high)
-    fibres = [curve(n, from_plane(p), base).fibre(from_fraction(Fraction(value))) for n, p in enumerate(visible(name))]
-    roots = disjoint([refine(r, fmpq(1, 10**12)) for p in fibres for r in isolate(squarefree_part(p), low, high)])
+    fibres = [
+        curve(n, from_plane(p), base).fibre(from_fraction(Fraction(value)))
+        for n, p in enumerate(visible(name))
+    ]
+    roots = disjoint(
+        [refine(r, fmpq(1, 10**12)) for p in fibres for r in isolate(squarefree_part(p), low, high)]
+    )
     levels = [window.low, *(to_fraction(q) for r in roots for q in (r.low, r.high)), window.high]
     found = []
     for k in range(0, len(levels), 2):
         point = [Fraction(value)] * 2
         point[1 - base] = (levels[k] + levels[k + 1]) / 2
-        found.append(_number(count, oracle.count({n: e.evaluate(*point) for n, e in slice.parameters.items()})))
+        found.append(
+            _number(
+                count, oracle.count({n: e.evaluate(*point) for n, e in slice.parameters.items()})
+            )
+        )
     assert sum(a != b for a, b in pairwise(found)) == len(interval["ends"])
 
 
@@ -214,7 +252,10 @@ def test_unloaded_regions_touch_only_at_the_edge() -> None:
     for k, p in enumerate(lines):
         for q in lines[k + 1 :]:
             (a, b, c), (d, e, f) = (
-                tuple(next((t for i, j, t in r.terms if (i, j) == m), 0) for m in ((1, 0), (0, 1), (0, 0)))
+                tuple(
+                    next((t for i, j, t in r.terms if (i, j) == m), 0)
+                    for m in ((1, 0), (0, 1), (0, 0))
+                )
                 for r in (p, q)
             )
             det = a * e - b * d
@@ -224,14 +265,19 @@ def test_unloaded_regions_touch_only_at_the_edge() -> None:
                 assert not (x.low < meet[0] < x.high and y.low < meet[1] < y.high)
     one = {n for n, region in enumerate(result.regions) if region.stable == 1}
     assert len(one) == 3
-    links = {frozenset((result.cells[a.first].region, result.cells[a.second].region)) for a in result.adjacencies}
+    links = {
+        frozenset((result.cells[a.first].region, result.cells[a.second].region))
+        for a in result.adjacencies
+    }
     assert not any(len(link) == 2 and link <= one for link in links)
 
 
 @pytest.mark.parametrize("far", ["1e6", "1e14", "1e300"])
 @pytest.mark.slow_cases("1e6", "1e14")
 def test_unloaded_areas_in_a_window_of_any_height(far: str) -> None:
-    """REFERENCE: between the three lines; the regions of area 1/4 and 9/4 are lost in the window's rounding error."""
+    """REFERENCE: between the three lines; the regions of area 1/4 and 9/4 are lost in the window's
+    rounding error.
+    """
     axes = {"L2": [0, 4], "rho": [0, far]}
     record = {"name": "far", "mechanism": "ptm", "parameters": {"L1": 1, "k": 100}, "axes": axes}
     result = ptmcad.classify(ptmcad.slice_from_mapping(record))
@@ -244,20 +290,29 @@ def test_unloaded_areas_in_a_window_of_any_height(far: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "far", ["1e20", pytest.param("1e100", marks=pytest.mark.slow), pytest.param("1e300", marks=pytest.mark.slow)]
+    "far",
+    [
+        "1e20",
+        pytest.param("1e100", marks=pytest.mark.slow),
+        pytest.param("1e300", marks=pytest.mark.slow),
+    ],
 )
 def test_loaded_areas_in_a_window_of_any_width(far: str) -> None:
-    """REFERENCE, fig. 4: the region of two stable equilibria has area .74635, and none of it is beyond rho = 2."""
+    """REFERENCE, fig. 4: the region of two stable equilibria has area .74635, and none of it is
+    beyond rho = 2.
+    """
     record = {
         "name": "far", "mechanism": "ptm", "parameters": {"L1": 1, "k": 100, "F3": -10, "F4": -10},
         "axes": {"rho": [0, far], "L2": [0, 2]},
     }  # fmt: skip
     (one,), (two,) = (
-        [r for r in ptmcad.classify(ptmcad.slice_from_mapping(record)).regions if r.stable == n] for n in (1, 2)
+        [r for r in ptmcad.classify(ptmcad.slice_from_mapping(record)).regions if r.stable == n]
+        for n in (1, 2)
     )
     assert Fraction("0.7463") < two.area[0] <= two.area[1] < Fraction("0.7465")
     assert (
-        one.area[0] <= 2 * Fraction(far) - Fraction("0.7464") and 2 * Fraction(far) - Fraction("0.7463") <= one.area[1]
+        one.area[0] <= 2 * Fraction(far) - Fraction("0.7464")
+        and 2 * Fraction(far) - Fraction("0.7463") <= one.area[1]
     )
 
 
@@ -273,7 +328,9 @@ def test_unloaded_region_of_two(numerator: int) -> None:
 
 
 def test_symmetric_regions_by_index() -> None:
-    """REFERENCE: (4,1) in the rose and outside the astroid; between them (6,2) for x > y and (6,1) for x < y."""
+    """REFERENCE: (4,1) in the rose and outside the astroid; between them (6,2) for x > y and (6,1)
+    for x < y.
+    """
     result = shipped("fig3", "index", "1/10")
     assert sorted((r.total, r.stable) for r in result.regions) == [(4, 1), (4, 1), (6, 1), (6, 2)]
     for k in range(1, 40):
@@ -288,7 +345,9 @@ def test_symmetric_regions_by_index() -> None:
 
 
 def test_symmetric_sliver() -> None:
-    """The (6,1) sliver at rho < 0.0025 is there, its own region by index, and merged by stable count."""
+    """The (6,1) sliver at rho < 0.0025 is there, its own region by index, and merged by stable
+    count.
+    """
     for count, same in (("index", False), ("stable", True)):
         result = shipped("fig3", count, "1/10" if count == "index" else "1e-4")
         sliver = result.locate(rho="0.0012", F="-9.9")
@@ -320,8 +379,12 @@ def test_stiffness_cuts_fig4() -> None:
 # ------------------------------------------------------------------------------ independent of the engine altogether
 
 
-def changes_on_line(name: str, value: Fraction, grid: int, steps: int) -> list[tuple[Fraction, int]]:
-    """Where the oracle's stable count changes along the first axis, by bisection from a grid; with the count before."""
+def changes_on_line(
+    name: str, value: Fraction, grid: int, steps: int
+) -> list[tuple[Fraction, int]]:
+    """Where the oracle's stable count changes along the first axis, by bisection from a grid; with
+    the count before.
+    """
     slice = SLICES[name]
     x = slice.axes[0]
 
@@ -345,13 +408,17 @@ def changes_on_line(name: str, value: Fraction, grid: int, steps: int) -> list[t
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["horizontal", "stiffness", "forces", "rods", "unequal-springs"])
 def test_area_by_the_oracle_alone(name: str) -> None:
-    """The midpoint rule over 60 lines, a grid and bisection with the oracle on each: within 1 % of the record."""
+    """The midpoint rule over 60 lines, a grid and bisection with the oracle on each: within 1 % of
+    the record.
+    """
     slice = SLICES[name]
     y, lines = slice.axes[1], 60
     total = Fraction(0)
     for k in range(lines):
         start = slice.axes[0].low
-        for end, stable in changes_on_line(name, y.low + (y.high - y.low) * Fraction(2 * k + 1, 2 * lines), 40, 10):
+        for end, stable in changes_on_line(
+            name, y.low + (y.high - y.low) * Fraction(2 * k + 1, 2 * lines), 40, 10
+        ):
             total += (end - start) * (stable == 2)
             start = end
     area = total * (y.high - y.low) / lines

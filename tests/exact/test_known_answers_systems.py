@@ -1,6 +1,8 @@
-"""Systems and mechanisms of other fields against answers of the literature, or by hand; the ids name the source.
+"""Systems and mechanisms of other fields against answers of the literature, or by hand; the ids
+name the source.
 
-Areas come from closed forms, which no engine knows. Where the certified engine takes a system, its map is asked too.
+Areas come from closed forms, which no engine knows. Where the certified engine takes a system, its
+map is asked too.
 """
 
 from __future__ import annotations
@@ -32,7 +34,8 @@ class Known:
     ----------
     areas : by the count that the record asks for.
     points : the axes' values, then the count.
-    certified : the share that the certified engine may leave open; none where it does not take the system.
+    certified : the share that the certified engine may leave open; none where it does not take the
+        system.
     """
 
     source: str
@@ -234,7 +237,9 @@ def test_published_areas_of_shipped_systems_by_the_certified_engine(name: str) -
 
 
 def chain(bars: int) -> dict[str, Any]:
-    """Bars of length 1 in a chain, each joint on a spring of length zero to one point, with loads at the joints."""
+    """Bars of length 1 in a chain, each joint on a spring of length zero to one point, with loads
+    at the joints.
+    """
     angles = [f"t{k}" for k in range(bars)]
     points: dict[str, Any] = {"O": [0, 0], "A": ["a", "1/2"]}
     for k in range(bars):
@@ -247,7 +252,9 @@ def chain(bars: int) -> dict[str, Any]:
             "unknowns": dict.fromkeys(angles, "angle"),
             "points": points,
             "springs": [{"between": ["A", f"P{k}"], "k": 1} for k in range(bars)],
-            "loads": {f"P{bars - 1}": ["1/5", "F"], "P0": ["1/7", 0]} if bars > 1 else {"P0": ["1/5", "F"]},
+            "loads": {f"P{bars - 1}": ["1/5", "F"], "P0": ["1/7", 0]}
+            if bars > 1
+            else {"P0": ["1/5", "F"]},
         },
         "axes": {"a": [0, 1], "F": [0, 1]},
     }
@@ -275,7 +282,12 @@ X_JOINT: dict[str, Any] = {
             " - 2*K*(2*K*k1*b*sin(t) + G*(1 + cos(t) - K^2*(1 - cos(t))))"
         ],
     },
-    "parameters": {"b": "1/2", "K": 3, "k1": 1, "k2": "4/3"},  # bars of length 1: K = (1 + b)/(1 - b)
+    "parameters": {
+        "b": "1/2",
+        "K": 3,
+        "k1": 1,
+        "k2": "4/3",
+    },  # bars of length 1: K = (1 + b)/(1 - b)
     "axes": {"F": [-2, 2], "G": [-2, 2]},
 }
 OSCILLATORS: dict[str, Any] = {
@@ -322,16 +334,26 @@ PLATFORM: dict[str, Any] = {
 @pytest.mark.parametrize(
     ("record", "number"),
     [
-        *(pytest.param(chain(n), comb(2 * n, n), id=f"chain of {n} [C(2 n, n), REFERENCE]") for n in (1, 2, 3)),
-        pytest.param(FOUR_BAR, 12, id="four-bar with springs on its diagonals [two eliminations, REFERENCE]"),
+        *(
+            pytest.param(chain(n), comb(2 * n, n), id=f"chain of {n} [C(2 n, n), REFERENCE]")
+            for n in (1, 2, 3)
+        ),
+        pytest.param(
+            FOUR_BAR, 12, id="four-bar with springs on its diagonals [two eliminations, REFERENCE]"
+        ),
         pytest.param(X_JOINT, 6, id="antiparallelogram with springs on its diagonals [REFERENCE]"),
         pytest.param(OSCILLATORS, 14, id="four Kuramoto oscillators [REFERENCE]"),
-        pytest.param(ZEEMAN_LENGTHS, 16, id="Zeeman's machine, lengths of all signs [arXiv 2009.13408]"),
-        pytest.param(PLATFORM, 20, id="platform on a leg and two springs, one free length [Vikas's thesis]"),
+        pytest.param(
+            ZEEMAN_LENGTHS, 16, id="Zeeman's machine, lengths of all signs [arXiv 2009.13408]"
+        ),
+        pytest.param(
+            PLATFORM, 20, id="platform on a leg and two springs, one free length [Vikas's thesis]"
+        ),
     ],
 )
 @pytest.mark.slow_cases(
-    "chain of 3 [C(2 n, n), REFERENCE]", "platform on a leg and two springs, one free length [Vikas's thesis]"
+    "chain of 3 [C(2 n, n), REFERENCE]",
+    "platform on a leg and two springs, one free length [Vikas's thesis]",
 )
 def test_numbers_of_complex_solutions(record: dict[str, Any], number: int) -> None:
     """At three points; with multiplicities and without."""
@@ -345,8 +367,12 @@ def test_numbers_of_complex_solutions(record: dict[str, Any], number: int) -> No
     ("record", "degree", "terms"),
     [
         pytest.param(chain(2), 24, 313, id="chain of two bars [REFERENCE]"),
-        pytest.param(FOUR_BAR, 18, 100, id="four-bar [two eliminations, REFERENCE]", marks=pytest.mark.slow),
-        pytest.param(OSCILLATORS, 42, 809, id="four Kuramoto oscillators [REFERENCE]", marks=pytest.mark.slow),
+        pytest.param(
+            FOUR_BAR, 18, 100, id="four-bar [two eliminations, REFERENCE]", marks=pytest.mark.slow
+        ),
+        pytest.param(
+            OSCILLATORS, 42, 809, id="four Kuramoto oscillators [REFERENCE]", marks=pytest.mark.slow
+        ),
     ],
 )
 def test_sizes_of_critical_curves(record: dict[str, Any], degree: int, terms: int) -> None:
@@ -365,27 +391,38 @@ Q, Q1, Q2 = (
 A, A1, A2 = "(d3 + d4*cos(t))", "(-d4*sin(t))", "(-d4*cos(t))"
 Z4 = f"(4*{A}^2 - (R - {Q})^2)"
 CUSPS: dict[str, Any] = {
-    # postures at (r, z) solve (R - q)^2 + 4 (z^2 - A^2) = 0 with R = r^2 + z^2; they are threefold where both
-    # derivatives by t are zero too, and there are such places above and below z = 0
+    # postures at (r, z) solve (R - q)^2 + 4 (z^2 - A^2) = 0 with R = r^2 + z^2; they are threefold
+    # where both derivatives by t are zero too, and there are such places above and below z = 0
     "unknowns": {"t": "angle", "R": "real"},
-    "equations": [f"(R - {Q})*{Q1} + 4*{A}*{A1}", f"{Q1}^2 - (R - {Q})*{Q2} - 4*({A1}^2 + {A}*{A2})"],
+    "equations": [
+        f"(R - {Q})*{Q1} + 4*{A}*{A1}",
+        f"{Q1}^2 - (R - {Q})*{Q2} - 4*({A1}^2 + {A}*{A2})",
+    ],
     "positive": [Z4, f"4*R - {Z4}"],
 }
 
 
 @pytest.mark.parametrize(
     ("d3", "ends", "cusps"),
-    [("1/2", ("0.227", "0.601", "1.118"), (0, 4, 2, 0)), ("2", ("0.201", "2.108", "2.828"), (0, 4, 2, 4))],
+    [
+        ("1/2", ("0.227", "0.601", "1.118"), (0, 4, 2, 0)),
+        ("2", ("0.201", "2.108", "2.828"), (0, 4, 2, 4)),
+    ],
 )
 def test_cusps_of_orthogonal_manipulators_as_baili_wenger_and_chablat_have_them(
     d3: str, ends: tuple[str, ...], cusps: tuple[int, ...]
 ) -> None:
-    """arXiv 0707.2842, d2 = r2 = 1, r3 = 0: on both sides of each end, half a unit of its last digit away."""
+    """arXiv 0707.2842, d2 = r2 = 1, r3 = 0: on both sides of each end, half a unit of its last
+    digit away.
+    """
     record = {"name": "cusps", "system": CUSPS, "axes": {"d3": [0, 3], "d4": [0, 3]}}
     model = ptmcad.slice_from_mapping(record).model
     for end, before, after in zip(ends, cusps, cusps[1:], strict=False):
         near = [Fraction(end) + side * Fraction(1, 2000) for side in (-1, 1)]
-        assert [2 * ptmcad.counts_at(model, d3=d3, d4=str(d4)).total for d4 in near] == [before, after]
+        assert [2 * ptmcad.counts_at(model, d3=d3, d4=str(d4)).total for d4 in near] == [
+            before,
+            after,
+        ]
 
 
 # ----------------------------------------------------------------------------------------------------- Zeeman's machine
@@ -394,10 +431,17 @@ ZEEMAN: dict[str, Any] = {
     "name": "zeeman",
     "mechanism": {
         "name": "zeeman",
-        "parameters": {"x": {"kind": "number"}, "y": {"kind": "number"}, "l0": {"kind": "free length", "default": 0}},
+        "parameters": {
+            "x": {"kind": "number"},
+            "y": {"kind": "number"},
+            "l0": {"kind": "free length", "default": 0},
+        },
         "unknowns": {"t": "angle"},
         "points": {"O": [0, 0], "P": ["cos(t)/2", "sin(t)/2"], "A": [1, 0], "C": ["x", "y"]},
-        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}, {"between": ["C", "P"], "k": 1, "free": "l0"}],
+        "springs": [
+            {"between": ["A", "P"], "k": 1, "free": "l0"},
+            {"between": ["C", "P"], "k": 1, "free": "l0"},
+        ],
     },
     "parameters": {"l0": "1/4"},
     "axes": {"x": [-2, "-3/4"], "y": ["-1/2", "1/2"]},
@@ -406,14 +450,19 @@ ZEEMAN: dict[str, Any] = {
 
 
 def test_zeemans_machine_has_two_stable_positions_within_four_cusps() -> None:
-    """arXiv 2009.13408: against the signs of the moment at 4000 angles, on a grid of control points."""
+    """arXiv 2009.13408: against the signs of the moment at 4000 angles, on a grid of control
+    points.
+    """
     pytest.importorskip("numba")
     result = ptmcad.classify(ptmcad.slice_from_mapping(ZEEMAN), tolerance="1/50", jobs=1)
     assert {cell.index for cell in result.cells} == {(1, 1), (2, 2)}
     checked = 0
     for i in range(12):
         for j in range(10):
-            x, y = Fraction(-2) + Fraction(5 * (2 * i + 1), 96), Fraction(-1, 2) + Fraction(2 * j + 1, 20)
+            x, y = (
+                Fraction(-2) + Fraction(5 * (2 * i + 1), 96),
+                Fraction(-1, 2) + Fraction(2 * j + 1, 20),
+            )
             found = result.locate(x=x, y=y)
             if found.index is not None:
                 assert found.total == balanced(float(x), float(y))

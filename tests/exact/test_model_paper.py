@@ -1,6 +1,8 @@
-"""The model against the paper: its corrected equations hold, the printed ones that are in error do not.
+"""The model against the paper: its corrected equations hold, the printed ones that are in error do
+not.
 
-Source of the corrections: docs/errata.md. All comparisons are identities of polynomials in exact arithmetic.
+Source of the corrections: docs/errata.md. All comparisons are identities of polynomials in exact
+arithmetic.
 """
 
 from __future__ import annotations
@@ -25,12 +27,16 @@ SYSTEM = system_of("ptm")
 
 def with_equal_springs(p: fmpq_mpoly) -> fmpq_mpoly:
     """A trigonometric polynomial of the model in the paper's symbols: k1 = k2 = k3 = k."""
-    symbols = [V.k if name in ("k1", "k2", "k3") else getattr(V, name) for name in SYSTEM.ring.parameters]
+    symbols = [
+        V.k if name in ("k1", "k2", "k3") else getattr(V, name) for name in SYSTEM.ring.parameters
+    ]
     total = ZERO
     for powers, part in SYSTEM.ring.split(p).items():
         for exponents, coefficient in part.items():
             term = RING.constant(coefficient)
-            for symbol, e in zip((*symbols, V.c1, V.s1, V.c2, V.s2), (*exponents, *powers), strict=True):
+            for symbol, e in zip(
+                (*symbols, V.c1, V.s1, V.c2, V.s2), (*exponents, *powers), strict=True
+            ):
                 term *= symbol**e
             total += term
     return total
@@ -41,11 +47,19 @@ def substituted(p: fmpq_mpoly, **values: fmpq_mpoly | int) -> fmpq_mpoly:
 
 
 def half_angles(p: fmpq_mpoly) -> fmpq_mpoly:
-    """p (1 + t1^2)(1 + t2^2) with cos = (1 - t^2)/(1 + t^2), sin = 2t/(1 + t^2), p of degree 1 in each angle."""
+    """p (1 + t1^2)(1 + t2^2) with cos = (1 - t^2)/(1 + t^2), sin = 2t/(1 + t^2), p of degree 1 in
+    each angle.
+    """
     total = ZERO
     for exponents, coefficient in p.terms():
         power = dict(zip(NAMES, exponents, strict=True))
-        term = RING.from_dict({tuple(0 if n in ("c1", "s1", "c2", "s2") else e for n, e in power.items()): coefficient})
+        term = RING.from_dict(
+            {
+                tuple(
+                    0 if n in ("c1", "s1", "c2", "s2") else e for n, e in power.items()
+                ): coefficient
+            }
+        )
         for c, s, t in (("c1", "s1", V.t1), ("c2", "s2", V.t2)):
             assert power[c] + power[s] <= 1
             term *= 1 - t**2 if power[c] else 2 * t if power[s] else 1 + t**2
@@ -65,7 +79,9 @@ def on_circles(p: fmpq_mpoly) -> fmpq_mpoly:
         index, total = NAMES.index(c), ZERO
         for exponents, coefficient in p.terms():
             rest = tuple(e % 2 if i == index else e for i, e in enumerate(exponents))
-            total += RING.from_dict({rest: coefficient}) * (1 - getattr(V, s) ** 2) ** (int(exponents[index]) // 2)
+            total += RING.from_dict({rest: coefficient}) * (1 - getattr(V, s) ** 2) ** (
+                int(exponents[index]) // 2
+            )
         p = total
     return p
 
@@ -106,7 +122,9 @@ def equation_5(extra: int = 0) -> fmpq_mpoly:
 
 
 def equation_6(sign: int, extra: int = 0) -> fmpq_mpoly:
-    """k times the paper's (6) with sign (F4' t2^2 - F4' t1^2); 5.1 adds extra F4x at t1^2 t2 and t2."""
+    """k times the paper's (6) with sign (F4' t2^2 - F4' t1^2); 5.1 adds extra F4x at t1^2 t2 and
+    t2.
+    """
     t1, t2 = V.t1, V.t2
     return (
         V.F4 * t1**2 * t2**2 + 2 * V.k * V.L1 * (t1**2 * t2 + t2**2 * t1) + 4 * V.k * V.rho * t1**2 * t2
@@ -154,7 +172,9 @@ def test_symmetric_equations_10_and_11() -> None:
 
 
 def test_at_most_two_solutions_are_not_symmetric_12() -> None:
-    """Eliminating t1 from the second factor of (10) and (11) gives (12), of degree 2: not 4, as the conclusions say."""
+    """Eliminating t1 from the second factor of (10) and (11) gives (12), of degree 2: not 4, as the
+    conclusions say.
+    """
     k, rho, f, t2, length = V.k, V.rho, V.F4, V.t2, V.L1
     equation_12 = (
         4 * f * k**2 * t2**2 * (length * rho + rho**2) + 16 * k**3 * rho**3 * t2 + f**3 * (t2**2 - 1)
@@ -162,7 +182,11 @@ def test_at_most_two_solutions_are_not_symmetric_12() -> None:
     )  # fmt: skip
     second_factor = f * (V.t1 + t2) + 2 * k * rho * (1 - V.t1 * t2)
     eliminated = second_factor.resultant(equation_11(), "t1")
-    by_t2 = [(q / q.leading_coefficient(), e) for q, e in eliminated.factor()[1] if q.degrees()[NAMES.index("t2")]]
+    by_t2 = [
+        (q / q.leading_coefficient(), e)
+        for q, e in eliminated.factor()[1]
+        if q.degrees()[NAMES.index("t2")]
+    ]
     assert len(by_t2) == 2
     assert (equation_12 / equation_12.leading_coefficient(), 1) in by_t2
     assert t2**2 + 1 in [q for q, _ in by_t2]
@@ -170,13 +194,29 @@ def test_at_most_two_solutions_are_not_symmetric_12() -> None:
 
 
 def test_unloaded_angles_9() -> None:
-    """The triangle with sides L1, L2, 2 rho solves the unloaded equations; with sines of unlike sign it does not."""
-    length1, length2, rho = Fraction(13), Fraction(20), Fraction(21, 2)  # 13, 20, 21 is a triangle with area 126
+    """The triangle with sides L1, L2, 2 rho solves the unloaded equations; with sines of unlike
+    sign it does not.
+    """
+    length1, length2, rho = (
+        Fraction(13),
+        Fraction(20),
+        Fraction(21, 2),
+    )  # 13, 20, 21 is a triangle with area 126
     c1 = (4 * rho**2 + length1**2 - length2**2) / (4 * rho * length1)
     c2 = (4 * rho**2 + length2**2 - length1**2) / (4 * rho * length2)
     s1, s2 = 12 / length1, 12 / length2
     assert c1**2 + s1**2 == c2**2 + s2**2 == 1
-    values = {"L1": length1, "L2": length2, "rho": rho, "k": 1, "F3": 0, "F4": 0, "t1": 0, "t2": 0, **VERTICAL}
+    values = {
+        "L1": length1,
+        "L2": length2,
+        "rho": rho,
+        "k": 1,
+        "F3": 0,
+        "F4": 0,
+        "t1": 0,
+        "t2": 0,
+        **VERTICAL,
+    }
     for sign1, sign2, holds in ((1, 1, True), (-1, -1, True), (1, -1, False)):
         at = {**values, "c1": c1, "s1": sign1 * s1, "c2": c2, "s2": sign2 * s2}
         numbers = [Fraction(at[n]) for n in NAMES]
@@ -206,14 +246,31 @@ def test_hessian() -> None:
 
 
 def test_gradient_is_the_slope_of_the_potential() -> None:
-    """A third way, by difference quotients of the lengths themselves: through no formula of the paper or of ours."""
-    length1, length2, rho, k1, k2, k3, f3, f4, f3x, f4x = 1.0, 1.5, 0.7, 100.0, 150.0, 80.0, -10.0, 7.0, 3.0, -5.0
+    """A third way, by difference quotients of the lengths themselves: through no formula of the
+    paper or of ours.
+    """
+    length1, length2, rho, k1, k2, k3, f3, f4, f3x, f4x = (
+        1.0,
+        1.5,
+        0.7,
+        100.0,
+        150.0,
+        80.0,
+        -10.0,
+        7.0,
+        3.0,
+        -5.0,
+    )
     values = (length1, length2, rho, k1, k2, k3, f3, f4, f3x, f4x)
 
     def energy(a: float, b: float) -> float:
         x3, y3 = length1 * cos(a), length1 * sin(a)
         x4, y4 = rho - length2 * cos(b), length2 * sin(b)
-        springs = k1 * hypot(x4, y4) ** 2 + k2 * hypot(x3 - rho, y3) ** 2 + k3 * hypot(x4 - x3, y4 - y3) ** 2
+        springs = (
+            k1 * hypot(x4, y4) ** 2
+            + k2 * hypot(x3 - rho, y3) ** 2
+            + k3 * hypot(x4 - x3, y4 - y3) ** 2
+        )
         return springs / 2 - f3 * y3 - f4 * y4 - f3x * x3 - f4x * x4
 
     def ours(p: fmpq_mpoly, a: float, b: float) -> float:
@@ -231,7 +288,10 @@ def test_gradient_is_the_slope_of_the_potential() -> None:
     for a in (0.3, 1.7, 4.0):
         for b in (0.1, 2.2, 5.5):
             assert ours(SYSTEM.potential, a, b) == pytest.approx(energy(a, b), rel=1e-12)
-            slope = ((energy(a + h, b) - energy(a - h, b)) / (2 * h), (energy(a, b + h) - energy(a, b - h)) / (2 * h))
+            slope = (
+                (energy(a + h, b) - energy(a - h, b)) / (2 * h),
+                (energy(a, b + h) - energy(a, b - h)) / (2 * h),
+            )
             assert tuple(ours(g, a, b) for g in SYSTEM.equations) == pytest.approx(slope, abs=1e-4)
 
 

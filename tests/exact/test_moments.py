@@ -1,4 +1,6 @@
-"""Moments, whose work is no function of the pose: nothing may be concluded from an energy where they work."""
+"""Moments, whose work is no function of the pose: nothing may be concluded from an energy where
+they work.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,11 @@ from ptmcad.show.ranges.table import path_table
 
 def arm(moment: object, others: Mapping[str, str] = MappingProxyType({}), **axes: Any) -> Slice:
     """A bar with two resting angles, 0 and 180 degrees, pushed by F and G and turned by a moment."""
-    parameters: dict[str, Any] = {"M": {}, "F": {"kind": "force", "default": "1/2"}, "G": {"kind": "force"}}
+    parameters: dict[str, Any] = {
+        "M": {},
+        "F": {"kind": "force", "default": "1/2"},
+        "G": {"kind": "force"},
+    }
     return ptmcad.slice_from_mapping(
         {
             "name": "arm",
@@ -32,7 +38,10 @@ def arm(moment: object, others: Mapping[str, str] = MappingProxyType({}), **axes
                 "unknowns": {"th": "angle", **others},
                 "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
                 "bars": [["O", "P"]],
-                "torsion": [{"angle": "2*th", "k": 1}, *({"angle": name, "k": 2} for name in others)],
+                "torsion": [
+                    {"angle": "2*th", "k": 1},
+                    *({"angle": name, "k": 2} for name in others),
+                ],
                 "moments": {"th": moment},
                 "loads": {"P": ["F", "G"]},
             },
@@ -62,7 +71,9 @@ TWO_ANGLES = {
 
 
 def test_a_pose_snaps_where_no_moment_works_and_is_not_said_to_where_one_does() -> None:
-    """The same fold along G: at M = 0 the energy descends to the one minimum left, at M = 1/5 by each turn too."""
+    """The same fold along G: at M = 0 the energy descends to the one minimum left, at M = 1/5 by
+    each turn too.
+    """
     still = pose_paths(arm("M"), "G", {"M": 0}, "1/2", 2)
     (path,) = still.paths
     assert path.high.fate is Fate.SNAP and path.high.target is not None
@@ -72,12 +83,17 @@ def test_a_pose_snaps_where_no_moment_works_and_is_not_said_to_where_one_does() 
     (path,) = turned.paths
     assert path.high.fate is Fate.VANISH and path.high.target is None
     assert path.high.energy is None and path.high.target_energy is None
-    assert "under the moment it may never come to rest: where it goes from there is not decided" in path_table(turned)
+    assert (
+        "under the moment it may never come to rest: where it goes from there is not decided"
+        in path_table(turned)
+    )
     assert "lower by" not in path_table(turned) and "snaps to" not in path_table(turned)
 
 
 def slider(load: str, moments: dict[str, str]) -> ptmcad.Slice:
-    """A slider on a spring, and a bar that turns about it, which another spring holds to a point above."""
+    """A slider on a spring, and a bar that turns about it, which another spring holds to a point
+    above.
+    """
     mechanism = {
         "parameters": {"M": {"kind": "force"}, "F": {"kind": "force"}},
         "unknowns": {"s": "length", "th": "angle"},
@@ -87,7 +103,9 @@ def slider(load: str, moments: dict[str, str]) -> ptmcad.Slice:
         "loads": {"P": [0, load]},
         "moments": moments,
     }
-    return ptmcad.slice_from_mapping({"name": "s", "mechanism": mechanism, "axes": {"M": [-2, 2], "F": [-2, 2]}})
+    return ptmcad.slice_from_mapping(
+        {"name": "s", "mechanism": mechanism, "axes": {"M": [-2, 2], "F": [-2, 2]}}
+    )
 
 
 def test_what_works_on_a_length_is_called_a_force() -> None:
@@ -95,9 +113,14 @@ def test_what_works_on_a_length_is_called_a_force() -> None:
     along = pose_paths(slider("F", {"s": "M"}), "F", {"M": "1/100"}, "-19/10", 2)
     told = path_table(along)
     assert along.moved == ("s",)
-    assert "under the force on s it may never come to rest: where it goes from there is not decided" in told
+    assert (
+        "under the force on s it may never come to rest: where it goes from there is not decided"
+        in told
+    )
     assert "moment" not in told and "y of A" not in told and "y of P" in told
-    assert [len(path.low.last.sides) for path in along.paths if path.low.last] == [1] * len(along.paths)
+    assert [len(path.low.last.sides) for path in along.paths if path.low.last] == [1] * len(
+        along.paths
+    )
     both = pose_paths(slider("F", {"s": "M", "th": "M/50"}), "F", {"M": "1/100"}, "-19/10", 2)
     assert "under the moment and the force on s it may" in path_table(both)
     still = pose_paths(slider("F", {"s": "M"}), "F", {"M": 0}, "-19/10", 2)
@@ -164,17 +187,22 @@ def test_a_moment_of_its_own_angle_has_a_constant_part_and_an_energy(moment: str
     )
     values = {"M": fmpq(3, 7), "G": fmpq(2, 5), "F": fmpq(0)}
     (found, system), (expected, other) = (
-        (polynomial_at(system, system.potential, values), system) for system in map(system_from, (model, by_hand))
+        (polynomial_at(system, system.potential, values), system)
+        for system in map(system_from, (model, by_hand))
     )
     assert found == expected and system.criterion == other.criterion
 
 
 def test_under_a_moment_of_mean_zero_a_pose_snaps() -> None:
-    """Its energy has one value for each pose: a moment M sin(th) is a load of -M along x, but for a constant."""
+    """Its energy has one value for each pose: a moment M sin(th) is a load of -M along x, but for a
+    constant.
+    """
     (path,) = pose_paths(arm("M*sin(th)"), "G", {"M": "1/5"}, "1/2", 2).paths
     assert path.high.fate is Fate.SNAP and path.high.target is not None
     moved, loaded = (
-        poses_at(arm(moment).model, {"M": Fraction(1, 5), "G": Fraction(1, 2), "F": force}, 12).equilibria
+        poses_at(
+            arm(moment).model, {"M": Fraction(1, 5), "G": Fraction(1, 2), "F": force}, 12
+        ).equilibria
         for moment, force in (("M*sin(th)", Fraction(1, 2)), ("0*M", Fraction(3, 10)))
     )
     assert [pose.index for pose in moved] == [pose.index for pose in loaded]

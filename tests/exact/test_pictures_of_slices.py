@@ -52,7 +52,9 @@ def test_sides_and_points_are_where_the_map_has_them(name: str, base: int) -> No
         edge = across.high - beside if number % 2 else across.low + beside
         seen: list[int] = []
         for k in range(30):
-            free = along.low + (along.high - along.low) * Fraction(200 * k + 101, 6_001)  # where no region has a tip
+            free = along.low + (along.high - along.low) * Fraction(
+                200 * k + 101, 6_001
+            )  # where no region has a tip
             point = (edge, free) if number < 2 else (free, edge)
             region = picture.region_at((from_fraction(point[0]), from_fraction(point[1])))
             located = result.locate(**dict(zip(slice.axis_names, point, strict=True)))

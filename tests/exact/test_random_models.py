@@ -1,6 +1,8 @@
-"""Random mechanisms and random systems: counts at random points against Newton's method from many starts.
+"""Random mechanisms and random systems: counts at random points against Newton's method from many
+starts.
 
-The oracle (`tests/support/multistart.py`) shares no code with the package, and proves each of its solutions.
+The oracle (`tests/support/multistart.py`) shares no code with the package, and proves each of its
+solutions.
 """
 
 from __future__ import annotations
@@ -23,20 +25,29 @@ from ptmcad.text.flint_numbers import from_fraction
 POINTS = 200
 STARTS = 400
 ROUNDS = 6
-"""Each with four times as many starts as the one before, while the oracle has found fewer solutions than there are."""
+"""Each with four times as many starts as the one before, while the oracle has found fewer solutions
+than there are.
+"""
 
 
 def agree(record: dict[str, Any], number: int, seed: int, by_signature: bool = False) -> int:
-    """Compare at so many random points; the number that were not degenerate or on the slice's boundary."""
+    """Compare at so many random points; the number that were not degenerate or on the slice's
+    boundary.
+    """
     slice = ptmcad.slice_from_mapping(record)
     system = system_from(slice.model)
     oracle = model_of(record)
     source = random.Random(seed)
     compared = 0
     for _ in range(number):
-        axes = {a.name: a.low + (a.high - a.low) * Fraction(source.randint(1, 9972), 9973) for a in slice.axes}
+        axes = {
+            a.name: a.low + (a.high - a.low) * Fraction(source.randint(1, 9972), 9973)
+            for a in slice.axes
+        }
         values = {name: e.evaluate(*axes.values()) for name, e in slice.parameters.items()}
-        exact = {name: from_fraction(v) for name, v in values.items() if name in system.ring.parameters}
+        exact = {
+            name: from_fraction(v) for name, v in values.items() if name in system.ring.parameters
+        }
         try:
             counts = count_by_isolation(system, exact)
         except HypothesisError:
@@ -49,7 +60,11 @@ def agree(record: dict[str, Any], number: int, seed: int, by_signature: bool = F
             if sum(f.counts for f in found) >= counts.total:
                 break
             starts *= 4
-        assert tally(found, counts) == counts, (record, axes, [tuple(map(float, f.at)) for f in found])
+        assert tally(found, counts) == counts, (
+            record,
+            axes,
+            [tuple(map(float, f.at)) for f in found],
+        )
         compared += 1
     return compared
 

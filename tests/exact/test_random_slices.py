@@ -1,8 +1,9 @@
-"""Random slices: classified, verified, and compared with exact counts at a hundred points of each window.
+"""Random slices: classified, verified, and compared with exact counts at a hundred points of each
+window.
 
-The points lie anywhere in the window, on simple fractions of it, 10^-40 of its size from a wall and from its edge, and
-exactly on the variety where it has rational points. The counts come from `oracle`, which shares no code with the
-engine; where it declines, from signatures of Hermite forms.
+The points lie anywhere in the window, on simple fractions of it, 10^-40 of its size from a wall and
+from its edge, and exactly on the variety where it has rational points. The counts come from
+`oracle`, which shares no code with the engine; where it declines, from signatures of Hermite forms.
 """
 
 from __future__ import annotations
@@ -68,13 +69,19 @@ def anywhere(dice: random.Random, result: RegionMap) -> Iterator[Point]:
                 whole = dice.randint(2, 12)
                 share = Fraction(dice.randint(1, whole - 1), whole)
             else:
-                share = dice.choice([TINY, 1 - TINY, Fraction(1, 2), Fraction(dice.randint(1, 99), 100)])
+                share = dice.choice(
+                    [TINY, 1 - TINY, Fraction(1, 2), Fraction(dice.randint(1, 99), 100)]
+                )
             at.append(axis.low + share * (axis.high - axis.low))
         yield at[0], at[1]
 
 
-def at_the_variety(dice: random.Random, result: RegionMap, lines: int) -> Iterator[tuple[Point, bool]]:
-    """Points on lines across the window: next to each curve, and on it (True) where it has a rational root."""
+def at_the_variety(
+    dice: random.Random, result: RegionMap, lines: int
+) -> Iterator[tuple[Point, bool]]:
+    """Points on lines across the window: next to each curve, and on it (True) where it has a
+    rational root.
+    """
     names = (0, 1)
     for _ in range(lines):
         base = dice.choice(names)
@@ -122,8 +129,12 @@ def check_point(result: RegionMap, at: Point) -> Status:
     return found.status
 
 
-def check_points(draw: Draw, result: RegionMap, seed: int, number: int = POINTS) -> dict[Status, int]:
-    """`number` points, a third of them at the variety where it crosses the window; the anchor is always among them."""
+def check_points(
+    draw: Draw, result: RegionMap, seed: int, number: int = POINTS
+) -> dict[Status, int]:
+    """`number` points, a third of them at the variety where it crosses the window; the anchor is
+    always among them.
+    """
     dice = random.Random(seed)
     answers = dict.fromkeys(Status, 0)
     if draw.anchor:
@@ -134,7 +145,11 @@ def check_points(draw: Draw, result: RegionMap, seed: int, number: int = POINTS)
         for axis in (0, 1):
             for step in (TINY, -TINY):
                 width = result.slice.axes[axis].high - result.slice.axes[axis].low
-                answers[check_point(result, (x + step * width, y) if axis == 0 else (x, y + step * width))] += 1
+                answers[
+                    check_point(
+                        result, (x + step * width, y) if axis == 0 else (x, y + step * width)
+                    )
+                ] += 1
     near = [(at, on) for at, on in at_the_variety(dice, result, 8) if inside(result, at)]
     dice.shuffle(near)
     for at, on in near[: number // 3]:
@@ -171,7 +186,9 @@ def test_there_are_200_slices_and_every_pair_is_among_them() -> None:
     assert 0 < sum(len(names) for names in REFUSED.values()) <= len(NUMBERS) // 20
     assert sum(bool(d.anchor) for d in draws) >= 30
     fixed = [d.record["parameters"] for d in draws]
-    assert sum(len({p.get(k, p.get("k", "100")) for k in ("k1", "k2", "k3")}) > 1 for p in fixed) >= 40
+    assert (
+        sum(len({p.get(k, p.get("k", "100")) for k in ("k1", "k2", "k3")}) > 1 for p in fixed) >= 40
+    )
     assert sum(p.get("F3x", "0") != "0" or p.get("F4x", "0") != "0" for p in fixed) >= 30
     assert sum(any(str(p.get(n, "")).strip("0123456789/-.") for n in MODEL) for p in fixed) >= 40
     assert any(low == "0" for d in draws for low, _ in d.record["axes"].values())
@@ -184,7 +201,9 @@ def test_a_record_depends_on_its_number_alone() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", NUMBERS, ids=lambda n: f"{n:03d}-{drawn(n).role}-{'-'.join(drawn(n).axes)}")
+@pytest.mark.parametrize(
+    "number", NUMBERS, ids=lambda n: f"{n:03d}-{drawn(n).role}-{'-'.join(drawn(n).axes)}"
+)
 def test_random_slice(number: int) -> None:
     draw, result = classified(number)
     check_structure(result)

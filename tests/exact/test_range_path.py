@@ -1,4 +1,6 @@
-"""Paths of stable poses: against a continuation and a descent that are not certified, and the paper's reverse pose."""
+"""Paths of stable poses: against a continuation and a descent that are not certified, and the
+paper's reverse pose.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +53,9 @@ class Numbers:
 
     def __init__(self, slice: Slice, along: str, at: dict[str, str]):
         self.line = line_of(slice, along, at)
-        self.values = cache(self._values)  # a descent asks for the same ones at each of its thousands of steps
+        self.values = cache(
+            self._values
+        )  # a descent asks for the same ones at each of its thousands of steps
 
     def _values(self, x: float) -> tuple[float, ...]:
         at = Fraction(x)
@@ -89,7 +93,9 @@ CASES = [
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "along", "at", "start"), CASES)
-def test_an_upright_pose_snaps_to_the_reverse_one(name: str, along: str, at: dict[str, str], start: str) -> None:
+def test_an_upright_pose_snaps_to_the_reverse_one(
+    name: str, along: str, at: dict[str, str], start: str
+) -> None:
     """Section 4.2 of the paper; ends agree with the ranges, poses with a descent in floating point."""
     slice, numbers = record(name), Numbers(record(name), along, at)
     found = pose_paths(slice, along, at, Fraction(start))
@@ -102,11 +108,17 @@ def test_an_upright_pose_snaps_to_the_reverse_one(name: str, along: str, at: dic
         assert end.fate is Fate.SNAP and end.at.polynomial == wall.polynomial  # type: ignore[union-attr]
         assert end.meeting[:2] == (0, 1) and end.target is not None
         assert end.target.sides == (-1, -1)
-        assert end.energy is not None and end.target_energy is not None and end.energy.low > end.target_energy.high
+        assert (
+            end.energy is not None
+            and end.target_energy is not None
+            and end.energy.low > end.target_energy.high
+        )
         # a little further, because a descent takes long where the pose has just vanished
         beyond = float(end.at) + (0.01 if end is upright[0].high else -0.01)  # type: ignore[arg-type]
         first, second = (float(a) for a in end.last.angles)
-        reached = numbers.descend(beyond, first + 1e-3, second - 1e-3)  # off the symmetry, in which a saddle lies
+        reached = numbers.descend(
+            beyond, first + 1e-3, second - 1e-3
+        )  # off the symmetry, in which a saddle lies
         for got, want in zip(reached, end.target.angles, strict=True):
             assert abs(turn(got - float(want))) < 0.1
     for path in found.paths:
@@ -126,17 +138,23 @@ def check_points(numbers: Numbers, path: PosePath) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("start", ["3/4", "26/25"])
 def test_what_holds_at_a_fold_is_told_there_wherever_the_path_began(start: str) -> None:
-    """Against all poses 1e-20 before the fold, by an exact solution: what differs is less than 1e-9."""
+    """Against all poses 1e-20 before the fold, by an exact solution: what differs is less than
+    1e-9.
+    """
     found = pose_paths(record("fig4"), "rho", {"L2": "3/2"}, Fraction(start), 2)
     (path,), text = found.paths, path_table(found, 10)
     snap = "snaps to th1 = -47.52436435°, th2 = -30.75412820° (reverse: y3 < 0, y4 < 0), where the energy is "
     assert snap in text and text.endswith("lower by 26.173")
     end, last = path.high, path.high.at.refined(Fraction(1, 10**30))  # type: ignore[union-attr]
     beside = ptmcad.solve(rho=last.low - Fraction(1, 10**20), L2="3/2", F3=-10, F4=-10)
-    folding, landed = sorted((p for p in beside.equilibria if p.stable), key=lambda p: -float(p.angles[0]))
+    folding, landed = sorted(
+        (p for p in beside.equilibria if p.stable), key=lambda p: -float(p.angles[0])
+    )
     assert end.target is not None and end.energy is not None and end.target_energy is not None
     for got, want in zip(end.target.angles, landed.angles, strict=True):
-        assert got.radius < Fraction(1, 10**25) and abs(got.center - want.center) < Fraction(1, 10**9)
+        assert got.radius < Fraction(1, 10**25) and abs(got.center - want.center) < Fraction(
+            1, 10**9
+        )
     assert abs(end.target_energy.center - landed.known_energy.center) < Fraction(1, 10**8)
     assert abs(end.energy.center - folding.known_energy.center) < Fraction(1, 10**8)
     assert end.energy.radius < Fraction(1, 10**12)
@@ -144,7 +162,9 @@ def test_what_holds_at_a_fold_is_told_there_wherever_the_path_began(start: str) 
 
 @pytest.mark.slow
 def test_unloaded_poses_merge_into_the_flat_one() -> None:
-    """At 2 rho = L2 + 1 the mirror images and the flat saddle between them become the flat stable pose."""
+    """At 2 rho = L2 + 1 the mirror images and the flat saddle between them become the flat stable
+    pose.
+    """
     found = pose_paths(record("fig2"), "rho", {"L2": "3/2"}, Fraction(6, 5), 1)
     (path,) = found.paths
     assert path.upright and path.high.fate is Fate.MERGE
@@ -175,9 +195,12 @@ def test_the_pose_of_a_merger_at_an_irrational_value_is_told_by_its_symmetry() -
 
 @pytest.mark.slow
 def test_a_merger_is_told_by_a_mirror_line_that_turns_with_the_axis() -> None:
-    """At F = 0 the mirror line is OA. With |OA| = r both poses have B and C at 1/2 from A and merge at r = 3/2, where
-    the chain is straight; at a = 0, r = 1/2, they cross, so that steps are in proportion to a, not to its square."""
-    found = pose_paths(ptmcad.load(CONFIGS / "mechanisms" / "two-bar-chain.yaml"), "a", {"F": 0}, Fraction(1, 2))
+    """At F = 0 the mirror line is OA. With |OA| = r both poses have B and C at 1/2 from A and merge
+    at r = 3/2, where the chain is straight; at a = 0, r = 1/2, they cross, so that steps are in
+    proportion to a, not to its square."""
+    found = pose_paths(
+        ptmcad.load(CONFIGS / "mechanisms" / "two-bar-chain.yaml"), "a", {"F": 0}, Fraction(1, 2)
+    )
     assert len(found.paths) == 2
     for path in found.paths:
         assert path.low.fate is Fate.WINDOW and path.low.last.value < Fraction(1, 10**5)
@@ -192,7 +215,9 @@ def test_a_merger_is_told_by_a_mirror_line_that_turns_with_the_axis() -> None:
 
 
 def test_the_mirror_line_of_equations() -> None:
-    """That of the chain is along (a, 1/2) without a load, and there is none with one that is not along it."""
+    """That of the chain is along (a, 1/2) without a load, and there is none with one that is not
+    along it.
+    """
     slice = ptmcad.load(CONFIGS / "mechanisms" / "two-bar-chain.yaml")
 
     def mirror(load: str) -> Mirror | None:
@@ -203,13 +228,20 @@ def test_the_mirror_line_of_equations() -> None:
     assert found is not None
     for a in (Fraction(-2), Fraction(0), Fraction(1, 3)):
         angle = found.angle(a, a)
-        assert angle is not None and abs(sin(float(angle)) * float(a) - cos(float(angle)) / 2) < 1e-12
-        wide, inner = found.angle(a, a + Fraction(1, 100)), found.angle(a + Fraction(1, 200), a + Fraction(1, 200))
+        assert (
+            angle is not None and abs(sin(float(angle)) * float(a) - cos(float(angle)) / 2) < 1e-12
+        )
+        wide, inner = (
+            found.angle(a, a + Fraction(1, 100)),
+            found.angle(a + Fraction(1, 200), a + Fraction(1, 200)),
+        )
         assert wide is not None and inner is not None and (wide - inner).sin().contains(0)
 
 
 def test_derivatives_of_second_order() -> None:
-    """Against differences of those of first order, of a line on which parameters are rational functions."""
+    """Against differences of those of first order, of a line on which parameters are rational
+    functions.
+    """
     slice = ptmcad.load(CONFIGS / "mechanisms" / "two-bar-chain.yaml")
     line = line_of(slice, "a", {"F": "1/3"})
     stiffness = parse("(1 + 2*a^2)/(3 - a)", {"a": line.parameters["a"]})
@@ -217,7 +249,10 @@ def test_derivatives_of_second_order() -> None:
     chain = line_system(replace(line, parameters=parameters)).branches
     at, h = arb("0.5"), arb("1e-9")
     with ctx.workprec(BITS):
-        point, velocity = arb_mat(2, 1, [arb("0.3"), arb("1.1")]), arb_mat(2, 1, [arb("0.7"), arb("-0.4")])
+        point, velocity = (
+            arb_mat(2, 1, [arb("0.3"), arb("1.1")]),
+            arb_mat(2, 1, [arb("0.7"), arb("-0.4")]),
+        )
 
         def rise(low: arb, high: arb) -> float:
             return float((high - low).mid()) / float(2 * h)
@@ -228,12 +263,18 @@ def test_derivatives_of_second_order() -> None:
         before, after = (chain.jacobian(at + side * h, point) for side in (-1, 1))
         bend = chain.bend(at, point, velocity)
         for k in range(2):
-            assert rise(along[0][k, 0], along[1][k, 0]) == pytest.approx(float(bend[k, 0].mid()), abs=1e-6)
+            assert rise(along[0][k, 0], along[1][k, 0]) == pytest.approx(
+                float(bend[k, 0].mid()), abs=1e-6
+            )
             for j in range(2):
-                assert rise(before[k, j], after[k, j]) == pytest.approx(float(mixed[k, j].mid()), abs=1e-6)
+                assert rise(before[k, j], after[k, j]) == pytest.approx(
+                    float(mixed[k, j].mid()), abs=1e-6
+                )
                 for n in range(2):
                     unit = arb_mat(2, 1, [arb(int(i == n)) for i in range(2)])
-                    low, high = (chain.jacobian(at, point + unit * (side * h))[k, j] for side in (-1, 1))
+                    low, high = (
+                        chain.jacobian(at, point + unit * (side * h))[k, j] for side in (-1, 1)
+                    )
                     assert rise(low, high) == pytest.approx(float(by[n][k, j].mid()), abs=1e-6)
 
 
@@ -265,7 +306,9 @@ def test_a_tube_holds_one_branch_only() -> None:
             assert not a.holds(b, Fraction(7, 10))
     upright = next(
         Reached(Fraction(7, 10), p, p)
-        for p, pose in zip(places, ptmcad.solve(L2="3/2", F3=-10, F4=-10, rho="7/10").equilibria, strict=True)
+        for p, pose in zip(
+            places, ptmcad.solve(L2="3/2", F3=-10, F4=-10, rho="7/10").equilibria, strict=True
+        )
         if pose.stable and float(pose.angles[0]) > 0
     )
     steps, done = follow(mechanism, upright, Fraction(103, 100), Fraction(1, 10))
@@ -309,10 +352,14 @@ def test_a_critical_start_is_refused() -> None:
 
 @pytest.mark.slow
 def test_text_and_document() -> None:
-    schema: dict[str, Any] = json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8"))
+    schema: dict[str, Any] = json.loads(
+        (ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8")
+    )
     found = pose_paths(record("fig4"), "rho", {"L2": "3/2"}, Fraction(7, 10), 2)
     text = path_table(found)
-    assert "pose 2 at rho = 0.7: th1 = 75.907444" in text and "y3 > 0 and y4 > 0 on the path" in text
+    assert (
+        "pose 2 at rho = 0.7: th1 = 75.907444" in text and "y3 > 0 and y4 > 0 on the path" in text
+    )
     fold = "fold: the stable pose merges with a saddle and both vanish; the mechanism snaps to th1 = -47.524364"
     assert f"up: rho = 1.041432630: {fold}" in text
     assert "(reverse: y3 < 0, y4 < 0)" in text
@@ -322,7 +369,9 @@ def test_text_and_document() -> None:
 
 
 def test_a_path_towards_infinitely_many_equilibria_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Unloaded equal rods: near rho = 0 the steps shrink with rho, so they are counted, and the rest is undecided."""
+    """Unloaded equal rods: near rho = 0 the steps shrink with rho, so they are counted, and the
+    rest is undecided.
+    """
     monkeypatch.setattr("ptmcad.formulas.continuation._MAX_STEPS", 40)
     slice = ptmcad.load(CONFIGS / "fig3.yaml")
     paths = pose_paths(slice, "rho", {"F": Fraction(0)}, Fraction(1, 2), 1)
@@ -342,7 +391,9 @@ def system(**asked: Any) -> Slice:
 
 
 def test_solutions_of_equations_are_followed_to_their_fold() -> None:
-    """x^3 - x + b at b = 0: the middle root meets the others at b = +-2/sqrt(27), where x = +-1/sqrt(3)."""
+    """x^3 - x + b at b = 0: the middle root meets the others at b = +-2/sqrt(27), where
+    x = +-1/sqrt(3).
+    """
     cusp = system(unknowns={"x": "real"}, equations=["x^3 - a*x + b"])
     found = pose_paths(cusp, "b", {"a": 1}, 0)
     assert len(found.paths) == 3
@@ -365,7 +416,12 @@ def test_solutions_of_equations_are_followed_to_their_fold() -> None:
 
 def test_a_path_ends_where_a_condition_fails() -> None:
     """x = b on the line: it leaves x + 1 > 0 at -1, and is stable above 1/2 only."""
-    asked = {"unknowns": {"x": "real"}, "equations": ["x - b*(1 + 0*a)"], "positive": ["x + 1"], "stable": ["2*x - 1"]}
+    asked = {
+        "unknowns": {"x": "real"},
+        "equations": ["x - b*(1 + 0*a)"],
+        "positive": ["x + 1"],
+        "stable": ["2*x - 1"],
+    }
     (path,) = pose_paths(system(**asked), "b", {"a": 1}, 1).paths
     assert path.low.fate is Fate.UNSTABLE and path.low.at.exact == Fraction(1, 2)  # type: ignore[union-attr]
     assert path.high.fate is Fate.WINDOW
@@ -375,15 +431,22 @@ def test_a_path_ends_where_a_condition_fails() -> None:
 
 
 def test_minima_of_a_potential_in_the_plane() -> None:
-    """Without a torus the energy may descend for ever: it is not said where a minimum that vanishes goes."""
+    """Without a torus the energy may descend for ever: it is not said where a minimum that vanishes
+    goes.
+    """
     slice = system(unknowns={"x": "real", "y": "real"}, potential="x^4 + y^4 - a*x^2 - b*y + x*y")
     found = pose_paths(slice, "b", {"a": 1}, 0)
-    assert [(p.low.fate, p.high.fate) for p in found.paths] == [(Fate.WINDOW, Fate.VANISH), (Fate.VANISH, Fate.WINDOW)]
+    assert [(p.low.fate, p.high.fate) for p in found.paths] == [
+        (Fate.WINDOW, Fate.VANISH),
+        (Fate.VANISH, Fate.WINDOW),
+    ]
     assert found.paths[0].high.meeting == (0, 1) and found.paths[0].high.leaving == ()
 
 
 def test_a_minimum_in_three_angles_is_followed() -> None:
-    potential = "-2*(cos(t0) + cos(t1) + cos(t2)) - a/3*(cos(t0 - t1) + cos(t1 - t2)) - (b + 3)*sin(t0)/9"
+    potential = (
+        "-2*(cos(t0) + cos(t1) + cos(t2)) - a/3*(cos(t0 - t1) + cos(t1 - t2)) - (b + 3)*sin(t0)/9"
+    )
     slice = system(unknowns=dict.fromkeys(("t0", "t1", "t2"), "angle"), potential=potential)
     line = line_of(slice, "b", {"a": 1})
     chain = line_system(line).branches
@@ -422,7 +485,9 @@ PENDULUMS: dict[str, Any] = {
     },
     "axes": {"H": ["-3/2", "3/2"], "W": [0, 1]},
 }
-"""Two pendulums that do not act upon each other, each upright between springs: folds at H = +-0.65 for W = 1/8."""
+"""Two pendulums that do not act upon each other, each upright between springs: folds at H = +-0.65
+for W = 1/8.
+"""
 
 
 @pytest.mark.slow
@@ -444,7 +509,9 @@ def test_a_pose_goes_on_between_two_critical_values_near_each_other() -> None:
 def test_equal_pendulums_fold_together() -> None:
     """That all four poses of two upright pendulums meet is told by exchanging the two."""
     parameters = {**PENDULUMS["mechanism"]["parameters"], "k2": {"kind": "stiffness", "default": 1}}
-    slice = ptmcad.slice_from_mapping({**PENDULUMS, "mechanism": {**PENDULUMS["mechanism"], "parameters": parameters}})
+    slice = ptmcad.slice_from_mapping(
+        {**PENDULUMS, "mechanism": {**PENDULUMS["mechanism"], "parameters": parameters}}
+    )
     hanging, *_, upright = pose_paths(slice, "H", {"W": "1/8"}, 0).paths
     assert (hanging.low.fate, hanging.high.fate) == (Fate.WINDOW, Fate.WINDOW)
     assert upright.high.fate is Fate.SNAP and not upright.high.among
@@ -452,23 +519,33 @@ def test_equal_pendulums_fold_together() -> None:
 
 
 def test_solutions_that_may_meet_in_several_ways_are_not_told_apart() -> None:
-    """x^2 = b and y^2 = 2 b: the four solutions vanish at b = 0, in pairs or all together as far as signs tell."""
-    slice = system(unknowns={"x": "real", "y": "real"}, potential="x^3/3 - b*x + y^3/3 - 2*b*y + a - a")
+    """x^2 = b and y^2 = 2 b: the four solutions vanish at b = 0, in pairs or all together as far as
+    signs tell.
+    """
+    slice = system(
+        unknowns={"x": "real", "y": "real"}, potential="x^3/3 - b*x + y^3/3 - 2*b*y + a - a"
+    )
     found = pose_paths(slice, "b", {"a": 1}, 1)
     (path,) = found.paths
     assert path.low.fate is Fate.VANISH and path.low.among
     assert path.low.meeting == (0, 1, 1, 2) and path.low.leaving == ()
-    assert "the stable solution meets one or more of a saddle, a saddle and a maximum and vanishes;" in path_table(
-        found
+    assert (
+        "the stable solution meets one or more of a saddle, a saddle and a maximum and vanishes;"
+        in path_table(found)
     )
     data = json.loads(document("x", "x", part(found, 12)))
     schema = json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
-    assert data["path"]["paths"][0]["low"]["among"] is True and "among" not in data["path"]["paths"][0]["high"]
+    assert (
+        data["path"]["paths"][0]["low"]["among"] is True
+        and "among" not in data["path"]["paths"][0]["high"]
+    )
 
 
 def test_losing_stability_is_no_merger() -> None:
-    """There are eight solutions on both sides of b = 0.71660, and a fold of others comes soon, at 0.71665."""
+    """There are eight solutions on both sides of b = 0.71660, and a fold of others comes soon, at
+    0.71665.
+    """
     asked = {
         "unknowns": {"x": "real", "t": "angle"},
         "equations": ["x^3 - a*x + b*cos(t)", "sin(t)*x - 1/5 + cos(t)^2/3 - a*sin(t)^2/4"],
@@ -488,11 +565,16 @@ def test_folds_at_the_same_value_far_apart_are_two() -> None:
     assert [p.low.fate for p in found.paths] == [Fate.VANISH, Fate.WINDOW, Fate.VANISH]
     for path in (found.paths[0], found.paths[2]):
         assert path.low.meeting == (0, 1) and path.low.leaving == () and not path.low.among
-    assert path_table(found).count("fold: the stable solution merges with a maximum and both vanish") == 2
+    assert (
+        path_table(found).count("fold: the stable solution merges with a maximum and both vanish")
+        == 2
+    )
 
 
 def test_a_fold_that_can_not_be_told_from_a_pitchfork_is_undecided() -> None:
-    """Two minima and a maximum become one minimum: which of them meet is told by symmetry, or not at all."""
+    """Two minima and a maximum become one minimum: which of them meet is told by symmetry, or not
+    at all.
+    """
     plain = "x^4/4 - b*x^2/2 + a - a"
     even = pose_paths(system(unknowns={"x": "real"}, potential=plain), "b", {"a": 1}, 1)
     assert [p.low.fate for p in even.paths] == [Fate.VANISH, Fate.VANISH]
@@ -505,5 +587,7 @@ def test_a_fold_that_can_not_be_told_from_a_pitchfork_is_undecided() -> None:
 
 def test_solutions_that_go_to_infinity_do_not_meet() -> None:
     """b x^2 = 1: both solutions leave every region at b = 0, each at its own end of the line."""
-    found = pose_paths(system(unknowns={"x": "real"}, equations=["b*x^2 - 1 + a - a"]), "b", {"a": 1}, 1)
+    found = pose_paths(
+        system(unknowns={"x": "real"}, equations=["b*x^2 - 1 + a - a"]), "b", {"a": 1}, 1
+    )
     assert [(p.low.fate, p.low.meeting) for p in found.paths] == [(Fate.UNDECIDED, ())] * 2

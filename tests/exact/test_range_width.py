@@ -1,4 +1,6 @@
-"""Where the operation range is widest: the paper's claims, curves with known answers, and a plain search on a grid."""
+"""Where the operation range is widest: the paper's claims, curves with known answers, and a plain
+search on a grid.
+"""
 
 from __future__ import annotations
 
@@ -34,13 +36,20 @@ def maximum(name: str, along: str) -> tuple[Maximum, ...]:
 
 
 def test_paper_4_3_the_range_is_widest_at_l2_1_confirmed() -> None:
-    """F3 = F4 = -10: at L2 = 1 exactly, where the range is that of fig. 3 at F = -10; nowhere else in the window."""
+    """F3 = F4 = -10: at L2 = 1 exactly, where the range is that of fig. 3 at F = -10; nowhere else
+    in the window.
+    """
     (only,) = maximum("fig4", "rho")
     assert only.place is Place.CRITICAL and only.at.exact == 1
     assert only.width.text(12) == "0.588549830879"
     assert only.ends is not None
-    (symmetric,) = intervals(ptmcad.load(ROOT / "configs" / "fig3.yaml"), "rho", {"F": -10}).operation
-    assert [e.polynomial for e in only.ends] == [symmetric.low.polynomial, symmetric.high.polynomial]  # type: ignore[union-attr]
+    (symmetric,) = intervals(
+        ptmcad.load(ROOT / "configs" / "fig3.yaml"), "rho", {"F": -10}
+    ).operation
+    assert [e.polynomial for e in only.ends] == [
+        symmetric.low.polynomial,
+        symmetric.high.polynomial,
+    ]  # type: ignore[union-attr]
     # and it is taken at L2 = 1 itself
     (there,) = intervals(ptmcad.load(ROOT / "configs" / "fig4.yaml"), "rho", {"L2": 1}).operation
     assert [e.polynomial for e in only.ends] == [there.low.polynomial, there.high.polynomial]  # type: ignore[union-attr]
@@ -50,7 +59,9 @@ def test_paper_4_2_the_range_tends_to_1_at_no_load_confirmed() -> None:
     (only,) = maximum("fig3", "rho")
     assert only.place is Place.EDGE and only.at.exact == 0 and only.ends is not None
     assert [e.exact for e in only.ends] == [0, 1]  # type: ignore[union-attr]
-    assert only.width.low <= 1 <= only.width.high and only.width.high - only.width.low < Fraction(1, 10**30)
+    assert only.width.low <= 1 <= only.width.high and only.width.high - only.width.low < Fraction(
+        1, 10**30
+    )
 
 
 def test_paper_4_1_the_width_is_constant_above_l2_1_confirmed() -> None:
@@ -94,7 +105,9 @@ def test_a_cusp_at_an_irrational_value_is_enclosed() -> None:
 
 
 def by_hand(low: object, high: object, left: int, right: int) -> RangeStrip:
-    """A strip between the largest root of one curve and the smallest of another, over (left, right)."""
+    """A strip between the largest root of one curve and the smallest of another, over (left,
+    right).
+    """
     fibre = (fmpq(-10), fmpq(10))
     lower, upper = curve(0, low, 0), curve(1, high, 0)
     middle = fmpq(left + right, 2) + fmpq(1, 7)
@@ -110,12 +123,16 @@ def by_hand(low: object, high: object, left: int, right: int) -> RangeStrip:
 
 
 def test_a_smooth_maximum_is_found() -> None:
-    """Between y = x^2 + x and y = 1 + x + x^3/5: w' = 3x^2/5 - 2x vanishes at 0 and is nowhere else in (-1, 1)."""
+    """Between y = x^2 + x and y = 1 + x + x^3/5: w' = 3x^2/5 - 2x vanishes at 0 and is nowhere else
+    in (-1, 1).
+    """
     strip = by_hand(Y - X**2 - X, 5 * Y - 5 - 5 * X - X**3, -1, 1)
     (only,) = largest([strip])
     assert only.place is Place.SMOOTH
     assert only.at.low <= 0 <= only.at.high and only.at.high - only.at.low < Fraction(1, 10**12)
-    assert only.width.low <= 1 <= only.width.high and only.width.high - only.width.low < Fraction(1, 10**12)
+    assert only.width.low <= 1 <= only.width.high and only.width.high - only.width.low < Fraction(
+        1, 10**12
+    )
 
 
 def test_two_equal_maxima_are_both_told() -> None:
@@ -128,7 +145,9 @@ def test_two_equal_maxima_are_both_told() -> None:
 
 
 def test_a_chord_that_meets_the_curve_proves_nothing() -> None:
-    """The cusp v^2 = u^3 at the origin: a flat chord meets it nowhere else, one of slope 1 at u = 1."""
+    """The cusp v^2 = u^3 at the origin: a flat chord meets it nowhere else, one of slope 1 at
+    u = 1.
+    """
     cusp = curve(0, Y**2 - X**3, 0).in_v
     origin = RealRoot(fmpz_poly([0, 1]), fmpq(0), fmpq(0))
     assert side_of_chord(cusp, fmpq(0), origin, fmpq(0), fmpq(2))
@@ -150,7 +169,9 @@ def test_slopes_enclose_those_of_a_known_branch() -> None:
         root = float(u) ** 0.5
         assert found[0].contains(1 / (2 * root)) or abs(found[0] - 1 / (2 * root)) < 1e-9
         assert abs(found[1] + 1 / (4 * float(u) * root)) < found[1].rad() * 2 + 1e-9
-    assert slope_over(parabola.in_v, at, fmpq(1), fmpq(1)) is None  # it would reach the turning point
+    assert (
+        slope_over(parabola.in_v, at, fmpq(1), fmpq(1)) is None
+    )  # it would reach the turning point
 
 
 def test_table_and_document() -> None:
@@ -158,7 +179,9 @@ def test_table_and_document() -> None:
     slice = slice_from_options(None, "rho,L2", ranges=["rho=0:1", "L2=0:2"])
     found = operation_widths(slice, "rho", 3)
     text = width_table(found)
-    assert "0.5  0.25                  0.75  0.5" in text and "* the edge of the window of rho" in text
+    assert (
+        "0.5  0.25                  0.75  0.5" in text and "* the edge of the window of rho" in text
+    )
     data = json.loads(document("x", "ptm", part(found, 8)))
     jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
     assert [row["value"] for row in data["over"]["rows"]] == ["1/2", "1", "3/2"]

@@ -1,4 +1,6 @@
-"""Intervals of constant count along a line: known answers, the map's walls, and an independent count."""
+"""Intervals of constant count along a line: known answers, the map's walls, and an independent
+count.
+"""
 
 from __future__ import annotations
 
@@ -41,14 +43,22 @@ def record(name: str) -> Slice:
 def published() -> Iterator[Any]:
     for path in CONFIGS:
         for number, entry in enumerate(ptmcad.load(path).reference.get("intervals", [])):
-            yield pytest.param(path.stem, entry, id=f"{path.stem}-{number}-{'-'.join(map(str, entry['ends']))}")
+            yield pytest.param(
+                path.stem, entry, id=f"{path.stem}-{number}-{'-'.join(map(str, entry['ends']))}"
+            )
 
 
 def ends(found: CountIntervals, count: Count) -> list[AlgebraicNumber]:
     """The critical values where this count changes."""
 
     def key(counts: Counts) -> object:
-        return counts.stable if count is Count.STABLE else counts.total if count is Count.TOTAL else counts.index
+        return (
+            counts.stable
+            if count is Count.STABLE
+            else counts.total
+            if count is Count.TOTAL
+            else counts.index
+        )
 
     return [c.at for c in found.changes if key(c.before) != key(c.after)]
 
@@ -103,9 +113,11 @@ FAST = ("fig2", "fig3", "fig4", "rods")
 )
 @pytest.mark.slow_cases("fig3-rho--19/2", "fig4-rho-3/2", "rods-L1-3/2")
 def test_the_ends_are_the_walls_of_the_map(name: str, along: str, value: str) -> None:
-    """The same algebraic numbers: factors of the walls' polynomials on the line, and each wall that changes a count.
+    """The same algebraic numbers: factors of the walls' polynomials on the line, and each wall that
+    changes a count.
 
-    The two come by different ways: the range's from a computation in one parameter, the map's from one in two.
+    The two come by different ways: the range's from a computation in one parameter, the map's from
+    one in two.
     """
     slice, result, fixed = record(name), region_map(name), Fraction(value)
     axis = slice.axis_names.index(along)
@@ -123,13 +135,20 @@ def test_the_ends_are_the_walls_of_the_map(name: str, along: str, value: str) ->
         p = fmpz_poly([int(terms.get(k, Fraction(0)) * scale) for k in range(max(terms) + 1)])
         walls.append(p)
     for change in found.changes:
-        assert any(divides(change.at.polynomial, p) for p in walls), "an end is no root of a wall's polynomial"
+        assert any(divides(change.at.polynomial, p) for p in walls), (
+            "an end is no root of a wall's polynomial"
+        )
     # between neighbouring critical values of both kinds the map and the range give the same counts
     for k, change in enumerate(found.changes):
         low = upper(found.changes[k - 1].at) if k else slice.axes[axis].low
-        high = lower(found.changes[k + 1].at) if k + 1 < len(found.changes) else slice.axes[axis].high
+        high = (
+            lower(found.changes[k + 1].at) if k + 1 < len(found.changes) else slice.axes[axis].high
+        )
         gap = min(change.at.low - low, high - change.at.high) / 10**6
-        for at, index in ((change.at.low - gap, change.before.index), (change.at.high + gap, change.after.index)):
+        for at, index in (
+            (change.at.low - gap, change.before.index),
+            (change.at.high + gap, change.after.index),
+        ):
             assert result.locate(**{along: at, other: value}).index == index
     # and no root of the walls' polynomials elsewhere changes a count
     known = {change.at.polynomial for change in found.changes}
@@ -140,7 +159,10 @@ def test_the_ends_are_the_walls_of_the_map(name: str, along: str, value: str) ->
             for root, _ in real_parts(factor):
                 if slice.axes[axis].low < root < slice.axes[axis].high:
                     gap = Fraction(1, 10**7)
-                    sides = [result.locate(**{along: root + s * gap, other: value}).index for s in (-1, 1)]
+                    sides = [
+                        result.locate(**{along: root + s * gap, other: value}).index
+                        for s in (-1, 1)
+                    ]
                     assert sides[0] == sides[1]
 
 
@@ -196,7 +218,9 @@ def test_a_line_inside_the_variety_is_named() -> None:
     slice = ptmcad.slice_from_mapping(
         {"axes": {"rho": ["1", "2"], "t": ["0", "1/2"]}, "parameters": {"L2": "2*rho-1+t"}}
     )
-    with pytest.raises(DegenerateSliceError, match="line t = 0 lies inside the discriminant variety"):
+    with pytest.raises(
+        DegenerateSliceError, match="line t = 0 lies inside the discriminant variety"
+    ):
         intervals(slice, "rho", {"t": 0})
     assert intervals(slice, "t", {"rho": "3/2"}).intervals
 
@@ -232,7 +256,9 @@ def test_intervals_cover_the_window_and_neighbours_differ() -> None:
     for left, right in zip(found.intervals, found.intervals[1:], strict=False):
         assert left.high == right.low and left.index != right.index
     # a critical value where nothing changes stays listed
-    assert [c.event for c in found.changes].count(Event.UNCHANGED) == len(found.changes) + 1 - len(found.intervals)
+    assert [c.event for c in found.changes].count(Event.UNCHANGED) == len(found.changes) + 1 - len(
+        found.intervals
+    )
 
 
 def test_numbers_compare_exactly() -> None:
@@ -284,17 +310,25 @@ def test_a_tangent_joins_the_intervals_and_stays_listed() -> None:
     )
     found = intervals(slice, "s", {"rho": "5/4"})
     (change,) = found.changes
-    assert change.event is Event.UNCHANGED and change.at.exact == 0 and change.text == "the counts do not change"
+    assert (
+        change.event is Event.UNCHANGED
+        and change.at.exact == 0
+        and change.text == "the counts do not change"
+    )
     (only,) = found.intervals
     assert only.low == Fraction(-1, 2) and only.high == Fraction(1, 2) and only.stable == 2
 
 
 def test_pairs_are_told_from_solutions_that_come_from_infinity() -> None:
-    """b x^4/4 - (1 + b) x^2/2 - x/7: two minima come from infinity at b = 0; without the last term both are pairs."""
+    """b x^4/4 - (1 + b) x^2/2 - x/7: two minima come from infinity at b = 0; without the last term
+    both are pairs.
+    """
 
     def on_line(potential: str, *, low: str, high: str) -> list[str]:
         system = {"unknowns": {"x": "real"}, "potential": potential}
-        slice = ptmcad.slice_from_mapping({"system": system, "axes": {"b": [low, high], "a": [0, 1]}})
+        slice = ptmcad.slice_from_mapping(
+            {"system": system, "axes": {"b": [low, high], "a": [0, 1]}}
+        )
         return [change.text for change in intervals(slice, "b", {"a": "1/2"}).changes]
 
     assert on_line("b*x^4/4 - x^2/2*(1+b) - x/7", low="-1", high="3") == ["gains several solutions"]

@@ -1,4 +1,6 @@
-"""Savings: with any of them, or all, switched off the answer is the same, and the plan says which were."""
+"""Savings: with any of them, or all, switched off the answer is the same, and the plan says which
+were.
+"""
 
 from __future__ import annotations
 
@@ -83,14 +85,18 @@ def test_without_a_saving_the_map_says_the_same(name: str, without: str, shipped
 @pytest.mark.slow
 @pytest.mark.parametrize("without", [*NAMES, ALL])
 @pytest.mark.parametrize("path", EXACT, ids=lambda p: p.stem)
-def test_without_a_saving_every_shipped_map_says_the_same(path: Path, without: str, shipped: Shipped) -> None:
+def test_without_a_saving_every_shipped_map_says_the_same(
+    path: Path, without: str, shipped: Shipped
+) -> None:
     result = ptmcad.classify(ptmcad.load(path), without=[without])
     assert difference(shipped(path.stem), result) == ""
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", EXACT, ids=lambda p: p.stem)
-def test_the_first_axis_serves_as_well_when_the_axes_are_exchanged(path: Path, tmp_path: Path) -> None:
+def test_the_first_axis_serves_as_well_when_the_axes_are_exchanged(
+    path: Path, tmp_path: Path
+) -> None:
     slice = ptmcad.load(exchanged(path, tmp_path))
     assert difference(ptmcad.classify(slice), ptmcad.classify(slice, without=["axis-order"])) == ""
 
@@ -102,7 +108,9 @@ LOADS = st.fractions(Fraction(-20), Fraction(20), max_denominator=3)
 @st.composite
 def slices(draw: st.DrawFn) -> Slice:
     """Small rational slices: two lengths, or a length and a load; unloaded ones among them."""
-    axes = draw(st.sampled_from([("rho", "L2"), ("L2", "rho"), ("rho", "F"), ("F3", "F4"), ("L1", "L2")]))
+    axes = draw(
+        st.sampled_from([("rho", "L2"), ("L2", "rho"), ("rho", "F"), ("F3", "F4"), ("L1", "L2")])
+    )
     parameters = {"L1": "1", "L2": str(draw(SMALL)), "rho": str(draw(SMALL)), "k": "100"}
     parameters |= {"F3": str(draw(LOADS)), "F4": str(draw(LOADS))} if draw(st.booleans()) else {}
     if "F" in axes:
@@ -158,7 +166,9 @@ def test_maps_that_differ_are_told_apart(shipped: Shipped) -> None:
 def algebra_of(slice: Slice) -> QuotientAlgebra:
     system = system_of("ptm")
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
-    found = quotient_algebra(groebner_basis(on_slice(system, parameters).equations, MonomialOrder((0, 1, 2, 3))))
+    found = quotient_algebra(
+        groebner_basis(on_slice(system, parameters).equations, MonomialOrder((0, 1, 2, 3)))
+    )
     assert found is not None
     return found
 
@@ -182,12 +192,16 @@ X, Y = PLANE.gens()
     ids=["the other root stays", "the other root vanishes on the curve", "it vanishes elsewhere"],
 )
 def test_away_from_zero_where_a_root_is_lost(constant: Coefficient, expected: bool) -> None:
-    """Roots of y u^2 - u + c near y = 0: one is about 1/y, the other about c; with c = y their product is 1."""
+    """Roots of y u^2 - u + c near y = 0: one is about 1/y, the other about c; with c = y their
+    product is 1.
+    """
     basis = groebner_basis([{(2,): Y, (1,): -ONE, (0,): constant}], MonomialOrder((0,)))
     algebra = quotient_algebra(basis)
     assert algebra is not None
     unknown = {(1,): ONE}
-    assert bounded_away_from_zero(multiples(algebra, unknown), norm(algebra, unknown), Y) is expected
+    assert (
+        bounded_away_from_zero(multiples(algebra, unknown), norm(algebra, unknown), Y) is expected
+    )
 
 
 def test_multiplicity_of_a_factor() -> None:
@@ -208,7 +222,9 @@ def test_real_curves_over_which_complex_solutions_are_lost_are_no_walls(number: 
     # a critical curve that is said to be harmless is noticed
     k = next(n for n, c in enumerate(result.components) if c.kind is Kind.CRITICAL)
     lie = replace(result.components[k], kind=Kind.INFINITY, left_out=HARMLESS)
-    assert not ptmcad.verify(replace(result, components=(*result.components[:k], lie, *result.components[k + 1 :]))).ok
+    assert not ptmcad.verify(
+        replace(result, components=(*result.components[:k], lie, *result.components[k + 1 :]))
+    ).ok
 
 
 def test_samples_keep_off_curves_that_are_no_walls() -> None:
@@ -256,7 +272,9 @@ def test_verify_refuses_what_was_made_without_a_saving(
                 "--format", "json", "--out", str(tmp_path)]) == 0  # fmt: skip
     path = tmp_path / "fig2.json"
     plain = RegionMap.from_json(path.read_text(encoding="utf-8"))
-    with pytest.raises(ConfigError, match=r"computed without the savings infinity, sign-curve, .* are not checked"):
+    with pytest.raises(
+        ConfigError, match=r"computed without the savings infinity, sign-curve, .* are not checked"
+    ):
         ptmcad.verify(plain)
     capsys.readouterr()
     assert run(["verify", str(path)]) == 2
@@ -271,7 +289,10 @@ def test_verify_refuses_what_was_made_without_a_saving(
     [
         (("axis-ordr",), "did you mean 'axis-order'?; there are sign-curve, "),
         (("leading", "all"), "'leading' is no saving"),
-        (("cones-and-creases",), "a saving of the certified engine, and this slice is the exact engine's"),
+        (
+            ("cones-and-creases",),
+            "a saving of the certified engine, and this slice is the exact engine's",
+        ),
         ("", "'' is no saving"),
     ],
     ids=str,
@@ -291,7 +312,16 @@ def test_the_older_name_is_taken(tmp_path: Path, capsys: pytest.CaptureFixture[s
         ptmcad.classify(record("fig2"), without=["axis-order"], keep=["sign-curve"])
 
     fig2 = str(ROOT / "configs" / "fig2.yaml")
-    command = ["classify", fig2, "--no-areas", "--format", "json", "--out", str(tmp_path), "--explain"]
+    command = [
+        "classify",
+        fig2,
+        "--no-areas",
+        "--format",
+        "json",
+        "--out",
+        str(tmp_path),
+        "--explain",
+    ]
     assert run([*command, "--keep", "axis-order", "--without", "sign-curve"]) == 0
     shown = capsys.readouterr().out
     assert "(the first axis, as asked for)" in shown
@@ -323,7 +353,10 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert "computed: decomposition over L2 (the first axis, as asked for)" in lines[at:]
     assert len(lines) == len(set(lines))
     plan = json.loads((tmp_path / "fig2.json").read_text())["plan"]
-    assert {step["saving"] for step in plan if step["done"] and "saving" in step} == {"axis-order", "sign-curve"}
+    assert {step["saving"] for step in plan if step["done"] and "saving" in step} == {
+        "axis-order",
+        "sign-curve",
+    }
 
 
 # ------------------------------------------------------------------------------------------------- the certified engine
@@ -337,19 +370,25 @@ def test_curves_of_the_certified_engine() -> None:
     def found(slice: Slice, *without: str) -> dict[str, tuple[int, ...]]:
         """Names of the curves, with the number of formulas beside the equations that vanish."""
         return {
-            c.name: tuple(len(v) for v in c.system.vanishing) for c in curves(slice, slice.count, frozenset(without))
+            c.name: tuple(len(v) for v in c.system.vanishing)
+            for c in curves(slice, slice.count, frozenset(without))
         }
 
     slice = record("free02")
-    assert list(found(slice)) == ["fold of a stable equilibrium", "fold of a stable equilibrium with spring A3A4 short"]
+    assert list(found(slice)) == [
+        "fold of a stable equilibrium",
+        "fold of a stable equilibrium with spring A3A4 short",
+    ]
     assert {"fold", "fold with spring A3A4 short"} <= found(slice, "folds-of-saddles").keys()
-    assert {"point where spring A3A4 has no length", "point where spring A1A4 has no length"} <= found(
-        slice, "cones-and-creases"
-    ).keys() - found(slice).keys()
+    assert {
+        "point where spring A3A4 has no length",
+        "point where spring A1A4 has no length",
+    } <= found(slice, "cones-and-creases").keys() - found(slice).keys()
     assert {v[2] for name, v in found(slice, *CERTIFIED).items() if name.startswith("fold")} == {0}
     assert all(v[2] > 0 for v in found(slice).values())
     unloaded = record("free02-unloaded")
-    # a pitchfork at each flat configuration, a search beside it from either side, and one far from all of them
+    # a pitchfork at each flat configuration, a search beside it from either side, and one far from
+    # all of them
     symmetric = [c.name.partition(" ")[0] for c in curves(unloaded, unloaded.count)]
     assert symmetric == ["pitchfork", "fold", "fold"] * 4 + ["fold"] * 2 + ["point"] * 3
     assert len(found(unloaded, "mirror-images")) == 2
@@ -366,4 +405,6 @@ def test_certified_maps_without_a_saving_do_not_contradict(without: str) -> None
     result = ptmcad.classify(slice, tolerance="1/10", jobs=1)
     plain = ptmcad.classify(slice, tolerance="1/2", jobs=1, without=without, timeout=200)
     assert difference(result, plain) == ""
-    assert {step.saving for step in plain.plan if step.saving and step.done} <= switched_off([without], certified=True)
+    assert {step.saving for step in plain.plan if step.saving and step.done} <= switched_off(
+        [without], certified=True
+    )

@@ -43,7 +43,9 @@ def roots(terms: Terms, x: float, y: float) -> list[float]:
         ("fig5-caption", {"rho": 0.8, "F4": -20.0}, 4, 1),
     ],
 )
-def test_sextic_has_the_known_counts(name: str, point: dict[str, float], total: int, stable: int) -> None:
+def test_sextic_has_the_known_counts(
+    name: str, point: dict[str, float], total: int, stable: int
+) -> None:
     """Counts of the reference, from the sextic and from the sign conditions that QEPCAD is given."""
     slice = config.load(CONFIGS / f"{name}.yaml")
     asked = question(slice)
@@ -52,7 +54,10 @@ def test_sextic_has_the_known_counts(name: str, point: dict[str, float], total: 
     assert x is not None and y is not None
     found = roots(asked.sextic, x, y)
     assert len(found) == total
-    signs = [[math.copysign(1, value(p, x, y, t)) for p in (asked.v, asked.w, asked.slope)] for t in found]
+    signs = [
+        [math.copysign(1, value(p, x, y, t)) for p in (asked.v, asked.w, asked.slope)]
+        for t in found
+    ]
     assert sum(v == w == -slope for v, w, slope in signs) == stable
 
 

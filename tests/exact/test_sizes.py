@@ -33,11 +33,17 @@ CONFIGS = Path(__file__).resolve().parents[2] / "configs"
         ("systems/kuramoto-4", 14, CurveSizes((32, 32), 42, (1, 1))),
         ("mechanisms/two-bar-chain", 6, CurveSizes((24, 24), 24, (2, 1))),
         ("mechanisms/four-bar", 12, CurveSizes((18, 18), 18, (1, 1))),
-        ("mechanisms/two-dof-tensegrity", 12, CurveSizes((10, 10), 12, (2, 2))),  # six lines, three curves at infinity
+        (
+            "mechanisms/two-dof-tensegrity",
+            12,
+            CurveSizes((10, 10), 12, (2, 2)),
+        ),  # six lines, three curves at infinity
     ],
 )
 @pytest.mark.fast_cases("forces-6-known1", "systems/kuramoto-6-known2")
-def test_degrees_are_those_of_the_computed_curves(name: str, solutions: int, known: CurveSizes) -> None:
+def test_degrees_are_those_of_the_computed_curves(
+    name: str, solutions: int, known: CurveSizes
+) -> None:
     """REFERENCE has these degrees, and `test_sizes_of_critical_curves` computes some of them."""
     found = sizes(problem_of(load(CONFIGS / f"{name}.yaml")), solutions, 60.0)
     assert found is not None
@@ -63,8 +69,12 @@ def test_what_bounds_the_domain_is_no_part_of_the_curve() -> None:
 def test_a_difference_of_the_axes_takes_no_degree_away() -> None:
     """v^3 = 3 p v + 2 q is critical where p^3 = q^2: here a b^3 (a - b)^3 = 1, and the axis a = 0."""
     system = {"name": "s", "unknowns": {"v": "real"}, "equations": ["v^3 - 3*a*b*(a - b)*v - 2*a"]}
-    slice = ptmcad.slice_from_mapping({"system": system, "axes": {"a": [-2, 2], "b": [-2, 2]}, "count": "total"})
-    assert sizes(problem_of(slice), 3, 60.0) == CurveSizes((4, 6), 7, (1, 1), (2, 2, 3), (True, False))
+    slice = ptmcad.slice_from_mapping(
+        {"system": system, "axes": {"a": [-2, 2], "b": [-2, 2]}, "count": "total"}
+    )
+    assert sizes(problem_of(slice), 3, 60.0) == CurveSizes(
+        (4, 6), 7, (1, 1), (2, 2, 3), (True, False)
+    )
 
 
 @pytest.mark.parametrize(
@@ -76,10 +86,16 @@ def test_a_difference_of_the_axes_takes_no_degree_away() -> None:
     ],
     ids=["both axes alone", "an axis beside a curve", "an axis at infinity"],
 )
-def test_axes_are_told_where_solutions_meet_over_them(equation: str, solutions: int, known: CurveSizes) -> None:
-    """By hand: discriminants are 4 a b, -27 a (4 a^5 - 9 a^3 b^2 + 54 a^2 b + 27 a - 108 b^3) / 27 and a (a - 4 b)."""
+def test_axes_are_told_where_solutions_meet_over_them(
+    equation: str, solutions: int, known: CurveSizes
+) -> None:
+    """By hand: discriminants are 4 a b, -27 a (4 a^5 - 9 a^3 b^2 + 54 a^2 b + 27 a - 108 b^3) / 27
+    and a (a - 4 b).
+    """
     system = {"name": "s", "unknowns": {"z": "real"}, "equations": [equation]}
-    slice = ptmcad.slice_from_mapping({"system": system, "axes": {"a": [-1, 1], "b": [-1, 1]}, "count": "total"})
+    slice = ptmcad.slice_from_mapping(
+        {"system": system, "axes": {"a": [-1, 1], "b": [-1, 1]}, "count": "total"}
+    )
     assert sizes(problem_of(slice), solutions, 60.0) == known
     critical = {c.polynomial.text(("a", "b")) for c in variety_of(problem_of(slice)).components
                 if c.kind is Kind.CRITICAL}  # fmt: skip
@@ -87,7 +103,9 @@ def test_axes_are_told_where_solutions_meet_over_them(equation: str, solutions: 
 
 
 @pytest.mark.parametrize(("name", "solutions"), [("forces", 6), ("systems/kuramoto", 6)])
-def test_the_degrees_of_the_tables_are_those_of_the_computed_ones(name: str, solutions: int) -> None:
+def test_the_degrees_of_the_tables_are_those_of_the_computed_ones(
+    name: str, solutions: int
+) -> None:
     problem = problem_of(load(CONFIGS / f"{name}.yaml"))
     system = problem.system if problem.system.turns is None else problem.system.turns.system
     algebra = quotient_algebra(basis_of(on_slice(system, problem.on.parameters)))
@@ -112,8 +130,12 @@ def test_the_cells_of_a_survey_are_those_of_the_map(name: str) -> None:
 
 
 def test_terms_are_the_exponents_that_are_left() -> None:
-    assert CurveSizes((32, 32), 42, (1, 1)).terms == sum(i + j <= 42 for i in range(33) for j in range(33))
-    assert CurveSizes((4, 3), 5, (2, 1)).terms == sum(i + j <= 5 for i in (0, 2, 4) for j in range(4))
+    assert CurveSizes((32, 32), 42, (1, 1)).terms == sum(
+        i + j <= 42 for i in range(33) for j in range(33)
+    )
+    assert CurveSizes((4, 3), 5, (2, 1)).terms == sum(
+        i + j <= 5 for i in (0, 2, 4) for j in range(4)
+    )
 
 
 def test_a_curve_that_is_too_large_has_no_size(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -133,6 +155,8 @@ def test_numerators_are_found_from_values_that_suffice() -> None:
 
     points = [(x, value(x)) for x in range(20)]
     assert numerator(points, prime) == Numerator(4, True, 2)
-    assert numerator(points, prime, [nmod_poly([0, 1], prime), nmod_poly([7, 1], prime)]) == Numerator(4, False, 2)
+    assert numerator(
+        points, prime, [nmod_poly([0, 1], prime), nmod_poly([7, 1], prime)]
+    ) == Numerator(4, False, 2)
     assert numerator(points[:14], prime) is None
     assert (degree(points, prime), degree(points[:14], prime)) == (9, None)

@@ -22,7 +22,9 @@ CHECKED = ("fig2", "fig3", "fig4", "forces", "stiffness", "rods", "horizontal")
 
 
 def _same_but_solutions(few: RegionMap, all_of_them: RegionMap) -> None:
-    """Every cell has the same counts, every region the same cells; what is proved by more solutions is left out."""
+    """Every cell has the same counts, every region the same cells; what is proved by more solutions
+    is left out.
+    """
     bare = tuple(replace(cell, solutions=()) for cell in all_of_them.cells)
     assert tuple(replace(cell, solutions=()) for cell in few.cells) == bare
     assert (few.regions, few.adjacencies, few.stacks) == (
@@ -44,7 +46,9 @@ def test_sparing_counts_are_those_of_each_cell(name: str) -> None:
 def test_members_of_a_family_too() -> None:
     common = in_common(family_from(CONFIGS / "families" / "equal-loads.yaml"), WITHOUT_AREAS)
     for value in (Fraction(-40), Fraction(-17, 3), Fraction(0)):
-        _same_but_solutions(member_map(common, value, SPARING), member_map(common, value, WITHOUT_AREAS))
+        _same_but_solutions(
+            member_map(common, value, SPARING), member_map(common, value, WITHOUT_AREAS)
+        )
 
 
 @pytest.mark.slow
@@ -54,7 +58,9 @@ def test_forty_members_of_each_family() -> None:
         common = in_common(family, WITHOUT_AREAS)
         for k in range(40):
             value = family.free.low + (family.free.high - family.free.low) * Fraction(2 * k + 1, 80)
-            _same_but_solutions(member_map(common, value, SPARING), member_map(common, value, WITHOUT_AREAS))
+            _same_but_solutions(
+                member_map(common, value, SPARING), member_map(common, value, WITHOUT_AREAS)
+            )
 
 
 def test_only_what_is_proved_to_be_joined_shares_a_count(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -62,7 +68,9 @@ def test_only_what_is_proved_to_be_joined_shares_a_count(monkeypatch: pytest.Mon
     found: list[tuple[int, ...]] = []
     whole = sparing.counts_by_component
 
-    def noted(problem: object, stacks: object, component_of: tuple[int, ...], report: object) -> object:
+    def noted(
+        problem: object, stacks: object, component_of: tuple[int, ...], report: object
+    ) -> object:
         found.append(component_of)
         return whole(problem, stacks, component_of, report)  # type: ignore[arg-type]
 
@@ -79,7 +87,9 @@ def test_only_what_is_proved_to_be_joined_shares_a_count(monkeypatch: pytest.Mon
 def test_a_coarser_outline_has_fewer_vertices_and_all_of_them_on_the_curves() -> None:
     result = shipped("fig4")
     fine, coarse = outline(result), outline(result, None, 1e-3)
-    assert sum(s.heights.size for s in coarse.stacks) < 0.7 * sum(s.heights.size for s in fine.stacks)
+    assert sum(s.heights.size for s in coarse.stacks) < 0.7 * sum(
+        s.heights.size for s in fine.stacks
+    )
     for many, few in zip(fine.stacks, coarse.stacks, strict=True):
         places = dict(zip(many.along.tolist(), many.heights.T.tolist(), strict=True))
         for at, heights in zip(few.along.tolist(), few.heights.T.tolist(), strict=True):

@@ -1,4 +1,6 @@
-"""Theorem 5 of the reference: in other units, mirrored, or with its rods exchanged, a mechanism has the same map."""
+"""Theorem 5 of the reference: in other units, mirrored, or with its rods exchanged, a mechanism has
+the same map.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,16 @@ from ptmcad.errors import HypothesisError
 Record = dict[str, Any]
 LENGTHS, SPRINGS = ("L1", "L2", "rho"), ("k1", "k2", "k3")
 FORCES = ("F3", "F4", "F3x", "F4x")
-EXCHANGED = {"L1": "L2", "L2": "L1", "F3": "F4", "F4": "F3", "F3x": "F4x", "F4x": "F3x", "k1": "k2", "k2": "k1"}
+EXCHANGED = {
+    "L1": "L2",
+    "L2": "L1",
+    "F3": "F4",
+    "F4": "F3",
+    "F3x": "F4x",
+    "F4x": "F3x",
+    "k1": "k2",
+    "k2": "k1",
+}
 """Names in the mirror image in a vertical line, where F3x and F4x change their signs too."""
 
 
@@ -40,7 +51,10 @@ LOWS = {
     **{n: numbers("0", "0", "1/4") for n in LENGTHS},
     **{n: numbers("-30", "-10", "0", "-7/2") for n in FORCES},
 }  # fmt: skip
-WIDTHS = {**{n: numbers("1", "2", "5/2") for n in LENGTHS}, **{n: numbers("10", "30") for n in FORCES}}
+WIDTHS = {
+    **{n: numbers("1", "2", "5/2") for n in LENGTHS},
+    **{n: numbers("10", "30") for n in FORCES},
+}
 
 
 @st.composite
@@ -62,13 +76,17 @@ def records(draw: st.DrawFn) -> Record:
 def region_map(record: Record) -> RegionMap:
     texts = {n: str(v) for n, v in record["parameters"].items()}
     axes = {n: [str(low), str(high)] for n, (low, high) in record["axes"].items()}
-    return classify(slice_from_mapping({**record, "parameters": texts, "axes": axes}), area_tolerance="1/20")
+    return classify(
+        slice_from_mapping({**record, "parameters": texts, "axes": axes}), area_tolerance="1/20"
+    )
 
 
 def scaled(record: Record, factors: dict[str, Fraction]) -> Record:
     """Parameters and windows multiplied; a negative factor turns a window round."""
     parameters = {n: v * factors.get(n, 1) for n, v in record["parameters"].items()}
-    axes = {n: sorted(v * factors.get(n, 1) for v in window) for n, window in record["axes"].items()}
+    axes = {
+        n: sorted(v * factors.get(n, 1) for v in window) for n, window in record["axes"].items()
+    }
     return {**record, "parameters": parameters, "axes": axes}
 
 
@@ -110,7 +128,9 @@ def rods_exchanged(record: Record, factor: Fraction) -> Image:
 SYMMETRIES = [axes_swapped, stiffness_and_force_scaled, lengths_scaled, reflected, rods_exchanged]
 
 
-def check_same(record: Record, symmetry: Callable[[Record, Fraction], Image], factor: Fraction) -> None:
+def check_same(
+    record: Record, symmetry: Callable[[Record, Fraction], Image], factor: Fraction
+) -> None:
     image, carry = symmetry(record, factor)
     try:
         ours = region_map(record)
@@ -135,7 +155,11 @@ def check_same(record: Record, symmetry: Callable[[Record, Fraction], Image], fa
     x, y = ours.slice.axes
     samples = [dict(cell.sample) for cell in ours.cells]
     samples += [
-        {a.name: a.low + (a.high - a.low) * Fraction(generator.randint(1, 996), 997) for a in (x, y)} for _ in range(10)
+        {
+            a.name: a.low + (a.high - a.low) * Fraction(generator.randint(1, 996), 997)
+            for a in (x, y)
+        }
+        for _ in range(10)
     ]
     for at in samples:
         one, other = ours.locate(**at), theirs.locate(**carry(at))
@@ -143,7 +167,9 @@ def check_same(record: Record, symmetry: Callable[[Record, Fraction], Image], fa
         assert (one.total, one.stable, one.index) == (other.total, other.stable, other.index)
         if one.region is not None:
             assert partner.setdefault(one.region, other.region) == other.region  # type: ignore[arg-type]
-    assert sorted(partner.values()) == list(range(len(theirs.regions))), "each region has one partner"
+    assert sorted(partner.values()) == list(range(len(theirs.regions))), (
+        "each region has one partner"
+    )
     for n, m in partner.items():
         one_region, other_region = ours.regions[n], theirs.regions[m]
         assert (one_region.stable, one_region.total, one_region.index) == (
@@ -162,7 +188,9 @@ factors = st.sampled_from([Fraction(f) for f in ("2", "1/3", "7/5", "1000", "1/1
 @given(record=records(), factor=factors)
 @settings(max_examples=2, phases=[Phase.generate])
 @pytest.mark.slow_cases("axes_swapped", "lengths_scaled", "stiffness_and_force_scaled")
-def test_symmetry(symmetry: Callable[[Record, Fraction], Image], record: Record, factor: Fraction) -> None:
+def test_symmetry(
+    symmetry: Callable[[Record, Fraction], Image], record: Record, factor: Fraction
+) -> None:
     check_same(record, symmetry, factor)
 
 

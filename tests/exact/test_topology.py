@@ -1,7 +1,8 @@
-"""The decomposition of plane curves with known topology, over both axes, through the functions of `ptmcad.exact.cad`
-alone.
+"""The decomposition of plane curves with known topology, over both axes, through the functions of
+`ptmcad.exact.cad` alone.
 
-The number of pieces into which the curves cut the window is known by hand, or for lines by counting their crossings.
+The number of pieces into which the curves cut the window is known by hand, or for lines by counting
+their crossings.
 """
 
 from __future__ import annotations
@@ -39,7 +40,9 @@ Window = tuple[str, str, str, str]
 
 @dataclass(frozen=True)
 class Decomposition:
-    """Stacks over the base axis, and the pieces of the complement: for each stack, the piece of each cell."""
+    """Stacks over the base axis, and the pieces of the complement: for each stack, the piece of
+    each cell.
+    """
 
     curves: list[FibredCurve]
     stacks: tuple[StackData, ...]
@@ -56,7 +59,10 @@ class Decomposition:
 def decompose(polynomials: Sequence[fmpz_mpoly], window: Window, base: int) -> Decomposition:
     """The pieces of the window minus the curves; every wall separates, every open segment joins."""
     factors = list({str(f): f for p in polynomials for f, _ in p.factor()[1]}.values())
-    ranges = [(rational(window[0]), rational(window[1])), (rational(window[2]), rational(window[3]))]
+    ranges = [
+        (rational(window[0]), rational(window[1])),
+        (rational(window[2]), rational(window[3])),
+    ]
     inner, outer = ranges[base], ranges[1 - base]
     curves = [curve(n, f, base) for n, f in enumerate(factors) if f.degrees()[1 - base] > 0]
     lines = [coefficients_in(f, 1 - base)[0] for f in factors if f.degrees()[1 - base] == 0]
@@ -81,12 +87,18 @@ def decompose(polynomials: Sequence[fmpz_mpoly], window: Window, base: int) -> D
     return Decomposition(curves, stacks, crossings, pieces, inner, outer)
 
 
-def check_separator(curves: list[FibredCurve], p: Separator, left: StackData, right: StackData) -> None:
-    """The witness is a segment that crosses the abscissa and meets no curve, at the levels that it claims."""
+def check_separator(
+    curves: list[FibredCurve], p: Separator, left: StackData, right: StackData
+) -> None:
+    """The witness is a segment that crosses the abscissa and meets no curve, at the levels that it
+    claims.
+    """
     end = left.right
     assert end.root is not None
     assert left.sample <= p.low < p.high <= right.sample
-    q = end.root.polynomial  # all its roots in the window are critical, so only this one lies between the samples
+    q = (
+        end.root.polynomial
+    )  # all its roots in the window are critical, so only this one lies between the samples
     assert sign_at(q, p.low) * sign_at(q, p.high) < 0
     for c in curves:
         assert not has_root_between(c.trace(p.height), p.low, p.high)
@@ -234,7 +246,9 @@ def pieces_of_lines(lines: set[tuple[int, int, int]], low: Fraction, high: Fract
 
 
 small = st.integers(-3, 3)
-arrangements = st.lists(st.tuples(small, small, small).filter(lambda t: t[0] or t[1]), min_size=1, max_size=6)
+arrangements = st.lists(
+    st.tuples(small, small, small).filter(lambda t: t[0] or t[1]), min_size=1, max_size=6
+)
 
 
 def check_lines(coefficients: list[tuple[int, int, int]], base: int) -> None:
@@ -266,7 +280,12 @@ CUBIC = [(i, j) for i in range(4) for j in range(4 - i)]
 curves_of_degree_2_and_3 = st.lists(
     st.lists(st.integers(-2, 2), min_size=10, max_size=10).map(
         lambda c: sum(
-            (k * X**i * Y**j for k, (i, j) in zip(c, [(i, j) for i in range(4) for j in range(4 - i)], strict=True)),
+            (
+                k * X**i * Y**j
+                for k, (i, j) in zip(
+                    c, [(i, j) for i in range(4) for j in range(4 - i)], strict=True
+                )
+            ),
             0 * X,
         )
     ),
@@ -296,8 +315,14 @@ def test_both_axes_agree_on_many_random_cubics(polynomials: list[fmpz_mpoly]) ->
 
 # ---------------------------------------------------------------------------------------------------------------- areas
 
-PI = (Fraction("3.14159265358979323846264338327950288"), Fraction("3.14159265358979323846264338327950289"))
-LN6 = (Fraction("1.79175946922805500081247735838070227"), Fraction("1.79175946922805500081247735838070228"))
+PI = (
+    Fraction("3.14159265358979323846264338327950288"),
+    Fraction("3.14159265358979323846264338327950289"),
+)
+LN6 = (
+    Fraction("1.79175946922805500081247735838070227"),
+    Fraction("1.79175946922805500081247735838070228"),
+)
 
 
 def exactly(text: str) -> Callable[[], tuple[Fraction, Fraction]]:
@@ -354,8 +379,12 @@ def check_area(name: str, base: int, tolerance: Fraction, half: str = "") -> Non
 
 
 @pytest.mark.parametrize("failures", [1, 2])
-def test_a_series_beside_a_cusp_is_tried_at_twice_the_precision(failures: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where that does not suffice either, the area is found by panels cut nearer and nearer to the cusp."""
+def test_a_series_beside_a_cusp_is_tried_at_twice_the_precision(
+    failures: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where that does not suffice either, the area is found by panels cut nearer and nearer to the
+    cusp.
+    """
     tried: list[int] = []
 
     def scarce(*arguments: Any) -> tuple[arb, fmpq] | None:
@@ -373,10 +402,14 @@ def test_a_series_beside_a_cusp_is_tried_at_twice_the_precision(failures: int, m
 LINES = {"v = 0": [0], "v = u": [0, 1], "v = -u": [0, -1]}
 
 
-@pytest.mark.parametrize("tolerance", [Fraction(1, 10**4), pytest.param(Fraction(1, 10**9), marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "tolerance", [Fraction(1, 10**4), pytest.param(Fraction(1, 10**9), marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("half", ["u = 0", *LINES])
 @pytest.mark.parametrize("name", ["disc", "outside of a disc", "astroid", "tiny disc"])
-def test_areas_of_a_window_are_those_of_a_half_and_its_image(name: str, half: str, tolerance: Fraction) -> None:
+def test_areas_of_a_window_are_those_of_a_half_and_its_image(
+    name: str, half: str, tolerance: Fraction
+) -> None:
     """Of curves and pieces that are their own images."""
     check_area(name, 0, tolerance, half)
 
@@ -394,7 +427,9 @@ SYMMETRIC = {
     "disc", "outside of a disc", "quarter of a disc", "corner outside a disc that touches the edges", "astroid",
     "petal of a rose", "triangle", "tiny disc", "lens",
 }  # fmt: skip
-"""Curves and windows that exchanging the axes does not change: over the other one the same panels are taken again."""
+"""Curves and windows that exchanging the axes does not change: over the other one the same panels
+are taken again.
+"""
 
 
 @pytest.mark.parametrize(("name", "base"), [

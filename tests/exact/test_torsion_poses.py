@@ -1,4 +1,6 @@
-"""Torsion springs in poses: deflections and moments by hand, by both engines, and in documents and tables."""
+"""Torsion springs in poses: deflections and moments by hand, by both engines, and in documents and
+tables.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ from ptmcad.model import Mechanism, described
 from ptmcad.model.evaluate import multiples
 from ptmcad.text.balls import ball_of
 
-SCHEMA = json.loads((Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads(
+    (Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8")
+)
 PENDULUM: dict[str, Any] = {
     "parameters": {"W": {"kind": "force"}, "c": {"kind": "stiffness", "default": 2}},
     "unknowns": {"th": "angle"},
@@ -54,11 +58,16 @@ def turned(pose: Pose) -> list[tuple[str, str, str]]:
 
 
 def test_a_bar_that_hangs_on_a_torsion_spring_by_hand() -> None:
-    """tan th = -W/c, so that (cos, sin) = (4, -3)/5 for W = 3/2: the moment is 2 (-3/5), the weight's 3/2 4/5."""
+    """tan th = -W/c, so that (cos, sin) = (4, -3)/5 for W = 3/2: the moment is 2 (-3/5), the
+    weight's 3/2 4/5.
+    """
     held, fallen = solve(model=described(PENDULUM), W="3/2").equilibria
     (spring,) = held.torsion
     assert (spring.name, spring.stiffness, spring.moment.exact) == ("th", 2, Fraction(-6, 5))
-    assert (spring.deflection.text(10), spring.degrees.text(10)) == ("-0.6435011088", "-36.86989765")
+    assert (spring.deflection.text(10), spring.degrees.text(10)) == (
+        "-0.6435011088",
+        "-36.86989765",
+    )
     assert fallen.torsion[0].moment.exact == Fraction(6, 5)
     assert fallen.torsion[0].degrees.text(10) == "143.1301024"
 
@@ -76,7 +85,9 @@ BENT = ("-0.78539816", "-45", "-1.4142136")
     ids=["one", "at rest", "half a turn off"],
 )
 @pytest.mark.parametrize(
-    "first", [{"angle": "th", "k": 2}, {"angle": "th + pi/2", "k": 2, "rest": "pi/2"}], ids=["", "quarter turns"]
+    "first",
+    [{"angle": "th", "k": 2}, {"angle": "th + pi/2", "k": 2, "rest": "pi/2"}],
+    ids=["", "quarter turns"],
 )
 def test_rational_degrees_and_rests_are_told_exactly(
     first: dict[str, Any], further: list[dict[str, Any]], expected: list[tuple[str, str, str]]
@@ -100,7 +111,9 @@ def recomputed(poses: Poses, pose: Pose, bits: int = 400) -> list[tuple[arb, arb
         for spring, torsion in zip(pose.torsion, model.torsion, strict=True):
             total = -arb.atan2(ball_of(torsion.rest[1]), ball_of(torsion.rest[0]))
             for name, m in multiples(torsion.angle).items():
-                total += ball_of(m) * arb(ball_of(angles[name].center), ball_of(angles[name].radius))
+                total += ball_of(m) * arb(
+                    ball_of(angles[name].center), ball_of(angles[name].radius)
+                )
             turns = round(float(total / (2 * arb.pi())))
             total -= 2 * arb.pi() * turns
             found.append((total, ball_of(spring.stiffness) * total.sin()))
@@ -119,14 +132,22 @@ def test_every_digit_is_that_of_the_angles(l0: str, digits: int) -> None:
         for spring, (angle, moment) in zip(pose.torsion, recomputed(precise, fine), strict=True):
             with ctx.workprec(400):
                 degrees = angle * 180 / arb.pi()
-                for number, ball in ((spring.deflection, angle), (spring.degrees, degrees), (spring.moment, moment)):
+                for number, ball in (
+                    (spring.deflection, angle),
+                    (spring.degrees, degrees),
+                    (spring.moment, moment),
+                ):
                     printed = ball_of(Fraction(number.text(digits)))
                     assert abs(printed - ball) < abs(ball) * arb(10) ** (1 - digits) / 2
-                    assert ball_of(number.low) <= ball.upper() and ball.lower() <= ball_of(number.high)
+                    assert ball_of(number.low) <= ball.upper() and ball.lower() <= ball_of(
+                        number.high
+                    )
 
 
 def test_moments_balance_the_pull_of_spring_and_loads() -> None:
-    """By hand for the chain without its spring's free length: the sum of all that turns phi alone, and of th."""
+    """By hand for the chain without its spring's free length: the sum of all that turns phi alone,
+    and of th.
+    """
     for pose in solve(model=described(CHAIN), l0=0, W="1/7").equilibria:
         (qx, qy), (px, py) = ([float(x) for x in pose.nodes[name]] for name in "QP")
         fx, fy = 1 / 7 - 3 * (qx - 8 / 5), -1 / 7 - 3 * (qy - 4 / 5)
@@ -145,9 +166,13 @@ def test_both_engines_agree() -> None:
 
 
 def test_a_symmetric_pose_has_exact_deflections_in_the_certified_engine() -> None:
-    """Upright under its spring: at rest, a quarter, half a turn off, and by the angle whose cosine is 3/5."""
+    """Upright under its spring: at rest, a quarter, half a turn off, and by the angle whose cosine
+    is 3/5.
+    """
     rests: list[Any] = ["pi/2", 0, "-pi/2", "pi", {"cos": "3/5", "sin": "4/5"}]
-    balanced = [{"angle": "th", "k": 1, "rest": rest} for rest in (*rests, {"cos": "-3/5", "sin": "4/5"})]
+    balanced = [
+        {"angle": "th", "k": 1, "rest": rest} for rest in (*rests, {"cos": "-3/5", "sin": "4/5"})
+    ]
     model = described({
         **PENDULUM,
         "parameters": {"l0": {"kind": "free length"}},
@@ -166,16 +191,23 @@ def test_a_symmetric_pose_has_exact_deflections_in_the_certified_engine() -> Non
 
 
 def test_relaxed_torsion_springs_have_hardly_a_moment() -> None:
-    """P at rest is (3, 4)/5, A = P + (13, -3)/10: Q is 1 from A, and the energy 0, at atan(-3/13) +- acos(|PA|/2)."""
+    """P at rest is (3, 4)/5, A = P + (13, -3)/10: Q is 1 from A, and the energy 0, at
+    atan(-3/13) +- acos(|PA|/2).
+    """
     rest = {"cos": "3/5", "sin": "4/5"}
     placed = {**CHAIN, "points": {**CHAIN["points"], "A": ["19/10", "1/2"]}}
     model = with_torsion(placed, {"angle": "th", "k": 2, "rest": rest})
     tiny = Fraction(1, 10**100)
-    relaxed = [p for p in solve(model=model, l0=1, W=0).equilibria if abs(p.springs[0].force.high) < tiny]
+    relaxed = [
+        p for p in solve(model=model, l0=1, W=0).equilibria if abs(p.springs[0].force.high) < tiny
+    ]
     assert sorted(p.degrees[1].text(6) for p in relaxed) == ["-61.1523", "35.1630"]
     for pose in relaxed:
         bent = pose.torsion[0]
-        assert all(number.low <= 0 <= number.high < tiny for number in (bent.deflection, bent.degrees, bent.moment))
+        assert all(
+            number.low <= 0 <= number.high < tiny
+            for number in (bent.deflection, bent.degrees, bent.moment)
+        )
 
 
 REST = {"cos": "3/5", "sin": "4/5"}
@@ -195,7 +227,10 @@ REST = {"cos": "3/5", "sin": "4/5"}
         # phi is known first, and th by it
         (
             ["13/5", "4/5"],
-            [{"angle": "2*phi - th", "k": 1, "rest": {"cos": "3/5", "sin": "-4/5"}}, {"angle": "phi", "k": 1}],
+            [
+                {"angle": "2*phi - th", "k": 1, "rest": {"cos": "3/5", "sin": "-4/5"}},
+                {"angle": "phi", "k": 1},
+            ],
             [("0", "0", "0")] * 2,
         ),
     ],
@@ -204,12 +239,21 @@ REST = {"cos": "3/5", "sin": "4/5"}
 def test_a_mechanism_at_rest_as_it_was_assembled_is_proved_to_be(
     anchor: list[str], springs: list[dict[str, Any]], expected: list[tuple[str, str, str]]
 ) -> None:
-    """Springs of which none pulls sideways, more than there are unknowns: no energy but that of the stretched one."""
+    """Springs of which none pulls sideways, more than there are unknowns: no energy but that of the
+    stretched one.
+    """
     chain = len(springs) > 1
     record = {**CHAIN, "points": {**CHAIN["points"], "A": anchor}}
     if not chain:
-        record |= {"unknowns": {"th": "angle"}, "points": {"A": anchor, "O": [0, 0], "P": ["cos(th)", "sin(th)"]}}
-        record |= {"bars": [["O", "P"]], "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}], "loads": {}}
+        record |= {
+            "unknowns": {"th": "angle"},
+            "points": {"A": anchor, "O": [0, 0], "P": ["cos(th)", "sin(th)"]},
+        }
+        record |= {
+            "bars": [["O", "P"]],
+            "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
+            "loads": {},
+        }
         record["parameters"] = {"l0": {"kind": "free length"}}
     poses = solve(model=with_torsion(record, *springs), l0="1" if chain else "1/3")
     assert poses.status is Status.CERTIFIED
@@ -223,7 +267,9 @@ def test_a_mechanism_at_rest_as_it_was_assembled_is_proved_to_be(
 
 
 def test_a_mechanism_that_is_nearly_at_rest_is_not_taken_for_one_that_is() -> None:
-    """A load of 1e-90 turns the bar by as much as a stiffness of 2 + 2 2/3 lets it, which balls of 224 bits miss."""
+    """A load of 1e-90 turns the bar by as much as a stiffness of 2 + 2 2/3 lets it, which balls of
+    224 bits miss.
+    """
     record = {
         **PENDULUM,
         "parameters": {"l0": {"kind": "free length"}, "W": {"kind": "force"}},
@@ -231,9 +277,12 @@ def test_a_mechanism_that_is_nearly_at_rest_is_not_taken_for_one_that_is() -> No
         "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
         "loads": {"P": ["W", 0]},
     }
-    poses = solve(model=with_torsion(record, {"angle": "th", "k": 2, "rest": REST}), l0="1/3", W="1e-90")
+    poses = solve(
+        model=with_torsion(record, {"angle": "th", "k": 2, "rest": REST}), l0="1/3", W="1e-90"
+    )
     (spring,) = next(pose for pose in poses.equilibria if pose.stable).torsion
-    # by the law of cosines |AP|^2 = 5 - 4 cos(deflection), so that |AP|'' = 2 where the spring pulls with 2/3
+    # by the law of cosines |AP|^2 = 5 - 4 cos(deflection), so that |AP|'' = 2 where the spring
+    # pulls with 2/3
     assert float(spring.deflection.center * 10**90) == pytest.approx(-0.8 / (2 + 4 / 3))
     assert spring.moment.exact is None
 
@@ -245,7 +294,9 @@ def test_documents_tell_what_torsion_springs_do_and_are_read_back() -> None:
     again = Poses.from_json(text)
     assert again == poses and again.to_json() == text
     entries = json.loads(text)["equilibria"][0]["torsion"]
-    assert [list(entry) for entry in entries] == [["name", "stiffness", "deflection", "degrees", "moment"]] * 2
+    assert [list(entry) for entry in entries] == [
+        ["name", "stiffness", "deflection", "degrees", "moment"]
+    ] * 2
     assert [entry["name"] for entry in entries] == ["th", "phi-2*th"]
 
 
@@ -266,9 +317,13 @@ def test_documents_without_them_are_those_of_before_and_half_of_them_are_refused
 def test_the_table_has_columns_for_them_with_their_sign() -> None:
     lines = solve(model=described(CHAIN), l0=0, W="1/7").table(6).splitlines()
     columns = [line.split() for line in lines]
-    header = [f"deflection {name} {unit}" for unit in ("[rad]", "[deg]") for name in ("th", "phi-2*th")]
+    header = [
+        f"deflection {name} {unit}" for unit in ("[rad]", "[deg]") for name in ("th", "phi-2*th")
+    ]
     assert ["#", *" ".join(header).split()] in columns
     assert ["#", "moment", "th", "moment", "phi-2*th"] in columns
     assert lines[-2].endswith("energies, moments and the Hessian's eigenvalues in their product")
-    assert lines[-1].startswith("torsion deflection: angle - rest; moment: k sin(deflection), positive where")
+    assert lines[-1].startswith(
+        "torsion deflection: angle - rest; moment: k sin(deflection), positive where"
+    )
     assert not any("moment" in line for line in solve(rho=1).table().splitlines())

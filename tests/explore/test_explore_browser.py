@@ -1,4 +1,5 @@
-"""The explorer's page in a real headless Chromium: dragging, keys, touch, two tabs, a server that is killed.
+"""The explorer's page in a real headless Chromium: dragging, keys, touch, two tabs, a server that
+is killed.
 
 Screenshots go where PTMCAD_TESTS_SCREENSHOTS says, if it does; nothing is compared with them.
 """
@@ -59,7 +60,11 @@ def test_the_first_map_is_there_with_areas_and_poses(view: Browser) -> None:
     assert view.run("state.textContent") == "Shown: F = -20 (exact, 2 regions). "
     assert view.run("[...document.querySelectorAll('#regions li')].map((li) => li.textContent)") == [
         "1 stable, area 3.5619", "2 stable of 6 equilibria, area 0.4381"]  # fmt: skip
-    assert view.run("document.querySelectorAll('#poses .pose').length") == view.run("view.poses.data.total") == 4
+    assert (
+        view.run("document.querySelectorAll('#poses .pose').length")
+        == view.run("view.poses.data.total")
+        == 4
+    )
     assert view.run("location.href.includes('token')") is False
     assert view.complaints() == []
     assert {r.split("/")[2] for r in view.requests()} == {view.run("location.host")}
@@ -70,7 +75,9 @@ def test_dragging_redraws_and_every_map_is_exact(view: Browser) -> None:
     left, top, width, height = at(view, "#sliders input[type=range]")
     view.run("view.seen = []; const whole = drawMap; drawMap = (data, question) => { whole(data, question);"
              " view.seen.push([question.values.F, data.digest]); }; 0")  # fmt: skip
-    places = [(left + 8 + (width - 16) * k / 30, top + height / 2) for k in (15, 17, 20, 24, 26, 27)]
+    places = [
+        (left + 8 + (width - 16) * k / 30, top + height / 2) for k in (15, 17, 20, 24, 26, 27)
+    ]
     view.drag(*places)
     view.until(SETTLED)
     assert Fraction(view.run("view.of.F")) > -8
@@ -106,7 +113,10 @@ def test_the_keyboard_moves_sliders_and_the_point(view: Browser) -> None:
     found = view.run("view.poses")
     assert found["at"] == {"rho": "1.020", "L2": "0.920"}
     poses = ptmcad.solve(rho="1.020", L2="0.920", F3="-19.8", F4="-19.8")
-    assert (found["data"]["total"], found["data"]["stable"]) == (len(poses.equilibria), poses.stable)
+    assert (found["data"]["total"], found["data"]["stable"]) == (
+        len(poses.equilibria),
+        poses.stable,
+    )
 
 
 @pytest.mark.slow
@@ -125,8 +135,14 @@ def test_the_point_under_the_pointer_agrees_with_the_region_beside_it(view: Brow
     left, top, width, height = at(view, "#frame .frame")
     for x, y, stable in ((0.3, 0.5, 2), (0.8, 0.2, 1), (0.5, 0.9, 2), (0.05, 0.9, 1)):
         view.point_at(left + x * width, top + (1 - y) * height)
-        view.until(f"Math.abs(view.share[0] - {x}) < 0.01 && {SOLVED} && view.poses.at.rho === pointText().rho")
-        assert view.run("view.poses.data.stable") == view.run("Number(regionAt(view.share).words[0])") == stable
+        view.until(
+            f"Math.abs(view.share[0] - {x}) < 0.01 && {SOLVED} && view.poses.at.rho === pointText().rho"
+        )
+        assert (
+            view.run("view.poses.data.stable")
+            == view.run("Number(regionAt(view.share).words[0])")
+            == stable
+        )
         assert f"{stable} stable" in view.run("document.querySelector('#where').textContent")
         assert view.run("document.querySelectorAll('#poses .pose.stable').length") == stable
     view.click(left + 0.3 * width, top + 0.5 * height)  # fixes it
@@ -140,12 +156,16 @@ def test_the_point_under_the_pointer_agrees_with_the_region_beside_it(view: Brow
 @pytest.mark.slow
 def test_another_parameter_makes_another_family(view: Browser) -> None:
     second = "document.querySelectorAll('#sliders input[type=range]')[2]"
-    view.run(f"{second}.value = Number({second}.value) / 2; {second}.dispatchEvent(new Event('input'))")
+    view.run(
+        f"{second}.value = Number({second}.value) / 2; {second}.dispatchEvent(new Event('input'))"
+    )
     view.until(SETTLED)
     assert view.run("view.of.k") == "50.0"
     alone = ptmcad.classify({"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"k": 50, "F3": -20, "F4": -20}},
                             areas=False)  # fmt: skip
-    assert view.run("view.shown.digest") == [[r.stable, r.total, len(r.cells)] for r in alone.regions]
+    assert view.run("view.shown.digest") == [
+        [r.stable, r.total, len(r.cells)] for r in alone.regions
+    ]
     assert "k = 50.0" in view.run("state.textContent")
 
 
@@ -153,12 +173,19 @@ def test_the_figure_is_recorded_and_saved(view: Browser, own: Explorer, tmp_path
     view.run(f"{FIRST}.value = -123; {FIRST}.dispatchEvent(new Event('input'))")
     view.until(SETTLED)
     view.run("document.querySelector('#record').click()")
-    view.until("!document.querySelector('#recorded').hidden && document.querySelector('#yaml').textContent !== ''")
+    view.until(
+        "!document.querySelector('#recorded').hidden && document.querySelector('#yaml').textContent !== ''"
+    )
     record = tmp_path / "again.yaml"
     record.write_text(view.run("document.querySelector('#yaml').textContent"), encoding="utf-8")
     again = ptmcad.classify(record, areas=False)
-    assert [[r.stable, r.total, len(r.cells)] for r in again.regions] == view.run("view.shown.digest")
-    assert view.run("document.querySelector('#command').textContent") == "ptmcad classify equal-loads-F-123_10.yaml"
+    assert [[r.stable, r.total, len(r.cells)] for r in again.regions] == view.run(
+        "view.shown.digest"
+    )
+    assert (
+        view.run("document.querySelector('#command').textContent")
+        == "ptmcad classify equal-loads-F-123_10.yaml"
+    )
     view.run("document.querySelector('#save button').click()")
     view.until("document.querySelector('#saved').textContent.startsWith('Saved')")
     view.run("document.querySelector('#save button').click()")
@@ -177,7 +204,9 @@ def test_two_tabs_do_not_disturb_each_other(view: Browser, own: Explorer) -> Non
         for session, value in ((here, "-5.0"), (other, "-35.0")):
             view.switch(session)
             view.until(SETTLED)
-            assert view.run("view.of.F") == value and view.run("view.shown.digest") == expected(value)
+            assert view.run("view.of.F") == value and view.run("view.shown.digest") == expected(
+                value
+            )
     finally:
         view.switch(other)
 
@@ -186,7 +215,9 @@ def test_two_tabs_do_not_disturb_each_other(view: Browser, own: Explorer) -> Non
 def test_another_browser_is_not_let_in(view: Browser, own: Explorer) -> None:
     with browser() as stranger:
         stranger.call("Page.navigate", url=own.address)
-        stranger.until("document.body !== null && document.body.textContent.includes('used already')")
+        stranger.until(
+            "document.body !== null && document.body.textContent.includes('used already')"
+        )
         stranger.call("Page.navigate", url=f"http://127.0.0.1:{own.port}/")
         stranger.until("document.body !== null && document.body.textContent.includes('the token')")
 
@@ -233,7 +264,9 @@ def test_a_killed_server_is_told(one: Browser) -> None:
         own.process.wait(10)
         end = time.monotonic() + 20
         while one.run("document.querySelector('#gone').hidden"):
-            one.run(f"{FIRST}.value = Number({FIRST}.value) + 1; {FIRST}.dispatchEvent(new Event('input'))")
+            one.run(
+                f"{FIRST}.value = Number({FIRST}.value) + 1; {FIRST}.dispatchEvent(new Event('input'))"
+            )
             assert time.monotonic() < end
             time.sleep(0.1)
         assert "The program has ended" in one.run("document.querySelector('#gone').textContent")

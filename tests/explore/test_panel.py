@@ -31,7 +31,11 @@ def ends(found: SliderPanel) -> dict[str, tuple[Fraction, Fraction, Fraction]]:
 
 def test_a_family_has_its_free_parameter_first() -> None:
     found = panel("families/equal-loads")
-    assert [(s.name, s.free) for s in found.sliders[:3]] == [("F", True), ("L1", False), ("k", False)]
+    assert [(s.name, s.free) for s in found.sliders[:3]] == [
+        ("F", True),
+        ("L1", False),
+        ("k", False),
+    ]
     assert ends(found)["F"] == (-40, -20, 0)
     assert not {"F3", "F4", "rho", "L2", "k1"} & ends(found).keys()  # expressions, axes, aliases
 
@@ -52,7 +56,9 @@ def test_springs_with_one_free_length_have_one_slider() -> None:
     assert {changed.parameters[f"l0_{k}"].constant() for k in (1, 2, 3)} == {Fraction(1, 4)}
 
 
-RECORDS = sorted(path.relative_to(CONFIGS).with_suffix("").as_posix() for path in CONFIGS.rglob("*.yaml"))
+RECORDS = sorted(
+    path.relative_to(CONFIGS).with_suffix("").as_posix() for path in CONFIGS.rglob("*.yaml")
+)
 
 
 def test_every_shipped_record_has_sliders_at_round_positions() -> None:
@@ -149,7 +155,10 @@ def test_maps_are_those_of_classify(name: str, values: dict[str, str]) -> None:
 @pytest.mark.parametrize("values", [{"F": "-16.5"}, {"F": "-1/3", "k": "80"}])
 @pytest.mark.slow_cases("values1")
 def test_the_record_and_the_commands_make_the_figure(
-    values: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    values: dict[str, str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     task = tasks("families/equal-loads")
     shown = task.answer({"kind": "map", "values": values, "fine": False, "framed": False})
@@ -175,7 +184,10 @@ def test_saved_files_are_a_whole_set_and_nothing_is_written_over(tmp_path: Path)
     assert task.answer(job)["files"] == ["mine.yaml", "mine.svg", "mine.json"]
     result = ptmcad.RegionMap.from_json((tmp_path / "mine.json").read_text(encoding="utf-8"))
     assert all(cell.solutions for cell in result.cells)  # it proves what any result does
-    assert result.slice.name == "mine" and load(tmp_path / "mine.yaml").parameters == result.slice.parameters
+    assert (
+        result.slice.name == "mine"
+        and load(tmp_path / "mine.yaml").parameters == result.slice.parameters
+    )
     with pytest.raises(ConfigError, match=r"mine.yaml is there already"):
         task.answer(job)
     for name in ("../mine", "a/b", "", ".", "..", "CON", "a\\b", "-x", "a" * 101):
@@ -190,8 +202,15 @@ def test_points_are_solved_and_those_beyond_are_refused() -> None:
     found = task.answer(job)
     poses = ptmcad.solve(rho="0.7", L2="1.5", F3=-10, F4=-10)
     assert (found["total"], found["stable"]) == (len(poses.equilibria), poses.stable) == (6, 2)
-    assert [pose["energy"] for pose in found["equilibria"]] == [p.known_energy.text(7) for p in poses.equilibria]
-    for at in ({"rho": "3", "L2": "1"}, {"rho": "1"}, {"rho": "1", "L2": "1", "F": "1"}, {"rho": "1", "L2": "x"}):
+    assert [pose["energy"] for pose in found["equilibria"]] == [
+        p.known_energy.text(7) for p in poses.equilibria
+    ]
+    for at in (
+        {"rho": "3", "L2": "1"},
+        {"rho": "1"},
+        {"rho": "1", "L2": "1", "F": "1"},
+        {"rho": "1", "L2": "x"},
+    ):
         with pytest.raises(ConfigError):
             task.answer({**job, "at": at})
     with pytest.raises(ConfigError, match="L2 is 0 there"):

@@ -37,7 +37,9 @@ def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Explorer]:
     folder = tmp_path_factory.mktemp("explored")
     with explorer(RECORD, "--out", folder) as found:
         for path in PATHS:  # before the token has been exchanged
-            assert found.send("GET", path).status == found.send("POST", path, "{}").status == 403, path
+            assert found.send("GET", path).status == found.send("POST", path, "{}").status == 403, (
+                path
+            )
         found.enter()
         yield found
 
@@ -50,14 +52,27 @@ def said(reply: Reply) -> str:
 
 
 def test_every_answer_is_kept_from_caches_frames_and_other_sites(own: Explorer) -> None:
-    for path, headers in (("/", own.own), ("/", {}), ("/nowhere", own.own), ("/explore.js", own.own)):
-        found = own.send("GET", path, headers={k: v for k, v in headers.items() if k == "Cookie"}).headers
+    for path, headers in (
+        ("/", own.own),
+        ("/", {}),
+        ("/nowhere", own.own),
+        ("/explore.js", own.own),
+    ):
+        found = own.send(
+            "GET", path, headers={k: v for k, v in headers.items() if k == "Cookie"}
+        ).headers
         assert found["Cache-Control"] == "no-store" and found["X-Content-Type-Options"] == "nosniff"
         policy = found["Content-Security-Policy"]
-        assert "default-src 'none'" in policy and "unsafe" not in policy and "frame-ancestors 'none'" in policy
+        assert (
+            "default-src 'none'" in policy
+            and "unsafe" not in policy
+            and "frame-ancestors 'none'" in policy
+        )
 
 
-def test_the_cookie_is_kept_from_scripts_and_other_sites_and_secrets_are_in_no_address(own: Explorer) -> None:
+def test_the_cookie_is_kept_from_scripts_and_other_sites_and_secrets_are_in_no_address(
+    own: Explorer,
+) -> None:
     assert own.entered["Location"] == "/"
     parts = own.entered["Set-Cookie"].split("; ")
     assert {"HttpOnly", "SameSite=Strict", "Path=/"} <= set(parts)
@@ -72,12 +87,20 @@ def test_the_token_is_good_once(own: Explorer) -> None:
     known = own.send("GET", f"/?token={own.token}", headers={"Cookie": own.own["Cookie"]})
     assert (known.status, known.headers["Location"]) == (303, "/")
     for token in ("", "x", own.token[:-1], own.token + "x", "%00", "ü"):
-        assert own.send("GET", f"/?token={token.encode().hex() if token == 'ü' else token}").status == 403
+        assert (
+            own.send("GET", f"/?token={token.encode().hex() if token == 'ü' else token}").status
+            == 403
+        )
 
 
 def test_without_the_cookie_there_is_nothing(own: Explorer) -> None:
     for path in PATHS:
-        for headers in ({}, {"Cookie": "a=b"}, {"Cookie": own.own["Cookie"][:-1]}, {"Cookie": own.own["Cookie"] + "x"}):
+        for headers in (
+            {},
+            {"Cookie": "a=b"},
+            {"Cookie": own.own["Cookie"][:-1]},
+            {"Cookie": own.own["Cookie"] + "x"},
+        ):
             assert own.send("GET", path, headers=headers).status == 403, (path, headers)
     for missing in ("Cookie", "Origin", "X-Ptmcad-Secret"):
         headers = {k: v for k, v in own.own.items() if k != missing}
@@ -181,7 +204,9 @@ def test_what_is_no_http_does_no_harm(own: Explorer) -> None:
 
 
 def test_it_listens_on_this_machine_alone(own: Explorer) -> None:
-    for address in {info[4][0] for info in socket.getaddrinfo(socket.gethostname(), None)} - {"127.0.0.1"}:
+    for address in {info[4][0] for info in socket.getaddrinfo(socket.gethostname(), None)} - {
+        "127.0.0.1"
+    }:
         with pytest.raises(OSError):
             socket.create_connection((address, own.port), 1).close()
 
@@ -194,7 +219,10 @@ def test_the_last_question_of_a_tab_supersedes_those_that_wait(own: Explorer) ->
         replies[name] = own.ask("map", tab=tab, values={"F": value}, fine=True)
 
     threads = []
-    for name, tab, value in [*((f"own {k}", "one", str(-5 - k)) for k in range(6)), ("other", "two", "-30")]:
+    for name, tab, value in [
+        *((f"own {k}", "one", str(-5 - k)) for k in range(6)),
+        ("other", "two", "-30"),
+    ]:
         threads.append(threading.Thread(target=ask, args=(name, tab, value)))
         threads[-1].start()
         time.sleep(0.02)
@@ -206,7 +234,11 @@ def test_the_last_question_of_a_tab_supersedes_those_that_wait(own: Explorer) ->
 
 
 def _children(pid: int) -> list[int]:
-    return [int(n) for task in Path(f"/proc/{pid}/task").iterdir() for n in (task / "children").read_text().split()]
+    return [
+        int(n)
+        for task in Path(f"/proc/{pid}/task").iterdir()
+        for n in (task / "children").read_text().split()
+    ]
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="processes are found in /proc")
@@ -225,7 +257,9 @@ def test_a_worker_that_dies_is_replaced_and_all_end_with_the_server() -> None:
             assert "another one is there now" in first.data["error"]
         assert found.ask("map").status == 200
         after = _children(child)
-        os.kill(found.process.pid, signal.SIGKILL)  # not even the process that watches may say goodbye
+        os.kill(
+            found.process.pid, signal.SIGKILL
+        )  # not even the process that watches may say goodbye
         end = time.monotonic() + PATIENCE
         while any(Path(f"/proc/{pid}/exe").exists() for pid in (child, *after)):
             assert time.monotonic() < end, "a process is left"
@@ -247,7 +281,9 @@ def test_it_ends_with_the_terminal(number: signal.Signals, status: int) -> None:
         assert found.process.wait(PATIENCE) == status
 
 
-def test_bad_records_and_ports_are_refused(own: Explorer, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bad_records_and_ports_are_refused(
+    own: Explorer, capsys: pytest.CaptureFixture[str]
+) -> None:
     for arguments, word in (
         ([str(RECORD), "--port", str(own.port)], "cannot be listened on"),
         (["no-such.yaml"], "no-such.yaml"),

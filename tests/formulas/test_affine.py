@@ -1,4 +1,6 @@
-"""Affine forms enclose what they say, next to springs without length too; their rows lose no solution."""
+"""Affine forms enclose what they say, next to springs without length too; their rows lose no
+solution.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,9 @@ from ptmcad.formulas.tape import Tape, record
 Floats = NDArray[np.float64]
 
 
-def forms_of(tape: Tape, low: Floats, high: Floats, unknowns: list[int]) -> tuple[Floats, Floats, Floats]:
+def forms_of(
+    tape: Tape, low: Floats, high: Floats, unknowns: list[int]
+) -> tuple[Floats, Floats, Floats]:
     """Middles and radii of the variables, and the forms of the tape on the box."""
     values = np.empty((2, len(tape)))
     assert run(program(tape), low, high, values[0], values[1], 0, len(tape))
@@ -42,15 +46,21 @@ def exact_arb(value: float) -> arb:
 
 
 def excess(tape: Tape, box: Floats, unknowns: list[int], rng: random.Random) -> float:
-    """By how much of its error a node is farther from its form than that, at most, at random points of the box."""
+    """By how much of its error a node is farther from its form than that, at most, at random points
+    of the box.
+    """
     low, high = box
     middle, radius, forms = forms_of(tape, low, high, unknowns)
     worst = 0.0
     for _ in range(12):
-        point = [rng.choice([a, b, a + (b - a) * rng.random()]) for a, b in zip(low, high, strict=True)]
+        point = [
+            rng.choice([a, b, a + (b - a) * rng.random()]) for a, b in zip(low, high, strict=True)
+        ]
         with ctx.workprec(200):
             values = run_arb(
-                tape, [exact_arb(min(max(p, a), b)) for p, a, b in zip(point, low, high, strict=True)], 200
+                tape,
+                [exact_arb(min(max(p, a), b)) for p, a, b in zip(point, low, high, strict=True)],
+                200,
             )
             for k in range(len(tape)):
                 if not forms[k, ERROR] < np.inf:
@@ -59,7 +69,10 @@ def excess(tape: Tape, box: Floats, unknowns: list[int], rng: random.Random) -> 
                 for j, x in enumerate(unknowns):
                     place = exact_arb(min(max(point[x], low[x]), high[x])) - exact_arb(middle[x])
                     linear += exact_arb(forms[k, FIRST + j]) * place / exact_arb(radius[x])
-                worst = max(worst, float((abs(values[k] - linear) / exact_arb(forms[k, ERROR] + 1e-300)).lower()))
+                worst = max(
+                    worst,
+                    float((abs(values[k] - linear) / exact_arb(forms[k, ERROR] + 1e-300)).lower()),
+                )
     return worst
 
 
@@ -68,7 +81,12 @@ def formulas(graph: Graph) -> dict[str, list[Formula]]:
     third = graph.constant(1) / 3
     return {
         "linear": [x + third * y - z, -(x - y), (x + y) - (y - third)],
-        "products": [x * y, (x + y) * (x - z), (x - x * y) * (y + third), (third * x) * (third * x)],
+        "products": [
+            x * y,
+            (x + y) * (x - z),
+            (x - x * y) * (y + third),
+            (third * x) * (third * x),
+        ],
         "squares": [x.squared(), (x - y).squared(), (x * y).squared().squared()],
         "sines": [x.sin(), x.cos(), (x + y).cos(), (3 * x - y).sin(), (x * y).sin()],
         "polar": [
@@ -76,7 +94,13 @@ def formulas(graph: Graph) -> dict[str, list[Formula]]:
             for f in (direction, length, inverse_length)
             for a, b in ((x, y), (y, x), (x - y * z, third - x), (x.cos() - y, x.sin()))
         ],
-        "quotients": [1 / x, x / y, (x + y) / (1 + z.squared()), -z / (x * y), 1 / (-2 - x.squared())],
+        "quotients": [
+            1 / x,
+            x / y,
+            (x + y) / (1 + z.squared()),
+            -z / (x * y),
+            1 / (-2 - x.squared()),
+        ],
         "meets": [meet(x * x, x.squared()), meet((x + y).squared(), x * x + 2 * (x * y) + y * y)],
     }
 
@@ -84,7 +108,9 @@ def formulas(graph: Graph) -> dict[str, list[Formula]]:
 @pytest.mark.parametrize("what", formulas(Graph()))
 @pytest.mark.fast_cases("squares", "sines")
 def test_values_lie_within_the_error_of_their_form(what: str) -> None:
-    """For wide boxes and such as are hardly wider than the rounding; of z only an interval is known."""
+    """For wide boxes and such as are hardly wider than the rounding; of z only an interval is
+    known.
+    """
     rng, tape = random.Random(what), record([formulas(Graph())[what]])
     for width in (1.0, 0.3, 0.03, 1e-4, 1e-9, 1e-13):
         for _ in range(4):
@@ -122,7 +148,9 @@ def test_a_length_that_may_be_zero_leaves_every_direction_and_every_inverse() ->
 
 
 def plane_system(rng: random.Random, kind: str) -> tuple[EquationSystem, Floats]:
-    """A system in four unknowns that vanishes, and has nonnegative formulas, at a point that comes with it."""
+    """A system in four unknowns that vanishes, and has nonnegative formulas, at a point that comes
+    with it.
+    """
     graph = Graph()
     point = np.array([rng.uniform(-1, 1) for _ in range(4)])
     x = [graph.variable(k) for k in range(4)]
@@ -132,20 +160,34 @@ def plane_system(rng: random.Random, kind: str) -> tuple[EquationSystem, Floats]
         """Zero at the point."""
         p, q, r = (rng.randrange(4) for _ in range(3))
         a, b, c = (Fraction(rng.randint(-9, 9), 5) for _ in range(3))
-        return a * (x[p] - at[p]) + b * (x[q] * x[r] - at[q] * at[r]) + c * (x[r] - at[r]).sin() * (2 + x[p].cos())
+        return (
+            a * (x[p] - at[p])
+            + b * (x[q] * x[r] - at[q] * at[r])
+            + c * (x[r] - at[r]).sin() * (2 + x[p].cos())
+        )
 
     def sines() -> Formula:
-        """Zero at the point, without the first unknown: then that is known as well as the others are."""
+        """Zero at the point, without the first unknown: then that is known as well as the others
+        are.
+        """
         p, q = (rng.randrange(1, 4) for _ in range(2))
         return Fraction(rng.randint(-9, 9), 5) * (x[p] - at[p]).sin() * (2 + x[q].cos())
 
     equations = [combination() for _ in range(3)]
     vanishing: list[Formula] = []
-    if kind == "conditional":  # formulas that hold at solutions only, one of them for a number that the other misses
-        vanishing = [meet(f + equations[0] * (3 + x[1].squared()), f) for f in (combination(), combination())]
+    if (
+        kind == "conditional"
+    ):  # formulas that hold at solutions only, one of them for a number that the other misses
+        vanishing = [
+            meet(f + equations[0] * (3 + x[1].squared()), f) for f in (combination(), combination())
+        ]
         vanishing = [v - 0 for v in vanishing]
-    nonnegative = [combination() + Fraction(1, 3), -combination().squared()] if kind == "nonnegative" else []
-    solved = quotients([x[0] - at[0] + f for f in (sines(), sines())], (0,)) if kind == "solved" else ()
+    nonnegative = (
+        [combination() + Fraction(1, 3), -combination().squared()] if kind == "nonnegative" else []
+    )
+    solved = (
+        quotients([x[0] - at[0] + f for f in (sines(), sines())], (0,)) if kind == "solved" else ()
+    )
     equations += [x[0] - at[0] + sines()] if kind == "solved" else []
     return system(equations[-3:], (0, 1, 2, 3), ((), vanishing), nonnegative, solved=solved), point
 
@@ -174,7 +216,9 @@ def test_rows_keep_every_solution(kind: str) -> None:
 
 
 def test_boxes_without_a_solution_are_discarded_before_their_derivatives_are_small() -> None:
-    """x^2 + y^2 = 1 and its moved copy have two points in common; on the box no equation is far from zero."""
+    """x^2 + y^2 = 1 and its moved copy have two points in common; on the box no equation is far
+    from zero.
+    """
     graph = Graph()
     x, y = graph.variable(0), graph.variable(1)
     circles = [x.squared() + y.squared() - 1, (x - Fraction(1, 10)).squared() + y.squared() - 1]

@@ -49,14 +49,18 @@ def test_another_part_is_not_waited_for(folder: Path) -> None:
         assert waited == 0
 
 
-def test_one_that_was_stopped_is_not_waited_for_for_ever(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_that_was_stopped_is_not_waited_for_for_ever(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(compiled, "_PATIENCE", 0.01)
     folder.mkdir()
     with held_elsewhere(folder), compiled.in_turn("upright") as waited:
         assert waited >= 0.01
 
 
-def test_a_folder_that_cannot_be_written_is_no_reason_to_wait(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_that_cannot_be_written_is_no_reason_to_wait(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setattr(compiled, "_FOLDER", tmp_path / "file" / "folder")
     with compiled.in_turn("upright") as waited:

@@ -29,15 +29,25 @@ def formula_and_value() -> tuple[Formula, Formula, Any]:
 
 def test_values_at_a_point_and_at_many() -> None:
     f, slope, value = formula_and_value()
-    at = Doubles({"f": f, "pairs": (("name", slope),), "none": None}, math).at({0: 0.3, 1: 0.7, 2: -1.1})
-    assert (at["f"], at["none"], at["pairs"][0][0]) == (pytest.approx(value(0.3, 0.7, -1.1)), None, "name")
+    at = Doubles({"f": f, "pairs": (("name", slope),), "none": None}, math).at(
+        {0: 0.3, 1: 0.7, 2: -1.1}
+    )
+    assert (at["f"], at["none"], at["pairs"][0][0]) == (
+        pytest.approx(value(0.3, 0.7, -1.1)),
+        None,
+        "name",
+    )
     x, y = np.random.default_rng(1).uniform(-2, 2, (2, 4, 3))
     found, steep = Doubles((f, slope), np).at({0: 0.3, 1: x, 2: y})
     assert found == pytest.approx(value(0.3, x, y))
-    assert steep == pytest.approx((value(0.3, x + 1e-6, y) - value(0.3, x - 1e-6, y)) / 2e-6, abs=1e-6)
+    assert steep == pytest.approx(
+        (value(0.3, x + 1e-6, y) - value(0.3, x - 1e-6, y)) / 2e-6, abs=1e-6
+    )
 
 
-def run(instructions: Sequence[Instruction], parameters: Sequence[float], unknowns: Sequence[float]) -> list[float]:
+def run(
+    instructions: Sequence[Instruction], parameters: Sequence[float], unknowns: Sequence[float]
+) -> list[float]:
     found: list[float] = []
     for kind, *operands in instructions:
         a, *b = operands
@@ -52,7 +62,9 @@ def run(instructions: Sequence[Instruction], parameters: Sequence[float], unknow
                 found.append(math.sqrt(found[a]))
             case _:
                 left, right = found[a], found[b[0]]
-                found.append(left * right if kind == "*" else left + right if kind == "+" else left - right)
+                found.append(
+                    left * right if kind == "*" else left + right if kind == "+" else left - right
+                )
     return found
 
 
@@ -61,7 +73,9 @@ def test_instructions_of_a_script_have_the_same_values() -> None:
     instructions, places = script({"f": f, "again": (f,)}, {0: ("p", 0), 1: ("u", 0), 2: ("u", 1)})
     assert len(set(instructions)) == len(instructions)
     assert places["again"] == (places["f"],)
-    assert run(instructions, [0.3], [0.7, -1.1])[places["f"]] == pytest.approx(value(0.3, 0.7, -1.1))
+    assert run(instructions, [0.3], [0.7, -1.1])[places["f"]] == pytest.approx(
+        value(0.3, 0.7, -1.1)
+    )
 
 
 def test_a_constant_beyond_what_products_hold_is_infinite() -> None:

@@ -1,4 +1,6 @@
-"""Every function of the interval arithmetic encloses what it should: against Arb, and against exact fractions."""
+"""Every function of the interval arithmetic encloses what it should: against Arb, and against exact
+fractions.
+"""
 
 from __future__ import annotations
 
@@ -35,13 +37,17 @@ CORNERS = [
     2.0**-1021, 1e-300, 1e-200, 1e-160, 1e-140, 1.1e-140, 9e-141, 1e-100, 1e100, 9e139, 1e140, 1.1e140, 1e154, 1e160,
     1e200, 1e300, LARGEST,
 ]  # fmt: skip
-FINITE = st.sampled_from(CORNERS) | st.floats(allow_nan=False, allow_infinity=False) | st.floats(-2, 2)
+FINITE = (
+    st.sampled_from(CORNERS) | st.floats(allow_nan=False, allow_infinity=False) | st.floats(-2, 2)
+)
 END = FINITE | st.sampled_from([inf, -inf, nan])
 
 
 @st.composite
 def intervals(draw: st.DrawFn, end: st.SearchStrategy[float] = END) -> tuple[float, float]:
-    """A lower and an upper end; an end that says nothing may be infinite or NaN, whatever the other one is."""
+    """A lower and an upper end; an end that says nothing may be infinite or NaN, whatever the other
+    one is.
+    """
     a, b = draw(end) * draw(st.sampled_from([1, -1])), draw(end) * draw(st.sampled_from([1, -1]))
     if a > b:
         a, b = b, a
@@ -51,12 +57,18 @@ def intervals(draw: st.DrawFn, end: st.SearchStrategy[float] = END) -> tuple[flo
 
 
 def points(interval: tuple[float, float]) -> Iterator[Fraction]:
-    """Exact members of an interval: its ends, zero, some between; large ones where an end is no bound."""
+    """Exact members of an interval: its ends, zero, some between; large ones where an end is no
+    bound.
+    """
     a, b = interval
     low = Fraction(a) if math.isfinite(a) else None
     high = Fraction(b) if math.isfinite(b) else None
     big = Fraction(10) ** 400
-    low = low if low is not None else (min(high, Fraction(0)) if high is not None else Fraction(0)) - big
+    low = (
+        low
+        if low is not None
+        else (min(high, Fraction(0)) if high is not None else Fraction(0)) - big
+    )
     high = high if high is not None else max(low, Fraction(0)) + big
     yield low
     yield high
@@ -169,19 +181,25 @@ def _sines(low: Floats, high: Floats, out: Floats) -> None:
 
 
 def random_angles(count: int, seed: int) -> tuple[Floats, Floats]:
-    """Intervals of angles, many of them near quarter turns, narrow, wide, tiny, or beyond what is claimed."""
+    """Intervals of angles, many of them near quarter turns, narrow, wide, tiny, or beyond what is
+    claimed.
+    """
     rng = np.random.default_rng(seed)
     low = rng.uniform(-7, 7, count)
     kind = rng.integers(0, 8, count)
     quarters = rng.integers(-44, 45, count) * (math.pi / 2)
     low = np.where(kind == 1, quarters + rng.integers(-40, 41, count) * 2.0**-50, low)
-    low = np.where(kind == 2, quarters + 10.0 ** rng.uniform(-16, 0, count) * rng.choice([-1, 1], count), low)
+    low = np.where(
+        kind == 2, quarters + 10.0 ** rng.uniform(-16, 0, count) * rng.choice([-1, 1], count), low
+    )
     low = np.where(kind == 3, rng.uniform(-61, 61, count), low)
     low = np.where(kind == 4, 10.0 ** rng.uniform(-320, 0, count) * rng.choice([-1, 1], count), low)
     width = 10.0 ** rng.uniform(-17, 1, count)
     width = np.where(rng.integers(0, 6, count) == 0, 0.0, width)
     # ends that lie at an extremum
-    high = np.where(kind == 5, np.maximum(low, np.ceil(low / (math.pi / 2)) * (math.pi / 2)), low + width)
+    high = np.where(
+        kind == 5, np.maximum(low, np.ceil(low / (math.pi / 2)) * (math.pi / 2)), low + width
+    )
     high = np.where(kind == 6, np.nextafter(low, inf), high)
     return low, high
 
@@ -217,8 +235,12 @@ def check_sines(low: Floats, high: Floats) -> None:
                 assert (v == 1) if top else not (p > v or q > v), (a, b, quarter)
                 assert (u == -1) if bottom else not (p < u or q < u), (a, b, quarter)
                 if b - a < 6.28 and a > -60 and b < 60:
-                    assert top or v == 1 or v - p < slack or v - q < slack, "the upper bound gives too much away"
-                    assert bottom or u == -1 or p - u < slack or q - u < slack, "the lower bound gives too much away"
+                    assert top or v == 1 or v - p < slack or v - q < slack, (
+                        "the upper bound gives too much away"
+                    )
+                    assert bottom or u == -1 or p - u < slack or q - u < slack, (
+                        "the lower bound gives too much away"
+                    )
 
 
 def test_sine_and_cosine_against_arb() -> None:
@@ -248,26 +270,36 @@ def _error(x: float) -> tuple[arb, arb]:
 
 
 def test_error_of_sine_and_cosine_is_a_quarter_of_what_is_claimed() -> None:
-    """The lemma proves 2^-51 and a half; this looks for the worst near the ends of a quarter turn's halves."""
+    """The lemma proves 2^-51 and a half; this looks for the worst near the ends of a quarter turn's
+    halves.
+    """
     rng = np.random.default_rng(7)
     corners = (rng.integers(-76, 77, 4000) + rng.uniform(-1e-9, 1e-9, 4000)) * math.pi / 4
     places = np.concatenate([rng.uniform(-60, 60, 4000), corners])
     with ctx.workprec(120):
         worst = max(float(e.upper()) for x in places.tolist() for e in _error(x))
     assert worst < arithmetic.SINE_ERROR / 4
-    assert worst > arithmetic.SINE_ERROR / 64, "a bound this loose, or a test this blind, is a mistake"
+    assert worst > arithmetic.SINE_ERROR / 64, (
+        "a bound this loose, or a test this blind, is a mistake"
+    )
 
 
 def copied(into: Path) -> Path:
     """The modules of the package as far as the digest is of them, and one that it is not of."""
     for room in (*compilation.ROOMS, "cover"):
-        shutil.copytree(PACKAGE / room, into / room, ignore=lambda _, names: [n for n in names if n[-3:] != ".py"])
+        shutil.copytree(
+            PACKAGE / room,
+            into / room,
+            ignore=lambda _, names: [n for n in names if n[-3:] != ".py"],
+        )
     return into
 
 
 @pytest.mark.parametrize("module", ["certified/search.py", "formulas/rounding.py"])
 def test_compiled_code_belongs_to_the_sources(module: str, tmp_path: Path) -> None:
-    """Another text of one module of the rooms is another folder: callers do not keep what they called before."""
+    """Another text of one module of the rooms is another folder: callers do not keep what they
+    called before.
+    """
     package = copied(tmp_path)
     before = compilation.digest_of(package)
     assert before == compilation.digest_of(PACKAGE)
@@ -288,7 +320,9 @@ def test_the_digest_is_of_no_more_than_compiled_code_needs(tmp_path: Path) -> No
 
 
 def called_by(function: object) -> Iterator[str]:
-    """The module of a compiled function, and those of functions among the globals that its code names."""
+    """The module of a compiled function, and those of functions among the globals that its code
+    names.
+    """
     python = function.py_func  # type: ignore[attr-defined]
     yield python.__module__
     for name in python.__code__.co_names:
@@ -300,7 +334,9 @@ def called_by(function: object) -> Iterator[str]:
 
 
 def test_the_digest_is_of_all_that_is_compiled() -> None:
-    """A function of another room that compiled code calls could be edited, and old code would go on."""
+    """A function of another room that compiled code calls could be edited, and old code would go
+    on.
+    """
     modules = [importlib.import_module(f"ptmcad.{room}.{path.stem}")
                for room in compilation.ROOMS for path in sorted((PACKAGE / room).glob("*.py"))]  # fmt: skip
     functions = [f for m in modules for f in vars(m).values() if isinstance(f, CPUDispatcher)]

@@ -1,4 +1,6 @@
-"""Formulas' values in an arithmetic that is given: rationals that count how often they are multiplied."""
+"""Formulas' values in an arithmetic that is given: rationals that count how often they are
+multiplied.
+"""
 
 from __future__ import annotations
 

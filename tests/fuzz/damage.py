@@ -1,7 +1,8 @@
 """Damage to texts and to JSON trees, drawn from a seeded generator.
 
-Guarantee: the same generator state gives the same damage, in every process. Nothing here knows what the damaged text
-means: tokens are numbers, words and signs, and a JSON tree is damaged wherever recursion leads.
+Guarantee: the same generator state gives the same damage, in every process. Nothing here knows what
+the damaged text means: tokens are numbers, words and signs, and a JSON tree is damaged wherever
+recursion leads.
 """
 
 from __future__ import annotations
@@ -71,7 +72,11 @@ def _cut(data: bytes, rng: Random, _other: bytes) -> bytes:
 
 def _insert(data: bytes, rng: Random, _other: bytes) -> bytes:
     at = rng.randrange(len(data) + 1)
-    piece = rng.randbytes(rng.randrange(1, 9)) if rng.random() < 0.3 else nasty(rng).encode("utf-8", "surrogatepass")
+    piece = (
+        rng.randbytes(rng.randrange(1, 9))
+        if rng.random() < 0.3
+        else nasty(rng).encode("utf-8", "surrogatepass")
+    )
     return data[:at] + piece + data[at:]
 
 
@@ -88,11 +93,23 @@ def _splice(data: bytes, rng: Random, other: bytes) -> bytes:
 
 def _recode(data: bytes, rng: Random, _other: bytes) -> bytes:
     text = data.decode("utf-8", "replace")
-    return text.encode(rng.choice(("utf-16", "utf-16-le", "utf-32", "utf-8-sig", "utf-7")), "replace")
+    return text.encode(
+        rng.choice(("utf-16", "utf-16-le", "utf-32", "utf-8-sig", "utf-7")), "replace"
+    )
 
 
 _Accident = Callable[[bytes, Random, bytes], bytes]
-_ACCIDENTS: tuple[_Accident, ...] = (_flip, _flip, _cut, _cut, _insert, _insert, _repeat, _splice, _recode)
+_ACCIDENTS: tuple[_Accident, ...] = (
+    _flip,
+    _flip,
+    _cut,
+    _cut,
+    _insert,
+    _insert,
+    _repeat,
+    _splice,
+    _recode,
+)
 
 
 # ------------------------------------------------------------------------------------------------------- tokens
@@ -154,7 +171,13 @@ def damaged_tree(tree: Any, rng: Random) -> str:
 
 def _places(tree: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], Any, Any]]:
     """(path, container, key) of every entry."""
-    entries = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
+    entries = (
+        tree.items()
+        if isinstance(tree, dict)
+        else enumerate(tree)
+        if isinstance(tree, list)
+        else ()
+    )
     for key, value in entries:
         yield (*path, key), tree, key
         if isinstance(value, dict | list):
@@ -173,7 +196,9 @@ def _accident(container: Any, key: Any, rng: Random) -> None:
     elif kind == 6 and isinstance(container, list):
         container.insert(key, json.loads(json.dumps(value)))
     elif kind == 7:
-        other = rng.choice(list(container) if isinstance(container, dict) else range(len(container)))
+        other = rng.choice(
+            list(container) if isinstance(container, dict) else range(len(container))
+        )
         container[key], container[other] = container[other], container[key]
     elif kind == 8 and isinstance(value, list) and value:
         container[key] = value * rng.choice((2, 3, 50))
@@ -192,22 +217,48 @@ def _anything(rng: Random) -> Any:
     if kind == 1:
         return rng.choice((True, False))
     if kind == 2:
-        return rng.choice((0, 1, -1, 2, 5, 10**6, 10**9, -(10**9), 10**18, 2**63, 10**4000, -(10**30)))
+        return rng.choice(
+            (0, 1, -1, 2, 5, 10**6, 10**9, -(10**9), 10**18, 2**63, 10**4000, -(10**30))
+        )
     if kind == 3:
         return rng.choice((0.5, 1e308, -1e-308, 1.0, float("nan"), float("inf"), -0.0))
     if kind == 4:
         return rng.choice(([], {}, [[]], [None], {"": ""}, "", [0], [0, 0], [0, 0, 0], ["0", "1"]))
     if kind == 5:
         depth = rng.choice((5, 100, 900, 2000, 100_000))
-        return Raw(rng.choice(("[" * depth + "]" * depth, '{"a":' * depth + "1" + "}" * depth, "[" * depth)))
+        return Raw(
+            rng.choice(
+                ("[" * depth + "]" * depth, '{"a":' * depth + "1" + "}" * depth, "[" * depth)
+            )
+        )
     if kind == 6:
         return Raw(
             rng.choice(
-                ("NaN", "Infinity", "-Infinity", "1e400", "-0", "1" * 4301, "01", "'a'", "undefined", "1" * 10**5)
+                (
+                    "NaN",
+                    "Infinity",
+                    "-Infinity",
+                    "1e400",
+                    "-0",
+                    "1" * 4301,
+                    "01",
+                    "'a'",
+                    "undefined",
+                    "1" * 10**5,
+                )
             )
         )
     if kind == 7:
-        return rng.choice(([0] * 10_000, ["1"] * 3000, [None] * 100_000, "1" * 10**5, "x" * 10**5, [[0, 0]] * 3000))
+        return rng.choice(
+            (
+                [0] * 10_000,
+                ["1"] * 3000,
+                [None] * 100_000,
+                "1" * 10**5,
+                "x" * 10**5,
+                [[0, 0]] * 3000,
+            )
+        )
     return nasty(rng)
 
 
@@ -217,7 +268,19 @@ def _near(value: Any, rng: Random) -> Any:
         return not value
     if isinstance(value, int):
         return rng.choice(
-            (value + 1, value - 1, -value, 2 * value, 0, 1, 10**6, value + 10**9, 10**40, float(value), str(value))
+            (
+                value + 1,
+                value - 1,
+                -value,
+                2 * value,
+                0,
+                1,
+                10**6,
+                value + 10**9,
+                10**40,
+                float(value),
+                str(value),
+            )
         )
     if isinstance(value, float):
         return rng.choice((-value, value * 1e300, float("nan"), 0.0))

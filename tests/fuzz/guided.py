@@ -45,7 +45,9 @@ def mutated(kind: str, data: bytes, most: int, seed: int) -> bytes:
             return damaged_tree(json.loads(data), rng).encode("utf-8", "surrogatepass")[:most]
         except (ValueError, RecursionError):
             pass
-    return damaged_tokens(data.decode("utf-8", "replace"), rng).encode("utf-8", "surrogatepass")[:most]
+    return damaged_tokens(data.decode("utf-8", "replace"), rng).encode("utf-8", "surrogatepass")[
+        :most
+    ]
 
 
 def main(kind: str, cases: int, seed: int, folder: Path) -> None:

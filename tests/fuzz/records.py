@@ -1,4 +1,6 @@
-"""Problem records and options for the fuzzer, grown by a grammar: many are nearly right, some are right."""
+"""Problem records and options for the fuzzer, grown by a grammar: many are nearly right, some are
+right.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ _VALUES = ("0", "1", "2", "-10", "3/2", "0.1", "1e-30", "100", "1/3", "-1e3")
 
 
 def expression(rng: Random, names: tuple[str, ...], depth: int = 3, odd: float = 0.05) -> str:
-    """An arithmetic expression in the names, with a probability of `odd` for each leaf to be something else."""
+    """An arithmetic expression in the names, with a probability of `odd` for each leaf to be
+    something else.
+    """
     if rng.random() < odd:
         return nasty(rng)
     if depth == 0 or rng.random() < 0.4:
@@ -22,7 +26,9 @@ def expression(rng: Random, names: tuple[str, ...], depth: int = 3, odd: float =
         return f"({left})^{rng.choice(('2', '3', '-1', '0', '1/2', '-2', '17', '10^9'))}"
     if kind == 1:
         return f"-({left})"
-    return rng.choice(("{} + {}", "{} - {}", "({})*({})", "({})/({})", "{}*{}", "{}**{}")).format(left, right)
+    return rng.choice(("{} + {}", "{} - {}", "({})*({})", "({})/({})", "{}*{}", "{}**{}")).format(
+        left, right
+    )
 
 
 def window(rng: Random, odd: float = 0.05) -> tuple[str, str]:
@@ -30,18 +36,30 @@ def window(rng: Random, odd: float = 0.05) -> tuple[str, str]:
     if rng.random() < odd:
         return nasty(rng), nasty(rng)
     low = rng.choice(("0", "0", "1", "1/2", "1e-3", "-1", "-10"))
-    return low, rng.choice(("2", "4", f"{low}+1e-30", f"{low}+1/1000", "3/2", "0", "1e3", f"{low}+1e-400"))
+    return low, rng.choice(
+        ("2", "4", f"{low}+1e-30", f"{low}+1/1000", "3/2", "0", "1e3", f"{low}+1e-400")
+    )
 
 
 def tame_record(rng: Random) -> str:
-    """A record that is mostly right, and cheap to classify: two axes, numbers, at most linear links."""
+    """A record that is mostly right, and cheap to classify: two axes, numbers, at most linear
+    links.
+    """
     first, second = rng.sample(("L1", "L2", "rho", "k1", "k3", "F3", "F4", "F3x"), 2)
-    lines = [f"axes: {{{first}: [{_tame_range(rng, first)}], {second}: [{_tame_range(rng, second)}]}}"]
+    lines = [
+        f"axes: {{{first}: [{_tame_range(rng, first)}], {second}: [{_tame_range(rng, second)}]}}"
+    ]
     values = {}
-    for name in rng.sample(("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x"), rng.randrange(5)):
+    for name in rng.sample(
+        ("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x"), rng.randrange(5)
+    ):
         if name not in (first, second):
-            values[name] = rng.choice(("1", "2", "1/2", "3/4", "10", first, f"{second}/2", f"{first} + {second}"))
-    lines.append(f"parameters: {{{', '.join(f'{name}: {value}' for name, value in values.items())}}}")
+            values[name] = rng.choice(
+                ("1", "2", "1/2", "3/4", "10", first, f"{second}/2", f"{first} + {second}")
+            )
+    lines.append(
+        f"parameters: {{{', '.join(f'{name}: {value}' for name, value in values.items())}}}"
+    )
     lines.append(f"count: {rng.choice(('stable', 'total', 'index'))}")
     return "\n".join(lines) + "\n"
 
@@ -56,13 +74,17 @@ def record(rng: Random, odd: float = 0.05) -> str:
     names = rng.sample(PARAMETERS, 2) if rng.random() < 0.8 else ["F", rng.choice(PARAMETERS)]
     if rng.random() < odd:
         names[rng.randrange(2)] = nasty(rng)
-    entries = {"axes": "{" + ", ".join(f"{n}: [{', '.join(window(rng, odd))}]" for n in names) + "}"}
+    entries = {
+        "axes": "{" + ", ".join(f"{n}: [{', '.join(window(rng, odd))}]" for n in names) + "}"
+    }
     values = {
         rng.choice(PARAMETERS): _quoted(expression(rng, (*names, "k", "F3"), 3, odd), rng)
         for _ in range(rng.randrange(5))
     }
     if rng.random() < 0.8:
-        entries["parameters"] = "{" + ", ".join(f"{name}: {value}" for name, value in values.items()) + "}"
+        entries["parameters"] = (
+            "{" + ", ".join(f"{name}: {value}" for name, value in values.items()) + "}"
+        )
     if rng.random() < 0.5:
         entries["count"] = rng.choice(("stable", "total", "index", "index", nasty(rng)))
     for key in ("name", "title", "notes", "mechanism", "reference", nasty(rng)):
@@ -92,7 +114,9 @@ def options(rng: Random) -> dict[str, object]:
     if rng.random() < 0.8:
         found["slice"] = nasty(rng) if rng.random() < odd else ",".join(names)
     found["sets"] = [
-        f"{rng.choice(PARAMETERS)}={expression(rng, tuple(names), 3, odd)}" if rng.random() > odd else nasty(rng)
+        f"{rng.choice(PARAMETERS)}={expression(rng, tuple(names), 3, odd)}"
+        if rng.random() > odd
+        else nasty(rng)
         for _ in range(rng.randrange(4))
     ]
     found["ranges"] = [

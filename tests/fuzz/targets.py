@@ -1,8 +1,8 @@
 """What the fuzzer runs on an input, and how it makes one.
 
-Guarantee: a case is bytes, made from its kind and a seed, the same in every process; `run` answers with one word for
-what became of it, and raises whatever must not happen: an exception that is no `PtmcadError`, or a message that is too
-long or has characters that a terminal obeys.
+Guarantee: a case is bytes, made from its kind and a seed, the same in every process; `run` answers
+with one word for what became of it, and raises whatever must not happen: an exception that is no
+`PtmcadError`, or a message that is too long or has characters that a terminal obeys.
 """
 
 from __future__ import annotations
@@ -73,7 +73,9 @@ def try_result(data: bytes) -> str:
     ):
         answers.append(_refusable(lambda point=point: result.locate(**point).status.name))  # type: ignore[misc]
     result.table()
-    if len(data) % 8 == 0:  # a page takes some tenths of a second, a case without it some milliseconds
+    if (
+        len(data) % 8 == 0
+    ):  # a page takes some tenths of a second, a case without it some milliseconds
         answers.append(_refusable(lambda: page(result)[:9]))
     report = ptmcad.verify(result)
     report.table()
@@ -93,7 +95,9 @@ def _refusable(question: Callable[[], str]) -> str:
 
 
 def make_record(seed: int) -> bytes:
-    """A record: a shipped one after damage, or one that a grammar has grown, with or without damage."""
+    """A record: a shipped one after damage, or one that a grammar has grown, with or without
+    damage.
+    """
     rng = Random(f"record {seed}")
     data = rng.choice(records())
     kind = rng.randrange(10)
@@ -161,7 +165,8 @@ def make_points(seed: int) -> bytes:
     """A CSV file of points after damage."""
     rng = Random(f"points {seed}")
     rows = [
-        f"{rng.choice(('a', 'b', nasty(rng)))},{expression(rng, ())},{rng.choice(('1', '3/2', '2'))}" for _ in range(4)
+        f"{rng.choice(('a', 'b', nasty(rng)))},{expression(rng, ())},{rng.choice(('1', '3/2', '2'))}"
+        for _ in range(4)
     ]
     text = "\n".join(["name,rho,L2", *rows]) + "\n"
     if rng.random() < 0.5:

@@ -1,6 +1,8 @@
-"""Fuzzing in the test suites: some hundred cases in the fast one, some thousand in the slow one, all in ``make fuzz``.
+"""Fuzzing in the test suites: some hundred cases in the fast one, some thousand in the slow one,
+all in ``make fuzz``.
 
-A case that takes longer than five seconds of processor time is a failure, since that is what is asked of hostile input.
+A case that takes longer than five seconds of processor time is a failure, since that is what is
+asked of hostile input.
 """
 
 from __future__ import annotations
@@ -46,7 +48,10 @@ def test_more_cases(kind: str, tmp_path: Path) -> None:
     assert_clean(watched(kind, range(FAST[kind], FAST[kind] + SLOW[kind]), tmp_path), SLOW[kind])
 
 
-@given(st.binary(max_size=300) | st.text(max_size=300).map(lambda text: text.encode("utf-8", "surrogatepass")))
+@given(
+    st.binary(max_size=300)
+    | st.text(max_size=300).map(lambda text: text.encode("utf-8", "surrogatepass"))
+)
 @settings(max_examples=examples(100))
 def test_any_bytes_are_a_record_or_a_refusal(data: bytes) -> None:
     """Hypothesis shrinks what it finds."""
@@ -55,7 +60,9 @@ def test_any_bytes_are_a_record_or_a_refusal(data: bytes) -> None:
 
 json_values = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
+    lambda inner: (
+        st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3)
+    ),
     max_leaves=8,
 )
 
@@ -84,7 +91,11 @@ def test_damage_is_the_same_every_time_and_does_damage(seed: int) -> None:
     def all_damage() -> tuple[bytes | str, ...]:
         rng = Random(seed)
         tree = json.loads(data)
-        return damaged_bytes(data, rng, records()[0]), damaged_tokens(data.decode(), rng), damaged_tree(tree, rng)
+        return (
+            damaged_bytes(data, rng, records()[0]),
+            damaged_tokens(data.decode(), rng),
+            damaged_tree(tree, rng),
+        )
 
     assert all_damage() == all_damage()
     assert all(damaged not in (data, data.decode()) for damaged in all_damage())
@@ -112,16 +123,23 @@ def _refuse(message: str) -> str:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", BROKEN)
 def test_the_watchdog_sees(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Targets that do what must not happen are reported with their input, and the next case is run all the same."""
+    """Targets that do what must not happen are reported with their input, and the next case is run
+    all the same.
+    """
     target, what = BROKEN[name]
     monkeypatch.setitem(targets.KINDS, name, (lambda seed: b"input %d" % seed, target))
-    tally = watched(name, range(2), tmp_path, limit=0.1 if target is wait else 0.5, start_method="fork")
+    tally = watched(
+        name, range(2), tmp_path, limit=0.1 if target is wait else 0.5, start_method="fork"
+    )
     assert tally.cases == 2
     if not what:  # `PtmcadError` makes its messages printable
         assert not tally.findings
         return
     assert [what in finding.what for finding in tally.findings] == [True, True]
-    assert {finding.file.read_bytes() for finding in tally.findings if finding.file} == {b"input 0", b"input 1"}
+    assert {finding.file.read_bytes() for finding in tally.findings if finding.file} == {
+        b"input 0",
+        b"input 1",
+    }
 
 
 @pytest.mark.parametrize("text", ["a\nb", "\x1b[31m", "\u202e", "x" * 2000])

@@ -1,7 +1,7 @@
 """A worker process that runs cases under a watchdog.
 
-Guarantee: a case that takes longer than the limit, ends the process or raises is reported with its input, which is
-stored in the folder of findings; the other cases go on in a new worker.
+Guarantee: a case that takes longer than the limit, ends the process or raises is reported with its
+input, which is stored in the folder of findings; the other cases go on in a new worker.
 """
 
 from __future__ import annotations
@@ -72,7 +72,13 @@ def watched(
 
 
 def _one_worker(
-    kind: str, seeds: list[int], tally: Tally, folder: Path | None, limit: float, most: int, start_method: str
+    kind: str,
+    seeds: list[int],
+    tally: Tally,
+    folder: Path | None,
+    limit: float,
+    most: int,
+    start_method: str,
 ) -> int:
     """The number of seeds done, the last of which may have ended the worker."""
     context: Any = get_context(start_method)
@@ -107,7 +113,8 @@ def _one_worker(
 
 
 def _answers(pipe: Connection, process: int, limit: float) -> bool:
-    """Wait for an answer until the process has computed for `limit` seconds, or has slept for many times that long.
+    """Wait for an answer until the process has computed for `limit` seconds, or has slept for many
+    times that long.
 
     On a machine that is busy with other things, a case is not slow because it waits for its turn.
     """
@@ -119,9 +126,13 @@ def _answers(pipe: Connection, process: int, limit: float) -> bool:
 
 
 def _computed(process: int) -> float:
-    """Seconds of processor time that a process has had; the clock's time where the system does not tell."""
+    """Seconds of processor time that a process has had; the clock's time where the system does not
+    tell.
+    """
     try:
-        fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+        fields = (
+            Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+        )
     except OSError:
         return time.monotonic()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

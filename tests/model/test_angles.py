@@ -1,4 +1,6 @@
-"""Quarter turns added to angles are worked out exactly, wherever angles stand; other fixed angles are refused."""
+"""Quarter turns added to angles are worked out exactly, wherever angles stand; other fixed angles
+are refused.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +48,11 @@ def test_a_turned_body_is_the_one_with_turned_points(angle: str, corner: list[ob
 
 
 def test_a_turn_of_a_torsion_springs_angle_is_one_of_its_rest() -> None:
-    for angle, rest in (("phi - th + pi/2", "-pi/2"), ("phi - th - pi/2", "pi/2"), ("phi - th + 3*pi", "pi")):
+    for angle, rest in (
+        ("phi - th + pi/2", "-pi/2"),
+        ("phi - th - pi/2", "pi/2"),
+        ("phi - th + 3*pi", "pi"),
+    ):
         one, other = (
             described(plate("phi", [1, 0], {"angle": a, "k": 1, "rest": r})).torsion[0]
             for a, r in ((angle, 0), ("phi - th", rest))
@@ -68,14 +74,21 @@ def test_points_and_equations_have_them_too() -> None:
 
 
 def test_the_angle_is_left_as_it_was() -> None:
-    for text, varying, turns in (("2*a - b - pi/2", "2*a - b", 3), ("pi", "0", 2), ("a - b", "a - b", 0)):
+    for text, varying, turns in (
+        ("2*a - b - pi/2", "2*a - b", 3),
+        ("pi", "0", 2),
+        ("a - b", "a - b", 0),
+    ):
         angle, found = split_angle(parse(text))
         assert (to_text(angle), found) == (varying, turns)
 
 
 @pytest.mark.parametrize("angle", ["phi + pi/3", "phi + 1", "phi + pi/4"])
 def test_other_fixed_angles_are_refused_with_a_remedy(angle: str) -> None:
-    with pytest.raises(ConfigError, match=r"bodies\.plate\.angle: only multiples of pi/2 .* turn the points of a body"):
+    with pytest.raises(
+        ConfigError,
+        match=r"bodies\.plate\.angle: only multiples of pi/2 .* turn the points of a body",
+    ):
         described(plate(angle, [1, 0], {"angle": "phi", "k": 1}))
 
 
@@ -86,5 +99,7 @@ def test_maps_of_turned_bodies_agree_and_are_verified() -> None:
         for angle, corner, turn, rest in (("phi + pi/2", [1, 0], "phi + pi", 0), ("phi", [0, 1], "phi", "pi"))
     ]  # fmt: skip
     assert [cell.total for cell in maps[0].cells] == [cell.total for cell in maps[1].cells]
-    assert [region.area for region in maps[0].regions] == [region.area for region in maps[1].regions]
+    assert [region.area for region in maps[0].regions] == [
+        region.area for region in maps[1].regions
+    ]
     assert ptmcad.verify(maps[0]).ok

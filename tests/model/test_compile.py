@@ -21,9 +21,18 @@ from ptmcad.question.config import load
 
 LOOP: dict[str, Any] = {
     "name": "loop",
-    "parameters": {"a": {"default": 1}, "k": {"kind": "stiffness", "default": 1}, "F": {"kind": "force", "default": 1}},
+    "parameters": {
+        "a": {"default": 1},
+        "k": {"kind": "stiffness", "default": 1},
+        "F": {"kind": "force", "default": 1},
+    },
     "unknowns": {"t": "angle", "s": "angle"},
-    "points": {"A": [0, 0], "B": [2, 0], "P": ["a*cos(t)", "a*sin(t)"], "Q": ["2 + a*cos(s)", "a*sin(s)"]},
+    "points": {
+        "A": [0, 0],
+        "B": [2, 0],
+        "P": ["a*cos(t)", "a*sin(t)"],
+        "Q": ["2 + a*cos(s)", "a*sin(s)"],
+    },
     "bars": [["A", "P"], ["B", "Q"]],
     "closing": [{"between": ["P", "Q"], "length": "3/2"}],
     "springs": [{"between": ["A", "Q"], "k": "k"}],
@@ -51,9 +60,13 @@ def test_heights_are_those_of_points_that_no_loop_holds() -> None:
     assert compiled(closed(LOOP)).heights == ()
 
 
-@pytest.mark.parametrize("name", ["x-joint", "two-x-joints", "four-bar", "platform-loop", "slider-crank"])
+@pytest.mark.parametrize(
+    "name", ["x-joint", "two-x-joints", "four-bar", "platform-loop", "slider-crank"]
+)
 def test_formulas_do_not_depend_on_what_variables_are_called(name: str) -> None:
-    """Parameters as numbers and unknowns with other numbers: a path of an X-joint took parameters for unknowns."""
+    """Parameters as numbers and unknowns with other numbers: a path of an X-joint took parameters
+    for unknowns.
+    """
     model = load(CONFIGS / "mechanisms" / f"{name}.yaml").model
     own = compiled(model)
     choose = random.Random(len(name))

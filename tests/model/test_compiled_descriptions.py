@@ -1,4 +1,6 @@
-"""Descriptions compiled: nothing in one goes unnoticed, and numbers in the place of parameters change no value."""
+"""Descriptions compiled: nothing in one goes unnoticed, and numbers in the place of parameters
+change no value.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,9 @@ EQUATIONS = {"equations", "potential", "inequalities", "stability"}
     ],
 )
 def test_all_that_a_description_has_is_compiled(kind: type, known: set[str]) -> None:
-    """A new part of descriptions has to be read by `ptmcad.model.compile`, or listed here as one that says nothing."""
+    """A new part of descriptions has to be read by `ptmcad.model.compile`, or listed here as one
+    that says nothing.
+    """
     assert {f.name for f in fields(kind)} == known
 
 
@@ -71,7 +75,9 @@ def test_an_upright_pendulum_by_hand() -> None:
     graph = Graph()
     numbers = {"l0": Fraction(1, 2), "W": Fraction(3), "c": Fraction(2)}
     system = compiled_with(
-        PENDULUM, {"th": graph.variable(2)} | {name: graph.constant(value) for name, value in numbers.items()}
+        PENDULUM,
+        {"th": graph.variable(2)}
+        | {name: graph.constant(value) for name, value in numbers.items()},
     )
     energy = system.energy()
     assert energy is not None
@@ -89,9 +95,13 @@ def test_an_upright_pendulum_by_hand() -> None:
 
 
 class _Place:
-    """A place on the circle with rational coordinates, and numbers for parameters by the names of a system."""
+    """A place on the circle with rational coordinates, and numbers for parameters by the names of a
+    system.
+    """
 
-    def __init__(self, names: tuple[str, ...] = (), numbers: Mapping[str, Fraction] = MappingProxyType({})):
+    def __init__(
+        self, names: tuple[str, ...] = (), numbers: Mapping[str, Fraction] = MappingProxyType({})
+    ):
         self.names, self.numbers = names, numbers
 
     def constant(self, value: Fraction) -> Fraction:
@@ -112,7 +122,9 @@ def test_numbers_in_the_place_of_parameters_change_no_value() -> None:
     numbers = {"l0": Fraction(1, 2), "W": Fraction(3), "c": Fraction(2)}
     graph = Graph()
     at = compiled_with(
-        PENDULUM, {"th": graph.variable(0)} | {name: graph.constant(value) for name, value in numbers.items()}
+        PENDULUM,
+        {"th": graph.variable(0)}
+        | {name: graph.constant(value) for name, value in numbers.items()},
     )
     assert values(system.equations, _Place(system.names, numbers)) == values(at.equations, _Place())
     # (k d . d')/1 + c sin th - W sin th, with d = (sin th, cos th - 3)

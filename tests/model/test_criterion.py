@@ -19,7 +19,13 @@ RECORDS = {
     "duffing": NOTHING,
     "inverted-pendulum": by_hessian(1),
 }
-CHOICES = {"pose": "total", "stable": "stable", "unstable": "stable", "saddle": "index", "maximum": "index"}
+CHOICES = {
+    "pose": "total",
+    "stable": "stable",
+    "unstable": "stable",
+    "saddle": "index",
+    "maximum": "index",
+}
 
 
 @pytest.mark.parametrize(("name", "expected"), RECORDS.items())
@@ -65,9 +71,16 @@ def test_signs_say_what_a_solution_is(
 
 @pytest.mark.parametrize(
     ("criterion", "stable", "index"),
-    [(NOTHING, None, None), (CONDITIONS, 2, None), (DEFINITENESS, 2, None), (by_hessian(2), 2, (2, 1, 1))],
+    [
+        (NOTHING, None, None),
+        (CONDITIONS, 2, None),
+        (DEFINITENESS, 2, None),
+        (by_hessian(2), 2, (2, 1, 1)),
+    ],
 )
-def test_counts_are_those_of_the_signs(criterion: Criterion, stable: int | None, index: tuple[int, ...] | None) -> None:
+def test_counts_are_those_of_the_signs(
+    criterion: Criterion, stable: int | None, index: tuple[int, ...] | None
+) -> None:
     counts = counts_of_signs(["++", "+-", "++", "--"], criterion)
     assert (counts.total, counts.stable, counts.index) == (4, stable, index)
     assert counts.working == (4 if stable is None else 2)

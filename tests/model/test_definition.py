@@ -1,7 +1,9 @@
-"""What is made of descriptions, against their definition in mpmath: all shipped records, and random descriptions.
+"""What is made of descriptions, against their definition in mpmath: all shipped records, and random
+descriptions.
 
-What is under test is one argument: a function of a model, its parameters and a place that returns `Values`, to which
-tolerance, relative to the largest value of a kind, and whether it has roots of lengths.
+What is under test is one argument: a function of a model, its parameters and a place that returns
+`Values`, to which tolerance, relative to the largest value of a kind, and whether it has roots of
+lengths.
 """
 
 from __future__ import annotations
@@ -94,7 +96,10 @@ def in_formulas(model: Model, parameters: Rationals, unknowns: Rationals) -> Val
     system = compiled(model)
     has_springs = bool(system.points)
     with mp.workdps(50):
-        at = {name: mpf(value.numerator) / value.denominator for name, value in {**parameters, **unknowns}.items()}
+        at = {
+            name: mpf(value.numerator) / value.denominator
+            for name, value in {**parameters, **unknowns}.items()
+        }
         arithmetic = _InMpmath(system, at)
         relaxed = range(len(system.springs)) if system.tangent or system.are_slopes else ()
         equations = system.balance(relaxed)
@@ -103,7 +108,8 @@ def in_formulas(model: Model, parameters: Rationals, unknowns: Rationals) -> Val
             {
                 "residuals": equations,
                 "jacobian": tuple(
-                    tuple(system.graph.derivative(equation, k) for k in system.unknowns) for equation in equations
+                    tuple(system.graph.derivative(equation, k) for k in system.unknowns)
+                    for equation in equations
                 ),
                 "points": dict(system.points),
                 "lengths": tuple(spring.length for spring in system.springs),
@@ -125,7 +131,10 @@ def in_polynomials(model: Model, parameters: Rationals, unknowns: Rationals) -> 
     """The exact engine's equations, for springs without a free length."""
     system = system_from(model)
     with mp.workdps(50):
-        at = {name: mpf(value.numerator) / value.denominator for name, value in {**parameters, **unknowns}.items()}
+        at = {
+            name: mpf(value.numerator) / value.denominator
+            for name, value in {**parameters, **unknowns}.items()
+        }
         place = [at[name] for name in system.ring.parameters]
         for angle in system.ring.angles:
             place += [mp.cos(at[angle]), mp.sin(at[angle])]
@@ -169,7 +178,9 @@ def place_of(model: Model, seed: str) -> tuple[dict[str, Fraction], dict[str, Fr
         return Fraction(dice.randint(97 * low, 97 * high) + dice.randint(1, 96), 97)
 
     kinds = {name: model.kind(name) for name in model.variables}
-    parameters = {n: number(0 if kind.is_positive or kind.may_vanish else -2, 2) for n, kind in kinds.items()}
+    parameters = {
+        n: number(0 if kind.is_positive or kind.may_vanish else -2, 2) for n, kind in kinds.items()
+    }
     return parameters, {name: number(-2, 2) for name in model.unknowns}
 
 
@@ -182,20 +193,31 @@ def agree(owner: tuple[Owner, float, bool], model: Model, seed: str) -> None:
     found = function(model, parameters, unknowns)
     with mp.workdps(60):
         numbers, place = (
-            {n: mpf(v.numerator) / v.denominator for n, v in values.items()} for values in (parameters, unknowns)
+            {n: mpf(v.numerator) / v.denominator for n, v in values.items()}
+            for values in (parameters, unknowns)
         )
         expected = values_at(model, numbers, place)
         if mechanism is not None and mechanism.xjoints:
-            powers = _powers(found.residuals, expected.residuals, spans(mechanism, {**numbers, **place}))
+            powers = _powers(
+                found.residuals, expected.residuals, spans(mechanism, {**numbers, **place})
+            )
             expected = values_at(model, numbers, place, powers)
         for name in ("residuals", "jacobian", "energy", "conditions", "stability", "points", "lengths", "forces",
                      "deflections"):  # fmt: skip
             ours, theirs = (_listed(getattr(values, name)) for values in (expected, found))
-            if ours is None or theirs is None or (name == "stability" and mechanism is not None and mechanism.xjoints):
+            if (
+                ours is None
+                or theirs is None
+                or (name == "stability" and mechanism is not None and mechanism.xjoints)
+            ):
                 continue
             assert len(ours) == len(theirs), name
             size = 1 + max((abs(x) for x in ours), default=0)
-            assert all(abs(a - b) < tolerance * size for a, b in zip(ours, theirs, strict=True)), (name, ours, theirs)
+            assert all(abs(a - b) < tolerance * size for a, b in zip(ours, theirs, strict=True)), (
+                name,
+                ours,
+                theirs,
+            )
 
 
 def _without_roots(model: Model) -> Model:
@@ -208,13 +230,17 @@ def _without_roots(model: Model) -> Model:
     return changed if mechanism is model else replace(model, mechanism=changed)
 
 
-def _powers(found: Sequence[Any], slopes: Sequence[Any], spans: Sequence[Any]) -> list[tuple[int, ...]]:
+def _powers(
+    found: Sequence[Any], slopes: Sequence[Any], spans: Sequence[Any]
+) -> list[tuple[int, ...]]:
     """The powers of the spans by which equations of X-joints are multiplied."""
     powers = []
     for multiplied, slope in zip(found, slopes, strict=True):
         choices = product(range(7), repeat=len(spans))
         factors = ((mp.fprod(d**n for d, n in zip(spans, ns, strict=True)), ns) for ns in choices)
-        powers.append(min(factors, key=lambda choice: abs(mpf(multiplied) / slope / choice[0] - 1))[1])
+        powers.append(
+            min(factors, key=lambda choice: abs(mpf(multiplied) / slope / choice[0] - 1))[1]
+        )
     return powers
 
 
@@ -242,7 +268,9 @@ def test_shipped_records_mean_what_is_defined(path: Path, owner: tuple[Owner, fl
 
 @pytest.mark.parametrize("owner", OWNERS)
 @pytest.mark.parametrize("number", few(NUMBERS, *NUMBERS[: 3 * len(KINDS)]))
-def test_random_descriptions_mean_what_is_defined(number: int, owner: tuple[Owner, float, bool]) -> None:
+def test_random_descriptions_mean_what_is_defined(
+    number: int, owner: tuple[Owner, float, bool]
+) -> None:
     agree(owner, model_of(number), str(number))
 
 

@@ -1,4 +1,6 @@
-"""Systems of one, three and four angles: indices are right, and what has two angles' formulas inside refuses."""
+"""Systems of one, three and four angles: indices are right, and what has two angles' formulas
+inside refuses.
+"""
 
 from __future__ import annotations
 
@@ -28,10 +30,11 @@ VALUES = {"k": fmpq(1, 100), "F": fmpq(1)}
 
 
 def chain(angles: int) -> ParametricSystem:
-    """Pendulums, neighbours joined by springs between their ends: U = sum of F cos th_i - k cos(th_i - th_i+1).
+    """Pendulums, neighbours joined by springs between their ends: U = sum of F cos th_i - k
+    cos(th_i - th_i+1).
 
-    Where k is small against F, the equilibria are the 2^n with all sines zero, one for each choice of signs, and a
-    cosine of -1 (up) adds one to the index: binomial numbers of each index.
+    Where k is small against F, the equilibria are the 2^n with all sines zero, one for each choice
+    of signs, and a cosine of -1 (up) adds one to the index: binomial numbers of each index.
     """
     names = tuple(f"th{i}" for i in range(1, angles + 1))
     ring = TrigonometricRing(("k", "F"), names)
@@ -39,14 +42,20 @@ def chain(angles: int) -> ParametricSystem:
     for name in names:
         energy -= ring.parameter("F") * ring.cos(name)
     for one, two in pairwise(names):
-        energy -= ring.parameter("k") * (ring.cos(one) * ring.cos(two) + ring.sin(one) * ring.sin(two))
+        energy -= ring.parameter("k") * (
+            ring.cos(one) * ring.cos(two) + ring.sin(one) * ring.sin(two)
+        )
     potential = ring.reduce(energy)
     slopes = [ring.reduce(ring.derivative(potential, name)) for name in names]
-    return from_equations(ring, slopes, potential=potential, positive=("k",), criterion=by_hessian(angles))
+    return from_equations(
+        ring, slopes, potential=potential, positive=("k",), criterion=by_hessian(angles)
+    )
 
 
 @pytest.mark.parametrize("angles", [1, 2, 3, pytest.param(4, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("count", [count_by_isolation, count_by_signature], ids=lambda f: f.__name__)
+@pytest.mark.parametrize(
+    "count", [count_by_isolation, count_by_signature], ids=lambda f: f.__name__
+)
 def test_indices_are_binomial_numbers(count: Callable[..., Counts], angles: int) -> None:
     """Of three angles (1, 3, 3, 1), where formulas for two would say (2, 4, 2)."""
     found = count(chain(angles), VALUES)
@@ -73,17 +82,27 @@ def test_the_variety_is_general() -> None:
     found = discriminant_variety(SystemOnAxes(chain(1), ratios()), window)
     assert found.complex_solutions == 2
     assert {c.polynomial.text(("k", "F")) for c in found.components if not c.left_out} == {"F"}
-    assert {c.kind for c in found.components} == {Kind.BOUNDARY}  # there the equation vanishes identically
-    assert discriminant_variety(SystemOnAxes(chain(1), ratios()), window, without=frozenset({"sign-curve"})) == found
+    assert {c.kind for c in found.components} == {
+        Kind.BOUNDARY
+    }  # there the equation vanishes identically
+    assert (
+        discriminant_variety(
+            SystemOnAxes(chain(1), ratios()), window, without=frozenset({"sign-curve"})
+        )
+        == found
+    )
 
 
 def test_the_variety_of_three_angles() -> None:
-    """Of the Hessian at each choice of signs: F times the signs, and k times a path's signed Laplacian.
+    """Of the Hessian at each choice of signs: F times the signs, and k times a path's signed
+    Laplacian.
 
-    Its determinant is 0 only on lines through the origin, F = m k; by F to -F (all angles turned by pi) with each line
-    comes its mirror image.
+    Its determinant is 0 only on lines through the origin, F = m k; by F to -F (all angles turned by
+    pi) with each line comes its mirror image.
     """
-    found = discriminant_variety(SystemOnAxes(chain(3), ratios()), ((fmpq(1), fmpq(2)), (fmpq(-1), fmpq(1))))
+    found = discriminant_variety(
+        SystemOnAxes(chain(3), ratios()), ((fmpq(1), fmpq(2)), (fmpq(-1), fmpq(1)))
+    )
     critical = {c.polynomial.text(("k", "F")) for c in found.components if c.kind is Kind.CRITICAL}
     assert critical == {"F", "k - F", "k + F", "3*k - F", "3*k + F"}
     assert found.complex_solutions == 10
@@ -110,7 +129,9 @@ def bars(first: str, second: str, third: str) -> dict[str, Any]:
 
 
 def test_angles_against_the_bar_before_are_counted_as_directions_are() -> None:
-    """The basis in the former angles takes minutes; that of the same equations in the latter does not."""
+    """The basis in the former angles takes minutes; that of the same equations in the latter does
+    not.
+    """
     values = {"k": fmpq(1), "W": fmpq(2, 3)}
     relative = system_from(described(bars("a", "a + b", "a + b + c")))
     assert relative.turns is not None
@@ -125,6 +146,10 @@ def test_angles_against_the_bar_before_are_counted_as_directions_are() -> None:
         for record in (bars("a", "a + b", "a + b + c"), bars("a", "b", "c"))
     ]
     ends = [
-        [[p.nodes["P3"][i].text(8) for i in (0, 1)] + [p.known_energy.text(8)] for p in q.equilibria] for q in poses
+        [
+            [p.nodes["P3"][i].text(8) for i in (0, 1)] + [p.known_energy.text(8)]
+            for p in q.equilibria
+        ]
+        for q in poses
     ]
     assert ends[0] == ends[1]

@@ -37,7 +37,9 @@ def _found(slice: Slice) -> list[Involution]:
 def test_symmetries_of_shipped_records(name: str, expected: Involution) -> None:
     slice = load(CONFIGS / f"{name}.yaml")
     assert _found(slice) == [expected]
-    assert involutions(slice.model, slice.parameters) == ([expected] if expected.keeps_points else [])
+    assert involutions(slice.model, slice.parameters) == (
+        [expected] if expected.keeps_points else []
+    )
 
 
 def test_no_symmetry_where_the_loads_differ() -> None:
@@ -51,11 +53,15 @@ def _system(**changes: Any) -> Slice:
         "unknowns": {"s": "angle", "t": "angle", "u": "angle"},
         "potential": "a*cos(s) + b*cos(t) + cos(u) + cos(s - t) + 2*cos(t - u)",
     }
-    return slice_from_mapping({"system": {**record, **changes}, "axes": {"a": [1, 3], "b": [-1, 1]}})
+    return slice_from_mapping(
+        {"system": {**record, **changes}, "axes": {"a": [1, 3], "b": [-1, 1]}}
+    )
 
 
 def test_three_odd_unknowns() -> None:
-    """Each equilibrium has its negative, and nothing else changes as b does, since all three angles feel each other."""
+    """Each equilibrium has its negative, and nothing else changes as b does, since all three angles
+    feel each other.
+    """
     kept, *others = _found(_system())
     assert kept == Involution((0, 1, 2), (-1, -1, -1), (0, 0, 0))
     assert kept.odd == 3
@@ -68,7 +74,9 @@ def test_a_perturbed_coefficient_breaks_the_symmetry() -> None:
 
 
 def test_equations_in_another_order_and_with_other_signs() -> None:
-    """x and y exchanged, as a and b are about the middle of the window; (x, y) to (-x, -y) changes all signs."""
+    """x and y exchanged, as a and b are about the middle of the window; (x, y) to (-x, -y) changes
+    all signs.
+    """
     system = {
         "unknowns": {"x": "real", "y": "real"},
         "equations": ["x^3 - a*x + y*(x^2 + y^2)", "y^3 - (4 - b)*y + x*(x^2 + y^2)"],
@@ -92,12 +100,19 @@ def test_a_condition_is_kept() -> None:
     record = {"axes": {"a": [1, 2], "b": [-1, 1]}}
     assert len(_found(slice_from_mapping({"system": system, **record}))) == 1
     assert not _found(slice_from_mapping({"system": {**system, "positive": ["x + 2"]}, **record}))
-    assert len(_found(slice_from_mapping({"system": {**system, "positive": ["4 - x^2"]}, **record}))) == 1
+    assert (
+        len(_found(slice_from_mapping({"system": {**system, "positive": ["4 - x^2"]}, **record})))
+        == 1
+    )
 
 
 def test_denominators_are_kept_where_the_axes_are() -> None:
     def found(value: str) -> list[Involution]:
-        system = {"unknowns": {"x": "real"}, "equations": ["x^3 - x*c"], "parameters": {"c": {"kind": "number"}}}
+        system = {
+            "unknowns": {"x": "real"},
+            "equations": ["x^3 - x*c"],
+            "parameters": {"c": {"kind": "number"}},
+        }
         record = {"system": system, "parameters": {"c": value}, "axes": {"a": [-1, 1], "b": [1, 2]}}
         return _found(slice_from_mapping(record))
 

@@ -1,4 +1,6 @@
-"""Where torsion springs are: the point at which the parts meet that a spring's angle is between, or none."""
+"""Where torsion springs are: the point at which the parts meet that a spring's angle is between, or
+none.
+"""
 
 from __future__ import annotations
 
@@ -19,14 +21,25 @@ SEAT: dict[str, Any] = {
     "parameters": {"L": {"kind": "length"}, "W": {"kind": "force"}},
     "unknowns": {"th": "angle", "phi": "angle"},
     "points": {"O": [0, 0], "P": ["L*sin(th)", "L*cos(th)"]},
-    "bodies": {"seat": {"at": "P", "angle": "phi - th + pi/2", "points": {"Q": ["L", 0], "R": ["1/2", "L^2"]}}},
+    "bodies": {
+        "seat": {
+            "at": "P",
+            "angle": "phi - th + pi/2",
+            "points": {"Q": ["L", 0], "R": ["1/2", "L^2"]},
+        }
+    },
     "bars": [["O", "P"], ["Q", "R"]],
     "loads": {"R": {"weight": "W"}},
 }
 """The leg's angle is measured from the vertical, clockwise; the seat's direction is phi - th."""
 ROCKER: dict[str, Any] = {
     "unknowns": {"th": "angle"},
-    "points": {"O": [0, 0], "B": [2, 0], "P": ["cos(th)", "sin(th)"], "Q": ["2 + cos(th)", "sin(th)"]},
+    "points": {
+        "O": [0, 0],
+        "B": [2, 0],
+        "P": ["cos(th)", "sin(th)"],
+        "Q": ["2 + cos(th)", "sin(th)"],
+    },
     "bars": [["O", "P"], ["B", "Q"], ["P", "Q"]],
     "loads": {"P": [0, -1]},
 }
@@ -37,7 +50,9 @@ CRANK: dict[str, Any] = {
     "springs": [{"between": ["A", "S"], "k": 1}],
 }
 
-PAPER: dict[str, Any] = {key: value for key, value in RECORD.items() if key not in ("name", "symmetries")}
+PAPER: dict[str, Any] = {
+    key: value for key, value in RECORD.items() if key not in ("name", "symmetries")
+}
 
 
 def with_torsion(record: dict[str, Any], *springs: dict[str, Any]) -> Mechanism:
@@ -64,8 +79,8 @@ def with_torsion(record: dict[str, Any], *springs: dict[str, Any]) -> Mechanism:
 def test_joints_by_hand(record: dict[str, Any], angle: str, joint: Joint | None) -> None:
     """The seat's leg turns clockwise: between it, of -th, and the seat, of phi - th, is phi.
 
-    A parallelogram has its angle at each of its corners, and a crank without a support shows nothing that it turns
-    against.
+    A parallelogram has its angle at each of its corners, and a crank without a support shows
+    nothing that it turns against.
     """
     (found,) = joints_of(with_torsion(record, {"angle": angle}))
     assert found == joint
@@ -73,14 +88,20 @@ def test_joints_by_hand(record: dict[str, Any], angle: str, joint: Joint | None)
 
 def test_what_a_description_says_of_the_place_goes_first() -> None:
     m = with_torsion(
-        SEAT, {"angle": "phi - th", "at": "R"}, {"angle": "th", "at": "P"}, {"angle": "2*th"}, {"angle": "th"}
+        SEAT,
+        {"angle": "phi - th", "at": "R"},
+        {"angle": "th", "at": "P"},
+        {"angle": "2*th"},
+        {"angle": "th"},
     )
     assert joints_of(m) == (Joint("R", "Q"), Joint("P", "O"), None, Joint("O", "P"))
     lonely = with_torsion({**ROCKER, "bars": []}, {"angle": "th", "at": "B"})
     assert joints_of(lonely) == (Joint("B"),)
 
 
-def test_coordinates_that_are_too_large_leave_joints_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_coordinates_that_are_too_large_leave_joints_unknown(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     m = with_torsion(SEAT, {"angle": "th"})
     joints_of.cache_clear()
     monkeypatch.setattr(joints, "MAX_WORK", 5)
@@ -90,7 +111,10 @@ def test_coordinates_that_are_too_large_leave_joints_unknown(monkeypatch: pytest
 
 @pytest.mark.parametrize(
     ("place", "message"),
-    [("Z", "torsion.1.at: there is no point 'Z'"), ([1, 0], "torsion.1.at: a list is no point's name")],
+    [
+        ("Z", "torsion.1.at: there is no point 'Z'"),
+        ([1, 0], "torsion.1.at: a list is no point's name"),
+    ],
 )
 def test_a_place_that_is_no_point_is_refused(place: object, message: str) -> None:
     with pytest.raises(ConfigError, match=message.replace(".", r"\.")):
@@ -98,8 +122,16 @@ def test_a_place_that_is_no_point_is_refused(place: object, message: str) -> Non
 
 
 def test_names_tell_springs_apart() -> None:
-    """An angle's quarter turns are no part of its name, and no spring is lost where two have one angle."""
-    m = with_torsion(SEAT, {"angle": "phi - 2*th"}, {"angle": "th + pi/2"}, {"angle": "th"}, {"angle": "th + th - th"})
+    """An angle's quarter turns are no part of its name, and no spring is lost where two have one
+    angle.
+    """
+    m = with_torsion(
+        SEAT,
+        {"angle": "phi - 2*th"},
+        {"angle": "th + pi/2"},
+        {"angle": "th"},
+        {"angle": "th + th - th"},
+    )
     assert [spring.name for spring in m.torsion] == ["phi-2*th", "th", "th#3", "th#4"]
 
 

@@ -1,4 +1,6 @@
-"""Closed loops: known curves, minima along a loop that is run through, two derivations, and what is refused."""
+"""Closed loops: known curves, minima along a loop that is run through, two derivations, and what is
+refused.
+"""
 
 from __future__ import annotations
 
@@ -80,7 +82,9 @@ def components(slice: ptmcad.Slice) -> tuple[Component, ...]:
 
 @pytest.mark.slow
 def test_the_curve_of_a_four_bar_under_loads() -> None:
-    """REFERENCE: 12 complex solutions; degree 18 with 100 terms, with a multiplier as well as with the tangent."""
+    """REFERENCE: 12 complex solutions; degree 18 with 100 terms, with a multiplier as well as with
+    the tangent.
+    """
     found = variety_of(problem_of(slice_of(FOUR_BAR, **LOADS)))
     assert found.complex_solutions == 12
     curve, *others = (c for c in found.components if c.kind is Kind.CRITICAL)
@@ -90,18 +94,27 @@ def test_the_curve_of_a_four_bar_under_loads() -> None:
 
 @pytest.mark.slow
 def test_lines_on_which_the_loop_folds_flat() -> None:
-    """REFERENCE: over (k1, b) degree 78 with 523 terms, and 8 lines. The bars' lengths add up to b with some signs."""
-    slice = slice_of(FOUR_BAR, axes={"k1": ["1/10", 4], "b": ["1/10", 4]}, parameters={"F": -1, "G": "-1/2"})
+    """REFERENCE: over (k1, b) degree 78 with 523 terms, and 8 lines. The bars' lengths add up to b
+    with some signs.
+    """
+    slice = slice_of(
+        FOUR_BAR, axes={"k1": ["1/10", 4], "b": ["1/10", 4]}, parameters={"F": -1, "G": "-1/2"}
+    )
     critical = [c.polynomial for c in components(slice) if c.kind is Kind.CRITICAL]
     (curve,) = (p for p in critical if p.total_degree > 1)
     assert (curve.total_degree, len(curve.terms)) == (78, 523)
     lengths = (Fraction(1), Fraction(6, 5), Fraction(3, 2))
     lines = {-Fraction(p.terms[1][2], p.terms[0][2]) for p in critical if p.total_degree == 1}
-    assert lines == {sum((n * s for n, s in zip(lengths, signs, strict=True)), Fraction(0)) for signs in SIGNS}
+    assert lines == {
+        sum((n * s for n, s in zip(lengths, signs, strict=True)), Fraction(0)) for signs in SIGNS
+    }
 
 
-def minima_along(L1: float, L2: float, L3: float, b: float, F: float, G: float, steps: int = 20000) -> int:
-    """Minima of the energy on the loop's curve: each closed piece of it, by a fine run through th1 and both assemblies.
+def minima_along(
+    L1: float, L2: float, L3: float, b: float, F: float, G: float, steps: int = 20000
+) -> int:
+    """Minima of the energy on the loop's curve: each closed piece of it, by a fine run through th1
+    and both assemblies.
 
     Pieces on which the coupler's two assemblies meet are run through on one and back on the other.
     """
@@ -137,7 +150,8 @@ def test_stable_poses_are_the_minima_along_the_loop() -> None:
         if 2 * max(lengths) >= sum(lengths):
             continue  # it cannot be put together
         if any(
-            sum((n * s for n, s in zip(lengths, signs, strict=False)), Fraction(0)) == lengths[3] for signs in SIGNS
+            sum((n * s for n, s in zip(lengths, signs, strict=False)), Fraction(0)) == lengths[3]
+            for signs in SIGNS
         ):
             continue  # it can fold flat
         loads = [Fraction(random.randrange(-40, 41), 10) for _ in range(2)]
@@ -154,7 +168,9 @@ def test_stable_poses_are_the_minima_along_the_loop() -> None:
 
 
 def test_a_slider_is_an_unknown_on_the_line() -> None:
-    """With x = r cos th + s (l^2 - r^2 sin^2 th)^(1/2), on one side s = 1 and on the other s = -1, as r < l."""
+    """With x = r cos th + s (l^2 - r^2 sin^2 th)^(1/2), on one side s = 1 and on the other s = -1,
+    as r < l.
+    """
     record = {"mechanism": SLIDER_CRANK, "axes": {"W": [-2, 2], "M": [-2, 2]}}
     th = 2 * math.pi * (np.arange(40000) + 0.5) / 40000
     for load, moment in ((0, "1/3"), ("1/2", "-1/4"), (1, "1/5"), ("-3/2", "1/7")):
@@ -162,7 +178,9 @@ def test_a_slider_is_an_unknown_on_the_line() -> None:
         for side in (1, -1):
             x = np.cos(th) + side * np.sqrt(4 - np.sin(th) ** 2)
             u = (x - 1) ** 2 / 2 + float(Fraction(load)) * np.sin(th)
-            slopes.append((np.roll(u, -1) - np.roll(u, 1)) / (2 * (th[1] - th[0])) - float(Fraction(moment)))
+            slopes.append(
+                (np.roll(u, -1) - np.roll(u, 1)) / (2 * (th[1] - th[0])) - float(Fraction(moment))
+            )
         rising = sum(int(((f < 0) & (np.roll(f, -1) > 0)).sum()) for f in slopes)
         found = ptmcad.solve(record, W=str(load), M=moment)
         assert sum(bool(e.stable) for e in found.equilibria) == rising
@@ -173,7 +191,9 @@ def test_a_slider_is_an_unknown_on_the_line() -> None:
 LINE_FIRST = {**SLIDER_CRANK, "name": "line_first", "unknowns": {"x": "length", "th": "angle"}}
 
 
-@pytest.mark.parametrize("mechanism", [FOUR_BAR, SLIDER_CRANK, LINE_FIRST, PLATFORM, FIVE_BAR], ids=lambda m: m["name"])
+@pytest.mark.parametrize(
+    "mechanism", [FOUR_BAR, SLIDER_CRANK, LINE_FIRST, PLATFORM, FIVE_BAR], ids=lambda m: m["name"]
+)
 def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
     """The engines', of formulas, and the checker's, of polynomials."""
     model = ptmcad.Mechanism(mechanism)
@@ -181,13 +201,19 @@ def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
     values = {n: Fraction(3 + k, 5 + 2 * k) for k, n in enumerate(model.variables)}
     theirs, system = derivation_at(model, values), system_from(model)
     numbers = {n: from_fraction(v) for n, v in values.items()}
-    ours = [*at_point(system, numbers)[0], *(polynomial_at(system, p, numbers) for p in system.stability)]
+    ours = [
+        *at_point(system, numbers)[0],
+        *(polynomial_at(system, p, numbers) for p in system.stability),
+    ]
     assert not system.inequalities
     for t in ((2, 7, 5), (-3, 4, -1)):
         place = {}
         for k, angle in enumerate(model.angles):
             u = fmpq(t[k], t[2])
-            place[f"cos_{angle}"], place[f"sin_{angle}"] = (1 - u * u) / (1 + u * u), 2 * u / (1 + u * u)
+            place[f"cos_{angle}"], place[f"sin_{angle}"] = (
+                (1 - u * u) / (1 + u * u),
+                2 * u / (1 + u * u),
+            )
         place |= {name: fmpq(t[1] + n, 3) for n, name in enumerate(model.reals)}
         at = list(place.values())
         mine = []
@@ -199,7 +225,10 @@ def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
                     term *= x**e
                 total += term
             mine.append(total)
-        checked = [p(*(place[name] for name in coordinates_of(model))) for p in (*theirs.equations, *theirs.stability)]
+        checked = [
+            p(*(place[name] for name in coordinates_of(model)))
+            for p in (*theirs.equations, *theirs.stability)
+        ]
         assert checked == mine
 
 
@@ -229,23 +258,51 @@ def test_a_map_is_stored_with_its_mechanism_and_verified(
 @pytest.mark.parametrize(
     ("change", "key", "said"),
     [
-        ({"closing": [*FOUR_BAR["closing"], {"between": ["A0", "Q"], "length": 1}]}, "closing", "no degree of freedom"),
-        ({"symmetries": [{"th1": "-th1", "th2": "-th2", "F": "-F", "G": "-G"}]}, "symmetries", "leave them out"),
+        (
+            {"closing": [*FOUR_BAR["closing"], {"between": ["A0", "Q"], "length": 1}]},
+            "closing",
+            "no degree of freedom",
+        ),
+        (
+            {"symmetries": [{"th1": "-th1", "th2": "-th2", "F": "-F", "G": "-G"}]},
+            "symmetries",
+            "leave them out",
+        ),
         ({"closing": [{"between": ["P", "Q"]}]}, "closing.1.length", "is missing"),
         ({"closing": [{"between": ["P", "R"], "length": 1}]}, "closing.1.between", "no point"),
         ({"closing": [{"between": ["P", "Q"], "length": "cos(th1)"}]}, "closing.1.length", "th1"),
         ({"closing": "PQ"}, "closing", "list"),
-        ({"closing": [{"between": ["A0", "P"], "length": "L3"}]}, "closing.1.between", "closes no loop"),
-        ({"closing": [*FOUR_BAR["closing"], {"between": ["Q", "P"], "length": 1}]}, "closing.2.between", "number 1"),
-        ({"closing": [{"between": ["P", "Q"], "length": -2}]}, "closing.1.length", "a length is positive"),
-        ({"closing": [{"between": ["P", "Q"], "length": 0}]}, "closing.1.length", "a length is positive"),
+        (
+            {"closing": [{"between": ["A0", "P"], "length": "L3"}]},
+            "closing.1.between",
+            "closes no loop",
+        ),
+        (
+            {"closing": [*FOUR_BAR["closing"], {"between": ["Q", "P"], "length": 1}]},
+            "closing.2.between",
+            "number 1",
+        ),
+        (
+            {"closing": [{"between": ["P", "Q"], "length": -2}]},
+            "closing.1.length",
+            "a length is positive",
+        ),
+        (
+            {"closing": [{"between": ["P", "Q"], "length": 0}]},
+            "closing.1.length",
+            "a length is positive",
+        ),
     ],
 )
-def test_what_is_not_computed_is_refused_by_its_key(change: dict[str, Any], key: str, said: str) -> None:
+def test_what_is_not_computed_is_refused_by_its_key(
+    change: dict[str, Any], key: str, said: str
+) -> None:
     with pytest.raises(ConfigError) as caught:
         ptmcad.Mechanism({**FOUR_BAR, **change})
     wrong = [fault for fault in caught.value.faults if (fault.key or "").endswith(key)]
-    assert any(said in fault.message for fault in wrong), [(f.key, f.message) for f in caught.value.faults]
+    assert any(said in fault.message for fault in wrong), [
+        (f.key, f.message) for f in caught.value.faults
+    ]
 
 
 CHAIN = {
@@ -262,9 +319,15 @@ def test_two_degrees_of_freedom_are_those_of_an_open_chain() -> None:
     loop, chain = slice_of(PLATFORM, **LEG), slice_of(CHAIN, **LEG)
     seen = set()
     for _ in range(8):
-        at = {"L": Fraction(random.randrange(10, 300), 100), "W": Fraction(random.randrange(-300, 300), 100)}
+        at = {
+            "L": Fraction(random.randrange(10, 300), 100),
+            "W": Fraction(random.randrange(-300, 300), 100),
+        }
         found, known = ptmcad.solve(loop, **at), ptmcad.solve(chain, **at)
-        kinds = [[(p.stable, p.known_energy.text(8)) for p in poses.equilibria] for poses in (found, known)]
+        kinds = [
+            [(p.stable, p.known_energy.text(8)) for p in poses.equilibria]
+            for poses in (found, known)
+        ]
         assert kinds[0] == kinds[1]
         seen.add(len(kinds[0]))
     assert seen == {4, 6}
@@ -273,7 +336,8 @@ def test_two_degrees_of_freedom_are_those_of_an_open_chain() -> None:
 def test_two_degrees_of_freedom_have_the_curves_of_an_open_chain() -> None:
     """All of them: of the conditions for stability none brings a curve of its own."""
     found, known = (
-        {c.polynomial: c.kind for c in components(slice_of(mechanism, **LEG))} for mechanism in (PLATFORM, CHAIN)
+        {c.polynomial: c.kind for c in components(slice_of(mechanism, **LEG))}
+        for mechanism in (PLATFORM, CHAIN)
     )
     assert found == known
 
@@ -307,7 +371,9 @@ def test_a_moment_on_another_unknown_needs_one_degree_of_freedom() -> None:
 
 
 def test_a_tension_has_a_name_of_its_own() -> None:
-    with pytest.raises(ConfigError, match="'force_density_CQ' is the name of a closing bar's force density"):
+    with pytest.raises(
+        ConfigError, match="'force_density_CQ' is the name of a closing bar's force density"
+    ):
         ptmcad.Mechanism({**FIVE_BAR, "parameters": {**FIVE_BAR["parameters"], "force_density_CQ": {"kind": "force"}},
                           "loads": {"C": ["F", "-G"], "Q": ["force_density_CQ", 0]}})  # fmt: skip
 
@@ -315,7 +381,10 @@ def test_a_tension_has_a_name_of_its_own() -> None:
 @pytest.mark.parametrize(
     ("lengths", "said"),
     [
-        ((1, 1, 2, 2), "A0 P Q B0 is a parallelogram with two branches, on one A0P and B0Q are parallel"),
+        (
+            (1, 1, 2, 2),
+            "A0 P Q B0 is a parallelogram with two branches, on one A0P and B0Q are parallel",
+        ),
         (("3/2", "3/2", 1, 1), "A0 P Q B0 is a parallelogram"),
         ((2, 1, 1, 2), "A0 P Q B0 is a kite with two branches, on one P stays at B0"),
         ((2, 1, 2, 1), "A0 P Q B0 is a kite with two branches, on one Q stays at A0"),
@@ -324,7 +393,9 @@ def test_a_tension_has_a_name_of_its_own() -> None:
     ],
     ids=str,
 )
-def test_a_loop_that_folds_flat_everywhere_is_told_with_its_branches(lengths: tuple[Any, ...], said: str) -> None:
+def test_a_loop_that_folds_flat_everywhere_is_told_with_its_branches(
+    lengths: tuple[Any, ...], said: str
+) -> None:
     numbers = dict(zip(("L1", "L2", "L3", "b"), lengths, strict=True))
     with pytest.raises(DegenerateSliceError) as caught:
         components(slice_of(FOUR_BAR, **LOADS, parameters=numbers))
@@ -348,8 +419,15 @@ def test_the_branches_of_a_parallelogram_by_themselves() -> None:
         p, q = z, 2 + w
         assert np.abs(np.abs(p - q) - 2).max() < 1e-9
         for F, G in (("17/13", "-9/11"), ("1/3", "1/5")):
-            found = ptmcad.solve(slice_of(mechanism, **LOADS, parameters={"L1": 1, "b": 2}), F=F, G=G)
-            u = np.abs(q) ** 2 / 2 + np.abs(p - 2) ** 2 / 2 - float(Fraction(F)) * p.imag - float(Fraction(G)) * q.imag
+            found = ptmcad.solve(
+                slice_of(mechanism, **LOADS, parameters={"L1": 1, "b": 2}), F=F, G=G
+            )
+            u = (
+                np.abs(q) ** 2 / 2
+                + np.abs(p - 2) ** 2 / 2
+                - float(Fraction(F)) * p.imag
+                - float(Fraction(G)) * q.imag
+            )
             minima = int(((u < np.roll(u, 1)) & (u < np.roll(u, -1))).sum())
             maxima = int(((u > np.roll(u, 1)) & (u > np.roll(u, -1))).sum())
             assert (found.stable, len(found.equilibria)) == (minima, minima + maxima)
@@ -357,15 +435,22 @@ def test_the_branches_of_a_parallelogram_by_themselves() -> None:
 
 def test_a_spring_along_a_closing_bar_does_nothing() -> None:
     with pytest.raises(ConfigError, match=r"springs.3: the length of QP is constant"):
-        ptmcad.Mechanism({**FOUR_BAR, "springs": [*FOUR_BAR["springs"], {"between": ["Q", "P"], "k": 1}]})
+        ptmcad.Mechanism(
+            {**FOUR_BAR, "springs": [*FOUR_BAR["springs"], {"between": ["Q", "P"], "k": 1}]}
+        )
 
 
 def test_lengths_and_stiffnesses_written_where_they_are_used_are_proved_positive() -> None:
     for change, part in (
         ({"closing": [{"between": ["P", "Q"], "length": "L3 + F"}]}, "closing.1.length"),
-        ({"springs": [{"between": ["A0", "Q"], "k": "k1 + F"}, FOUR_BAR["springs"][1]]}, "springs.1.k"),
+        (
+            {"springs": [{"between": ["A0", "Q"], "k": "k1 + F"}, FOUR_BAR["springs"][1]]},
+            "springs.1.k",
+        ),
     ):
-        with pytest.raises(ConfigError, match=rf"{part}: a \w+ must be positive in the whole window"):
+        with pytest.raises(
+            ConfigError, match=rf"{part}: a \w+ must be positive in the whole window"
+        ):
             slice_of({**FOUR_BAR, **change}, **LOADS)
 
 
@@ -402,7 +487,8 @@ def test_without_any_solution_there_are_none() -> None:
 )
 def test_derivatives_of_compiled_expressions(text: str, by: str, slope: str) -> None:
     model = ptmcad.System(
-        unknowns={"t": "angle", "s": "angle", "x": "real"}, equations=[text, slope, "cos(t) + sin(s) + x + a + b"]
+        unknowns={"t": "angle", "s": "angle", "x": "real"},
+        equations=[text, slope, "cos(t) + sin(s) + x + a + b"],
     )
     system = compiled(model)
     derivative = system.graph.derivative(system.equations[0], system.names.index(by))

@@ -75,8 +75,9 @@ def test_what_follows_from_the_description() -> None:
     assert (m.parameters["k2"].default, m.parameters["F3"].default) == ("k", "0")
 
 
-# Wenger & Chablat, "Kinetostatic analysis and solution classification of a planar tensegrity mechanism", equation (1):
-# half of k times the squared lengths of the springs, and the work of the loads, with each written out in the angles.
+# Wenger & Chablat, "Kinetostatic analysis and solution classification of a planar tensegrity
+# mechanism", equation (1): half of k times the squared lengths of the springs, and the work of the
+# loads, with each written out in the angles.
 EQUATION_1 = """
   k1/2*(rho^2 + L2^2 - 2*rho*L2*cos(th2)) + k2/2*(rho^2 + L1^2 - 2*rho*L1*cos(th1))
 + k3/2*((rho - L2*cos(th2) - L1*cos(th1))^2 + (L2*sin(th2) - L1*sin(th1))^2)
@@ -110,7 +111,9 @@ class InRing:
         return self.ring.reduce(evaluate(parse(text.replace("\n", " ")), self))
 
 
-@pytest.mark.parametrize("text", [EQUATION_1], ids=["Wenger & Chablat (1), springs and horizontal loads of their own"])
+@pytest.mark.parametrize(
+    "text", [EQUATION_1], ids=["Wenger & Chablat (1), springs and horizontal loads of their own"]
+)
 def test_the_potential_is_the_published_one(text: str) -> None:
     assert system_from(ptm()).potential == InRing().value(text)
 
@@ -190,7 +193,10 @@ def test_another_mechanism() -> None:
 class Angle:
     """The ring of rational functions at a rational point of each circle."""
 
-    points: ClassVar = {"a": (Fraction(3, 5), Fraction(4, 5)), "b": (Fraction(-5, 13), Fraction(12, 13))}
+    points: ClassVar = {
+        "a": (Fraction(3, 5), Fraction(4, 5)),
+        "b": (Fraction(-5, 13), Fraction(12, 13)),
+    }
 
     def constant(self, value: Fraction) -> Fraction:
         return value

@@ -1,4 +1,6 @@
-"""Bodies, torsion springs, moments, weights; what a whole description proves; all faults of a record at once."""
+"""Bodies, torsion springs, moments, weights; what a whole description proves; all faults of a
+record at once.
+"""
 
 from __future__ import annotations
 
@@ -59,7 +61,10 @@ def energy(at: dict[str, float]) -> float:
     p = complex(x + at["L"] * cos(th), at["L"] * sin(th))
     q, r = p + turned(th + phi, a, 0), p + turned(th + phi, a / 2, b)
     t = r + turned(-phi, 0, b)
-    springs = at["k"] / 2 * abs(q - (1 + 2j)) ** 2 + (2 * at["k"] + at["c"]) / 2 * abs(t - (-1 + 1j / 3)) ** 2
+    springs = (
+        at["k"] / 2 * abs(q - (1 + 2j)) ** 2
+        + (2 * at["k"] + at["c"]) / 2 * abs(t - (-1 + 1j / 3)) ** 2
+    )
     torsion = at["c"] * (1 - (cos(phi - th) * 0.6 + sin(phi - th) * 0.8))
     return springs + torsion + at["W"] * r.imag - at["W"] / 2 * t.real
 
@@ -87,7 +92,9 @@ def test_bodies_torsion_loads_and_moments_are_those_written_out_by_hand() -> Non
         assert value(system.potential, at) == pytest.approx(energy(at))
         for unknown, equation in zip(("th", "phi", "x"), system.equations, strict=True):
             h = 1e-5
-            slope = (energy({**at, unknown: at[unknown] + h}) - energy({**at, unknown: at[unknown] - h})) / (2 * h)
+            slope = (
+                energy({**at, unknown: at[unknown] + h}) - energy({**at, unknown: at[unknown] - h})
+            ) / (2 * h)
             moment = {"th": at["M"], "phi": 0.0, "x": 2 * at["W"]}[unknown]
             assert value(equation, at) == pytest.approx(slope - moment, rel=1e-6, abs=1e-6)
 
@@ -102,7 +109,9 @@ PENDULUM: dict[str, Any] = {
 }
 
 
-@pytest.mark.parametrize("count", [count_by_isolation, count_by_signature], ids=lambda f: f.__name__)
+@pytest.mark.parametrize(
+    "count", [count_by_isolation, count_by_signature], ids=lambda f: f.__name__
+)
 def test_a_pendulum_holds_a_moment_up_to_its_weight(count: Any) -> None:
     """W cos th = M: two equilibria, one of them stable, where |M| < W, none beyond."""
     system = system_from(described(PENDULUM))
@@ -111,34 +120,56 @@ def test_a_pendulum_holds_a_moment_up_to_its_weight(count: Any) -> None:
 
 
 def test_a_moment_that_depends_on_its_own_unknown_has_a_potential() -> None:
-    """W cos th = M sin th cos th: cos th = 0 or sin th = W/M, so four where M > W; those of cos th = 0 are stable."""
+    """W cos th = M sin th cos th: cos th = 0 or sin th = W/M, so four where M > W; those of cos
+    th = 0 are stable.
+    """
     m = described({**PENDULUM, "moments": {"th": "M*sin(th)*cos(th)"}})
     assert "stable" in m.criterion.counts
     system = system_from(m)
-    found = [count(system, {"W": fmpq(1), "M": fmpq(2)}) for count in (count_by_isolation, count_by_signature)]
+    found = [
+        count(system, {"W": fmpq(1), "M": fmpq(2)})
+        for count in (count_by_isolation, count_by_signature)
+    ]
     assert [(c.total, c.stable, c.index) for c in found] == [(4, 2, (2, 2))] * 2
 
 
 def test_a_moment_that_depends_on_another_unknown_has_no_potential() -> None:
-    """The same at th, and at another angle s that its spring holds at 0 or pi: nothing says which are stable."""
+    """The same at th, and at another angle s that its spring holds at 0 or pi: nothing says which
+    are stable.
+    """
     further = {"unknowns": {"th": "angle", "s": "angle"}, "torsion": [{"angle": "s", "k": 1}]}
     m = described({**PENDULUM, **further, "moments": {"th": "M*sin(th)*cos(th)*cos(s)"}})
     assert "stable" not in m.criterion.counts
     system = system_from(m)
-    found = [count(system, {"W": fmpq(1), "M": fmpq(2)}) for count in (count_by_isolation, count_by_signature)]
+    found = [
+        count(system, {"W": fmpq(1), "M": fmpq(2)})
+        for count in (count_by_isolation, count_by_signature)
+    ]
     assert [(c.total, c.stable, c.index) for c in found] == [(8, None, None)] * 2
 
 
-def test_a_moment_that_is_too_large_to_be_integrated_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_moment_that_is_too_large_to_be_integrated_is_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(work, "MAX_WORK", 10)
     moment = "*".join(f"(M + W*cos(th) + {n}*sin({n}*th))" for n in range(1, 4))
-    with pytest.raises(ConfigError, match="moments: they have no energy: the expressions are too large"):
+    with pytest.raises(
+        ConfigError, match="moments: they have no energy: the expressions are too large"
+    ):
         described({**PENDULUM, "moments": {"th": moment}})
 
 
 @pytest.mark.parametrize(
     ("rest", "angle"),
-    [(0, 0), ("0", 0), ("pi", pi), ("pi/2", pi / 2), ("-pi/2", -pi / 2), ("3*pi/2", -pi / 2), ("- pi", pi)],
+    [
+        (0, 0),
+        ("0", 0),
+        ("pi", pi),
+        ("pi/2", pi / 2),
+        ("-pi/2", -pi / 2),
+        ("3*pi/2", -pi / 2),
+        ("- pi", pi),
+    ],
 )
 def test_rests_that_are_named(rest: Any, angle: float) -> None:
     m = described({**PENDULUM, "torsion": [{"angle": "th", "k": 1, "rest": rest}]})
@@ -186,7 +217,9 @@ WRONG = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("record", "key", "part"), [case[1:] for case in WRONG], ids=[case[0] for case in WRONG])
+@pytest.mark.parametrize(
+    ("record", "key", "part"), [case[1:] for case in WRONG], ids=[case[0] for case in WRONG]
+)
 def test_what_is_wrong_is_named_with_its_key(record: dict[str, Any], key: str, part: str) -> None:
     with pytest.raises(ConfigError) as caught:
         described(record)
@@ -206,7 +239,12 @@ def test_all_faults_are_found_at_once_and_none_follows_from_another() -> None:
     assert [fault.key for fault in caught.value.faults] == [
         "more", "parameters.b.kind", "points.A.1", "bars.5", "springs.1.between", "springs.2.k",
     ]  # fmt: skip
-    system = {"unknowns": {"x": "real", "y": "turn"}, "equations": ["x +", "z*y", True], "stable": 1, "odd": 2}
+    system = {
+        "unknowns": {"x": "real", "y": "turn"},
+        "equations": ["x +", "z*y", True],
+        "stable": 1,
+        "odd": 2,
+    }
     with pytest.raises(ConfigError) as caught:
         described_system(system)
     assert [f.key for f in caught.value.faults] == [
@@ -241,7 +279,9 @@ def test_titles_are_one_line_of_text(title: object, said: str) -> None:
     with pytest.raises(ConfigError, match=said):
         described({**PENDULUM, "title": title})
     with pytest.raises(ConfigError, match=said):
-        described_system({"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"], "title": title})
+        described_system(
+            {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"], "title": title}
+        )
 
 
 @pytest.mark.parametrize("name", ["inverted-pendulum", "slider-crank", "x-joint"])
@@ -276,7 +316,9 @@ def test_stiffnesses_that_cancel_leave_an_unknown_loose() -> None:
 
 
 def test_a_stored_result_keeps_the_description() -> None:
-    """Bodies, torsion springs and moments are there again when it is read, and the text is the same."""
+    """Bodies, torsion springs and moments are there again when it is read, and the text is the
+    same.
+    """
     record = {
         "name": "turned",
         "mechanism": {
@@ -299,8 +341,14 @@ def test_a_stored_result_keeps_the_description() -> None:
 NEWCOMERS: dict[str, tuple[dict[str, Any], str]] = {
     "a parameter as a number": ({"parameters": {"c": 1}}, "such as {kind: length, default: 1}"),
     "unknowns as a list": ({"unknowns": ["x"]}, "such as {th: angle, x: real}"),
-    "an equation as a text": ({"equations": "x^2 - 1"}, 'expected a list, such as ["x^3 - a*x + b"]'),
-    "an equation with its sign": ({"equations": ["x^2 = 2"]}, "write the left side less the right side"),
+    "an equation as a text": (
+        {"equations": "x^2 - 1"},
+        'expected a list, such as ["x^3 - a*x + b"]',
+    ),
+    "an equation with its sign": (
+        {"equations": ["x^2 = 2"]},
+        "write the left side less the right side",
+    ),
     "an inequality with its sign": ({"positive": ["x > 0"]}, "write what has to be positive alone"),
 }
 

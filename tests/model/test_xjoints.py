@@ -43,7 +43,9 @@ def rational_circle(t: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def test_the_second_bar_is_the_first_one_reflected() -> None:
-    """In the bisector of A1 B1, which takes A0 to B0: so the bars stay crossed, and the top is as long as the base."""
+    """In the bisector of A1 B1, which takes A0 to B0: so the bars stay crossed, and the top is as
+    long as the base.
+    """
     random = Random(3)
     for _ in range(20):
         b = Fraction(random.randrange(1, 20), 7)
@@ -84,7 +86,9 @@ def test_two_derivations_agree(mechanism: dict[str, Any]) -> None:
     theirs, system = derivation_at(model, values), system_from(model)
     numbers = {n: from_fraction(v) for n, v in values.items()}
     ours = [*at_point(system, numbers)[0]]
-    ours += [polynomial_at(system, p, numbers) for p in (*system.inequalities, *system.stability[:2])]
+    ours += [
+        polynomial_at(system, p, numbers) for p in (*system.inequalities, *system.stability[:2])
+    ]
     for t in ((2, 7, 5), (-3, 4, -1)):
         place: dict[str, fmpq] = {}
         for k, angle in enumerate(model.angles):
@@ -142,7 +146,9 @@ def test_two_joints_have_44_complex_solutions() -> None:
 
 
 def test_a_map_is_stored_with_its_joint_and_verified() -> None:
-    found = ptmcad.classify({"mechanism": ONE, "axes": {"F": [-1, 1], "b": ["1/2", 1]}, "parameters": {"G": "1/3"}})
+    found = ptmcad.classify(
+        {"mechanism": ONE, "axes": {"F": [-1, 1], "b": ["1/2", 1]}, "parameters": {"G": "1/3"}}
+    )
     document = json.loads(found.to_json())
     assert document["slice"]["mechanism"]["x-joint"] == ONE["x-joint"]
     again = ptmcad.RegionMap.from_json(found.to_json())
@@ -167,15 +173,30 @@ def test_a_map_is_stored_with_its_joint_and_verified() -> None:
         ({"top": ["C", "C"]}, "X.top.2", "is given twice"),
         ({"mechanism": {"points": {"A": [0, 0], "B": [1, 1]}}}, "X.base", "on one level"),
         ({"mechanism": {"points": {"A": [0, 0], "B": ["cos(th)", 0]}}}, "X.base", "on one level"),
-        ({"mechanism": {"springs": [{"between": ["A", "C"], "k": 1, "free": 1}]}}, "springs.1.free", "free lengths"),
-        ({"mechanism": {"closing": [{"between": ["A", "C"], "length": 1}]}}, "closing", "not computed yet"),
+        (
+            {"mechanism": {"springs": [{"between": ["A", "C"], "k": 1, "free": 1}]}},
+            "springs.1.free",
+            "free lengths",
+        ),
+        (
+            {"mechanism": {"closing": [{"between": ["A", "C"], "length": 1}]}},
+            "closing",
+            "not computed yet",
+        ),
         ({"mechanism": {"symmetries": [{"th": "-th", "F": "-F"}]}}, "symmetries", "leave them out"),
     ],
     ids=str,
 )
 def test_what_is_wrong_is_told_by_its_key(change: dict[str, Any], key: str, said: str) -> None:
-    joint = {**ONE["x-joint"]["X"], **{k: v for k, v in change.items() if k not in ("mechanism", "x-joint")}}
-    numbers = {"parameters": {**ONE["parameters"], "b": {"default": 1}}} if "base" in change or "bars" in change else {}
+    joint = {
+        **ONE["x-joint"]["X"],
+        **{k: v for k, v in change.items() if k not in ("mechanism", "x-joint")},
+    }
+    numbers = (
+        {"parameters": {**ONE["parameters"], "b": {"default": 1}}}
+        if "base" in change or "bars" in change
+        else {}
+    )
     points = {"points": {"A": [0, 0], "B": [1, 0]}} if numbers else {}
     record = {**ONE, **numbers, **points, "x-joint": {"X": joint}, **change.get("mechanism", {})}
     if "x-joint" in change:
@@ -183,7 +204,9 @@ def test_what_is_wrong_is_told_by_its_key(change: dict[str, Any], key: str, said
     with pytest.raises(ConfigError) as caught:
         ptmcad.Mechanism(record)
     wrong = [fault for fault in caught.value.faults if (fault.key or "").endswith(key)]
-    assert any(said in fault.message for fault in wrong), [(f.key, f.message) for f in caught.value.faults]
+    assert any(said in fault.message for fault in wrong), [
+        (f.key, f.message) for f in caught.value.faults
+    ]
 
 
 @pytest.mark.parametrize(
@@ -206,7 +229,9 @@ def test_one_fault_of_a_joint_is_told_alone(change: dict[str, Any], key: str) ->
 
 
 def test_bars_are_not_as_long_as_the_base_all_over_the_window() -> None:
-    with pytest.raises(ConfigError, match=r"x-joint.X.bars: a length must be positive in the whole window"):
+    with pytest.raises(
+        ConfigError, match=r"x-joint.X.bars: a length must be positive in the whole window"
+    ):
         ptmcad.classify({"mechanism": ONE, "axes": {"F": [-1, 1], "b": [1, 3]}})
 
 
@@ -215,7 +240,9 @@ UNITS = ("x1", "y1", "u1", "v1", "x2", "y2", "u2", "v2")
 
 
 def written_out(F: Fraction, G: Fraction) -> list[str]:
-    """Equations of the stack for msolve, with the second bars as further unknowns, and their rates of turning."""
+    """Equations of the stack for msolve, with the second bars as further unknowns, and their rates
+    of turning.
+    """
     import sympy
 
     x1, y1, u1, v1, x2, y2, u2, v2 = (sympy.Symbol(n) for n in UNITS)
@@ -233,9 +260,14 @@ def written_out(F: Fraction, G: Fraction) -> list[str]:
         slope = x * sympy.diff(total, y) - y * sympy.diff(total, x)
         equations.append(slope + rate * (u * sympy.diff(total, v) - v * sympy.diff(total, u)))
         equations += [x**2 + y**2 - 1, u**2 + v**2 - 1]
-        equations += [far * u - b * (x * u - y * v) - far * x + b, far * v - b * (y * u + x * v) - far * y]
+        equations += [
+            far * u - b * (x * u - y * v) - far * x + b,
+            far * v - b * (y * u + x * v) - far * y,
+        ]
     gens = [sympy.Symbol(n) for n in UNITS]
-    return [str(sympy.Poly(e, *gens).clear_denoms()[1].as_expr()).replace("**", "^") for e in equations]
+    return [
+        str(sympy.Poly(e, *gens).clear_denoms()[1].as_expr()).replace("**", "^") for e in equations
+    ]
 
 
 @pytest.mark.slow

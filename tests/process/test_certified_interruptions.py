@@ -1,4 +1,6 @@
-"""The certified engine interrupted at random moments: what is saved, what is said, and that one can go on from it."""
+"""The certified engine interrupted at random moments: what is saved, what is said, and that one can
+go on from it.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,11 @@ from ptmcad.text.bounds import percent
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = ("free02", "free-load", "free-l0-L1")
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-NOTHING = "was still being loaded or compiled", "the first level of the search was not done", "no map to save yet"
+NOTHING = (
+    "was still being loaded or compiled",
+    "the first level of the search was not done",
+    "no map to save yet",
+)
 
 WATCHING = """
 import sys
@@ -65,7 +71,11 @@ class Interrupted:
         if not self.message and self.saved is None and self.handed is None:
             return ""  # the command line was not read yet: nothing has begun
         if self.how == "itself":
-            done = self.saved is not None and self.saved.status is Status.CERTIFIED and not self.message
+            done = (
+                self.saved is not None
+                and self.saved.status is Status.CERTIFIED
+                and not self.message
+            )
             return "" if done else "it ended without a map"
         if "Traceback" in self.message or self.message.count("\n") != 1:
             return "not one message"
@@ -81,19 +91,27 @@ class Interrupted:
 
 
 def worked(process: int) -> float:
-    """Seconds of processor time of a process and of those that it has started: the same on a busy machine."""
+    """Seconds of processor time of a process and of those that it has started: the same on a busy
+    machine.
+    """
     children = Path(f"/proc/{process}/task/{process}/children").read_text().split()
     fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK") + sum(worked(int(c)) for c in children)
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK") + sum(
+        worked(int(c)) for c in children
+    )
 
 
 def interrupted(name: str, how: str, seconds: float, folder: Path) -> Interrupted:
-    """Run a shipped slice, and end it by a signal after so much processor time, or by its time limit."""
+    """Run a shipped slice, and end it by a signal after so much processor time, or by its time
+    limit.
+    """
     marker = folder / "handed"
     options = ["--timeout", f"{seconds}"] if how == "timeout" else []
     command = [sys.executable, "-c", WATCHING, str(marker), "classify", f"configs/{name}.yaml", "--format", "json",
                "--tolerance", "1e-9", "--out", str(folder), *options]  # fmt: skip
-    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
+    with subprocess.Popen(
+        command, cwd=ROOT, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL
+    ) as process:
         if how != "timeout":
             while worked(process.pid) < seconds and process.poll() is None:
                 time.sleep(0.02)
@@ -138,7 +156,9 @@ def test_interrupted_at_60_random_moments() -> None:
     for k, run in enumerate(campaign(60, 14)):
         assert not run.fault(), (run.fault(), run)
         status = {"timeout": 3, "itself": 0}
-        assert run.status == (status[run.how] if run.how in status else 128 + signal.Signals[run.how])
+        assert run.status == (
+            status[run.how] if run.how in status else 128 + signal.Signals[run.how]
+        )
         saved += run.saved is not None and run.how != "itself"
         if run.saved is not None and k % 7 == 0 and run.saved.undetermined < Fraction(1, 2):
             assert goes_on(run)

@@ -18,14 +18,23 @@ from support.examples import examples
 from support.faulty_disk import FaultyDisk, Killed
 
 from ptmcad.errors import OutputError
-from ptmcad.process.output import UNCHANGED, check_writable, locked, save_stopped, text_writer, write_files
+from ptmcad.process.output import (
+    UNCHANGED,
+    check_writable,
+    locked,
+    save_stopped,
+    text_writer,
+    write_files,
+)
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="without locks nothing is removed")
 
 NAMES = ("fig2.png", "fig2.svg", "fig2.json")
 VOUCHER = NAMES[-1]
 STEPS = 10
-"""More than putting three files into place over three others, or taking that back, and tidying up take."""
+"""More than putting three files into place over three others, or taking that back, and tidying up
+take.
+"""
 Files = dict[str, str]
 
 
@@ -36,7 +45,11 @@ def whole_disk(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def visible(folder: Path) -> Files:
-    return {path.name: path.read_text() for path in sorted(folder.iterdir()) if not path.name.startswith(".")}
+    return {
+        path.name: path.read_text()
+        for path in sorted(folder.iterdir())
+        if not path.name.startswith(".")
+    }
 
 
 def fill(folder: Path, files: Files) -> Path:
@@ -63,7 +76,9 @@ class Case:
         self.folder = fill(folder, self.old)
 
     def look(self) -> None:
-        """What anybody may see at any moment: no mixed set, and a voucher where there was one, or new pictures are."""
+        """What anybody may see at any moment: no mixed set, and a voucher where there was one, or
+        new pictures are.
+        """
         seen = visible(self.folder)
         assert seen.items() >= self.others.items()
         mine = {name: text for name, text in seen.items() if name in NAMES}
@@ -148,11 +163,17 @@ def test_errors_at_every_step(tmp_path: Path, olds: tuple[tuple[str, ...], ...])
                 assert not missing
             else:
                 kind, wanted = "not put back", case.old
-                assert " cannot be written: Input/output error; earlier files that cannot be put back: " in said
+                assert (
+                    " cannot be written: Input/output error; earlier files that cannot be put back: "
+                    in said
+                )
                 missing -= case.new.keys() - case.old.keys()
                 assert missing
                 said = said.partition("put back: ")[2]
-            assert seen == {name: text for name, text in wanted.items() if name not in missing}, (failing, said)
+            assert seen == {name: text for name, text in wanted.items() if name not in missing}, (
+                failing,
+                said,
+            )
             for name in NAMES[:-1]:
                 assert (f"{tmp_path / name} (Input/output error)" in said) == (name in missing)
             ends.add(kind)
@@ -172,7 +193,9 @@ def test_errors_and_then_a_kill(tmp_path: Path, first: int) -> None:
 
 def test_a_single_file_takes_one_step(tmp_path: Path) -> None:
     fill(tmp_path, {"fig2.json": "old", "fig2.png": "old"})
-    refused = pytest.raises(OutputError, match=rf"fig2\.json cannot be written: Input/output error; {UNCHANGED}")
+    refused = pytest.raises(
+        OutputError, match=rf"fig2\.json cannot be written: Input/output error; {UNCHANGED}"
+    )
     with refused, FaultyDisk(failing=(1,)):
         write_files(tmp_path, {"fig2.json": text_writer("new")})
     assert visible(tmp_path) == {"fig2.json": "old", "fig2.png": "old"}
@@ -191,7 +214,9 @@ def test_a_folder_in_the_way_is_refused_before_anything_changes(tmp_path: Path, 
         (tmp_path / name).mkdir()
 
     with pytest.raises(OutputError, match=rf"{name} is a folder, so no file can be written there"):
-        write_files(tmp_path, {other: late if other == VOUCHER else text_writer("new") for other in NAMES})
+        write_files(
+            tmp_path, {other: late if other == VOUCHER else text_writer("new") for other in NAMES}
+        )
     (tmp_path / name).rmdir()
     assert visible(tmp_path) == before
     assert set(os.listdir(tmp_path)) == set(before)
@@ -221,7 +246,9 @@ def test_two_runs_for_the_same_name_at_once(tmp_path: Path) -> None:
 
     def run(text: str) -> None:
         for k in range(2000):
-            if k >= 15 and len(seen - {"old"}) > 1:  # on a busy machine whoever looks may wait for long
+            if (
+                k >= 15 and len(seen - {"old"}) > 1
+            ):  # on a busy machine whoever looks may wait for long
                 return
             check_writable(tmp_path, NAMES)
             write_files(tmp_path, {name: text_writer(text) for name in NAMES})
@@ -271,7 +298,9 @@ def test_no_file_in_the_folder_is_obeyed(tmp_path: Path) -> None:
 def test_runs_one_after_the_other(
     tmp_path_factory: pytest.TempPathFactory, runs: list[tuple[list[str], str, int]]
 ) -> None:
-    """Every run replaces its files, or changes nothing, or loses pictures at most; it touches no others."""
+    """Every run replaces its files, or changes nothing, or loses pictures at most; it touches no
+    others.
+    """
     folder = fill(tmp_path_factory.getbasetemp() / "sequence", {})
     for number, (names, kind, step) in enumerate(runs):
         failing = {"failing": (step,), "failing for ever": range(step, 1000)}.get(kind, ())
@@ -331,7 +360,9 @@ PARTIAL, WHOLE = json.dumps({"status": "partial"}), json.dumps({"status": "exact
 def test_a_stopped_result_loses_no_other(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, old: Files, whole: bool, place: str, busy: bool
 ) -> None:
-    """Its name says truly whether it is complete; where another process stays in the folder it is no part of a set."""
+    """Its name says truly whether it is complete; where another process stays in the folder it is
+    no part of a set.
+    """
     fill(tmp_path, old)
     target, beside = tmp_path / "fig2.json", ("fig2.png", "fig2.svg")
     text = WHOLE if whole else PARTIAL + " "
@@ -357,19 +388,30 @@ def test_a_stopped_result_loses_no_other(
 
 
 def test_complete_results_do_not_pile_up(tmp_path: Path) -> None:
-    """Of runs that were interrupted while they drew the newest is kept, unless an older one has less undetermined."""
+    """Of runs that were interrupted while they drew the newest is kept, unless an older one has
+    less undetermined.
+    """
     target = tmp_path / "free02.json"
     target.write_text(WHOLE)
     for share in ("1/10", "1/20", "1/20", "1/5", "1/50"):
         text = json.dumps({"status": "certified", "cover": {}, "undetermined": share})
         place, _ = save_stopped(target, text, whole=True)
         assert place.read_text() == text
-    assert {json.loads(text).get("undetermined") for text in visible(tmp_path).values()} == {None, "1/5", "1/50"}
+    assert {json.loads(text).get("undetermined") for text in visible(tmp_path).values()} == {
+        None,
+        "1/5",
+        "1/50",
+    }
 
 
 @pytest.mark.parametrize(
     ("older", "newer", "replaced"),
-    [("1/50", "1/2", False), ("1/2", "1/50", True), ("1/50", "1/50", True), ("nonsense", "1/2", True)],
+    [
+        ("1/50", "1/2", False),
+        ("1/2", "1/50", True),
+        ("1/50", "1/50", True),
+        ("nonsense", "1/2", True),
+    ],
 )
 def test_a_stopped_map_replaces_none_with_less_undetermined(
     tmp_path: Path, older: str, newer: str, replaced: bool

@@ -22,7 +22,9 @@ sum(range(10**13))  # C code that returns to no interpreter for days
 def test_closing_the_lifeline_ends_c_code() -> None:
     read, write = os.pipe()
     process = subprocess.Popen(
-        [sys.executable, "-c", BUSY, str(read), str(os.getpid())], stdout=subprocess.PIPE, pass_fds=(read,)
+        [sys.executable, "-c", BUSY, str(read), str(os.getpid())],
+        stdout=subprocess.PIPE,
+        pass_fds=(read,),
     )
     os.close(read)
     try:

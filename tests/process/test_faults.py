@@ -1,7 +1,9 @@
-"""Signals, kills, limits and full disks, all from outside: a real process, what it leaves, and how it ends.
+"""Signals, kills, limits and full disks, all from outside: a real process, what it leaves, and how
+it ends.
 
-Where a test says "in C code", the computation is one call of FLINT that would last for many minutes and never returns
-to the interpreter meanwhile: the primality proof of a number of a thousand digits.
+Where a test says "in C code", the computation is one call of FLINT that would last for many minutes
+and never returns to the interpreter meanwhile: the primality proof of a number of a thousand
+digits.
 """
 
 from __future__ import annotations
@@ -39,10 +41,15 @@ ROOT = Path(__file__).resolve().parents[2]
 FIG2 = ROOT / "configs" / "fig2.yaml"
 PARTIAL = json.dumps({"status": "partial", "stage": "variety"})
 
-linux = pytest.mark.skipif(sys.platform != "linux", reason="counts on Linux's signals for pipes, or on its limits")
-pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="without fork the command line is not watched")
+linux = pytest.mark.skipif(
+    sys.platform != "linux", reason="counts on Linux's signals for pipes, or on its limits"
+)
+pytestmark = pytest.mark.skipif(
+    not hasattr(os, "fork"), reason="without fork the command line is not watched"
+)
 
-# A command line whose engine hands over a partial result, informs the test that it is there, and then does `work`.
+# A command line whose engine hands over a partial result, informs the test that it is there, and
+# then does `work`.
 STAND_IN = """
 import os, signal, sys, time, types
 signal.signal(signal.SIGINT, lambda *_: os._exit(130))
@@ -89,7 +96,9 @@ NEVER = (
     "ptmcad.process.supervisor.GRACE_SECONDS = ptmcad.process.supervisor.OVERRUN_SECONDS = 0.01\n"
     "ptmcad.process.supervisor.LAST_SECONDS = 0.01\n"
 )  # fmt: skip
-"""Before work that never returns to the interpreter: whatever time it gets to do so is waited for in vain."""
+"""Before work that never returns to the interpreter: whatever time it gets to do so is waited for
+in vain.
+"""
 IN_C = f"{NEVER}def engine(progress, partial):\n    arrived()\n    for_long_in_c()\n"
 OUT_OF_TIME = f"{NEVER}def engine(progress, partial):\n    time_is_up()\n    for_long_in_c()\n"
 FILLING = """
@@ -105,14 +114,22 @@ def engine(progress, partial):
 DRAWING = "def draw(result, path, **how):\n    path.write_text('half')\n    arrived()\n"
 
 
-ALWAYS = ("flint", "ptmcad.__main__", "ptmcad.process.supervisor", "ptmcad.cli.classify", "ptmcad.question.config")
+ALWAYS = (
+    "flint",
+    "ptmcad.__main__",
+    "ptmcad.process.supervisor",
+    "ptmcad.cli.classify",
+    "ptmcad.question.config",
+)
 """What every command line with the stand-in imports."""
 
 
 class Running:
     """A command line with a stand-in engine, in a folder ``out`` with an old result."""
 
-    def __init__(self, folder: Path, work: str, *options: str, formats: str = "json", **popen: Any) -> None:
+    def __init__(
+        self, folder: Path, work: str, *options: str, formats: str = "json", **popen: Any
+    ) -> None:
         self.folder = folder
         self.out = folder / "out"
         self.out.mkdir(exist_ok=True)
@@ -122,24 +139,33 @@ class Running:
         # what has been imported before would be no part of a limit
         if popen.keys() - {"start_new_session"} or "--max-memory" in options:
             popen = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **popen}
-            self.process = subprocess.Popen([sys.executable, "-c", program, str(folder), *arguments], cwd=ROOT, **popen)
+            self.process = subprocess.Popen(
+                [sys.executable, "-c", program, str(folder), *arguments], cwd=ROOT, **popen
+            )
         else:
             self.process = start(program, [str(folder), *arguments], ALWAYS)
 
     def arrive(self) -> int:
-        """Wait until the computation has come to where it stays, and return the process that computes."""
+        """Wait until the computation has come to where it stays, and return the process that
+        computes.
+        """
         until(lambda: (self.folder / "arrived").exists() or self.process.poll() is not None)
         assert self.process.poll() is None, self.process.communicate()
         return int((self.folder / "arrived").read_text())
 
     def end(self) -> tuple[int, str]:
-        """The exit status and what was printed on standard error; nothing may be left of the process."""
+        """The exit status and what was printed on standard error; nothing may be left of the
+        process.
+        """
         _, errors = self.process.communicate(timeout=60)
         assert not [name for name in os.listdir(self.out) if name.startswith(".")]
         return self.process.returncode, (errors or b"").decode()
 
     def files(self) -> dict[str, str]:
-        return {path.name: path.read_text() if path.is_file() else "" for path in sorted(self.out.iterdir())}
+        return {
+            path.name: path.read_text() if path.is_file() else ""
+            for path in sorted(self.out.iterdir())
+        }
 
 
 def until(condition: Callable[[], bool]) -> None:
@@ -171,9 +197,13 @@ def put(folder: Path, **files: str) -> dict[str, str]:
 
 
 @linux
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+@pytest.mark.parametrize(
+    ("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+)
 @pytest.mark.parametrize("to", ["the process", "its group, twice"])
-def test_a_signal_stops_c_code(tmp_path: Path, number: signal.Signals, status: int, to: str) -> None:
+def test_a_signal_stops_c_code(
+    tmp_path: Path, number: signal.Signals, status: int, to: str
+) -> None:
     """Ctrl-C in a terminal goes to the whole group, and people press it twice."""
     old = put(tmp_path, json="old")
     running = Running(tmp_path, IN_C, start_new_session=True)
@@ -195,8 +225,12 @@ CERTIFIED = "Result.cover, Result.undetermined = 'of a certified map', __import_
 
 
 @linux
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
-@pytest.mark.parametrize("stay", ["for_long_in_c()", "time.sleep(3600)"], ids=["in C code", "in Python"])
+@pytest.mark.parametrize(
+    ("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+)
+@pytest.mark.parametrize(
+    "stay", ["for_long_in_c()", "time.sleep(3600)"], ids=["in C code", "in Python"]
+)
 def test_a_signal_saves_a_map_that_can_be_gone_on_from(
     tmp_path: Path, number: signal.Signals, status: int, stay: str
 ) -> None:
@@ -271,23 +305,38 @@ INTERRUPTED = {
     ),
     "classify, areas": (
         "ptmcad.exact.engine areas_of",
-        ("classify", "configs/mechanisms/two-bar-chain.yaml", "--set", "L1=1237/1000", "--set", "L2=1013/1000"),
+        (
+            "classify",
+            "configs/mechanisms/two-bar-chain.yaml",
+            "--set",
+            "L1=1237/1000",
+            "--set",
+            "L2=1013/1000",
+        ),
     ),
-    "classify, a slice of high degree": ("ptmcad.exact.engine projection_of", ("classify", *HIGH_DEGREE)),
+    "classify, a slice of high degree": (
+        "ptmcad.exact.engine projection_of",
+        ("classify", *HIGH_DEGREE),
+    ),
 }
-"""In which function a command is interrupted, as its module looks it up: by then there is nothing worth saving."""
+"""In which function a command is interrupted, as its module looks it up: by then there is nothing
+worth saving.
+"""
 
 
 @linux
 @pytest.mark.parametrize(
-    "command", [name if name == "map" else pytest.param(name, marks=pytest.mark.slow) for name in INTERRUPTED]
+    "command",
+    [name if name == "map" else pytest.param(name, marks=pytest.mark.slow) for name in INTERRUPTED],
 )
 def test_an_interrupted_command_says_so(command: str, tmp_path: Path) -> None:
     """While it computes; however long that takes, as engines get faster."""
     arrived, out = tmp_path / "arrived", tmp_path / "out"
     out.mkdir()
     place, arguments = INTERRUPTED[command]
-    process = start(AGAIN_AND_AGAIN, [str(arrived), *place.split(), *arguments, "--out", str(out)], ALWAYS)
+    process = start(
+        AGAIN_AND_AGAIN, [str(arrived), *place.split(), *arguments, "--out", str(out)], ALWAYS
+    )
     until(lambda: arrived.exists() or process.poll() is not None)
     process.send_signal(signal.SIGINT)
     assert process.communicate() == (b"", b"interrupted; nothing was saved\n")
@@ -302,7 +351,9 @@ def test_what_had_been_written_before_is_told() -> None:
 
 
 @linux
-@pytest.mark.parametrize("stay", ["    for_long_in_c()\n", "    time.sleep(3600)\n"], ids=["in C code", "in Python"])
+@pytest.mark.parametrize(
+    "stay", ["    for_long_in_c()\n", "    time.sleep(3600)\n"], ids=["in C code", "in Python"]
+)
 def test_a_signal_stops_drawing(tmp_path: Path, stay: str) -> None:
     old = put(tmp_path, json="old", png="old picture")
     hasty = NEVER if "for_long_in_c" in stay else ""
@@ -319,14 +370,18 @@ def test_a_signal_stops_drawing(tmp_path: Path, stay: str) -> None:
 
 @linux
 def test_a_signal_to_the_computing_process_alone(tmp_path: Path) -> None:
-    running = Running(tmp_path, "def engine(progress, partial):\n    arrived()\n    time.sleep(3600)\n")
+    running = Running(
+        tmp_path, "def engine(progress, partial):\n    arrived()\n    time.sleep(3600)\n"
+    )
     os.kill(running.arrive(), signal.SIGTERM)
     assert running.end() == (143, "terminated (SIGTERM); nothing was saved\n")
 
 
 @linux
 def test_what_is_cleaned_up_is_cleaned_up_silently_and_to_the_end(tmp_path: Path) -> None:
-    """A second signal does not interrupt it; and what interrupted code has to say is nobody's concern."""
+    """A second signal does not interrupt it; and what interrupted code has to say is nobody's
+    concern.
+    """
     work = (
         "def engine(progress, partial):\n"
         "    try:\n"
@@ -349,7 +404,9 @@ def test_an_ignored_hang_up_stays_ignored(tmp_path: Path) -> None:
     """As nohup asks for."""
     wait = "while not (here / 'go').exists(): time.sleep(0.01)"
     work = f"def engine(progress, partial):\n    arrived()\n    {wait}\n"
-    running = Running(tmp_path, work, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+    running = Running(
+        tmp_path, work, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    )
     computing = running.arrive()
     running.process.send_signal(signal.SIGHUP)
     os.kill(computing, signal.SIGHUP)
@@ -368,11 +425,23 @@ def test_signals_at_any_moment_of_the_start(tmp_path: Path) -> None:
         "from ptmcad.__main__ import main\n"
         "main()\n"
     )
-    arguments = [sys.executable, "-c", program, "classify", str(FIG2), "--out", str(tmp_path), "--format", "json"]
+    arguments = [
+        sys.executable,
+        "-c",
+        program,
+        "classify",
+        str(FIG2),
+        "--out",
+        str(tmp_path),
+        "--format",
+        "json",
+    ]
     moments = random.Random(2)
     for _ in range(6):
         number = moments.choice((signal.SIGINT, signal.SIGTERM))
-        process = subprocess.Popen(arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        process = subprocess.Popen(
+            arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        )
         assert process.stdout is not None
         assert process.stdout.read(1) == b"."
         time.sleep(moments.uniform(0, 0.25))
@@ -398,7 +467,9 @@ def test_the_progress_bar_leaves_no_half_line(tmp_path: Path) -> None:
     running.process.send_signal(signal.SIGINT)
     assert running.end()[0] == 130
     shown = b""
-    with suppress(OSError):  # at the end, as nobody has the other side any more; a single read may give a part only
+    with suppress(
+        OSError
+    ):  # at the end, as nobody has the other side any more; a single read may give a part only
         while part := os.read(terminal, 10_000):
             shown += part
     os.close(terminal)
@@ -439,7 +510,9 @@ OLDER = {"json": "old", "png": "old picture"}
         ),
     ],
 )
-def test_waiting_for_the_folder(tmp_path: Path, ended: str, certified: bool, old: dict[str, str]) -> None:
+def test_waiting_for_the_folder(
+    tmp_path: Path, ended: str, certified: bool, old: dict[str, str]
+) -> None:
     """Nothing is put into place without the lock; what was computed goes to a new name."""
     before = put(tmp_path, **old)
     held = os.open(tmp_path / "out", os.O_RDONLY)
@@ -451,7 +524,9 @@ def test_waiting_for_the_folder(tmp_path: Path, ended: str, certified: bool, old
         *(["--engine", "certified"] if certified else []),
     ]
     running = Running(tmp_path, work, *options, formats="png,json")
-    fcntl.flock(held, fcntl.LOCK_EX)  # meanwhile the program starts; it can look at the folder later, too
+    fcntl.flock(
+        held, fcntl.LOCK_EX
+    )  # meanwhile the program starts; it can look at the folder later, too
     try:
         computing = running.arrive()
         if ended == "kill -9":
@@ -506,7 +581,9 @@ def engine(progress, partial):
     os.replace, os.unlink, os.rmdir = map(killing, (os.replace, os.unlink, os.rmdir))
 """
 OLD = {"fig2.json": "old", "fig2.png": "old picture", "fig2.svg": "old picture"}
-"""Eight steps: two old pictures are hidden, JSON, two pictures; then what is hidden is removed, and its folder."""
+"""Eight steps: two old pictures are hidden, JSON, two pictures; then what is hidden is removed, and
+its folder.
+"""
 NEW = {
     "fig2.json": '{"status": "exact", "stage": "variety"}',
     "fig2.png": "half a picture",
@@ -528,9 +605,13 @@ def killed_before_step(folder: Path, step: int, victims: str) -> tuple[Running, 
 
 
 @linux
-@pytest.mark.parametrize("step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8))])
+@pytest.mark.parametrize(
+    "step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8))]
+)
 def test_a_killed_computation_between_two_steps(tmp_path: Path, step: int) -> None:
-    """The result is in place, or the program saves it beside the older one, and says which; pictures may be missing."""
+    """The result is in place, or the program saves it beside the older one, and says which;
+    pictures may be missing.
+    """
     running, status, errors = killed_before_step(tmp_path, step, "os.getpid(),")
     assert status == 3
     placed = step > 3
@@ -543,12 +624,16 @@ def test_a_killed_computation_between_two_steps(tmp_path: Path, step: int) -> No
 
 def visible_before(step: int) -> dict[str, str]:
     """What can be seen before one of the steps that put a result into place."""
-    files, pictures = (OLD, ("png", "svg")[step - 1 :]) if step <= 3 else (NEW, ("png", "svg")[: step - 4])
+    files, pictures = (
+        (OLD, ("png", "svg")[step - 1 :]) if step <= 3 else (NEW, ("png", "svg")[: step - 4])
+    )
     return {name: files[name] for name in ("fig2.json", *(f"fig2.{kind}" for kind in pictures))}
 
 
 @linux
-@pytest.mark.parametrize("step", [3, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 4, 5, 6, 7, 8))])
+@pytest.mark.parametrize(
+    "step", [3, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 4, 5, 6, 7, 8))]
+)
 def test_a_killed_program_between_two_steps(tmp_path: Path, step: int) -> None:
     """The computation completes what was begun, and ends then."""
     running, _, _ = killed_before_step(tmp_path, step, "os.getppid(),")
@@ -556,7 +641,9 @@ def test_a_killed_program_between_two_steps(tmp_path: Path, step: int) -> None:
 
 
 @linux
-@pytest.mark.parametrize("step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8))])
+@pytest.mark.parametrize(
+    "step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8))]
+)
 def test_a_kill_of_both_between_two_steps(tmp_path: Path, step: int) -> None:
     """Never a picture beside the JSON of another run; and who comes next removes what is hidden."""
     running, _, _ = killed_before_step(tmp_path, step, "os.getppid(), os.getpid()")
@@ -569,8 +656,8 @@ def test_a_kill_of_both_between_two_steps(tmp_path: Path, step: int) -> None:
 def killed_at_random(folder: Path, formats: str, times: int, seed: int) -> None:
     """Replace one result by another and kill the program meanwhile, over and over.
 
-    The span of the moments follows the run time, whatever the machine's load: longer after a run that was killed too
-    early to change anything, shorter after one that came to its end.
+    The span of the moments follows the run time, whatever the machine's load: longer after a run
+    that was killed too early to change anything, shorter after one that came to its end.
     """
     out = folder / "out"
     kinds: dict[str, dict[str, bytes]] = {}
@@ -591,23 +678,32 @@ def killed_at_random(folder: Path, formats: str, times: int, seed: int) -> None:
         (os.killpg if k % 2 else os.kill)(process.pid, signal.SIGKILL)
         process.communicate(timeout=60)  # standard error is closed when both processes have ended
         after = contents(out)
-        whole = {name: [kind for kind, files in kinds.items() if files[name] == text] for name, text in after.items()}
+        whole = {
+            name: [kind for kind, files in kinds.items() if files[name] == text]
+            for name, text in after.items()
+        }
         assert any(after.items() <= files.items() for files in kinds.values()), (k, whole)
         assert "fig2.json" in after
         changed = after["fig2.json"] != before
         span *= 0.8 if changed else 1.1
         seen.append(changed)
-    assert set(seen) == {True, False}, "the moments were all too early or all too late to show anything"
+    assert set(seen) == {True, False}, (
+        "the moments were all too early or all too late to show anything"
+    )
     completed(out, formats, "total")
     assert sorted(os.listdir(out)) == sorted(kinds["total"])
 
 
 def begun(out: Path, formats: str, count: str) -> Started:
-    """The program, which has imported all that it needs: before that it touches nothing, so that no kill tells much."""
+    """The program, which has imported all that it needs: before that it touches nothing, so that no
+    kill tells much.
+    """
     options = ["--out", str(out), "--format", formats, "--count", count, "--no-timings"]
     program = "from ptmcad.__main__ import main\nmain()"
     return start(
-        program, ["classify", str(FIG2), *options], (*ALWAYS, "ptmcad.ask.classification", "ptmcad.exact.engine")
+        program,
+        ["classify", str(FIG2), *options],
+        (*ALWAYS, "ptmcad.ask.classification", "ptmcad.exact.engine"),
     )
 
 
@@ -636,7 +732,13 @@ def test_killed_at_50_random_moments_with_pictures(tmp_path: Path) -> None:
 
 def test_stale_temporary_files_go_and_live_ones_stay(tmp_path: Path) -> None:
     stale = [".fig2.0123abcd.tmp", ".probe.0123abcd.tmp"]
-    others = [".fig3.0123abcd.tmp", ".fig2.0123abcd.old", ".fig2.mine.tmp", "fig2.json", ".fig2.00000000.tmp"]
+    others = [
+        ".fig3.0123abcd.tmp",
+        ".fig2.0123abcd.old",
+        ".fig2.mine.tmp",
+        "fig2.json",
+        ".fig2.00000000.tmp",
+    ]
     for name in (*stale, *others):
         (tmp_path / name).mkdir()
         (tmp_path / name / "fig2.png").touch()
@@ -690,7 +792,11 @@ def test_a_time_limit_while_drawing_loses_no_result(tmp_path: Path) -> None:
 @linux
 @pytest.mark.parametrize(
     ("old", "place"),
-    [(PARTIAL, "fig2.json"), ('{"status": "exact"}', "fig2.partial.json"), ("[" * 10**6, "fig2.partial.json")],
+    [
+        (PARTIAL, "fig2.json"),
+        ('{"status": "exact"}', "fig2.partial.json"),
+        ("[" * 10**6, "fig2.partial.json"),
+    ],
     ids=["older partial result", "whole result", "something else"],
 )
 def test_a_stopped_run_replaces_no_whole_result(tmp_path: Path, old: str, place: str) -> None:
@@ -723,27 +829,40 @@ def test_a_time_limit_before_there_is_anything(tmp_path: Path) -> None:
 )
 @pytest.mark.fast_cases("flint.fmpz_poly([1, 1]) ** 100_000", "[0] * (1 << 30)")
 def test_a_memory_limit(tmp_path: Path, allocate: str) -> None:
-    """C code that aborts and Python's MemoryError end alike: one message, the partial result, status 3."""
+    """C code that aborts and Python's MemoryError end alike: one message, the partial result,
+    status 3.
+    """
     work = f"def engine(progress, partial):\n    {allocate}\n"
     running = Running(tmp_path, work, "--max-memory", "150M")
     status, errors = running.end()
     assert status == 3
     place = tmp_path / "out" / "fig2.json"
-    assert errors == f"stopped: the memory limit of 150M was reached; partial map saved to {place}\n"
+    assert (
+        errors == f"stopped: the memory limit of 150M was reached; partial map saved to {place}\n"
+    )
     assert running.files() == {"fig2.json": PARTIAL}
 
 
 @pytest.mark.slow
 @linux
 @pytest.mark.parametrize("name", ["verify", "locate"])
-def test_limits_of_the_other_commands(shipped: Callable[..., Any], tmp_path: Path, name: str) -> None:
+def test_limits_of_the_other_commands(
+    shipped: Callable[..., Any], tmp_path: Path, name: str
+) -> None:
     result = tmp_path / "fig2.json"
     result.write_text(shipped("fig2").to_json())
     options = ["--at", "rho=1,L2=1"] if name == "locate" else []
     arguments = [sys.executable, "-m", "ptmcad", name, str(result), *options]
     for limit in (["--max-memory", "1G"], ["--timeout", "1000"]):
-        assert subprocess.run([*arguments, *limit], cwd=ROOT, capture_output=True, check=False).returncode == 0
-    done = subprocess.run([*arguments, "--timeout", "1e-9"], cwd=ROOT, capture_output=True, text=True, check=False)
+        assert (
+            subprocess.run(
+                [*arguments, *limit], cwd=ROOT, capture_output=True, check=False
+            ).returncode
+            == 0
+        )
+    done = subprocess.run(
+        [*arguments, "--timeout", "1e-9"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     if done.returncode != 0:  # a process that is done within the grace is not stopped any more
         # the parent's sentence, or that of a command which looks at the clock itself
         said = "stopped: the time limit of 1e-09 s was reached"
@@ -751,7 +870,22 @@ def test_limits_of_the_other_commands(shipped: Callable[..., Any], tmp_path: Pat
 
 
 @pytest.mark.parametrize(
-    "size", ["", "lots", "500", "-1G", "1e3M", "nan", "1M", "0G", "1GG", "٥٠٠M", "9" * 10**6, "99999999999T", "1/2G"]
+    "size",
+    [
+        "",
+        "lots",
+        "500",
+        "-1G",
+        "1e3M",
+        "nan",
+        "1M",
+        "0G",
+        "1GG",
+        "٥٠٠M",
+        "9" * 10**6,
+        "99999999999T",
+        "1/2G",
+    ],
 )
 def test_nonsense_for_a_size(capfd: pytest.CaptureFixture[str], size: str) -> None:
     with pytest.raises(ConfigError):
@@ -767,7 +901,21 @@ def test_nonsense_for_a_size(capfd: pytest.CaptureFixture[str], size: str) -> No
 def test_the_memory_limit_is_taken_back(tmp_path: Path) -> None:
     """The command line as a function leaves its caller's limits as they were."""
     before = resource.getrlimit(resource.RLIMIT_DATA)
-    assert run(["classify", str(FIG2), "--out", str(tmp_path), "--format", "json", "--max-memory", "8G"]) == 0
+    assert (
+        run(
+            [
+                "classify",
+                str(FIG2),
+                "--out",
+                str(tmp_path),
+                "--format",
+                "json",
+                "--max-memory",
+                "8G",
+            ]
+        )
+        == 0
+    )
     assert resource.getrlimit(resource.RLIMIT_DATA) == before
 
 
@@ -789,8 +937,12 @@ def test_a_computation_that_the_system_kills(tmp_path: Path) -> None:
 
 
 @linux
-@pytest.mark.parametrize(("number", "said"), [(signal.SIGSEGV, ""), (signal.SIGABRT, "impossible inverse")])
-def test_a_crash_is_not_taken_for_a_limit(tmp_path: Path, number: signal.Signals, said: str) -> None:
+@pytest.mark.parametrize(
+    ("number", "said"), [(signal.SIGSEGV, ""), (signal.SIGABRT, "impossible inverse")]
+)
+def test_a_crash_is_not_taken_for_a_limit(
+    tmp_path: Path, number: signal.Signals, said: str
+) -> None:
     """What the library said last is shown; the old result stays."""
     old = put(tmp_path, json="old")
     work = (
@@ -812,8 +964,20 @@ def test_a_crash_is_not_taken_for_a_limit(tmp_path: Path, number: signal.Signals
 @pytest.mark.slow
 def test_a_time_limit_in_a_slice_of_high_degree(tmp_path: Path) -> None:
     """A real computation, which has not ended by then."""
-    arguments = [sys.executable, "-m", "ptmcad", "classify", *HIGH_DEGREE, "--out", str(tmp_path), "--timeout", "3"]
-    process = subprocess.run(arguments, cwd=ROOT, capture_output=True, text=True, check=False, timeout=60)
+    arguments = [
+        sys.executable,
+        "-m",
+        "ptmcad",
+        "classify",
+        *HIGH_DEGREE,
+        "--out",
+        str(tmp_path),
+        "--timeout",
+        "3",
+    ]
+    process = subprocess.run(
+        arguments, cwd=ROOT, capture_output=True, text=True, check=False, timeout=60
+    )
     assert process.stdout == ""
     assert process.returncode == 3
     assert process.stderr.startswith("stopped: ")
@@ -831,9 +995,15 @@ def full_disk(tmp_path: Path) -> Iterator[Path]:
     folder = tmp_path / "full"
     folder.mkdir()
     mount = ["mount", "-t", "tmpfs", "-o", "size=16k", "tmpfs", str(folder)]
-    done = subprocess.run(mount, capture_output=True, text=True, check=False) if os.geteuid() == 0 else None
+    done = (
+        subprocess.run(mount, capture_output=True, text=True, check=False)
+        if os.geteuid() == 0
+        else None
+    )
     if done is None or done.returncode:
-        pytest.skip(f"no small file system can be mounted: {done.stderr.strip() if done else 'this is not root'}")
+        pytest.skip(
+            f"no small file system can be mounted: {done.stderr.strip() if done else 'this is not root'}"
+        )
     try:
         (folder / "fig2.json").write_text("old")
         yield folder
@@ -882,7 +1052,9 @@ def test_a_file_that_may_not_grow(tmp_path: Path) -> None:
     """The same without root: the process may write files of 2000 bytes at most."""
     (tmp_path / "fig2.json").write_text("old")
     limit = (2000, 2000)
-    status, errors = classified(tmp_path, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit))
+    status, errors = classified(
+        tmp_path, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+    )
     assert (status, errors.count("\n")) == (2, 1)
     assert "File too large" in errors
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"fig2.json": "old"}
@@ -915,7 +1087,12 @@ def test_a_reader_that_leaves(
     script = f"{{ '{sys.executable}' -m ptmcad {arguments}; echo $? >status; }} | {reader}"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
-        ["sh", "-c", script], cwd=tmp_path, capture_output=True, text=True, check=True, env=environment
+        ["sh", "-c", script],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+        env=environment,
     )
     assert int((tmp_path / "status").read_text()) in statuses
     assert done.stderr.replace("violated", "").count("\n") <= (1 in statuses)
@@ -927,13 +1104,20 @@ def test_a_reader_that_leaves(
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/stdin").exists(), reason="needs a name for standard input")
-def test_a_reader_that_leaves_ends_an_endless_table(shipped: Callable[..., Any], tmp_path: Path) -> None:
+def test_a_reader_that_leaves_ends_an_endless_table(
+    shipped: Callable[..., Any], tmp_path: Path
+) -> None:
     (tmp_path / "fig2.json").write_text(shipped("fig2").to_json())
     program = f"'{sys.executable}' -m ptmcad locate fig2.json --csv /dev/stdin"
     script = f"{{ echo rho,L2; yes 7/10,3/2; }} | {program} | head -1"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
-        ["sh", "-c", script], cwd=tmp_path, capture_output=True, text=True, check=True, env=environment
+        ["sh", "-c", script],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+        env=environment,
     )
     assert done.stdout.startswith("rho,L2,status") or done.stdout.startswith("L2,rho,status")
     assert "Traceback" not in done.stderr
@@ -943,11 +1127,17 @@ def test_a_reader_that_leaves_ends_an_endless_table(shipped: Callable[..., Any],
 
 
 @given(
-    st.lists(st.tuples(st.sampled_from(Topic), st.lists(st.text("aä\n ", max_size=5), min_size=1, max_size=3))),
+    st.lists(
+        st.tuples(
+            st.sampled_from(Topic), st.lists(st.text("aä\n ", max_size=5), min_size=1, max_size=3)
+        )
+    ),
     st.integers(1, 40),
     st.integers(0, 60),
 )
-def test_messages_arrive_whole_or_not_at_all(messages: list[tuple[Topic, list[str]]], chunk: int, lost: int) -> None:
+def test_messages_arrive_whole_or_not_at_all(
+    messages: list[tuple[Topic, list[str]]], chunk: int, lost: int
+) -> None:
     """In whatever pieces they come, and wherever the sender was killed."""
     with tempfile.TemporaryFile() as file:
         Own.pipe = file.fileno()
@@ -994,5 +1184,7 @@ def work():
         print(found)
 supervise(work, [signal.SIGTERM])
 """
-    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    ended = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
     assert (ended.returncode, ended.stdout) == (128 + signal.SIGTERM, "[499500]\n")

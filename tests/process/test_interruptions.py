@@ -1,8 +1,10 @@
-"""Three hundred interruptions of real processes: what they leave is one set of files, and no complete result is lost.
+"""Three hundred interruptions of real processes: what they leave is one set of files, and no
+complete result is lost.
 
-Each run replaces the files of another, with the other count, so that every file says of which run it is. It is ended by
-kill -9 of the computation, of the program, of both, or by a signal; at a random moment, before a step of putting the
-files into place, or while it waits for the folder's lock; with either engine, or with a stand-in for its time.
+Each run replaces the files of another, with the other count, so that every file says of which run
+it is. It is ended by kill -9 of the computation, of the program, of both, or by a signal; at a
+random moment, before a step of putting the files into place, or while it waits for the folder's
+lock; with either engine, or with a stand-in for its time.
 """
 
 from __future__ import annotations
@@ -24,7 +26,14 @@ import pytest
 from ptmcad.process.output import check_writable
 
 ROOT = Path(__file__).resolve().parents[2]
-ENDS = ("kill -9 of the computation", "kill -9 of the program", "kill -9 of both", "SIGINT", "SIGTERM", "SIGHUP")
+ENDS = (
+    "kill -9 of the computation",
+    "kill -9 of the program",
+    "kill -9 of both",
+    "SIGINT",
+    "SIGTERM",
+    "SIGHUP",
+)
 
 PROGRAM = """
 import fcntl, os, pathlib, signal, stat, sys, time, types
@@ -118,10 +127,21 @@ class Campaign:
         for marker in ("arrived", "drawn", "handed-over", "computed"):
             (self.here / marker).unlink(missing_ok=True)
         slice = CERTIFIED if self.engine == "certified" else EXACT
-        arguments = ["classify", *slice, "--count", count, "--out", str(self.out), "--format", "png,svg,json"]
+        arguments = [
+            "classify",
+            *slice,
+            "--count",
+            count,
+            "--out",
+            str(self.out),
+            "--format",
+            "png,svg,json",
+        ]
         engine = "real" if self.real else self.engine
         program = [sys.executable, "-c", PROGRAM, str(self.here), str(step), engine, *arguments]
-        return subprocess.Popen(program, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        return subprocess.Popen(
+            program, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+        )
 
     def counts(self) -> dict[str, str]:
         """Of which run every file is that has a result's own name."""
@@ -129,7 +149,9 @@ class Campaign:
         for path in (self.out / f"{NAME}.json", *(self.out / name for name in PICTURES)):
             if path.exists():
                 text = path.read_text()
-                found[path.name] = json.loads(text)["slice"]["count"] if path.suffix == ".json" else text
+                found[path.name] = (
+                    json.loads(text)["slice"]["count"] if path.suffix == ".json" else text
+                )
         return found
 
     def interrupt(self, end: str, moment: str, choose: random.Random) -> None:
@@ -149,9 +171,13 @@ class Campaign:
                     fcntl.flock(held, fcntl.LOCK_EX)
             while not (self.here / "arrived").exists() and process.poll() is None:
                 time.sleep(0.01)
-        handed_over, computed = ((self.here / marker).exists() for marker in ("handed-over", "computed"))
+        handed_over, computed = (
+            (self.here / marker).exists() for marker in ("handed-over", "computed")
+        )
         self.end(process, end)
-        _, errors = process.communicate(timeout=120)  # standard error is closed when both have ended
+        _, errors = process.communicate(
+            timeout=120
+        )  # standard error is closed when both have ended
         os.close(held)
         text = errors.decode()
         assert "Traceback" not in text, text
@@ -159,13 +185,21 @@ class Campaign:
         assert f"{NAME}.json" in self.counts()
         after = self.counts()[f"{NAME}.json"]
         assert after in (before, count)
-        saved = [path for path in self.out.iterdir() if path.name.startswith((f"{NAME}.partial", f"{NAME}.complete"))]
+        saved = [
+            path
+            for path in self.out.iterdir()
+            if path.name.startswith((f"{NAME}.partial", f"{NAME}.complete"))
+        ]
         for path in saved:
             status = json.loads(path.read_text())["status"]
             assert (status == "partial") == (".partial" in path.name), path
             assert str(path) in text
-        worth_saving = self.engine == "certified" or computed  # an exact map on the way is made anew in less time
-        left_to_save = end == "kill -9 of the computation" or (end.startswith("SIG") and worth_saving)
+        worth_saving = (
+            self.engine == "certified" or computed
+        )  # an exact map on the way is made anew in less time
+        left_to_save = end == "kill -9 of the computation" or (
+            end.startswith("SIG") and worth_saving
+        )
         if handed_over and left_to_save and process.returncode != 0:
             assert re.search(r" map( \(.* undetermined\))? saved to ", text), (end, moment, text)
             assert saved or after == count
@@ -210,7 +244,9 @@ class Campaign:
 def test_interruptions(tmp_path: Path, engine: str, real: bool, moments: dict[str, int]) -> None:
     campaign = Campaign(tmp_path, engine, real)
     choose = random.Random(f"{engine} {real}")
-    plan = [(end, moment) for end in ENDS for moment, times in moments.items() for _ in range(times)]
+    plan = [
+        (end, moment) for end in ENDS for moment, times in moments.items() for _ in range(times)
+    ]
     choose.shuffle(plan)
     for end, moment in plan:
         campaign.interrupt(end, moment, choose)

@@ -1,6 +1,8 @@
-"""Limits, and what else a caller may have set around the program: memory, descriptors, signals, streams, settings.
+"""Limits, and what else a caller may have set around the program: memory, descriptors, signals,
+streams, settings.
 
-Whatever they are, the program ends, with one message and a status that says why, and nothing that is done is lost.
+Whatever they are, the program ends, with one message and a status that says why, and nothing that
+is done is lost.
 """
 
 from __future__ import annotations
@@ -40,7 +42,9 @@ def limited(which: int, soft: int, hard: int | None = None) -> Callable[[], None
 # Memory
 
 
-@pytest.mark.parametrize(("which", "option"), [(resource.RLIMIT_AS, "-v"), (resource.RLIMIT_DATA, "-d")])
+@pytest.mark.parametrize(
+    ("which", "option"), [(resource.RLIMIT_AS, "-v"), (resource.RLIMIT_DATA, "-d")]
+)
 @pytest.mark.slow_cases("2--d")
 def test_the_limit_that_was_reached_is_named(tmp_path: Path, which: int, option: str) -> None:
     """The caller's own, though the program has one too."""
@@ -59,14 +63,19 @@ def test_the_limit_that_was_reached_is_named(tmp_path: Path, which: int, option:
     ("end", "how"),
     [
         ("os.kill(os.getpid(), signal.SIGSEGV)", "SIGSEGV"),
-        ("raise SystemError('error return without exception set')", "SystemError: error return without exception set"),
+        (
+            "raise SystemError('error return without exception set')",
+            "SystemError: error return without exception set",
+        ),
     ],
 )
 @pytest.mark.slow_cases(
     "raise SystemError('error return without exception set')-SystemError: error return without exception set"
 )
 def test_a_crash_with_little_memory_left(tmp_path: Path, end: str, how: str) -> None:
-    """No library said that it was for lack of memory, so the message says how it ended, and the result is kept."""
+    """No library said that it was for lack of memory, so the message says how it ended, and the
+    result is kept.
+    """
     work = (
         "import resource\n"
         "def engine(progress, partial):\n"
@@ -78,7 +87,8 @@ def test_a_crash_with_little_memory_left(tmp_path: Path, end: str, how: str) -> 
     status, errors = running.end()
     place = tmp_path / "out" / "fig2.json"
     assert (
-        errors == f"stopped: most likely the memory limit of 150M was reached ({how}); partial map saved to {place}\n"
+        errors
+        == f"stopped: most likely the memory limit of 150M was reached ({how}); partial map saved to {place}\n"
     )
     assert status == 3
 
@@ -107,11 +117,17 @@ main()
 @pytest.mark.parametrize(
     ("which", "counted", "option"), [("RLIMIT_DATA", "VmData", "-d"), ("RLIMIT_AS", "VmSize", "-v")]
 )
-def test_a_limit_under_which_nothing_can_be_loaded_is_named(spare: int, which: str, counted: str, option: str) -> None:
-    """Not even what watches and knows of limits; what Python raises then is a MemoryError or something odd."""
+def test_a_limit_under_which_nothing_can_be_loaded_is_named(
+    spare: int, which: str, counted: str, option: str
+) -> None:
+    """Not even what watches and knows of limits; what Python raises then is a MemoryError or
+    something odd.
+    """
     program = NO_ROOM.format(which=which, counted=counted, spare=spare)
     command = [sys.executable, "-c", program]
-    ended = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60, cwd=ROOT)
+    ended = subprocess.run(
+        command, check=False, capture_output=True, text=True, timeout=60, cwd=ROOT
+    )
     assert ended.returncode == 2
     said = rf"error: ptmcad cannot start: .*, with the memory limit of [0-9]+K .* \(ulimit {option}\)\n"
     assert re.fullmatch(said, ended.stderr), ended.stderr
@@ -133,21 +149,35 @@ main()
 
 
 @pytest.mark.parametrize(
-    ("size", "named"), [(300, ", with the memory limit of 307200K that the caller has set (ulimit -d)"), (1024, "")]
+    ("size", "named"),
+    [(300, ", with the memory limit of 307200K that the caller has set (ulimit -d)"), (1024, "")],
 )
-@pytest.mark.parametrize("error", ["MemoryError", "SystemError", "ImportError", "OSError", "SyntaxError"])
+@pytest.mark.parametrize(
+    "error", ["MemoryError", "SystemError", "ImportError", "OSError", "SyntaxError"]
+)
 def test_whatever_python_makes_of_too_little_memory(error: str, size: int, named: str) -> None:
-    """Its parser says that a colon was expected. A limit that is high enough for all libraries is not named."""
+    """Its parser says that a colon was expected. A limit that is high enough for all libraries is
+    not named.
+    """
     command = [sys.executable, "-c", FAILING.format(error=f"{error}('in vain')", size=size)]
-    ended = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60, cwd=ROOT)
-    assert (ended.returncode, ended.stderr) == (2, f"error: ptmcad cannot start: {error} in vain{named}\n")
+    ended = subprocess.run(
+        command, check=False, capture_output=True, text=True, timeout=60, cwd=ROOT
+    )
+    assert (ended.returncode, ended.stderr) == (
+        2,
+        f"error: ptmcad cannot start: {error} in vain{named}\n",
+    )
 
 
 def test_what_waiting_for_the_child_needs_is_loaded_before_there_is_one() -> None:
-    """os.wait4 imports a module for what it returns; where there was no room for it, the child was left alone."""
+    """os.wait4 imports a module for what it returns; where there was no room for it, the child was
+    left alone.
+    """
     program = "import sys\nfrom ptmcad.__main__ import main\nsys.modules['resource'] = None\nmain()"
     command = [sys.executable, "-c", program]
-    ended = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60, cwd=ROOT)
+    ended = subprocess.run(
+        command, check=False, capture_output=True, text=True, timeout=60, cwd=ROOT
+    )
     assert (ended.returncode, ended.stdout) == (2, "")
     assert ended.stderr.startswith("error: ptmcad cannot start: ModuleNotFoundError ")
 
@@ -158,7 +188,9 @@ def test_a_bound_that_the_libraries_exceed_is_refused() -> None:
     before = resource.getrlimit(resource.RLIMIT_DATA)
     with bounded(Bound(used + 4 * MIN_ROOM, "100M")), loading("the engine"):
         assert resource.getrlimit(resource.RLIMIT_DATA) == before
-    refused = pytest.raises(ConfigError, match=r"100M is too little for the engine, which has .*: at least [0-9]+M")
+    refused = pytest.raises(
+        ConfigError, match=r"100M is too little for the engine, which has .*: at least [0-9]+M"
+    )
     with bounded(Bound(used + MIN_ROOM // 2, "100M")):
         with refused as caught, loading("the engine"):
             assert resource.getrlimit(resource.RLIMIT_DATA) == before
@@ -178,7 +210,9 @@ def test_a_library_that_does_not_say_why(monkeypatch: pytest.MonkeyPatch) -> Non
     """LLVM's loader says under a low limit on address space that its file is not found."""
     failure = OSError("Could not find/load shared object file 'libllvmlite.so'")
     for size, expected in ((200 * MIB, MemoryError), (1 << 40, OSError)):
-        monkeypatch.setattr("ptmcad.process.memory.caller_limits", lambda size=size: ((size, "a limit"),))
+        monkeypatch.setattr(
+            "ptmcad.process.memory.caller_limits", lambda size=size: ((size, "a limit"),)
+        )
         with pytest.raises(expected), loading("a library"):
             raise failure
         with pytest.raises(ModuleNotFoundError), loading("a library"):
@@ -216,7 +250,9 @@ sys.meta_path.insert(0, Hidden())
 """
 
 
-def ended(folder: Path, engine: str, scipy: bool, options: list[str], **popen: Any) -> tuple[int, str, float]:
+def ended(
+    folder: Path, engine: str, scipy: bool, options: list[str], **popen: Any
+) -> tuple[int, str, float]:
     """Exit status, standard error and seconds of a run in an empty folder."""
     hiding = folder / "hiding"
     hiding.mkdir(exist_ok=True)
@@ -228,7 +264,12 @@ def ended(folder: Path, engine: str, scipy: bool, options: list[str], **popen: A
     popen["env"] = {**os.environ, "PYTHONPATH": str(hiding)}
     started = time.monotonic()
     done = subprocess.run(
-        [sys.executable, "-m", "ptmcad", *arguments], cwd=ROOT, capture_output=True, text=True, check=False, **popen
+        [sys.executable, "-m", "ptmcad", *arguments],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+        **popen,
     )
     return done.returncode, done.stderr, time.monotonic() - started
 
@@ -241,7 +282,9 @@ def judge(folder: Path, status: int, errors: str, limit: str) -> str:
     assert status == 0 or limit in errors, errors
     files = sorted(path.name for path in folder.glob("out/*") if not path.name.startswith("."))
     assert not list(folder.glob("out/.*"))
-    saved = re.findall(r"(partial|complete) map(?: \([^)]* undetermined\))? saved to [^;]*/([^;/\s]*)", errors)
+    saved = re.findall(
+        r"(partial|complete) map(?: \([^)]* undetermined\))? saved to [^;]*/([^;/\s]*)", errors
+    )
     if status == 0:
         assert len(files) == 2
     else:
@@ -250,19 +293,27 @@ def judge(folder: Path, status: int, errors: str, limit: str) -> str:
         if name.endswith(".json"):
             assert json.loads((folder / "out" / name).read_text())["status"]
     likely = ", most likely" if "most likely" in errors else ""
-    return {0: "done", 2: "refused"}.get(status, f"stopped{likely}, {saved[0][0] if saved else 'nothing'} saved")
+    return {0: "done", 2: "refused"}.get(
+        status, f"stopped{likely}, {saved[0][0] if saved else 'nothing'} saved"
+    )
 
 
-def campaign(folder: Path, engine: str, scipy: bool, sizes: list[int]) -> Iterator[tuple[int, int, str, float]]:
+def campaign(
+    folder: Path, engine: str, scipy: bool, sizes: list[int]
+) -> Iterator[tuple[int, int, str, float]]:
     """For each size in MiB: the status, the kind of end, the seconds."""
     for size in sizes:
         status, errors, seconds = ended(folder, engine, scipy, ["--max-memory", f"{size}M"])
         yield size, status, judge(folder, status, errors, f"{size}M"), seconds
 
 
-def callers(folder: Path, engine: str, which: int, sizes: list[int]) -> Iterator[tuple[int, int, str, float]]:
+def callers(
+    folder: Path, engine: str, which: int, sizes: list[int]
+) -> Iterator[tuple[int, int, str, float]]:
     for size in sizes:
-        status, errors, seconds = ended(folder, engine, True, [], preexec_fn=limited(which, size * MIB))
+        status, errors, seconds = ended(
+            folder, engine, True, [], preexec_fn=limited(which, size * MIB)
+        )
         yield size, status, judge(folder, status, errors, "that the caller has set"), seconds
 
 
@@ -281,7 +332,11 @@ def test_every_size_of_memory(tmp_path: Path, engine: str, scipy: bool) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("engine", "which"),
-    [("exact", resource.RLIMIT_AS), ("exact", resource.RLIMIT_DATA), ("certified", resource.RLIMIT_DATA)],
+    [
+        ("exact", resource.RLIMIT_AS),
+        ("exact", resource.RLIMIT_DATA),
+        ("certified", resource.RLIMIT_DATA),
+    ],
 )  # under a low limit on address space OpenBLAS, which the certified engine loads, may try again and again, for ever
 def test_every_size_of_a_callers_limit(tmp_path: Path, engine: str, which: int) -> None:
     sizes = [20, 30, 45, 60, 80, 100, 130, 160, 200, 260, 350, 500, 700, 1000]
@@ -376,8 +431,12 @@ PECULIAR = {
     [NOTEBOOK, *(pytest.param(each, marks=pytest.mark.slow) for each in (NO_FOLDERS, PECULIAR))],
     ids=["notebook", "no folders", "peculiar"],
 )
-def test_pictures_whatever_the_environment_says(tmp_path: Path, environment: dict[str, str]) -> None:
-    """Another backend, settings that are no text, no folder for caches: pictures as usual, and without a word."""
+def test_pictures_whatever_the_environment_says(
+    tmp_path: Path, environment: dict[str, str]
+) -> None:
+    """Another backend, settings that are no text, no folder for caches: pictures as usual, and
+    without a word.
+    """
     settings = tmp_path / "settings"
     settings.write_bytes(b"backend: \xff\n")
     environment = {**os.environ, "MATPLOTLIBRC": str(settings), **environment}
@@ -385,9 +444,14 @@ def test_pictures_whatever_the_environment_says(tmp_path: Path, environment: dic
     assert sorted(os.listdir(tmp_path / "out")) == ["fig2.json", "fig2.png"]
 
 
-@pytest.mark.parametrize("error", [KeyError("font"), OSError(28, "No space left on device"), RuntimeError("x\ny")])
+@pytest.mark.parametrize(
+    "error", [KeyError("font"), OSError(28, "No space left on device"), RuntimeError("x\ny")]
+)
 def test_a_picture_that_fails_leaves_the_result(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], error: Exception
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+    error: Exception,
 ) -> None:
     import ptmcad.show.render.regionmap
 
@@ -415,5 +479,8 @@ def test_lack_of_memory_is_no_failed_picture(tmp_path: Path) -> None:
 
     with pytest.raises(MemoryError):
         write_result(tmp_path, {"a.png": picture("a.png", fail)}, "a.json", "{}")
-    with pytest.raises(PictureError, match=r"a\.png cannot be drawn: drawing failed unexpectedly: integer .*a\.json"):
+    with pytest.raises(
+        PictureError,
+        match=r"a\.png cannot be drawn: drawing failed unexpectedly: integer .*a\.json",
+    ):
         write_result(tmp_path, {"a.png": picture("a.png", lambda _: 1 // 0)}, "a.json", "{}")  # type: ignore[arg-type,return-value]

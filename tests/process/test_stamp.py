@@ -23,7 +23,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("suffix", FORMATS)
 def test_a_picture_carries_the_hash_of_its_json(folder: Path, suffix: str) -> None:
-    (found,) = re.findall(rb"sha256 of fig2\.json: ([0-9a-f]{64})", (folder / f"fig2.{suffix}").read_bytes())
+    (found,) = re.findall(
+        rb"sha256 of fig2\.json: ([0-9a-f]{64})", (folder / f"fig2.{suffix}").read_bytes()
+    )
     assert found.decode() == sha256((folder / "fig2.json").read_bytes()).hexdigest()
 
 

@@ -38,6 +38,8 @@ main()
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no processes are watched there")
 def test_an_end_just_after_the_question_for_it_wakes_the_parent() -> None:
-    done = subprocess.run([sys.executable, "-c", LATE], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", LATE], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 2, done.stderr
     assert "nowhere.yaml" in done.stderr

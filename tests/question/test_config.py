@@ -47,7 +47,12 @@ def test_shipped_records_load(path: Path) -> None:
 
 def test_numbers_are_exact(tmp_path: Path) -> None:
     digits = "3.141592653589793238462643383279502884197"
-    slice = load(write(tmp_path, AXES + f"parameters: {{L1: {digits}, F3: -0.1, F4: 1e-30, k: '3/4', F3x: -1/10}}"))
+    slice = load(
+        write(
+            tmp_path,
+            AXES + f"parameters: {{L1: {digits}, F3: -0.1, F4: 1e-30, k: '3/4', F3x: -1/10}}",
+        )
+    )
     values = {name: slice.parameters[name].constant() for name in ("L1", "F3", "F4", "k", "F3x")}
     assert values["L1"] == Fraction(digits)
     assert values["F3"] == values["F3x"] == Fraction(-1, 10)
@@ -66,7 +71,19 @@ def test_expressions_and_defaults(tmp_path: Path) -> None:
     assert slice.parameters["k1"] == constant(100)
     assert slice.parameters["k2"] == constant(200)
     assert slice.text["F4"] == "F3"
-    assert list(slice.parameters) == ["L1", "L2", "rho", "k", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x"]
+    assert list(slice.parameters) == [
+        "L1",
+        "L2",
+        "rho",
+        "k",
+        "k1",
+        "k2",
+        "k3",
+        "F3",
+        "F4",
+        "F3x",
+        "F4x",
+    ]
 
 
 def test_a_free_length_of_zero_is_accepted(tmp_path: Path) -> None:
@@ -92,11 +109,15 @@ def test_free_lengths_fixed_as_axes_and_as_expressions(tmp_path: Path) -> None:
     assert [one.parameters[n] for n in ptm().free_lengths] == [constant(0), constant(0), axis(0)]
     varying = load(write(tmp_path, AXES + "parameters: {l0: rho/10, l0_1: (rho-1)^2/4}"))
     assert varying.parameters["l0_2"] == axis(0) * Fraction(1, 10)
-    assert varying.parameters["l0_1"].evaluate(Fraction(1), Fraction(1)) == 0  # zero inside the window is a length too
+    assert (
+        varying.parameters["l0_1"].evaluate(Fraction(1), Fraction(1)) == 0
+    )  # zero inside the window is a length too
 
 
 def test_free_lengths_that_cancel_leave_an_exact_slice(tmp_path: Path) -> None:
-    exact, cancelled = (load(write(tmp_path, AXES + text)) for text in ("", "parameters: {l0_1: rho - rho, l0: 0}"))
+    exact, cancelled = (
+        load(write(tmp_path, AXES + text)) for text in ("", "parameters: {l0_1: rho - rho, l0: 0}")
+    )
     assert not cancelled.has_free_lengths
     assert cancelled == exact
 
@@ -117,22 +138,64 @@ BAD = [
         "system.equation",
         "did you mean 'equations'?",
     ),
-    ("unknown parameter", AXES + "parameters:\n  Rho: 1", 3, "parameters.Rho", "did you mean 'rho'?"),
-    ("unknown parameter, nothing close", AXES + "parameters: {F5: 1}", 2, "parameters.F5", "the parameters are L1"),
+    (
+        "unknown parameter",
+        AXES + "parameters:\n  Rho: 1",
+        3,
+        "parameters.Rho",
+        "did you mean 'rho'?",
+    ),
+    (
+        "unknown parameter, nothing close",
+        AXES + "parameters: {F5: 1}",
+        2,
+        "parameters.F5",
+        "the parameters are L1",
+    ),
     ("duplicate key", AXES + AXES, 2, "axes", "twice; first in line 1"),
     ("duplicate parameter", AXES + "parameters:\n  F3: 1\n  F3: 2", 4, "parameters.F3", "twice"),
     ("axis also fixed", AXES + "parameters: {rho: 1}", 2, "parameters.rho", "fixed too"),
     ("empty range", "axes:\n  rho: [0, 2]\n  L2: [1, 1.0]", 3, "axes.L2", "empty"),
-    ("reversed range", "axes:\n  rho: [2, 0]\n  L2: [0, 1]", 2, "axes.rho", "reversed: write [0, 2]"),
+    (
+        "reversed range",
+        "axes:\n  rho: [2, 0]\n  L2: [0, 1]",
+        2,
+        "axes.rho",
+        "reversed: write [0, 2]",
+    ),
     ("length below zero", "axes:\n  rho: [-1, 2]\n  L2: [0, 1]", 2, "axes.rho", "below zero"),
     ("stiffness below zero", "axes:\n  rho: [0, 2]\n  k: [-1, 1]", 3, "axes.k", "below zero"),
     ("zero length", AXES + "parameters: {L1: 0}", 2, "parameters.L1", "must be positive"),
     ("negative length", AXES + "parameters: {L1: -1}", 2, "parameters.L1", "L1 is -1"),
-    ("negative base", "axes: {L1: [0, 2], L2: [0, 2]}\nparameters: {rho: -1}", 2, "parameters.rho", "not negative"),
+    (
+        "negative base",
+        "axes: {L1: [0, 2], L2: [0, 2]}\nparameters: {rho: -1}",
+        2,
+        "parameters.rho",
+        "not negative",
+    ),
     ("zero stiffness", AXES + "parameters: {k3: 0}", 2, "parameters.k3", "must be positive"),
-    ("length negative in the window", AXES + "parameters: {L1: rho - 1/2}", 2, "parameters.L1", "narrow the window"),
-    ("division by zero", AXES + "parameters:\n  F3: 1/(2-2)", 3, "parameters.F3", "division by zero (character 2"),
-    ("pole in the window", AXES + "parameters:\n  F3: 1/(rho-1)", 3, "parameters.F3", "division by zero inside"),
+    (
+        "length negative in the window",
+        AXES + "parameters: {L1: rho - 1/2}",
+        2,
+        "parameters.L1",
+        "narrow the window",
+    ),
+    (
+        "division by zero",
+        AXES + "parameters:\n  F3: 1/(2-2)",
+        3,
+        "parameters.F3",
+        "division by zero (character 2",
+    ),
+    (
+        "pole in the window",
+        AXES + "parameters:\n  F3: 1/(rho-1)",
+        3,
+        "parameters.F3",
+        "division by zero inside",
+    ),
     ("cycle", AXES + "parameters:\n  F3: F4\n  F4: 2*F3", 3, "parameters.F3", "F3 -> F4 -> F3"),
     ("self-cycle", AXES + "parameters: {F3: F3}", 2, "parameters.F3", "F3 -> F3"),
     ("unknown name", AXES + "parameters: {F3: 2*roh}", 2, "parameters.F3", "did you mean 'rho'?"),
@@ -142,8 +205,20 @@ BAD = [
     ("nan", AXES + "parameters: {F3: .nan}", 2, "parameters.F3", "all values are finite"),
     ("comma", AXES + "parameters:\n  F3: 0,5", 3, "parameters.F3", "decimal point"),
     ("huge exponent", AXES + "parameters: {F3: rho**1000000000}", 2, "parameters.F3", "at most 64"),
-    ("negative free length", AXES + "parameters: {l0: -0.2}", 2, "parameters.l0", "must be not negative"),
-    ("free length axis below zero", "axes: {rho: [0, 2], l0: [-1, 1]}", 1, "axes.l0", "not negative: start it at 0"),
+    (
+        "negative free length",
+        AXES + "parameters: {l0: -0.2}",
+        2,
+        "parameters.l0",
+        "must be not negative",
+    ),
+    (
+        "free length axis below zero",
+        "axes: {rho: [0, 2], l0: [-1, 1]}",
+        1,
+        "axes.l0",
+        "not negative: start it at 0",
+    ),
     (
         "free length negative in the window",
         AXES + "parameters: {l0_2: 1/8 - rho/4}",
@@ -151,8 +226,20 @@ BAD = [
         "parameters.l0_2",
         "must not be",
     ),
-    ("pole of a free length", AXES + "parameters: {l0: 1/(rho-1)}", 2, "parameters.l0", "division by zero inside"),
-    ("l0 without use", AXES + "parameters: {l0: 1, l0_1: 1, l0_2: 1, l0_3: 1}", 2, "parameters.l0", "no effect"),
+    (
+        "pole of a free length",
+        AXES + "parameters: {l0: 1/(rho-1)}",
+        2,
+        "parameters.l0",
+        "division by zero inside",
+    ),
+    (
+        "l0 without use",
+        AXES + "parameters: {l0: 1, l0_1: 1, l0_2: 1, l0_3: 1}",
+        2,
+        "parameters.l0",
+        "no effect",
+    ),
     (
         "axis l0 without use",
         "axes: {rho: [0, 1], l0: [0, 1]}\nparameters: {l0_1: 0, l0_2: 1, l0_3: 1}",
@@ -163,27 +250,66 @@ BAD = [
     ("one axis", "axes: {rho: [0, 2]}", 1, "axes", "1 axes"),
     ("three axes", "axes: {rho: [0, 2], L1: [0, 2], L2: [0, 2]}", 1, "axes", "3 axes"),
     ("no axes", "name: a", 1, "axes", "is missing"),
-    ("axes as a list", "axes: [rho, L2]", 1, "axes", "L2: [0, 2]}; no range is given for rho and L2"),
+    (
+        "axes as a list",
+        "axes: [rho, L2]",
+        1,
+        "axes",
+        "L2: [0, 2]}; no range is given for rho and L2",
+    ),
     ("axes as a text", "axes: rho", 1, "axes", "no range is given for rho"),
-    ("axes as lists", "axes: [[rho, 0, 2], [L2, 0, 2]]", 1, "axes", "expected two axes with their ranges"),
+    (
+        "axes as lists",
+        "axes: [[rho, 0, 2], [L2, 0, 2]]",
+        1,
+        "axes",
+        "expected two axes with their ranges",
+    ),
     ("free without a range", AXES + "free: [F]", 2, "free", "no range is given for F"),
     ("unused axis", "axes: {roh: [0, 2], L2: [0, 2]}", 1, "axes.roh", "did you mean 'rho'?"),
     ("cancelled axis", AXES.replace("rho", "F") + "parameters: {F3: F-F}", 1, "axes.F", "not used"),
-    ("axis k without use", "axes: {k: [0, 1], L2: [0, 2]}\nparameters: {k1: 1, k2: 1, k3: 1}", 1, "axes.k", "not used"),
-    ("k without use", AXES + "parameters: {k: 1, k1: 1, k2: 1, k3: 1}", 2, "parameters.k", "no effect"),
+    (
+        "axis k without use",
+        "axes: {k: [0, 1], L2: [0, 2]}\nparameters: {k1: 1, k2: 1, k3: 1}",
+        1,
+        "axes.k",
+        "not used",
+    ),
+    (
+        "k without use",
+        AXES + "parameters: {k: 1, k1: 1, k2: 1, k3: 1}",
+        2,
+        "parameters.k",
+        "no effect",
+    ),
     ("bad axis name", "axes: {2x: [0, 2], L2: [0, 2]}", 1, "axes.2x", "cannot name an axis"),
     ("range of three", "axes: {rho: [0, 1, 2], L2: [0, 2]}", 1, "axes.rho", "expected a range"),
-    ("range with a name", "axes: {rho: [0, L2], L2: [0, 2]}", 1, "axes.rho.2", "not an expression in L2"),
+    (
+        "range with a name",
+        "axes: {rho: [0, L2], L2: [0, 2]}",
+        1,
+        "axes.rho.2",
+        "not an expression in L2",
+    ),
     ("count", AXES + "count: all", 2, "count", "none of stable, total, index, admissible"),
     ("mechanism", AXES + "mechanism: {rods: 3}", 2, "mechanism.rods", "unknown key"),
-    ("mechanism's name", AXES + "mechanism: ptn", 2, "mechanism", "unknown mechanism; did you mean 'ptm'?"),
+    (
+        "mechanism's name",
+        AXES + "mechanism: ptn",
+        2,
+        "mechanism",
+        "unknown mechanism; did you mean 'ptm'?",
+    ),
     ("name with a path", AXES + "name: ../x", 2, "name", "cannot name a file"),
     ("name that hides", AXES + "name: .x", 2, "name", "cannot name a file"),
     *(
         (f"device {name}", f'{AXES}name: "{name}"', 2, "name", "cannot name a file: Windows keeps")
         for name in ("con", "NUL", "Com1", "aux", "LPT1.x", "lpt0", "PRN", "com³", "nul.tar.gz")
     ),
-    *((f"end of {name!r}", f'{AXES}name: "{name}"', 2, "name", "cannot name a file") for name in ("a.", "a ", "con ")),
+    *(
+        (f"end of {name!r}", f'{AXES}name: "{name}"', 2, "name", "cannot name a file")
+        for name in ("a.", "a ", "con ")
+    ),
     ("reference as text", AXES + "reference: text", 2, "reference", "expected a mapping"),
     ("parameters as a list", AXES + "parameters: [F3]", 2, "parameters", "expected a mapping"),
     ("anchor", AXES + "parameters: {F3: &a 1, F4: *a}", 2, "parameters.F3", "anchors"),
@@ -207,7 +333,9 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("text", "line", "key", "part"), [case[1:] for case in BAD], ids=[case[0] for case in BAD])
+@pytest.mark.parametrize(
+    ("text", "line", "key", "part"), [case[1:] for case in BAD], ids=[case[0] for case in BAD]
+)
 def test_bad_records_are_refused_with_their_place(
     tmp_path: Path, text: str, line: int | None, key: str | None, part: str
 ) -> None:
@@ -258,12 +386,20 @@ def test_a_record_whose_name_is_a_device_has_to_give_another(tmp_path: Path, fil
         (["variety", "--slice", "L2,rho", "--out", "nul.mpl"], "--out"),
         (["variety", "--slice", "L2,rho", "--out", "curves."], "--out"),
         (["variety", "--slice", "L2,rho", "--out", "curves.mpl "], "--out"),
-        (["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", "lpt9"], "--name"),
-        (["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", "../x"], "--name"),
+        (
+            ["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", "lpt9"],
+            "--name",
+        ),
+        (
+            ["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", "../x"],
+            "--name",
+        ),
         (["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", ""], "--name"),
     ],
 )
-def test_options_that_cannot_name_a_file(capfd: pytest.CaptureFixture[str], arguments: list[str], key: str) -> None:
+def test_options_that_cannot_name_a_file(
+    capfd: pytest.CaptureFixture[str], arguments: list[str], key: str
+) -> None:
     assert run(arguments) == 2
     assert capfd.readouterr().err.startswith(f"error: {key}: ")
 
@@ -313,9 +449,13 @@ def test_options_over_a_record() -> None:
     ],
     ids=str,
 )
-def test_bad_options_name_the_option(options: dict[str, object], key: str | None, part: str) -> None:
+def test_bad_options_name_the_option(
+    options: dict[str, object], key: str | None, part: str
+) -> None:
     if "config" in options:
-        options = options | {"config": next(path for path in CONFIGS if path.stem == options["config"])}
+        options = options | {
+            "config": next(path for path in CONFIGS if path.stem == options["config"])
+        }
     with pytest.raises(ConfigError) as caught:
         slice_from_options(**options)  # type: ignore[arg-type]
     assert caught.value.key == key
@@ -323,14 +463,22 @@ def test_bad_options_name_the_option(options: dict[str, object], key: str | None
 
 
 def test_mappings() -> None:
-    slice = slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["1/2", Fraction(3, 2)]}, "reference": {"regions": 2}})
+    slice = slice_from_mapping(
+        {"axes": {"rho": [0, 2], "L2": ["1/2", Fraction(3, 2)]}, "reference": {"regions": 2}}
+    )
     assert slice.axes[1].low == Fraction(1, 2)
     assert slice.reference == {"regions": 2}
     for number in (0.1, np.float64(0.1), np.float32(0.1), Fraction(1, 10)):
-        assert slice_from_mapping({"axes": {"rho": [0, number], "L2": [0, 2]}}).axes[0].high == Fraction(1, 10)
-    assert slice_from_mapping({"axes": {"rho": [0, Decimal("0.1")], "L2": [0, 2]}}).axes[0].high == Fraction(1, 10)
+        assert slice_from_mapping({"axes": {"rho": [0, number], "L2": [0, 2]}}).axes[
+            0
+        ].high == Fraction(1, 10)
+    assert slice_from_mapping({"axes": {"rho": [0, Decimal("0.1")], "L2": [0, 2]}}).axes[
+        0
+    ].high == Fraction(1, 10)
     assert slice_from_mapping({"axes": {"rho": [0, np.int64(2)], "L2": [0, 2]}}).axes[0].high == 2
-    with pytest.raises(ConfigError, match=r"axes\.rho\.2: 1j of type complex is not an exact number"):
+    with pytest.raises(
+        ConfigError, match=r"axes\.rho\.2: 1j of type complex is not an exact number"
+    ):
         slice_from_mapping({"axes": {"rho": [0, 1j], "L2": [0, 2]}})
 
 
@@ -339,11 +487,18 @@ def test_every_parameter_can_be_an_axis() -> None:
         if name != "L1":
             assert parameter.window is not None
             low, high = parameter.window
-            assert slice_from_options(slice=f"L1,{name}").axes[1].low == Fraction(low) < Fraction(high)
+            assert (
+                slice_from_options(slice=f"L1,{name}").axes[1].low == Fraction(low) < Fraction(high)
+            )
 
 
 @pytest.mark.parametrize(
-    "title", ["title: >\n  Two lines\n  folded", "title: |\n  Two lines\n  folded", 'title: "Two\\tlines\\u00a0folded"']
+    "title",
+    [
+        "title: >\n  Two lines\n  folded",
+        "title: |\n  Two lines\n  folded",
+        'title: "Two\\tlines\\u00a0folded"',
+    ],
 )
 def test_titles_of_several_lines_become_one(tmp_path: Path, title: str) -> None:
     """Their results were refused by every command that reads one."""
@@ -354,12 +509,16 @@ def test_titles_of_several_lines_become_one(tmp_path: Path, title: str) -> None:
 
 def test_a_title_with_a_hidden_character_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "title.yaml"
-    path.write_text('name: t\ntitle: "a\\u202Eb"\naxes: {rho: [3, 4], L2: [0, 1]}\n', encoding="utf-8")
+    path.write_text(
+        'name: t\ntitle: "a\\u202Eb"\naxes: {rho: [3, 4], L2: [0, 1]}\n', encoding="utf-8"
+    )
     with pytest.raises(ConfigError, match="U\\+202E"):
         load(path)
 
 
-@pytest.mark.parametrize(("shorthand", "names"), [("k", ("k1", "k2", "k3")), ("l0", ptm().free_lengths)])
+@pytest.mark.parametrize(
+    ("shorthand", "names"), [("k", ("k1", "k2", "k3")), ("l0", ptm().free_lengths)]
+)
 def test_a_value_for_all_springs_that_none_takes_is_refused_at_points_too(
     shorthand: str, names: tuple[str, ...]
 ) -> None:
@@ -378,7 +537,10 @@ def test_springs_of_mechanisms_with_loops_may_be_asked_to_be_in_tension(name: st
     """They were refused as systems, which have no springs."""
     axes = load(name).axes
     over = {axis.name: [axis.low, axis.high] for axis in axes}
-    record = {**plain_data(record_tree(name)), "design": {"maximise": "th1", "over": over, "where": {"tension": True}}}
+    record = {
+        **plain_data(record_tree(name)),
+        "design": {"maximise": "th1", "over": over, "where": {"tension": True}},
+    }
     assert design_from(record).tension
 
 

@@ -39,7 +39,11 @@ def test_a_margin_has_the_sign_of_the_length_less_the_free_length() -> None:
         f"the length of spring {name} less its free length" for name in ("k", "BP", "CP")
     ]
     anchors = ((-1.0, 0.0), (1.0, 0.0), (0.0, -2.0))
-    for x, y in ((Fraction(1, 3), Fraction(-1, 2)), (Fraction(3, 2), Fraction(1)), (Fraction(0), Fraction(-3))):
+    for x, y in (
+        (Fraction(1, 3), Fraction(-1, 2)),
+        (Fraction(3, 2), Fraction(1)),
+        (Fraction(0), Fraction(-3)),
+    ):
         values = {"x": x, "y": y, "l0": Fraction(1)}
         for margin, (a, b) in zip(margins, anchors, strict=True):
             assert (value_at(margin.value, values) > 0) is (hypot(float(x) - a, float(y) - b) > 1)
@@ -52,7 +56,11 @@ def test_a_count_that_makes_no_sense_is_refused_whoever_asks() -> None:
         "axes": {"a": [-1, 1], "b": [-1, 1]},
     }
     slice = slice_from_mapping(equations)
-    for count, why in (("index", "no index"), ("stable", "nothing says what a stable"), ("admissible", "no springs")):
+    for count, why in (
+        ("index", "no index"),
+        ("stable", "nothing says what a stable"),
+        ("admissible", "no springs"),
+    ):
         with pytest.raises(ConfigError, match=why):
             slice_from_mapping({**equations, "count": count})
         with pytest.raises(ConfigError, match=why):
@@ -60,12 +68,17 @@ def test_a_count_that_makes_no_sense_is_refused_whoever_asks() -> None:
 
 
 def test_margins_are_in_the_unknowns_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With X-joints points depend on angles that follow others: no margin is made of these, whichever count asks."""
+    """With X-joints points depend on angles that follow others: no margin is made of these,
+    whichever count asks.
+    """
     kind = KINDS[Count.ADMISSIBLE]
     assert kind.predicate is not None
     asks = replace(kind, predicate=replace(kind.predicate, needs_free_lengths=False))
     monkeypatch.setitem(KINDS, Count.ADMISSIBLE, asks)
-    for name, found in (("x-joint", "with x-joints admissible is not counted yet"), ("four-bar", "")):
+    for name, found in (
+        ("x-joint", "with x-joints admissible is not counted yet"),
+        ("four-bar", ""),
+    ):
         slice = load(name)
         fault = count_fault(Count.ADMISSIBLE, slice.model, slice.parameters)
         assert fault.split(":")[0] == found

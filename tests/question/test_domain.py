@@ -1,7 +1,8 @@
-"""What each parameter needs to be, in records, in slices made by hand and on lines: narrow violations are refused.
+"""What each parameter needs to be, in records, in slices made by hand and on lines: narrow
+violations are refused.
 
-The slices break one hypothesis of docs/soundness.md each, in a dip of width 1e-9 or less, or of a degree that was too
-high to be looked at once.
+The slices break one hypothesis of docs/soundness.md each, in a dip of width 1e-9 or less, or of a
+degree that was too high to be looked at once.
 """
 
 from __future__ import annotations
@@ -50,7 +51,10 @@ FREE = ("l0", "l0_1", "l0_2", "l0_3")
 
 
 def record(**parameters: object) -> dict[str, Any]:
-    return {"parameters": {"F3": "-m", "F4": "n", **parameters}, "axes": {"m": [0, 2], "n": [-3, 1]}}
+    return {
+        "parameters": {"F3": "-m", "F4": "n", **parameters},
+        "axes": {"m": [0, 2], "n": [-3, 1]},
+    }
 
 
 def refused(**parameters: object) -> str:
@@ -70,7 +74,10 @@ def test_the_reviewed_slice_ends_with_the_place_and_status_2(
     )
     assert run(["classify", str(path), "--tolerance", "1/50", "--out", str(tmp_path)]) == 2
     told = capsys.readouterr().err
-    assert "parameters.l0_3: a free length must not be negative in the whole window, but l0_3 is -" in told
+    assert (
+        "parameters.l0_3: a free length must not be negative in the whole window, but l0_3 is -"
+        in told
+    )
     assert "at rho = 5/4, m = " in told
     assert not list(tmp_path.glob("*.json"))
 
@@ -104,7 +111,9 @@ def test_a_zero_inside_is_refused_where_it_may_not_be(name: str, zero: str) -> N
 @pytest.mark.parametrize("edge", TOUCHING)
 @pytest.mark.parametrize("name", [*POSITIVE, *FREE, "F3"])
 def test_a_zero_on_the_edge_is_no_fault(name: str, edge: str) -> None:
-    slice = slice_from_mapping(record(**{name: f"1/({TOUCHING[edge]})" if name == "F3" else TOUCHING[edge]}))
+    slice = slice_from_mapping(
+        record(**{name: f"1/({TOUCHING[edge]})" if name == "F3" else TOUCHING[edge]})
+    )
     proved(slice)
 
 
@@ -131,7 +140,8 @@ def test_the_certified_engine_trusts_no_reader(name: str) -> None:
 
 def test_a_zero_function_is_no_length() -> None:
     with pytest.raises(
-        GeometryError, match="a length must be positive in the whole window, but L1 is 0 at m = 1, n = -1"
+        GeometryError,
+        match="a length must be positive in the whole window, but L1 is 0 at m = 1, n = -1",
     ):
         proved(bare(L1="0"))
     with pytest.raises(GeometryError, match="stiffness must be positive"):
@@ -145,9 +155,13 @@ def test_undecided_is_read_but_not_certified(monkeypatch: pytest.MonkeyPatch) ->
     engine = pytest.importorskip("ptmcad.certified.engine")
     decide.cache_clear()
     monkeypatch.setattr(definite, "MAX_WORK", 0)
-    monkeypatch.setattr(resolution, "READING_WORK", 0)  # else the reader proves it, and the slice carries that
+    monkeypatch.setattr(
+        resolution, "READING_WORK", 0
+    )  # else the reader proves it, and the slice carries that
     slice = slice_from_mapping(record(L1="(m^3 + n^3 - m*n - 1/7)^2 + 1e-40", l0="1/5"))
-    assert sign_of(Subject("L1", Kind.LENGTH, slice.parameters["L1"]), slice.axes).problem.startswith(
+    assert sign_of(
+        Subject("L1", Kind.LENGTH, slice.parameters["L1"]), slice.axes
+    ).problem.startswith(
         "it is not proved that L1 is positive in the whole window: its sign is not decided near m = "
     )
     with pytest.raises(GeometryError, match="not proved that L1 is positive"):
@@ -161,7 +175,9 @@ SLOW_TO_DECIDE = "(m - 1.37)^24 + (n - 0.1)^24 + 1e-216"
 
 
 def test_a_reader_does_not_do_the_work_of_an_engine(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No time limit holds while a record is read, so that what takes long is left to what knows one."""
+    """No time limit holds while a record is read, so that what takes long is left to what knows
+    one.
+    """
     asked: list[int] = []
     work = definite._work
 
@@ -179,7 +195,9 @@ def test_a_reader_does_not_do_the_work_of_an_engine(monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.parametrize("name", ["fig4", "free02"])
-def test_what_a_reader_has_proved_no_engine_proves_again(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+def test_what_a_reader_has_proved_no_engine_proves_again(
+    monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
     slice = load(name)
     asked: list[object] = []
 
@@ -196,7 +214,9 @@ def test_what_a_reader_has_proved_no_engine_proves_again(monkeypatch: pytest.Mon
     assert proved(pickle.loads(pickle.dumps(once))) == slice
     assert not asked
     assert all(sign.verdict is PROVED for sign in once.signs)
-    assert {sign.subject.text for sign in once.signs if not sign.subject.part} == {*slice.parameters}
+    assert {sign.subject.text for sign in once.signs if not sign.subject.part} == {
+        *slice.parameters
+    }
 
 
 @pytest.mark.parametrize("changed", ["parameter", "window", "spring"])
@@ -209,7 +229,9 @@ def test_a_proof_is_not_taken_for_that_of_another_slice(changed: str) -> None:
         "springs": [{"between": ["A", "P"], "k": "g*m"}],
         "loads": {"P": ["n", "0"]},
     }
-    slice = proved(slice_from_mapping({"mechanism": mechanism, "axes": {"m": [0, 2], "n": [-3, 1]}}))
+    slice = proved(
+        slice_from_mapping({"mechanism": mechanism, "axes": {"m": [0, 2], "n": [-3, 1]}})
+    )
     first, second = slice.axes
     other = {
         "parameter": lambda: replace(slice, parameters={**slice.parameters, "g": constant(-1)}),
@@ -223,12 +245,16 @@ def test_a_proof_is_not_taken_for_that_of_another_slice(changed: str) -> None:
 
 
 def test_an_isolated_zero_is_refused_by_the_exact_engine_too() -> None:
-    """Between lines of a grid, at a point with irrational coordinates: once an exact map was made of it."""
+    """Between lines of a grid, at a point with irrational coordinates: once an exact map was made
+    of it.
+    """
     with pytest.raises(PtmcadError, match="sign is not decided near m = "):
         exact_map(slice_from_mapping(record(L1="(m^2 - 2)^2 + (n^2 - 3)^2")))
 
 
-@pytest.mark.parametrize(("at", "sign"), [("1/20", True), ("1/10", True), ("100000001/10^9", False), ("1", False)])
+@pytest.mark.parametrize(
+    ("at", "sign"), [("1/20", True), ("1/10", True), ("100000001/10^9", False), ("1", False)]
+)
 def test_a_line_need_not_lie_in_the_window(at: str, sign: bool) -> None:
     """Counts were once certified on lines outside of the window on which a free length is negative."""
     slice = slice_from_mapping(
@@ -249,9 +275,15 @@ def test_a_line_need_not_lie_in_the_window(at: str, sign: bool) -> None:
 
 @pytest.mark.parametrize(
     ("stiffness", "free", "torsion", "part"),
-    [("g", "0", "1", "springs.1.k"), ("1", "g - 1", "1", "springs.1.free"), ("1", "0", "g*m", "torsion.1.k")],
+    [
+        ("g", "0", "1", "springs.1.k"),
+        ("1", "g - 1", "1", "springs.1.free"),
+        ("1", "0", "g*m", "torsion.1.k"),
+    ],
 )
-def test_what_springs_are_given_is_proved_by_engines(stiffness: str, free: str, torsion: str, part: str) -> None:
+def test_what_springs_are_given_is_proved_by_engines(
+    stiffness: str, free: str, torsion: str, part: str
+) -> None:
     """They trust no reader: in the slice as read all of it is right."""
     mechanism = {
         "parameters": {"g": {"default": 1}, "m": {}, "n": {}},
@@ -280,7 +312,9 @@ def test_an_expression_in_a_spring_has_a_degree_that_can_be_computed() -> None:
         slice_from_mapping({
             "mechanism": mechanism, "parameters": {"g": "1 + u*L"}, "axes": {"L": [0, 1], "u": [0, 1]},
         })  # fmt: skip
-    with pytest.raises(ConfigError, match=r"springs\.1\.k: cannot be judged: the power is too large"):
+    with pytest.raises(
+        ConfigError, match=r"springs\.1\.k: cannot be judged: the power is too large"
+    ):
         slice_from_mapping({
             "mechanism": mechanism, "parameters": {"g": "(1 + u + L)^8"}, "axes": {"L": [0, 1], "u": [0, 1]},
         })  # fmt: skip

@@ -11,7 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.errors import ConfigError
-from ptmcad.question.config import family_from, question_from_options, slice_from_mapping, slice_from_options
+from ptmcad.question.config import (
+    family_from,
+    question_from_options,
+    slice_from_mapping,
+    slice_from_options,
+)
 from ptmcad.question.config.options import Typed
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Name, Number, names_of, replaced, to_text
@@ -39,16 +44,30 @@ def test_a_member_is_the_slice_that_one_would_type() -> None:
         {"name": "loads-F-3_2", "axes": RECORD["axes"], "parameters": {"F3": "-1.5", "F4": "-4"}}
     )
     assert family.member(Fraction(-3, 2)) == typed
-    assert [str(value) for value in family.values] == ["-4", "-7/2", "-3", "-5/2", "-2", "-3/2", "-1", "-1/2", "0"]
+    assert [str(value) for value in family.values] == [
+        "-4",
+        "-7/2",
+        "-3",
+        "-5/2",
+        "-2",
+        "-3/2",
+        "-1",
+        "-1/2",
+        "0",
+    ]
 
 
 def test_a_free_length_may_be_free_from_zero_on() -> None:
-    family = family_from({"axes": {"rho": [1, 2], "L2": [1, 2]}, "free": {"l0": [0, 1]}, "members": 2})
+    family = family_from(
+        {"axes": {"rho": [1, 2], "L2": [1, 2]}, "free": {"l0": [0, 1]}, "members": 2}
+    )
     assert [family.member(value).has_free_lengths for value in family.values] == [False, True]
 
 
 def test_a_parameter_of_the_model_may_be_free() -> None:
-    family = family_from({"axes": {"rho": [0, 2], "L2": [0, 2]}, "free": {"F3": [-4, 0]}, "members": [-1]})
+    family = family_from(
+        {"axes": {"rho": [0, 2], "L2": [0, 2]}, "free": {"F3": [-4, 0]}, "members": [-1]}
+    )
     assert family.member(Fraction(-1)).parameters["F3"].constant() == -1
     with pytest.raises(ConfigError, match="1 is outside of the range of F3"):
         family.member(Fraction(1))
@@ -71,7 +90,10 @@ def test_a_parameter_of_the_model_may_be_free() -> None:
         ({"members": {"F": 1}}, "expected a list of values"),
         ({"members": [[1]]}, "expected a number"),
         ({"members": ["F"]}, "the value of a member is a number"),
-        ({"parameters": {"F3": "F", "L1": "F + 2"}}, r"L1 is -2, but a length must be positive \(at F = -4\)"),
+        (
+            {"parameters": {"F3": "F", "L1": "F + 2"}},
+            r"L1 is -2, but a length must be positive \(at F = -4\)",
+        ),
         ({"parameters": {"F3": "1/F"}}, r"division by zero.*\(at F = 0\)"),
     ],
 )
@@ -81,7 +103,10 @@ def test_what_is_wrong_is_said(change: dict[str, Any], message: str) -> None:
 
 
 def test_faults_have_their_lines_and_each_is_said_once(tmp_path: Path) -> None:
-    text = TEXT.replace("F3: F", "F3: F + G").replace("name:", "titel: 3\nname:") + "members: [-1, 5]\n"
+    text = (
+        TEXT.replace("F3: F", "F3: F + G").replace("name:", "titel: 3\nname:")
+        + "members: [-1, 5]\n"
+    )
     with pytest.raises(ConfigError) as caught:
         family_from(_written(tmp_path, text))
     assert [(fault.key, fault.line) for fault in caught.value.faults] == [
@@ -99,7 +124,9 @@ def test_where_one_slice_is_wanted_the_free_parameter_needs_a_value(tmp_path: Pa
 
 
 def test_options_make_families() -> None:
-    family = question_from_options(Typed(slice="rho,L2", sets=("F4=F3",), free="F3=-2:0", members="-2,-1"))
+    family = question_from_options(
+        Typed(slice="rho,L2", sets=("F4=F3",), free="F3=-2:0", members="-2,-1")
+    )
     assert [str(value) for value in family.values] == ["-2", "-1"]  # type: ignore[union-attr]
     with pytest.raises(ConfigError, match="there are members where a parameter is free"):
         question_from_options(Typed(slice="rho,L2", members="3"))
@@ -111,10 +138,15 @@ def test_the_free_parameter_may_become_an_axis(tmp_path: Path) -> None:
     assert (found.axes[1].low, found.axes[1].high) == (-4, 0)
 
 
-@given(st.fractions(max_denominator=50), st.sampled_from(["F", "-F^2", "2*F - 1/F", "F^-F", "(F + x)^2*-F", "x/F"]))
+@given(
+    st.fractions(max_denominator=50),
+    st.sampled_from(["F", "-F^2", "2*F - 1/F", "F^-F", "(F + x)^2*-F", "x/F"]),
+)
 def test_a_replaced_name_means_its_value(value: Fraction, text: str) -> None:
     tree = replaced(parse(text), {"F": Number(value)})
     assert "F" not in names_of(tree)
     assert parse(to_text(tree)) is not None
-    back = to_text(replaced(parse(to_text(replaced(parse(text), {"F": Name("G")}))), {"G": Number(value)}))
+    back = to_text(
+        replaced(parse(to_text(replaced(parse(text), {"F": Name("G")}))), {"G": Number(value)})
+    )
     assert back == to_text(tree)

@@ -1,4 +1,6 @@
-"""Every fault of a description is told with its line and whole key, wherever the description stands."""
+"""Every fault of a description is told with its line and whole key, wherever the description
+stands.
+"""
 
 from __future__ import annotations
 
@@ -142,13 +144,23 @@ SYSTEMS = [
     ("  positive:\n", "  postive:\n", 0, "postive", "did you mean 'positive'?"),
     ("    - 3*x^2 - a\n", "    - [2]\n", 0, "stable.1", "a list is neither"),
 ]  # fmt: skip
-CASES = [(MECHANISM, "mechanism", *case) for case in MECHANISMS] + [(SYSTEM, "system", *case) for case in SYSTEMS]
+CASES = [(MECHANISM, "mechanism", *case) for case in MECHANISMS] + [
+    (SYSTEM, "system", *case) for case in SYSTEMS
+]
 
 
 @pytest.mark.parametrize("own_file", [False, True], ids=["inline", "in a file"])
 @pytest.mark.parametrize(("base", "kind", "old", "new", "below", "key", "part"), CASES)
 def test_a_fault_has_its_line_and_key(
-    tmp_path: Path, base: str, kind: str, old: str, new: str, below: int, key: str, part: str, own_file: bool
+    tmp_path: Path,
+    base: str,
+    kind: str,
+    old: str,
+    new: str,
+    below: int,
+    key: str,
+    part: str,
+    own_file: bool,
 ) -> None:
     assert base.count(old) >= 1
     line = base[: base.index(old)].count("\n") + 1 + below
@@ -181,12 +193,16 @@ def test_a_system_without_a_value_of_its_parameters_is_told() -> None:
 
 def test_a_design_without_axes_is_told() -> None:
     with pytest.raises(ConfigError, match="axes: is missing: a slice needs two axes"):
-        design_from({"parameters": {"k": 1}, "design": {"maximise": "range", "over": {"L2": [1, 2]}}})
+        design_from(
+            {"parameters": {"k": 1}, "design": {"maximise": "range", "over": {"L2": [1, 2]}}}
+        )
 
 
 def test_faults_of_values_are_told_with_those_of_the_description(tmp_path: Path) -> None:
     text = (
-        MECHANISM.replace("[A, Q]", "[A, ZZ]").replace(K, "      default: -1\n").replace("count: stable", "count: all")
+        MECHANISM.replace("[A, Q]", "[A, ZZ]")
+        .replace(K, "      default: -1\n")
+        .replace("count: stable", "count: all")
     )
     path = tmp_path / "t.yaml"
     path.write_text(f"{text}parameters: {{k: W +, V: 1}}\n", encoding="utf-8")
@@ -197,7 +213,9 @@ def test_faults_of_values_are_told_with_those_of_the_description(tmp_path: Path)
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("count", "system"), [("index", True), ("admissible", True), ("stable", False)], ids=str)
+@pytest.mark.parametrize(
+    ("count", "system"), [("index", True), ("admissible", True), ("stable", False)], ids=str
+)
 def test_a_count_that_makes_no_sense_has_its_line(tmp_path: Path, count: str, system: bool) -> None:
     text = SYSTEM if system else MECHANISM.replace("th: 1/10", "th: W*sin(phi)")
     text = text.replace("count: total", f"count: {count}").replace("x^3 - a*x + b", "x^3 - a*x + b*c").replace(
@@ -207,13 +225,17 @@ def test_a_count_that_makes_no_sense_has_its_line(tmp_path: Path, count: str, sy
     path.write_text(text, encoding="utf-8")
     with pytest.raises(ConfigError) as caught:
         load(path)
-    assert [(fault.line, fault.key) for fault in caught.value.faults] == [(text.count("\n"), "count")]
+    assert [(fault.line, fault.key) for fault in caught.value.faults] == [
+        (text.count("\n"), "count")
+    ]
 
 
 def test_an_unknown_is_no_axis() -> None:
     system = {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}
     with pytest.raises(ConfigError, match=r"axes\.x: x is an unknown"):
-        slice_from_mapping({"system": system, "axes": {"a": [0, 1], "x": [0, 1]}, "parameters": {"b": 1}})
+        slice_from_mapping(
+            {"system": system, "axes": {"a": [0, 1], "x": [0, 1]}, "parameters": {"b": 1}}
+        )
 
 
 # ---------------------------------------------------------------------------------- parameters of the record's own use
@@ -228,28 +250,44 @@ PENDULUM = {
 
 
 def test_a_parameter_that_a_records_expression_uses_is_used() -> None:
-    record = {"mechanism": PENDULUM, "parameters": {"W": "2*m*g"}, "axes": {"L": [0, 2], "g": [0, 1]}}
+    record = {
+        "mechanism": PENDULUM,
+        "parameters": {"W": "2*m*g"},
+        "axes": {"L": [0, 2], "g": [0, 1]},
+    }
     slice = slice_from_mapping(record)
     assert slice.parameters["W"].to_text(("L", "g")) == "2*g"
     assert "m" not in slice.parameters  # an engine has no use for it
     assert ptmcad.verify(ptmcad.classify(slice)).ok
     poses = ptmcad.solve(model=slice.model, W="2*m", m=2, L=1)
     assert (poses.parameters["W"], "m" in poses.parameters) == (4, False)
-    with pytest.raises(ConfigError, match=r"mechanism\.parameters\.m: nothing uses m: leave it out"):
+    with pytest.raises(
+        ConfigError, match=r"mechanism\.parameters\.m: nothing uses m: leave it out"
+    ):
         slice_from_mapping({**record, "parameters": {"W": "2*g", "m": 3}})
 
 
 def test_an_alias_that_only_a_records_expression_uses_has_its_value() -> None:
-    """It was once taken for 1: what nothing in a right description uses was held for something that a fault hides."""
+    """It was once taken for 1: what nothing in a right description uses was held for something that
+    a fault hides.
+    """
     parameters = {"a": {"default": 3, "alias": ["b"]}, "c": {}}
     system = {"parameters": parameters, "unknowns": {"x": "real"}, "equations": ["x^3 - a*x + c"]}
-    slice = slice_from_mapping({"system": system, "parameters": {"c": "2*b*u"}, "axes": {"u": [0, 1], "a": [1, 2]}})
+    slice = slice_from_mapping(
+        {"system": system, "parameters": {"c": "2*b*u"}, "axes": {"u": [0, 1], "a": [1, 2]}}
+    )
     assert slice.parameters["c"].to_text(("u", "a")) == "2*u*a"
 
 
 def test_an_alias_that_nothing_uses_is_told_at_its_parameter() -> None:
     parameters = {**PENDULUM["parameters"], "L": {"kind": "length", "alias": ["l9"]}, "m": {}}  # type: ignore[dict-item]
-    record = {"mechanism": {**PENDULUM, "parameters": parameters}, "axes": {"L": [0, 2], "W": [0, 1]}}
+    record = {
+        "mechanism": {**PENDULUM, "parameters": parameters},
+        "axes": {"L": [0, 2], "W": [0, 1]},
+    }
     with pytest.raises(ConfigError) as caught:
         slice_from_mapping(record)
-    assert [fault.key for fault in caught.value.faults] == ["mechanism.parameters.L.alias", "mechanism.parameters.m"]
+    assert [fault.key for fault in caught.value.faults] == [
+        "mechanism.parameters.L.alias",
+        "mechanism.parameters.m",
+    ]

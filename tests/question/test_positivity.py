@@ -1,4 +1,6 @@
-"""Signs over the window: known by construction, against Sturm's theorem in sympy, and against exact values."""
+"""Signs over the window: known by construction, against Sturm's theorem in sympy, and against exact
+values.
+"""
 
 from __future__ import annotations
 
@@ -15,14 +17,25 @@ from support.examples import examples
 from support.few import few
 
 from ptmcad.algebra import definite
-from ptmcad.question.positivity import Need, bernstein, decide, named, number, place, polynomial_value
+from ptmcad.question.positivity import (
+    Need,
+    bernstein,
+    decide,
+    named,
+    number,
+    place,
+    polynomial_value,
+)
 from ptmcad.question.signs import PROVED, Proved, Undecided, Witness
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.parsing import parse
 
 coefficients = st.dictionaries(
-    st.tuples(st.integers(0, 3), st.integers(0, 3)), st.integers(-5, 5).filter(bool), min_size=1, max_size=6
+    st.tuples(st.integers(0, 3), st.integers(0, 3)),
+    st.integers(-5, 5).filter(bool),
+    min_size=1,
+    max_size=6,
 )
 units = st.fractions(min_value=0, max_value=1, max_denominator=9)
 
@@ -137,7 +150,9 @@ def test_poles(text: str, found: bool) -> None:
     "upper edge-Need.NO_POLE",
 )
 def test_a_thin_dip_is_found_and_a_near_miss_is_proved(kind: str, need: Need) -> None:
-    """Each hypothesis broken narrowly: looking at some points, or at no degree over 12, took these for positive."""
+    """Each hypothesis broken narrowly: looking at some points, or at no degree over 12, took these
+    for positive.
+    """
     dip, fine = thin_dip(kind)
     if need is Need.NO_POLE:
         dip, fine = 1 / dip, 1 / fine
@@ -148,7 +163,9 @@ def test_a_thin_dip_is_found_and_a_near_miss_is_proved(kind: str, need: Need) ->
     assert check(fine * negative, need) == "proved"
 
 
-def test_what_is_too_much_work_is_undecided_and_never_proved(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_too_much_work_is_undecided_and_never_proved(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     valley = parse("(rho^3+F^3-rho*F-1/7)^2 + 1e-40", NAMES)
     decide.cache_clear()
     with monkeypatch.context() as patch:
@@ -169,8 +186,18 @@ def test_what_is_too_much_work_is_undecided_and_never_proved(monkeypatch: pytest
     [
         pytest.param("(rho^2 - 2)^2 + (F^2 - 1/3)^2", (2, 2), (2, Q(1, 3)), id="two square roots"),
         pytest.param("(rho^2 - 2)^2 + (F^2 - 4 + 2*rho)^2", (2, 2), None, id="one over the other"),
-        pytest.param("(rho^3 - 2)^2 + (F^5 + rho - 1)^4", (3, 2), None, id="a quintic over a cubic, of order 4"),
-        pytest.param("(rho^2 - 2)^2*(F^2 + 1) + (F^2 - 1/3)^2*(rho + 1)", (2, 2), (2, Q(1, 3)), id="with weights"),
+        pytest.param(
+            "(rho^3 - 2)^2 + (F^5 + rho - 1)^4",
+            (3, 2),
+            None,
+            id="a quintic over a cubic, of order 4",
+        ),
+        pytest.param(
+            "(rho^2 - 2)^2*(F^2 + 1) + (F^2 - 1/3)^2*(rho + 1)",
+            (2, 2),
+            (2, Q(1, 3)),
+            id="with weights",
+        ),
     ],
 )
 @pytest.mark.slow_cases("a quintic over a cubic, of order 4", "with weights", "one over the other")
@@ -228,7 +255,9 @@ def horner(values: list[int], variable: Expression) -> Expression:
 @example([1, -1], [1, -1], 0)
 @settings(deadline=None, max_examples=examples(50))
 def test_one_variable_agrees_with_sturm_in_sympy(a: list[int], b: list[int], which: int) -> None:
-    """Decided completely: never undecided, and as Sturm's theorem counts the roots of the squarefree factors."""
+    """Decided completely: never undecided, and as Sturm's theorem counts the roots of the
+    squarefree factors.
+    """
     p = horner(a, (X, Y)[which]) ** 2 * horner(b, (X, Y)[which])
     t = sympy.Symbol("t")
     q = sympy.Poly(sum(c * t**k for k, c in enumerate(reversed(a))), t) ** 2
@@ -247,7 +276,11 @@ def test_one_variable_agrees_with_sturm_in_sympy(a: list[int], b: list[int], whi
     factors = q.sqf_list()[1]
     changes = any(k % 2 and f.degree() > 0 and roots(f) for f, k in factors)
     zeros = any(f.degree() > 0 and roots(f) for f, _ in factors)
-    sample = next(v for v in (low + (high - low) * Q(k, 97) for k in range(1, 97)) if q.eval(sympy.Rational(v)) != 0)
+    sample = next(
+        v
+        for v in (low + (high - low) * Q(k, 97) for k in range(1, 97))
+        if q.eval(sympy.Rational(v)) != 0
+    )
     negative = bool(q.eval(sympy.Rational(sample)) < 0)
     assert (check(p, Need.NOT_NEGATIVE) == "refuted") == (changes or negative)
     assert (check(p, Need.POSITIVE) == "refuted") == (zeros or negative)
@@ -284,9 +317,13 @@ def test_many_random_dips_and_squares(seed: int, degree: int) -> None:
 
 @given(coefficients, st.sampled_from(list(Need)[:2]))
 @settings(deadline=None, max_examples=examples(40))
-def test_a_proof_is_never_contradicted_by_values(polynomial: dict[tuple[int, int], int], need: Need) -> None:
+def test_a_proof_is_never_contradicted_by_values(
+    polynomial: dict[tuple[int, int], int], need: Need
+) -> None:
     p = sum((c * X**i * Y**j for (i, j), c in polynomial.items()), constant(0))
     proved = check(p, need) == "proved"
-    values = [p.evaluate(Q(2 * k, 11), -3 + Q(4 * m, 13)) for k in range(1, 11) for m in range(1, 13)]
+    values = [
+        p.evaluate(Q(2 * k, 11), -3 + Q(4 * m, 13)) for k in range(1, 11) for m in range(1, 13)
+    ]
     if proved:
         assert min(values) > 0 or (need is Need.NOT_NEGATIVE and min(values) == 0)

@@ -29,7 +29,9 @@ from ptmcad.show.schemas import schemas, with_prose
 from ptmcad.text.node import MAX_ENTRIES
 
 SCHEMA = json.loads(files("ptmcad").joinpath("record.schema.json").read_text(encoding="utf-8"))
-VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)  # `jsonschema.validate` would check the schema each time
+VALIDATOR = jsonschema.Draft202012Validator(
+    SCHEMA
+)  # `jsonschema.validate` would check the schema each time
 CONFIGS = sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml"))
 
 
@@ -44,9 +46,9 @@ def test_the_published_schema_is_made_of_what_reads_records() -> None:
 
 def test_keys_limits_and_defaults_are_those_that_are_read() -> None:
     properties, definitions = SCHEMA["properties"], SCHEMA["$defs"]
-    assert {name: str(said["default"]) for name, said in properties["parameters"]["properties"].items()} == {
-        name: parameter.default for name, parameter in ptm().parameters.items()
-    }
+    assert {
+        name: str(said["default"]) for name, said in properties["parameters"]["properties"].items()
+    } == {name: parameter.default for name, parameter in ptm().parameters.items()}
     assert properties["count"]["enum"] == [member.value for member in Count]
     built_in = [name for name in NAMES if starter_mechanism(name) is not None]
     assert properties["mechanism"]["anyOf"][0]["enum"] == built_in
@@ -65,10 +67,20 @@ def test_keys_limits_and_defaults_are_those_that_are_read() -> None:
 
 def test_a_design_may_say_what_the_manual_says() -> None:
     axes = {"L1": [1, 2], "L2": [1, 2]}
-    design: dict[str, Any] = {"maximise": "range", "along": "L1", "over": {"L2": [1, 2]}, "where": {"stable": 2}}
+    design: dict[str, Any] = {
+        "maximise": "range",
+        "along": "L1",
+        "over": {"L2": [1, 2]},
+        "where": {"stable": 2},
+    }
     for aim in ("range", "area", "barrier", "k1.length + 3"):
         VALIDATOR.validate({"axes": axes, "design": design | {"maximise": aim}})
-    wrongs: list[dict[str, Any]] = [{"maximise": 3}, {"over": {}}, {"where": {"stable": [2]}}, {"poses": "stable:1"}]
+    wrongs: list[dict[str, Any]] = [
+        {"maximise": 3},
+        {"over": {}},
+        {"where": {"stable": [2]}},
+        {"poses": "stable:1"},
+    ]
     for wrong in wrongs:
         assert not VALIDATOR.is_valid({"axes": axes, "design": design | wrong})
 
@@ -115,7 +127,9 @@ def test_whatever_a_description_may_say_validates_and_is_read() -> None:
         (("system",), {"unknowns": {"x": "real"}}),
     ],
 )
-def test_wrong_descriptions_neither_validate_nor_are_read(path: tuple[str | int, ...], value: Any) -> None:
+def test_wrong_descriptions_neither_validate_nor_are_read(
+    path: tuple[str | int, ...], value: Any
+) -> None:
     record = deepcopy(MECHANISM)
     place: Any = record
     for key in path[:-1]:
@@ -167,10 +181,13 @@ def test_the_schema_of_results_is_valid_and_names_the_format() -> None:
 
 
 @pytest.mark.parametrize(
-    "path", [pytest.param(p, marks=() if p.stem in QUICK else pytest.mark.slow, id=p.stem) for p in EXACT]
+    "path",
+    [pytest.param(p, marks=() if p.stem in QUICK else pytest.mark.slow, id=p.stem) for p in EXACT],
 )
 def test_shipped_results_validate(path: Path, shipped: Callable[..., RegionMap]) -> None:
-    jsonschema.validate(json.loads(shipped(path.stem).to_json()), RESULT, cls=jsonschema.Draft202012Validator)
+    jsonschema.validate(
+        json.loads(shipped(path.stem).to_json()), RESULT, cls=jsonschema.Draft202012Validator
+    )
 
 
 @pytest.mark.parametrize("name", ["systems/cubic", "systems/schloegl", "mechanisms/two-bar-chain"])
@@ -204,18 +221,33 @@ def _stop_at(name: str) -> Callable[[str, int, int], None]:
 
 
 def test_partial_results_validate() -> None:
-    jsonschema.validate(json.loads(partial_map().to_json()), RESULT, cls=jsonschema.Draft202012Validator)
+    jsonschema.validate(
+        json.loads(partial_map().to_json()), RESULT, cls=jsonschema.Draft202012Validator
+    )
 
 
-FREE_KEYS = {"axes", "parameters", "text", "reference", "versions", "precision", "timings", "sample"}
+FREE_KEYS = {
+    "axes",
+    "parameters",
+    "text",
+    "reference",
+    "versions",
+    "precision",
+    "timings",
+    "sample",
+}
 
 
 def test_schema_and_reader_agree_on_the_keys(shipped: Callable[..., RegionMap]) -> None:
-    """Each key of each record is required by both (but timings and savings), and no other one is allowed by either."""
+    """Each key of each record is required by both (but timings and savings), and no other one is
+    allowed by either.
+    """
     text = shipped("fig2").to_json()
     validator = jsonschema.Draft202012Validator(RESULT)
     for c in changed_keys(text, FREE_KEYS):
-        if c.dropped and ((c.path, c.key) == ((), "timings") or (c.path[:1], c.key) == (("plan",), "saving")):
+        if c.dropped and (
+            (c.path, c.key) == ((), "timings") or (c.path[:1], c.key) == (("plan",), "saving")
+        ):
             validator.validate(c.data)
             continue
         assert not validator.is_valid(c.data), c[:3]

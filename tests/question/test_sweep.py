@@ -1,4 +1,6 @@
-"""The key ``sweep`` of a record: lists, ranges, products and their unions, with exact values and places of faults."""
+"""The key ``sweep`` of a record: lists, ranges, products and their unions, with exact values and
+places of faults.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,9 @@ sweep: {F: {from: -4, to: 4, step: 2}}
 """
 
 numbers = st.fractions(min_value=-50, max_value=50, max_denominator=20)
-listed = st.lists(numbers, min_size=1, max_size=4).map(lambda values: ([text_of(v) for v in values], values))
+listed = st.lists(numbers, min_size=1, max_size=4).map(
+    lambda values: ([text_of(v) for v in values], values)
+)
 
 
 @st.composite
@@ -46,9 +50,15 @@ def ranges(draw: st.DrawFn) -> tuple[dict[str, str | int], list[Fraction]]:
     return ends | draw(st.sampled_from(({"step": text_of(step)}, {"steps": number}))), values
 
 
-@given(st.lists(st.tuples(*[st.one_of(listed, ranges())] * 2), min_size=1, max_size=3), st.booleans())
-def test_members_are_all_combinations_in_their_order(parts: list[tuple[Any, Any]], alone: bool) -> None:
-    """A list of mappings is one after another, with names in any order; the last parameter's value changes fastest."""
+@given(
+    st.lists(st.tuples(*[st.one_of(listed, ranges())] * 2), min_size=1, max_size=3), st.booleans()
+)
+def test_members_are_all_combinations_in_their_order(
+    parts: list[tuple[Any, Any]], alone: bool
+) -> None:
+    """A list of mappings is one after another, with names in any order; the last parameter's value
+    changes fastest.
+    """
     parts = parts[:1] if alone else parts
     mappings = [
         {"F3": first[0], "F4": second[0]} if k % 2 == 0 else {"F4": second[0], "F3": first[0]}
@@ -97,7 +107,9 @@ def slice_of(record: dict[str, Any]) -> Slice:
 def test_where_one_slice_is_meant_a_swept_value_has_to_be_given(family: Path) -> None:
     with pytest.raises(ConfigError, match=r"loads.yaml:5: sweep: the record asks for a sweep"):
         load(family)
-    with pytest.raises(ConfigError, match=r"loads.yaml:5: sweep.F: F is swept too: add --set F=VALUE"):
+    with pytest.raises(
+        ConfigError, match=r"loads.yaml:5: sweep.F: F is swept too: add --set F=VALUE"
+    ):
         slice_from_options(family, sets=["L1=2"])
     with pytest.raises(ConfigError, match=r"sweep.F: F is swept too"):
         point_from_options(family, {"rho": "1", "L2": "1"})
@@ -165,7 +177,10 @@ def test_all_faults_have_their_places(tmp_path: Path) -> None:
         ([], "expected parameters"),
         ("F3", "expected parameters"),
         ([{"F3": [1]}, {"F4": [1]}], "sweeps the same parameters: F3"),
-        ({"F3": {"from": 0, "to": 1, "steps": 1001}, "F4": {"from": 0, "to": 1, "steps": 1001}}, "1002001 members"),
+        (
+            {"F3": {"from": 0, "to": 1, "steps": 1001}, "F4": {"from": 0, "to": 1, "steps": 1001}},
+            "1002001 members",
+        ),
         ({"F3": ["rho"]}, "a value is a number, not an expression in rho"),
         ({"l0": [[1]]}, "not a list"),
         ({"2F": [1]}, "cannot name"),

@@ -1,4 +1,6 @@
-"""Areas and shares as text: the same in tables, legends, insets and pages, and nowhere where they were not computed."""
+"""Areas and shares as text: the same in tables, legends, insets and pages, and nowhere where they
+were not computed.
+"""
 
 from __future__ import annotations
 
@@ -78,7 +80,9 @@ def test_shares_are_rounded_up_wherever_they_are_told(certified: RegionMap) -> N
 
 
 def test_a_comparison_says_its_share_at_the_prompt_as_in_words() -> None:
-    found = Comparison(*[shipped("fig4")] * 3, (Change(0, 1, 0, (Fraction("1.559386"), Fraction("1.559387"))),))
+    found = Comparison(
+        *[shipped("fig4")] * 3, (Change(0, 1, 0, (Fraction("1.559386"), Fraction("1.559387"))),)
+    )
     assert share_text(found.share, False) == "38.98 %"
     assert "38.98 % differ" in repr(found)
     assert "38.98 % of the window" in difference_words(found)[0]

@@ -1,4 +1,6 @@
-"""The page of a sweep and the film of its maps: what they say, in a browser too, and that nothing is let in."""
+"""The page of a sweep and the film of its maps: what they say, in a browser too, and that nothing
+is let in.
+"""
 
 from __future__ import annotations
 
@@ -22,24 +24,39 @@ from ptmcad.show.sweeps.sketch import MAX_CHARACTERS, SIDE, Thumbnail, sketch
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\u2028"
 CUBIC = {"unknowns": {"x": "real"}, "potential": "x^4/4 + (a + c)*x^2/2 + d*b*x"}
-RECORD = {"name": "cusps", "system": CUBIC, "parameters": {"d": 2}, "axes": {"a": [-2, 2], "b": [-1, 1]}}
+RECORD = {
+    "name": "cusps",
+    "system": CUBIC,
+    "parameters": {"d": 2},
+    "axes": {"a": [-2, 2], "b": [-1, 1]},
+}
 FRAME = SheetFrame((("rho", "0", "2"), ("L2", "0", "2")), f"L1 = 1, {HOSTILE}", "stable")
 
 
-def family(rows: int, columns: int, error: str = "") -> tuple[Sweep, list[Member], dict[int, Thumbnail]]:
+def family(
+    rows: int, columns: int, error: str = ""
+) -> tuple[Sweep, list[Member], dict[int, Thumbnail]]:
     """A sweep over two parameters without a folder; its first member has failed."""
     members = []
     for k in range(rows * columns):
         place = {"F3": str(-(k // columns)), "F4": f"{k % columns}/3"}
         area = CountedArea("2", 1, (f"1.{k:03}", f"1.{k:03}1"))
-        found = Summary("exact", 9, 2, "0", (area,), Widest("rho", ("0.5", "0.6"), (("1", "1"),), "edge"))
+        found = Summary(
+            "exact", 9, 2, "0", (area,), Widest("rho", ("0.5", "0.6"), (("1", "1"),), "edge")
+        )
         members.append(Member(k, place, State.DONE, found, file=f"results/000/{k:06}.json"))
     members[0] = Member(0, members[0].parameters, State.FAILED, error=error)
     states = {State.DONE: len(members) - 1, State.FAILED: 1}
     drawn = Thumbnail(
-        Fill("#c7e4f6"), ((Fill("#eda43f", "////"), f"M0 0 {SIDE} 0 {SIDE} 9z"),), (("2", Fill("#eda43f", "////")),)
+        Fill("#c7e4f6"),
+        ((Fill("#eda43f", "////"), f"M0 0 {SIDE} 0 {SIDE} 9z"),),
+        (("2", Fill("#eda43f", "////")),),
     )
-    return Sweep("family", Path("nowhere"), ("F3", "F4"), states), members, {m.number: drawn for m in members[1:]}
+    return (
+        Sweep("family", Path("nowhere"), ("F3", "F4"), states),
+        members,
+        {m.number: drawn for m in members[1:]},
+    )
 
 
 def test_what_a_record_says_stays_text() -> None:
@@ -47,7 +64,9 @@ def test_what_a_record_says_stays_text() -> None:
     text = atlas(family(2, 2)[0], FRAME, *family(2, 2, HOSTILE)[1:])
     assert text.count("<script") == 2 and text.count("</script>") == 2
     assert "<img" not in text
-    (data,) = re.findall(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)
+    (data,) = re.findall(
+        r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL
+    )
     assert "alert(1)" in data and not set("<>&\u2028") & set(data)
     (script,) = re.findall(r"<script>(.*?)</script>", text, re.DOTALL)
     (style,) = re.findall(r"<style>(.*?)</style>", text, re.DOTALL)
@@ -69,17 +88,23 @@ def test_a_large_sweep_is_shown_in_part() -> None:
 
 def test_the_page_of_441_maps_is_below_a_megabyte() -> None:
     """With drawings of the loaded mechanism's size."""
-    result = ptmcad.classify({"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": -10, "F4": -10}}, areas=False)
+    result = ptmcad.classify(
+        {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": -10, "F4": -10}}, areas=False
+    )
     drawn = sketch(result)
     assert 200 < sum(len(data) for _, data in drawn.paths) < MAX_CHARACTERS
     sweep, members, sketches = family(21, 21)
-    text = atlas(sweep, frame_of(sweep, result.slice, [drawn]), members, dict.fromkeys(sketches, drawn))
+    text = atlas(
+        sweep, frame_of(sweep, result.slice, [drawn]), members, dict.fromkeys(sketches, drawn)
+    )
     assert len(text.encode()) < 1_000_000
     assert text.count('<button type="button" class="small"') == 440
 
 
 def test_a_drawing_is_the_map() -> None:
-    """The share of its paths' area, by the shoelace formula, is that of the regions that are not the plate's."""
+    """The share of its paths' area, by the shoelace formula, is that of the regions that are not
+    the plate's.
+    """
     result = ptmcad.classify(RECORD | {"parameters": {"c": 0, "d": 1}})
     drawn = sketch(result)
     area = 0.0
@@ -87,7 +112,15 @@ def test_a_drawing_is_the_map() -> None:
         for part in data.removesuffix("z").split("z"):
             numbers = [float(n) for n in part.removeprefix("M").split()]
             points = list(zip(numbers[::2], numbers[1::2], strict=True))
-            area += abs(sum(x * v - u * y for (x, y), (u, v) in zip(points, points[1:] + points[:1], strict=True))) / 2
+            area += (
+                abs(
+                    sum(
+                        x * v - u * y
+                        for (x, y), (u, v) in zip(points, points[1:] + points[:1], strict=True)
+                    )
+                )
+                / 2
+            )
     areas = sorted(float(region.area[0]) for region in result.regions)
     assert area / SIDE**2 == pytest.approx(sum(areas[:-1]) / sum(areas), abs=2e-3)
     assert {text for text, _ in drawn.legend} == {"1", "2"}
@@ -102,7 +135,21 @@ def swept_fixture(tmp_path_factory: pytest.TempPathFactory) -> Path:
     record = folder / "cusps.yaml"
     sweep = {"c": [0, 1, "1/2"], "d": {"from": 1, "to": 2, "steps": 3}}
     record.write_text(yaml.safe_dump(RECORD | {"parameters": {}, "sweep": sweep}), encoding="utf-8")
-    assert run(["sweep", str(record), "--jobs", "1", "--out", str(folder / "out"), "--format", "html,gif"]) == 0
+    assert (
+        run(
+            [
+                "sweep",
+                str(record),
+                "--jobs",
+                "1",
+                "--out",
+                str(folder / "out"),
+                "--format",
+                "html,gif",
+            ]
+        )
+        == 0
+    )
     return folder / "out"
 
 
@@ -113,7 +160,9 @@ def test_the_film_shows_each_map(swept: Path) -> None:
 
 @pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
 def test_the_page_in_a_browser(one: Browser, swept: Path) -> None:
-    """Sliders in the order of the values, the sheet, curves to choose on; on a phone nothing is wider than it."""
+    """Sliders in the order of the values, the sheet, curves to choose on; on a phone nothing is
+    wider than it.
+    """
     one.size(1200, 900)
     one.open(swept / "cusps.html")
 

@@ -1,4 +1,6 @@
-"""The default palette as it is seen without the green cones (deuteranopia), by the matrix of Machado et al., 2009."""
+"""The default palette as it is seen without the green cones (deuteranopia), by the matrix of
+Machado et al., 2009.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,13 @@ import pytest
 from numpy.typing import NDArray
 
 from ptmcad.answer.counts import Counts
-from ptmcad.show.render.colours import ODD_TOTALS, ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED, fill_of_counts
+from ptmcad.show.render.colours import (
+    ODD_TOTALS,
+    ONE_MAXIMUM,
+    TWO_MAXIMA,
+    UNDETERMINED,
+    fill_of_counts,
+)
 
 Floats = NDArray[np.float64]
 
@@ -38,13 +46,19 @@ def apart(one: str, other: str, eye: Floats) -> float:
 
 
 @pytest.mark.parametrize("eye", [NORMAL, DEUTERANOPIA], ids=["normal", "deuteranopia"])
-@pytest.mark.parametrize("row", [ONE_MAXIMUM, TWO_MAXIMA, ODD_TOTALS], ids=["one maximum", "two maxima", "odd"])
-def test_neighbours_and_what_is_undetermined_are_told_apart(row: tuple[str, ...], eye: Floats) -> None:
+@pytest.mark.parametrize(
+    "row", [ONE_MAXIMUM, TWO_MAXIMA, ODD_TOTALS], ids=["one maximum", "two maxima", "odd"]
+)
+def test_neighbours_and_what_is_undetermined_are_told_apart(
+    row: tuple[str, ...], eye: Floats
+) -> None:
     assert min(apart(a, b, eye) for a, b in pairwise(row)) >= 16
     assert min(apart(a, UNDETERMINED.face, eye) for a in row) >= 15
 
 
-@pytest.mark.parametrize(("eye", "least"), [(NORMAL, 13.5), (DEUTERANOPIA, 11)], ids=["normal", "deuteranopia"])
+@pytest.mark.parametrize(
+    ("eye", "least"), [(NORMAL, 13.5), (DEUTERANOPIA, 11)], ids=["normal", "deuteranopia"]
+)
 def test_any_two_totals_up_to_twelve_are_told_apart(eye: Floats, least: float) -> None:
     """Those for none and one to four are as they ever were, and what they leave is the bound."""
     fills = [fill_of_counts(Counts(total, None, None)) for total in range(13)]

@@ -65,9 +65,14 @@ def test_the_same_text_as_csv() -> None:
     assert [row["total"] for row in rows] == ["", "6"]
     pieces = result.boundaries("1/20")
     text = data.csv_text(data.boundary_rows(result, pieces))
-    table = np.genfromtxt(io.StringIO(text), delimiter=",", names=True, usecols=("piece", "rho", "L2"))
+    table = np.genfromtxt(
+        io.StringIO(text), delimiter=",", names=True, usecols=("piece", "rho", "L2")
+    )
     assert np.isnan(table["rho"]).sum() == len(pieces) - 1
-    assert set(np.genfromtxt(io.StringIO(text), delimiter=",", names=True)["separates"]) == {0.0, 1.0}
+    assert set(np.genfromtxt(io.StringIO(text), delimiter=",", names=True)["separates"]) == {
+        0.0,
+        1.0,
+    }
 
 
 def test_axes_named_like_columns_keep_apart() -> None:
@@ -89,7 +94,10 @@ def test_arrays_of_an_exact_and_a_certified_map(tmp_path: Path) -> None:
             assert (arrays["region"] == grid.region).all()
             lines = np.split(arrays["boundary"], np.flatnonzero(np.isnan(arrays["boundary"][:, 0])))
             assert len(lines) == len(pieces) == len(arrays["left"])
-            assert all((line[line.shape[0] - len(p.points) :] == p.points).all() for line, p in zip(lines, pieces))  # noqa: B905
+            assert all(
+                (line[line.shape[0] - len(p.points) :] == p.points).all()
+                for line, p in zip(lines, pieces, strict=True)
+            )
             assert len(arrays["piece"]) == len(arrays["boundary"])
             assert list(arrays["region_stable"]) == [r.stable for r in result.regions]
 
@@ -99,10 +107,16 @@ def test_arrays_of_an_exact_and_a_certified_map(tmp_path: Path) -> None:
     [
         ("region", {}, "'region' is not among regions, cells, components, boundaries, grid"),
         ("cells", {"columns": 3}, "the table cells has no option 'columns'; its options: none"),
-        ("grid", {"tolerance": 3}, "the table grid has no option 'tolerance'; its options: columns, rows"),
+        (
+            "grid",
+            {"tolerance": 3},
+            "the table grid has no option 'tolerance'; its options: columns, rows",
+        ),
     ],
 )
-def test_unknown_tables_and_options_are_refused(what: str, options: dict[str, object], message: str) -> None:
+def test_unknown_tables_and_options_are_refused(
+    what: str, options: dict[str, object], message: str
+) -> None:
     with pytest.raises(ConfigError, match=message):
         shipped("fig2").to_dataframe(what, **options)
 
@@ -110,7 +124,8 @@ def test_unknown_tables_and_options_are_refused(what: str, options: dict[str, ob
 def test_without_pandas_the_message_names_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(
-        ConfigError, match=r"needs the package pandas, which is not installed: pip install 'ptmcad\[data\]'"
+        ConfigError,
+        match=r"needs the package pandas, which is not installed: pip install 'ptmcad\[data\]'",
     ):
         shipped("fig2").to_dataframe()
 
@@ -119,10 +134,22 @@ def test_commands_write_numbers(tmp_path: Path) -> None:
     """`classify` and `plot` write the same ones."""
     for arguments in (
         ["classify", "--slice", "L2,rho", "--format", "json,csv,npz", "--out", str(tmp_path / "a")],
-        ["plot", str(tmp_path / "a" / "slice-L2-rho.json"), "--format", "csv,npz", "--out", str(tmp_path / "b")],
+        [
+            "plot",
+            str(tmp_path / "a" / "slice-L2-rho.json"),
+            "--format",
+            "csv,npz",
+            "--out",
+            str(tmp_path / "b"),
+        ],
     ):
         assert run([*arguments, "--pixels", "20x10", "--boundary-tolerance", "1e-2"]) == 0
-    names = {"slice-L2-rho-boundaries.csv", "slice-L2-rho-regions.csv", "slice-L2-rho-cells.csv", "slice-L2-rho.npz"}
+    names = {
+        "slice-L2-rho-boundaries.csv",
+        "slice-L2-rho-regions.csv",
+        "slice-L2-rho-cells.csv",
+        "slice-L2-rho.npz",
+    }
     assert {p.name for p in (tmp_path / "b").iterdir()} == names
     for name in names:
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()

@@ -1,4 +1,6 @@
-"""The discriminant variety in every format: each text is put to its program, or to another reader of its language."""
+"""The discriminant variety in every format: each text is put to its program, or to another reader
+of its language.
+"""
 
 from __future__ import annotations
 
@@ -55,7 +57,8 @@ def polynomials(of: SliceVariety) -> list[PlanePolynomial]:
 
 
 @pytest.mark.parametrize(
-    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in SHIPPED]
+    "name",
+    [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in SHIPPED],
 )
 @pytest.mark.slow_cases("fig3", "fig4")
 def test_components_are_those_of_the_region_map(name: str) -> None:
@@ -65,7 +68,9 @@ def test_components_are_those_of_the_region_map(name: str) -> None:
 
 
 def test_kinds_and_degrees_of_figure_4() -> None:
-    """Reference: one curve of degree 24 in rho and 12 in L2 with 70 terms (the paper's section 4.3, corrected)."""
+    """Reference: one curve of degree 24 in rho and 12 in L2 with 70 terms (the paper's section 4.3,
+    corrected).
+    """
     (critical,) = variety("fig4").critical
     assert (critical.polynomial.degrees, len(critical.polynomial.terms)) == ((24, 12), 70)
     assert "critical, degree 24 (24 in rho, 12 in L2), 70 terms" in variety("fig4").text()
@@ -92,7 +97,9 @@ def test_maple_commands_define_the_variety(name: str) -> None:
     assert [read_maple(entry, of.slice.axis_names) for entry in joined] == polynomials(of)
 
 
-@pytest.mark.parametrize("name", ["fig2", "fig3", pytest.param("fig5-text", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name", ["fig2", "fig3", pytest.param("fig5-text", marks=pytest.mark.slow)]
+)
 def test_mathematica_expression_defines_the_variety(name: str) -> None:
     of = variety(name)
     code = re.sub(r"\(\*.*?\*\)", "", of.text("mathematica"))
@@ -102,7 +109,9 @@ def test_mathematica_expression_defines_the_variety(name: str) -> None:
     assert [of_sympy(p, of.slice.axis_names) for p in read] == polynomials(of)
 
 
-LATEX_DISPLAY = re.compile(r"^% (\d+): [^\n]*\n\\begin\{align\*\}\n(.*?)\n\\end\{align\*\}$", re.MULTILINE | re.DOTALL)
+LATEX_DISPLAY = re.compile(
+    r"^% (\d+): [^\n]*\n\\begin\{align\*\}\n(.*?)\n\\end\{align\*\}$", re.MULTILINE | re.DOTALL
+)
 
 
 def latex_displays(of: SliceVariety) -> list[list[str]]:
@@ -121,10 +130,13 @@ def latex_displays(of: SliceVariety) -> list[list[str]]:
 
 @pytest.mark.parametrize("name", QUICK)
 def test_latex_has_every_monomial(name: str) -> None:
-    """The structure, since no TeX is asked for: one display a component, its rows joined are the polynomial."""
+    """The structure, since no TeX is asked for: one display a component, its rows joined are the
+    polynomial.
+    """
     of = variety(name)
     assert all(
-        line.startswith(("%", "  ", r"\begin{align*}", r"\end{align*}")) for line in of.text("latex").splitlines()
+        line.startswith(("%", "  ", r"\begin{align*}", r"\end{align*}"))
+        for line in of.text("latex").splitlines()
     )
     spelled = symbols(of.slice.axis_names, Style.LATEX)
     read = [read_latex(" ".join(rows), (spelled[0], spelled[1])) for rows in latex_displays(of)]
@@ -133,7 +145,9 @@ def test_latex_has_every_monomial(name: str) -> None:
 
 @pytest.mark.parametrize("name", few(["fig3", "fig5-text"], "fig3"))
 def test_latex_rows_are_set_and_of_like_width(name: str, tmp_path: Path) -> None:
-    """matplotlib's mathtext, which knows no alignment, sets each row; none would leave a page of a single column."""
+    """matplotlib's mathtext, which knows no alignment, sets each row; none would leave a page of a
+    single column.
+    """
     from matplotlib.mathtext import MathTextParser
 
     parser = MathTextParser("path")
@@ -150,7 +164,10 @@ def odd_fixture(tmp_path_factory: pytest.TempPathFactory) -> ptmcad.SliceVariety
     """A title may have any characters, a value may be long."""
     record = tmp_path_factory.mktemp("odd") / "odd.yaml"
     title = "'ends *) ] #\u2026'"
-    record.write_text(f"title: {title}\naxes: {{rho: [1, 2], L2: [1, 2]}}\nparameters:\n  {LONG}\n", encoding="utf-8")
+    record.write_text(
+        f"title: {title}\naxes: {{rho: [1, 2], L2: [1, 2]}}\nparameters:\n  {LONG}\n",
+        encoding="utf-8",
+    )
     return ptmcad.slice_variety(ptmcad.load(record))
 
 
@@ -177,7 +194,9 @@ def test_json_is_described_by_its_schema() -> None:
         document = json.loads(of.text("json"))
         jsonschema.validate(document, schema, cls=jsonschema.Draft202012Validator)
         names = of.slice.axis_names
-        assert [PlanePolynomial.parse(c["polynomial"], names) for c in document["components"]] == polynomials(of)
+        assert [
+            PlanePolynomial.parse(c["polynomial"], names) for c in document["components"]
+        ] == polynomials(of)
         assert [c["kind"] for c in document["components"]] == [c.kind.value for c in of.components]
         document["components"][0]["kind"] = "other"
         with pytest.raises(jsonschema.ValidationError):
@@ -197,13 +216,19 @@ def qepcad_cells(name: str) -> Decomposition:
 
 @needs_qepcad
 @pytest.mark.parametrize(
-    "name", [name if name in ("fig2", "fig3") else pytest.param(name, marks=pytest.mark.slow) for name in SHIPPED]
+    "name",
+    [
+        name if name in ("fig2", "fig3") else pytest.param(name, marks=pytest.mark.slow)
+        for name in SHIPPED
+    ],
 )
 @pytest.mark.slow_cases("fig3")
 def test_qepcad_decomposes_the_window(name: str) -> None:
-    """Its true cells lie off the variety and in the window, and there is one in each cell of the region map.
+    """Its true cells lie off the variety and in the window, and there is one in each cell of the
+    region map.
 
-    The map may stand over the other axis; then the numbers of cells may differ, but each region is met all the same.
+    The map may stand over the other axis; then the numbers of cells may differ, but each region is
+    met all the same.
     """
     result, found = shipped(name), qepcad_cells(name)
     used = {c.polynomial for c in variety(name).components if not c.left_out}
@@ -218,13 +243,17 @@ def test_qepcad_decomposes_the_window(name: str) -> None:
         located.append(at)
     assert {at.region for at in located} == set(range(len(result.regions)))
     if result.base == 0:
-        assert sorted(at.cell for at in located if at.cell is not None) == list(range(len(result.cells)))
+        assert sorted(at.cell for at in located if at.cell is not None) == list(
+            range(len(result.cells))
+        )
 
 
 @needs_qepcad
 def test_qepcad_reads_a_variety_without_a_curve_in_the_window() -> None:
     of = variety("fig3")
-    none = replace(of, components=tuple(replace(c, left_out="no point in the window") for c in of.components))
+    none = replace(
+        of, components=tuple(replace(c, left_out="no point in the window") for c in of.components)
+    )
     (output,) = qepcad_session([none.text("qepcad").removesuffix("quit\n")])
     assert re.search(r"Truth value\s*: T", output)
 
@@ -240,7 +269,9 @@ def test_a_name_that_qepcad_can_not_spell(tmp_path: Path) -> None:
 # ------------------------------------------------------------------------------------------- the elimination system
 
 
-def divided_out(generator: PlanePolynomial, of: SliceVariety) -> tuple[set[PlanePolynomial], PlanePolynomial]:
+def divided_out(
+    generator: PlanePolynomial, of: SliceVariety
+) -> tuple[set[PlanePolynomial], PlanePolynomial]:
     """The components that divide a polynomial, and what is left when they are divided out."""
     x, y = sympy.symbols("x y")
 
@@ -256,7 +287,9 @@ def divided_out(generator: PlanePolynomial, of: SliceVariety) -> tuple[set[Plane
                 break
             found.add(component.polynomial)
             rest = quotient
-    return found, PlanePolynomial.of((int(i), int(j), int(c)) for (i, j), c in rest.clear_denoms()[1].terms())
+    return found, PlanePolynomial.of(
+        (int(i), int(j), int(c)) for (i, j), c in rest.clear_denoms()[1].terms()
+    )
 
 
 def check_elimination(generators: Iterable[str], of: SliceVariety, names: tuple[str, str]) -> None:
@@ -264,7 +297,9 @@ def check_elimination(generators: Iterable[str], of: SliceVariety, names: tuple[
     (generator,) = generators
     whole = monomials(generator, names)
     assert all(c.denominator == 1 for c in whole.values())
-    found, rest = divided_out(PlanePolynomial.of((e[0], e[1], int(c)) for e, c in whole.items()), of)
+    found, rest = divided_out(
+        PlanePolynomial.of((e[0], e[1], int(c)) for e, c in whole.items()), of
+    )
     assert rest.total_degree == 0
     critical = {c.polynomial for c in of.critical}
     assert critical <= found
@@ -273,11 +308,14 @@ def check_elimination(generators: Iterable[str], of: SliceVariety, names: tuple[
 
 @needs_msolve
 @pytest.mark.parametrize(
-    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in SHIPPED]
+    "name",
+    [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in SHIPPED],
 )
 def test_msolve_eliminates_to_the_critical_curves(name: str) -> None:
     of = variety(name)
-    check_elimination(eliminated(of.text("msolve"), len(of.system.unknowns)), of, of.slice.axis_names)
+    check_elimination(
+        eliminated(of.text("msolve"), len(of.system.unknowns)), of, of.slice.axis_names
+    )
 
 
 EXCLUDED = {
@@ -301,12 +339,19 @@ def test_the_system_has_inverses_of_what_is_not_zero() -> None:
 
 
 @needs_msolve
-@pytest.mark.parametrize("record", [EXCLUDED, "systems/duffing", "systems/escape", "mechanisms/two-bar-chain"])
+@pytest.mark.parametrize(
+    "record", [EXCLUDED, "systems/duffing", "systems/escape", "mechanisms/two-bar-chain"]
+)
 def test_msolve_leaves_out_what_ptmcad_leaves_out(record: Any) -> None:
-    slice = ptmcad.load(CONFIGS / f"{record}.yaml") if isinstance(record, str) else ptmcad.slice_from_mapping(record)
+    slice = (
+        ptmcad.load(CONFIGS / f"{record}.yaml")
+        if isinstance(record, str)
+        else ptmcad.slice_from_mapping(record)
+    )
     of = ptmcad.slice_variety(slice)
     generators = eliminated(of.text("msolve"), len(of.system.unknowns))
-    # where x = 0 at a solution, at which y = a and so y^2 = q, its inverse leaves; that is no singular solution
+    # where x = 0 at a solution, at which y = a and so y^2 = q, its inverse leaves; that is no
+    # singular solution
     leaving = PlanePolynomial.of(((3, 0, 1), (2, 0, -3), (0, 1, 1)))
     kept = tuple(c for c in of.components if c.polynomial != leaving)
     assert len(of.components) - len(kept) == (record is EXCLUDED)
@@ -318,7 +363,9 @@ def test_a_missing_curve_is_noticed_by_msolve() -> None:
     of = variety("fig3")
     generators = eliminated(of.text("msolve"), len(of.system.unknowns))
     with pytest.raises(AssertionError):
-        check_elimination(generators, replace(of, components=of.components[1:]), of.slice.axis_names)
+        check_elimination(
+            generators, replace(of, components=of.components[1:]), of.slice.axis_names
+        )
 
 
 @needs_msolve
@@ -344,11 +391,16 @@ def test_singular_eliminates_the_same_system(name: str) -> None:
 
 
 def test_the_system_is_that_of_the_paper() -> None:
-    """Equations (3) and (4) with the errata, for fig. 4 and divided by k: L2 s12 - 2 rho s1 + f3 c1, f3 = -1/10."""
+    """Equations (3) and (4) with the errata, for fig. 4 and divided by k: L2 s12 - 2 rho s1 + f3
+    c1, f3 = -1/10.
+    """
     of = variety("fig4")
     names = [sympy.Symbol(n) for n in (*of.system.unknowns, *of.system.axes)]
     c1, s1, c2, s2, inverse, rho, l2 = names
-    read = [sympy.sympify(text.replace("^", "**"), locals={str(n): n for n in names}) for text in of.system.texts()]
+    read = [
+        sympy.sympify(text.replace("^", "**"), locals={str(n): n for n in names})
+        for text in of.system.texts()
+    ]
     f = -sympy.Rational(1, 10)
     first = l2 * (s1 * c2 + c1 * s2) - 2 * rho * s1 + f * c1
     second = (s1 * c2 + c1 * s2) - 2 * rho * s2 + f * c2
@@ -386,12 +438,16 @@ def test_command_prints_or_writes_the_same(
 
 
 def test_command_takes_the_options_of_classify(capsys: pytest.CaptureFixture[str]) -> None:
-    """Reference: the three lines of the unloaded slice, which the paper gives as its boundaries (fig. 2)."""
+    """Reference: the three lines of the unloaded slice, which the paper gives as its boundaries
+    (fig. 2).
+    """
     assert run(["variety", "--slice", "L2,rho"]) == 0
     printed = capsys.readouterr().out
     for line in ("L2 - 2*rho + 1", "L2 - 2*rho - 1", "L2 + 2*rho - 1"):
         assert f"\n          {line}\n" in printed
-    assert run(["variety", str(CONFIGS / "fig4.yaml"), "--set", "F3=-20", "--range", "rho=1:2"]) == 0
+    assert (
+        run(["variety", str(CONFIGS / "fig4.yaml"), "--set", "F3=-20", "--range", "rho=1:2"]) == 0
+    )
     printed = capsys.readouterr().out
     assert "F3 = -20" in printed and "1 < rho < 2" in printed
 
@@ -435,9 +491,20 @@ def test_degenerate_slice_has_no_variety() -> None:
 def test_nothing_large_is_loaded_and_a_time_limit_ends_it(tmp_path: Path) -> None:
     code = "import sys; from ptmcad.cli import run; run(sys.argv[1:]); print(sorted(sys.modules), file=sys.stderr)"
     arguments = ["variety", str(CONFIGS / "fig4.yaml"), "--format", "sympy"]
-    done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True
+    )
     assert not {"'sympy'", "'matplotlib'", "'numpy'"} & set(re.findall(r"'\w+'", done.stderr))
-    hard = ["--slice", "rho,L2", "--set", "F3=rho^3-L2", "--set", "F4=L2^3+rho", "--set", "F3x=rho^2*L2"]
+    hard = [
+        "--slice",
+        "rho,L2",
+        "--set",
+        "F3=rho^3-L2",
+        "--set",
+        "F4=L2^3+rho",
+        "--set",
+        "F3x=rho^2*L2",
+    ]
     stopped = subprocess.run(
         [sys.executable, "-m", "ptmcad", "variety", *hard, "--timeout", "0.5", "--out", str(tmp_path / "out.txt")],
         capture_output=True, text=True, check=False,

@@ -15,7 +15,10 @@ SWITCH = {
 
 @pytest.mark.parametrize(
     ("value", "pose", "title"),
-    [("u", "pose:1", "u of solution 1: switch"), ("u^2", "stable:1", "u^2 of stable solution 1: switch")],
+    [
+        ("u", "pose:1", "u of solution 1: switch"),
+        ("u^2", "stable:1", "u^2 of stable solution 1: switch"),
+    ],
 )
 def test_the_title_of_a_systems_quantity(value: str, pose: str, title: str) -> None:
     pytest.importorskip("matplotlib")
@@ -29,4 +32,7 @@ def test_the_title_of_a_mechanisms_quantity() -> None:
     from ptmcad.show.render.field import title_of
 
     result = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))
-    assert title_of(result, result.field("length:k3", "stable:1", 2, 2)) == "Length k₃ of stable pose 1: slice-L2-rho"
+    assert (
+        title_of(result, result.field("length:k3", "stable:1", 2, 2))
+        == "Length k₃ of stable pose 1: slice-L2-rho"
+    )

@@ -55,19 +55,30 @@ def said(stage: Stage, number: int) -> list[str]:
 @pytest.mark.slow
 def test_pictures_say_what_they_show(stage: Stage, motion: Motion) -> None:
     first = next(k for k, step in enumerate(motion.steps) if step.falling)
-    assert said(stage, 0) == ["ρ = 0.75,  L₂ = 1.5", "one of exactly 6 equilibria, 2 stable", "θ₁ = 69.9°,  θ₂ = 36.0°"]
+    assert said(stage, 0) == [
+        "ρ = 0.75,  L₂ = 1.5",
+        "one of exactly 6 equilibria, 2 stable",
+        "θ₁ = 69.9°,  θ₂ = 36.0°",
+    ]
     assert said(stage, first)[1] == "the pose has vanished: steepest descent, no equilibrium"
     assert said(stage, len(motion.steps) - 1)[1] == "one of exactly 4 equilibria, 1 stable"
 
 
 @pytest.mark.slow
-def test_the_key_says_whether_all_equilibria_are_in_the_energys_frame(stage: Stage, motion: Motion) -> None:
+def test_the_key_says_whether_all_equilibria_are_in_the_energys_frame(
+    stage: Stage, motion: Motion
+) -> None:
     low, high = stage.curve.get_ylim()
     others = [height for step in motion.steps for height, _ in step.others]
     assert not all(low < height < high for height in others)
-    assert stage.curve.get_title(loc="right") == "dots: equilibria within the frame, stable ones blue"
+    assert (
+        stage.curve.get_title(loc="right") == "dots: equilibria within the frame, stable ones blue"
+    )
     heights = [step.height for step in motion.steps if step.height is not None]
-    steps = [replace(s, others=tuple((min(heights), stable) for _, stable in s.others)) for s in motion.steps]
+    steps = [
+        replace(s, others=tuple((min(heights), stable) for _, stable in s.others))
+        for s in motion.steps
+    ]
     with settings():
         full = Stage(replace(motion, steps=tuple(steps)), DEFAULT, 60)
     assert full.curve.get_title(loc="right") == "dots: all equilibria, stable ones blue"
@@ -75,7 +86,9 @@ def test_the_key_says_whether_all_equilibria_are_in_the_energys_frame(stage: Sta
 
 def test_what_is_fixed_stands_still_and_all_is_at_one_scale(stage: Stage, motion: Motion) -> None:
     nodes = [seen.nodes for seen in stage.sketches]
-    assert {tuple(round(v, 9) for v in node["A1"]) for node in nodes} == {tuple(round(v, 9) for v in nodes[0]["A1"])}
+    assert {tuple(round(v, 9) for v in node["A1"]) for node in nodes} == {
+        tuple(round(v, 9) for v in nodes[0]["A1"])
+    }
     lengths = [np.hypot(*np.subtract(node["A3"], node["A1"])) for node in nodes]
     assert lengths == pytest.approx([lengths[0]] * len(nodes))  # the bar of length 1
     wide, tall = stage.sides
@@ -113,7 +126,9 @@ def test_all_words_are_within_the_picture(motion: Motion, size: str) -> None:
             texts = list(stage._said(motion.steps[number]))
             for text in (*texts, *stage.figure.texts):
                 box = text.get_window_extent(stage.canvas.get_renderer())
-                assert 0 <= box.x0 < box.x1 <= wide and 0 <= box.y0 < box.y1 <= tall, text.get_text()
+                assert 0 <= box.x0 < box.x1 <= wide and 0 <= box.y0 < box.y1 <= tall, (
+                    text.get_text()
+                )
                 assert text.get_fontsize() >= 6
             for text in texts:
                 text.remove()
@@ -121,7 +136,9 @@ def test_all_words_are_within_the_picture(motion: Motion, size: str) -> None:
 
 
 @pytest.mark.slow
-def test_a_gif_has_all_pictures_and_rests_at_its_ends(motion: Motion, short: Motion, tmp_path: Path) -> None:
+def test_a_gif_has_all_pictures_and_rests_at_its_ends(
+    motion: Motion, short: Motion, tmp_path: Path
+) -> None:
     motion.save(tmp_path / "one.gif", fps=10, dpi=60, size="7x4in")
     for name in ("two.gif", "three.gif"):
         short.save(tmp_path / name, fps=10, dpi=60, size="7x4in")
@@ -160,7 +177,9 @@ def program(folder: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(file.parent))
 
 
-def test_ffmpeg_gets_every_picture(short: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ffmpeg_gets_every_picture(
+    short: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     program(tmp_path, FAKE, monkeypatch)
     short.save(tmp_path / "film.mp4", fps=10, dpi=60, size="7x4in")
     assert (tmp_path / "film.mp4").read_bytes() == b"%d pictures" % (len(short.steps) + 2 * 8)
@@ -169,7 +188,11 @@ def test_ffmpeg_gets_every_picture(short: Motion, tmp_path: Path, monkeypatch: p
 @pytest.mark.parametrize("reads", [True, False], ids=["at the end", "at once"])
 @pytest.mark.slow_cases("at the end")
 def test_what_ffmpeg_refuses_is_said(
-    reads: bool, short: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    reads: bool,
+    short: Motion,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     read = "sys.stdin.buffer.read()\n" if reads else ""
     program(tmp_path, f"#!{{python}}\nimport sys\n{read}sys.exit('no encoder')\n", monkeypatch)
@@ -178,14 +201,26 @@ def test_what_ffmpeg_refuses_is_said(
     if not reads:  # the command is told in the same way
         return
     (tmp_path / "fig4.json").write_text(shipped("fig4").to_json())
-    asked = ["animate", str(tmp_path / "fig4.json"), "--path", "rho=3/4:4/5,L2=3/2", "--pose", "stable:2"]
+    asked = [
+        "animate",
+        str(tmp_path / "fig4.json"),
+        "--path",
+        "rho=3/4:4/5,L2=3/2",
+        "--pose",
+        "stable:2",
+    ]
     asked += ["--frames", "2", "--dpi", "50", "--format", "gif,mp4"]
     assert run([*asked, "--out", str(tmp_path / "out")]) == 2
-    assert "fig4-motion.mp4 cannot be drawn: ffmpeg failed with status 1: no encoder" in capsys.readouterr().err
+    assert (
+        "fig4-motion.mp4 cannot be drawn: ffmpeg failed with status 1: no encoder"
+        in capsys.readouterr().err
+    )
     assert not list((tmp_path / "out").iterdir())
 
 
-def test_the_command_writes_a_film_and_says_where_it_snaps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_writes_a_film_and_says_where_it_snaps(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["classify", FIG4, "--format", "json", "--no-areas", "--out", str(tmp_path)]) == 0
     capsys.readouterr()
     stored = str(tmp_path / "fig4.json")
@@ -195,7 +230,10 @@ def test_the_command_writes_a_film_and_says_where_it_snaps(tmp_path: Path, capsy
         assert f"{name}.gif" in capsys.readouterr().out
     assert run(["animate", stored, "--path", PATH, *asked]) == 0
     out = capsys.readouterr().out
-    assert "stable:2: 14 pictures, 2 of equilibria, each one of as many as are counted exactly there\n" in out
+    assert (
+        "stable:2: 14 pictures, 2 of equilibria, each one of as many as are counted exactly there\n"
+        in out
+    )
     assert "snap at rho = 1.04143, L2 = 1.5: the pose vanishes and falls to th1 = -47.52" in out
     assert (tmp_path / "a.gif").read_bytes() == (tmp_path / "b.gif").read_bytes()
     assert run(["animate", stored, "--path", PATH, "--set", "F3=0", "--out", str(tmp_path)]) == 2
@@ -209,10 +247,16 @@ def test_the_command_writes_a_film_and_says_where_it_snaps(tmp_path: Path, capsy
     [
         (["--path", "rho=1"], "--path: give values of both axes"),
         (["--path", PATH, "--pose", "best"], "--pose: 'best' is not a pose such as stable:1"),
-        (["--path", PATH, "--pose", "stable:3"], "--pose: there is no stable:3 at the path's start"),
+        (
+            ["--path", PATH, "--pose", "stable:3"],
+            "--pose: there is no stable:3 at the path's start",
+        ),
         (["--path", PATH, "--size", "9"], "--size: '9' is not a size such as"),
         (["--path", PATH, "--size", "2x2in"], "a film needs at least 6.5x3.4in"),
-        (["--path", PATH, "--format", "mp4"], "mp4 is made by the program ffmpeg, which is not on the PATH"),
+        (
+            ["--path", PATH, "--format", "mp4"],
+            "mp4 is made by the program ffmpeg, which is not on the PATH",
+        ),
         (["--path", PATH, "--format", "avi"], "avi is not among gif, mp4"),
     ],
 )
@@ -226,14 +270,28 @@ def test_bad_options_leave_nothing(
     assert not list(tmp_path.iterdir())
 
 
-def test_a_stored_map_that_contradicts_itself_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_stored_map_that_contradicts_itself_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     whole = shipped("fig4")
     stacks = (replace(s, walls=tuple(replace(w, root=9) for w in s.walls)) for s in whole.stacks)
     (tmp_path / "damaged.json").write_text(replace(whole, stacks=tuple(stacks)).to_json())
-    command = ["animate", str(tmp_path / "damaged.json"), "--path", PATH, "--pose", "stable:2", "--frames", "3"]
+    command = [
+        "animate",
+        str(tmp_path / "damaged.json"),
+        "--path",
+        PATH,
+        "--pose",
+        "stable:2",
+        "--frames",
+        "3",
+    ]
     assert run([*command, "--out", str(tmp_path / "films")]) == 2
     said = capsys.readouterr().err
-    assert "damaged.json: the map contradicts itself (" in said and "); check it with ptmcad verify" in said
+    assert (
+        "damaged.json: the map contradicts itself (" in said
+        and "); check it with ptmcad verify" in said
+    )
     assert not list((tmp_path / "films").iterdir())
 
 

@@ -79,8 +79,16 @@ def solved(record: dict[str, Any], **at: str) -> Any:
 def test_a_mechanism_is_drawn_with_its_own_parts() -> None:
     figure = draw_poses(solved(PENDULUM, a="1", W="1/2"))
     gids = {artist.get_gid() for artist in figure.findobj() if artist.get_gid()}
-    assert {"pose-1-bar-OP", "pose-1-node-B", "pose-1-base-2", "pose-1-spring-3", "pose-1-load-1/10"} <= gids
-    texts = [text.get_text() for text in figure.findobj(match=lambda artist: hasattr(artist, "get_text"))]
+    assert {
+        "pose-1-bar-OP",
+        "pose-1-node-B",
+        "pose-1-base-2",
+        "pose-1-spring-3",
+        "pose-1-load-1/10",
+    } <= gids
+    texts = [
+        text.get_text() for text in figure.findobj(match=lambda artist: hasattr(artist, "get_text"))
+    ]
     assert any(re.fullmatch(r"θ = .*°, s = .*", text) for text in texts)
     assert "vertical slider, at A" in texts and "springs AP, BP, BO;" in texts
 
@@ -115,7 +123,10 @@ def test_what_cannot_be_drawn_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"--format: .* ask for table or json"):
         CliRunner().invoke(solve_command, [*asked, "png"], catch_exceptions=False)
     assert not list(tmp_path.glob("*.png"))
-    assert CliRunner().invoke(solve_command, [*asked, "table,json"], catch_exceptions=False).exit_code == 0
+    assert (
+        CliRunner().invoke(solve_command, [*asked, "table,json"], catch_exceptions=False).exit_code
+        == 0
+    )
 
 
 def data_of(result: RegionMap) -> dict[str, Any]:
@@ -131,7 +142,11 @@ def test_maps_and_pages_of_systems_speak_of_solutions() -> None:
         a, b = (float(Fraction(text.split()[0])) for text in cell["sample"])
         for solution in cell["equilibria"]:
             (x,) = solution["at"]
-            assert solution["kind"] == "solution" and solution["energy"] == "" and abs(x**3 - a * x + b) < 1e-6
+            assert (
+                solution["kind"] == "solution"
+                and solution["energy"] == ""
+                and abs(x**3 - a * x + b) < 1e-6
+            )
     assert "(minima, maxima)" in table(ptmcad.classify(ptmcad.slice_from_mapping(VALLEYS)))
 
 
@@ -143,11 +158,15 @@ def test_the_page_draws_any_mechanism() -> None:
     for cell in data["cells"]:
         for pose in cell["equilibria"]:
             cosine, sine, s = pose["at"]
-            assert pose["nodes"][2] == pytest.approx([s, 0]) and pose["nodes"][3] == pytest.approx([sine, cosine])
+            assert pose["nodes"][2] == pytest.approx([s, 0]) and pose["nodes"][3] == pytest.approx(
+                [sine, cosine]
+            )
 
 
 def test_a_page_tells_and_draws_torsion_springs() -> None:
-    """What its poses say is what exact poses say; a mechanism without such springs has no word of them."""
+    """What its poses say is what exact poses say; a mechanism without such springs has no word of
+    them.
+    """
     result = ptmcad.classify(TURNED)
     data = data_of(result)
     assert data["mechanism"]["torsion"] == [{"name": "θ", "at": [0, 1]}, {"name": "2*θ", "at": []}]
@@ -158,10 +177,14 @@ def test_a_page_tells_and_draws_torsion_springs() -> None:
     def told(text: str) -> float:
         return float(text.rstrip("°").replace("−", "-"))
 
-    entries = {round(told(entry["unknowns"][0]), 2): entry["deflections"] for entry in shown["equilibria"]}
+    entries = {
+        round(told(entry["unknowns"][0]), 2): entry["deflections"] for entry in shown["equilibria"]
+    }
     assert len(entries) == len(exact.equilibria) > 2
     for pose in exact.equilibria:
-        for spring, (deflection, moment) in zip(pose.torsion, entries[round(float(pose.degrees[0]), 2)], strict=True):
+        for spring, (deflection, moment) in zip(
+            pose.torsion, entries[round(float(pose.degrees[0]), 2)], strict=True
+        ):
             assert told(deflection) == pytest.approx(float(spring.degrees), abs=1e-4)
             assert told(moment) == pytest.approx(float(spring.moment), abs=1e-6)
     plain = data_of(ptmcad.classify(PENDULUM))

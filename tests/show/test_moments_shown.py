@@ -1,4 +1,6 @@
-"""Pictures, tables and messages of mechanisms under moments: what an energy leaves out, and where there is none."""
+"""Pictures, tables and messages of mechanisms under moments: what an energy leaves out, and where
+there is none.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +52,12 @@ ANGLE = bar({"th": "M"})
 TWO = bar(
     {"th": "M", "ph": "-M/3"},
     unknowns={"th": "angle", "ph": "angle"},
-    points={"O": [0, 0], "A": [2, 0], "P": ["cos(th)", "sin(th)"], "Q": ["cos(th)+cos(ph)/2", "sin(th)+sin(ph)/2"]},
+    points={
+        "O": [0, 0],
+        "A": [2, 0],
+        "P": ["cos(th)", "sin(th)"],
+        "Q": ["cos(th)+cos(ph)/2", "sin(th)+sin(ph)/2"],
+    },
     bars=[["O", "P"], ["P", "Q"]],
     springs=[{"between": ["A", "Q"], "k": 1}],
 )
@@ -129,19 +136,29 @@ def test_a_force_that_depends_on_another_unknown_is_called_so() -> None:
     why = "nothing says which are stable, as the force on s depends on another unknown"
     assert why in found.table() and why in words(draw_poses(found)).replace("\n", " ")
     assert data_of(record)["untold"] == why
-    assert no_landscape(found.model).startswith("the force on s of the mechanism depends on another unknown")
-    with pytest.raises(ConfigError, match="the force on s that depends on another unknown has no potential"):
+    assert no_landscape(found.model).startswith(
+        "the force on s of the mechanism depends on another unknown"
+    )
+    with pytest.raises(
+        ConfigError, match="the force on s that depends on another unknown has no potential"
+    ):
         ptmcad.slice_from_mapping({"name": "s", **record, "count": "stable"})
 
 
 def marks(figure: Figure) -> list[tuple[float, float]]:
     """Where equilibria are marked."""
-    shown = [a for a in figure.axes[0].get_children() if isinstance(a, Line2D) and a.get_marker() in ("o", "X", "^")]
+    shown = [
+        a
+        for a in figure.axes[0].get_children()
+        if isinstance(a, Line2D) and a.get_marker() in ("o", "X", "^")
+    ]
     return [(float(a.get_xdata()[0]), float(a.get_ydata()[0])) for a in shown]  # type: ignore[index,arg-type]
 
 
 def test_equilibria_are_marked_on_the_curve_at_both_edges_of_the_cut() -> None:
-    """At M = F one equilibrium is exactly at 180 degrees, where V is lower by a turn's work than at -180."""
+    """At M = F one equilibrium is exactly at 180 degrees, where V is lower by a turn's work than at
+    -180.
+    """
     found = solved(ANGLE, M="1/2", F="1/2")
     energy = energy_of(found.model, found.parameters)
     figure = draw_landscape(found)
@@ -159,14 +176,21 @@ def test_the_table_says_what_the_energy_leaves_out() -> None:
     assert "without the moments' work" in solved(TWO, M="1/2", F="1").table()
     assert note not in solved(ANGLE, M="0", F="1").table()
     assert note in solved(FREE, M="1/2", F="1").table()
-    assert "without the work of the constant part of the moment" in solved(WAVE, M="1/2", F="1").table()
-    assert "without the work of the moment and the force on s" in solved(MIXED, M="1/2", F="1").table()
+    assert (
+        "without the work of the constant part of the moment"
+        in solved(WAVE, M="1/2", F="1").table()
+    )
+    assert (
+        "without the work of the moment and the force on s" in solved(MIXED, M="1/2", F="1").table()
+    )
     untold = solved(UNTOLD, M="1/2", F="1").table()
     assert "energy  none, and nothing says which are stable" in untold and "solution" not in untold
 
 
 def test_the_picture_of_poses_says_what_the_energy_leaves_out() -> None:
-    assert "without the moment's work" in words(draw_poses(solved(ANGLE, M="1/2", F="1"))).replace("\n", " ")
+    assert "without the moment's work" in words(draw_poses(solved(ANGLE, M="1/2", F="1"))).replace(
+        "\n", " "
+    )
     assert "without" not in words(draw_poses(solved(ANGLE, M="0", F="1")))
 
 
@@ -174,10 +198,18 @@ def test_poses_without_an_energy_are_drawn() -> None:
     found = solved(UNTOLD, M="1/2", F="1/5")
     figure = draw_poses(found)
     gids = {artist.get_gid() for artist in figure.findobj() if artist.get_gid()}
-    assert {"pose-1-bar-OP", "pose-1-spring-AP"} <= gids or {"pose-1-bar-OP", "pose-2-node-P"} <= gids
+    assert {"pose-1-bar-OP", "pose-1-spring-AP"} <= gids or {
+        "pose-1-bar-OP",
+        "pose-2-node-P",
+    } <= gids
     said = words(figure)
     assert figure.get_label().startswith(f"{len(found.equilibria)} equilibria at")
-    assert "1  equilibrium" in said and "degenerate" not in said and "U" not in said and " stable at" not in said
+    assert (
+        "1  equilibrium" in said
+        and "degenerate" not in said
+        and "U" not in said
+        and " stable at" not in said
+    )
     assert "nothing says which are stable" in said
 
 
@@ -185,7 +217,14 @@ def test_a_landscape_that_there_is_not_is_refused_beside_the_other_files(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "untold.yaml").write_text(yaml.safe_dump(UNTOLD), encoding="utf-8")
-    asked = [str(tmp_path / "untold.yaml"), "--at", "M=1/2,F=1/5", "--landscape", "--out", str(tmp_path)]
+    asked = [
+        str(tmp_path / "untold.yaml"),
+        "--at",
+        "M=1/2,F=1/5",
+        "--landscape",
+        "--out",
+        str(tmp_path),
+    ]
     assert run(["solve", *asked, "--format", "svg,json"]) == 2
     said = capsys.readouterr()
     assert re.match(r"error: --landscape: .* depends on another unknown: ", said.err)
@@ -193,7 +232,9 @@ def test_a_landscape_that_there_is_not_is_refused_beside_the_other_files(
     assert {path.name for path in tmp_path.iterdir()} == {"untold.yaml", "poses.svg", "poses.json"}
 
 
-@pytest.mark.parametrize("error", [ValueError("a < b"), KeyError("font"), ConfigError("no energy"), RuntimeError()])
+@pytest.mark.parametrize(
+    "error", [ValueError("a < b"), KeyError("font"), ConfigError("no energy"), RuntimeError()]
+)
 def test_no_exception_is_named_in_a_message(error: Exception) -> None:
     def fail(_: Path) -> None:
         raise error
@@ -215,7 +256,9 @@ def test_a_load_is_told_by_its_name_or_as_a_force() -> None:
 
 
 def data_of(record: dict[str, Any]) -> dict[str, Any]:
-    result = ptmcad.classify(ptmcad.slice_from_mapping({"name": "s", **record}), area_tolerance="1/10")
+    result = ptmcad.classify(
+        ptmcad.slice_from_mapping({"name": "s", **record}), area_tolerance="1/10"
+    )
     return pages.data_of(page(result, timings=False))
 
 
@@ -228,7 +271,11 @@ def test_the_page_has_the_moments_and_calls_nothing_degenerate_without_a_potenti
     data = data_of(UNTOLD)
     assert not data["told"] and not data["landscape"]
     poses = [pose for cell in data["cells"] for pose in cell["equilibria"]]
-    assert poses and {pose["kind"] for pose in poses} == {"solution"} and {pose["energy"] for pose in poses} == {""}
+    assert (
+        poses
+        and {pose["kind"] for pose in poses} == {"solution"}
+        and {pose["energy"] for pose in poses} == {""}
+    )
     assert all(cell["moments"] == [] == cell["potential"] for cell in data["cells"])
 
 
@@ -260,11 +307,15 @@ CUSP = {
         (CUSP, {"a": "1", "b": "0"}),
     ],
 )
-def test_poses_of_any_model_are_what_the_schema_says(record: dict[str, Any], at: dict[str, str]) -> None:
+def test_poses_of_any_model_are_what_the_schema_says(
+    record: dict[str, Any], at: dict[str, str]
+) -> None:
     """Of one unknown and two, with an energy and without; and they are read back."""
     found = solved(record, **at)
     data = json.loads(found.to_json())
-    schema = json.loads((Path(__file__).parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads(
+        (Path(__file__).parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8")
+    )
     jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
     assert data["equilibria"] and Poses.from_json(found.to_json()) == found
 
@@ -284,4 +335,6 @@ def test_the_page_of_a_certified_map_of_lengths_alone() -> None:
         "count": "total",
     }
     result = ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/5")
-    assert all(not cell["potential"] for cell in pages.data_of(page(result, timings=False))["cells"])
+    assert all(
+        not cell["potential"] for cell in pages.data_of(page(result, timings=False))["cells"]
+    )

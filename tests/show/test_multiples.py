@@ -47,7 +47,9 @@ def test_every_member_has_its_chart_its_value_and_the_same_colours(family: Famil
     for axes, (_, result) in zip(figure.axes, family, strict=True):
         patches = {patch.get_gid(): patch for patch in axes.patches}
         for number, region in enumerate(result.regions):
-            found = next(patch for gid, patch in patches.items() if gid and gid.endswith(f"-region-{number}"))
+            found = next(
+                patch for gid, patch in patches.items() if gid and gid.endswith(f"-region-{number}")
+            )
             faces.setdefault(region.total or 0, set()).add(found.get_facecolor())
     assert set(faces) == {1, 3}
     assert all(len(colours) == 1 for colours in faces.values())
@@ -66,16 +68,22 @@ def test_what_does_not_fit_is_refused(family: FamilyMap) -> None:
 @pytest.mark.slow
 def test_the_same_bytes_twice(family: FamilyMap) -> None:
     for make in (multiples_figure, solid_figure):
-        assert content(make(family, 100, DEFAULT), "svg") == content(make(family, 100, DEFAULT), "svg")
+        assert content(make(family, 100, DEFAULT), "svg") == content(
+            make(family, 100, DEFAULT), "svg"
+        )
 
 
-def test_of_many_maps_a_few_are_filled_and_of_the_others_there_are_curves(family: FamilyMap) -> None:
+def test_of_many_maps_a_few_are_filled_and_of_the_others_there_are_curves(
+    family: FamilyMap,
+) -> None:
     axes = family.plot(solid=True).axes[0]
     kinds = [type(found).__name__ for found in axes.collections]
     assert MAX_FLOORS == len(family.members) == 7
     assert kinds.count("Line3DCollection") == 7
     assert len(axes.patches) == sum(len(result.regions) for result in family.members)
-    assert "curves of the other members" not in [text.get_text() for text in family.plot(solid=True).texts]
+    assert "curves of the other members" not in [
+        text.get_text() for text in family.plot(solid=True).texts
+    ]
     more = ptmcad.family(RECORD, values=[0, 1, 2, 3, "1/2", "3/2", "5/2", "1/4"], areas=False)
     drawn = more.plot(solid=True)
     assert "curves of the other members" in [text.get_text() for text in drawn.texts]
@@ -123,8 +131,12 @@ def test_a_surface_of_many_pieces_is_an_image_in_a_vector_picture(
 
 
 def test_what_is_in_front_is_painted_last(solid: tuple[FamilyMap, BoundarySurface]) -> None:
-    """Triangles are cut so that none is long, together as large as before; the camera knows where the eye is."""
-    corners = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 1]], [[0, 0, 0], [0.01, 0, 0], [0, 0.01, 0]]])
+    """Triangles are cut so that none is long, together as large as before; the camera knows where
+    the eye is.
+    """
+    corners = np.array(
+        [[[0.0, 0, 0], [1, 0, 0], [0, 1, 1]], [[0, 0, 0], [0.01, 0, 0], [0, 0.01, 0]]]
+    )
     cut, colours = halved(corners, np.array([[1.0, 0, 0], [0, 1, 0]]))
     sides = np.linalg.norm(np.roll(cut, -1, axis=1) - cut, axis=2)
     areas = np.linalg.norm(np.cross(cut[:, 1] - cut[:, 0], cut[:, 2] - cut[:, 0]), axis=1) / 2
@@ -148,11 +160,26 @@ def test_the_free_parameter_has_its_unit() -> None:
         "free": {"F": [-40, 0]},
     }  # fmt: skip
     axes = ptmcad.family(loads, values=[-10], areas=False).plot(solid=True).axes[0]
-    assert [axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()] == ["ρ (length)", "L₂ (length)", "F (force)"]
+    assert [axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()] == [
+        "ρ (length)",
+        "L₂ (length)",
+        "F (force)",
+    ]
     mixed = {**loads, "parameters": {"F3": "F", "k": "200 + F"}}
-    assert ptmcad.family(mixed, values=[-10], areas=False).plot(solid=True).axes[0].get_zlabel() == "F (force)"
-    own = {"mechanism": "ptm", "axes": {"rho": [0, 2], "L2": [0, 2]}, "free": {"L1": [1, 2]}, "units": {"length": "mm"}}
-    assert ptmcad.family(own, values=[1], areas=False).plot(solid=True).axes[0].get_zlabel() == "L₁ (mm)"
+    assert (
+        ptmcad.family(mixed, values=[-10], areas=False).plot(solid=True).axes[0].get_zlabel()
+        == "F (force)"
+    )
+    own = {
+        "mechanism": "ptm",
+        "axes": {"rho": [0, 2], "L2": [0, 2]},
+        "free": {"L1": [1, 2]},
+        "units": {"length": "mm"},
+    }
+    assert (
+        ptmcad.family(own, values=[1], areas=False).plot(solid=True).axes[0].get_zlabel()
+        == "L₁ (mm)"
+    )
 
 
 def test_the_table_has_a_line_for_each_member(family: FamilyMap) -> None:
@@ -168,24 +195,38 @@ def test_the_table_has_a_line_for_each_member(family: FamilyMap) -> None:
 def test_the_legend_tells_of_thin_curves_and_labels_of_regions_that_are_not_seen() -> None:
     record = {
         "name": "narrow",
-        "system": {"unknowns": {"x": "real"}, "equations": ["x^2 - a*(a - e)"], "parameters": {"e": {}}},
+        "system": {
+            "unknowns": {"x": "real"},
+            "equations": ["x^2 - a*(a - e)"],
+            "parameters": {"e": {}},
+        },
         "axes": {"a": [-1, 1], "b": [-1, 1]},
         "parameters": {"e": "c"},
         "free": {"c": ["1/1000", 1]},
     }
     drawn = ptmcad.family(record, values=["1/1000", 1], areas=False).plot()
-    arrows = [[a.get_gid() for a in axes.texts if str(a.get_gid()).startswith("arrow-")] for axes in drawn.axes]
-    assert [len(found) for found in arrows] == [1, 0]  # the strip of no solution, which is seen in the other map
+    arrows = [
+        [a.get_gid() for a in axes.texts if str(a.get_gid()).startswith("arrow-")]
+        for axes in drawn.axes
+    ]
+    assert [len(found) for found in arrows] == [
+        1,
+        0,
+    ]  # the strip of no solution, which is seen in the other map
     assert "another curve" not in " ".join(text.get_text() for text in drawn.texts)
     loads: dict[str, Any] = {
         "mechanism": "ptm", "parameters": {"F3": "F", "F4": "F"}, "axes": {"rho": [0, 2], "L2": [0, 2]},
         "free": {"F": [-40, 0]},
     }  # fmt: skip
     thin = ptmcad.family(loads, values=[-40], areas=False).plot()
-    assert "another curve of the variety, the count does not change" in [text.get_text() for text in thin.texts]
+    assert "another curve of the variety, the count does not change" in [
+        text.get_text() for text in thin.texts
+    ]
 
 
-def test_legends_have_the_curve_and_members_their_values_in_three_dimensions(family: FamilyMap) -> None:
+def test_legends_have_the_curve_and_members_their_values_in_three_dimensions(
+    family: FamilyMap,
+) -> None:
     assert "the count changes" in [text.get_text() for text in family.plot().texts]
     drawn = family.plot(solid=True)
     told = [text.get_text() for text in drawn.texts]
@@ -194,7 +235,8 @@ def test_legends_have_the_curve_and_members_their_values_in_three_dimensions(fam
     assert ("other curves left out" in told) == thin
     named = {text.get_gid(): text.get_text().strip() for text in drawn.axes[0].texts}
     assert named == {
-        f"member-{number}": f"c = {value}" for number, value in enumerate(("0", "0.5", "1", "1.5", "2", "2.5", "3"))
+        f"member-{number}": f"c = {value}"
+        for number, value in enumerate(("0", "0.5", "1", "1.5", "2", "2.5", "3"))
     }
     one = replace(family, values=family.values[:1], members=family.members[:1])
     assert "paler: seen through" not in [text.get_text() for text in one.plot(solid=True).texts]

@@ -51,7 +51,9 @@ def results() -> list[object]:
 def test_every_result_is_a_line_at_the_prompt() -> None:
     for result in [*results(), shipped("fig4").components[0].polynomial]:
         text = repr(result)
-        assert text.startswith(f"<{type(result).__name__} ") or text.startswith(f"<{type(result).__name__}:"), text
+        assert text.startswith(f"<{type(result).__name__} ") or text.startswith(
+            f"<{type(result).__name__}:"
+        ), text
         assert len(text) < SCREEN, text
         assert "\n" not in text
 
@@ -66,7 +68,9 @@ NO_RESULTS = {"Any", "DataFrame", "Explorer", "Iterator", "None", "Point"}
 
 
 def returned() -> set[str]:
-    """The names of all classes that are public, or that a public function or method says it returns."""
+    """The names of all classes that are public, or that a public function or method says it
+    returns.
+    """
     functions = [method for methods in METHODS.values() for method in methods.values()]
     public = [getattr(ptmcad, name) for name in ptmcad.__all__]
     names = {found.__name__ for found in public if isinstance(found, type)} | set(METHODS)
@@ -81,13 +85,20 @@ def every_kind(tmp_path_factory: pytest.TempPathFactory) -> list[object]:
     slice = ptmcad.load(CONFIGS / "fig4.yaml")
     changed = ptmcad.family(CUBIC, values=[0, 1], areas=False, changes=True)
     swept = ptmcad.sweep(
-        {"mechanism": "ptm", "parameters": {"L1": "a"}, "axes": {"L2": [1, 2], "rho": [1, 2]}, "sweep": {"a": [1]}},
+        {
+            "mechanism": "ptm",
+            "parameters": {"L1": "a"},
+            "axes": {"L2": [1, 2], "rho": [1, 2]},
+            "sweep": {"a": [1]},
+        },
         tmp_path_factory.mktemp("sweep"),
         jobs=1,
         wanted={"areas": False},
     )
     circle = {"unknowns": {"u": "real"}, "equations": ["u^2 - 1 + (x - a)^2 + (a - 1)^2"]}
-    designed = ptmcad.design({"system": circle, "axes": {"x": [-2, 4], "a": [0, 2]}}, "range", where={"stable": 2})
+    designed = ptmcad.design(
+        {"system": circle, "axes": {"x": [-2, 4], "a": [0, 2]}}, "range", where={"stable": 2}
+    )
     made = results()
     poses = ptmcad.solve(rho="1", L2="3/2")
     return [
@@ -101,7 +112,9 @@ def every_kind(tmp_path_factory: pytest.TempPathFactory) -> list[object]:
     ]  # fmt: skip
 
 
-def test_every_result_has_a_view_for_notebooks_and_fits_one_screen(everything: list[object]) -> None:
+def test_every_result_has_a_view_for_notebooks_and_fits_one_screen(
+    everything: list[object],
+) -> None:
     seen: set[str] = set()
     for result in everything:
         name = type(result).__name__
@@ -139,7 +152,9 @@ def test_pixels_and_families_are_pictures(everything: list[object]) -> None:
     assert isinstance(grid, Grid) and isinstance(field, Field) and isinstance(family, FamilyMap)
     assert "agree with exact poses" in field._repr_html_()
     assert grid.extent == field.extent == (0.0, 2.0, 0.0, 2.0)
-    assert family.members[0].grid(4)._repr_png_().startswith(b"\x89PNG")  # of all: stability is not told
+    assert (
+        family.members[0].grid(4)._repr_png_().startswith(b"\x89PNG")
+    )  # of all: stability is not told
 
 
 class Reader(HTMLParser):
@@ -179,7 +194,10 @@ def test_a_map_is_a_picture_and_a_table() -> None:
     assert "http" not in html
     rows = read(html)
     assert rows[0][:2] == ["region", "stable"]
-    assert [(r[1], r[2], r[-1]) for r in rows[1:]] == [("1", "varies", "3.2536"), ("2", "6", "0.7464")]
+    assert [(r[1], r[2], r[-1]) for r in rows[1:]] == [
+        ("1", "varies", "3.2536"),
+        ("2", "6", "0.7464"),
+    ]
     svg, png = shipped("fig4")._repr_svg_(), shipped("fig4")._repr_png_()
     assert svg is not None
     assert "<svg" in svg
@@ -193,7 +211,9 @@ def test_a_certified_map_too() -> None:
 
 def test_a_map_without_cells_has_no_picture() -> None:
     whole = shipped("fig2")
-    empty = RegionMap(slice=whole.slice, status=Status.PARTIAL, system=whole.system, undetermined=1, versions={})  # type: ignore[arg-type]
+    empty = RegionMap(
+        slice=whole.slice, status=Status.PARTIAL, system=whole.system, undetermined=1, versions={}
+    )  # type: ignore[arg-type]
     assert (empty._repr_svg_(), empty._repr_png_()) == (None, None)
     assert "<img" not in empty._repr_html_()
 
@@ -242,6 +262,10 @@ def test_answers_about_lines_and_comparisons_are_shown(everything: list[object])
 
 def test_a_number_without_a_root_in_its_interval_is_shown_all_the_same() -> None:
     # a damaged file may say so, and bisection would go on for ever
-    assert repr(AlgebraicNumber((-2, 0, 1), Fraction(3), Fraction(4))).startswith("<AlgebraicNumber ")
-    assert repr(AlgebraicNumber((0, 0, -1, 1), Fraction(-1, 2), Fraction(1, 2))).startswith("<AlgebraicNumber ")
+    assert repr(AlgebraicNumber((-2, 0, 1), Fraction(3), Fraction(4))).startswith(
+        "<AlgebraicNumber "
+    )
+    assert repr(AlgebraicNumber((0, 0, -1, 1), Fraction(-1, 2), Fraction(1, 2))).startswith(
+        "<AlgebraicNumber "
+    )
     assert "1.414213562" in repr(AlgebraicNumber((-2, 0, 1), Fraction(1), Fraction(2)))

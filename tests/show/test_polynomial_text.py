@@ -1,4 +1,6 @@
-"""Polynomials as code: each language's text, read back by a reader that shares nothing with the writer."""
+"""Polynomials as code: each language's text, read back by a reader that shares nothing with the
+writer.
+"""
 
 from __future__ import annotations
 
@@ -18,9 +20,9 @@ from ptmcad.text.plane import PlanePolynomial
 
 NAMES = ("rho", "L2")
 HARD = st.sampled_from((1, -1, 2, -3, 10**30, -(10**40) - 7))
-POLYNOMIALS = st.dictionaries(st.tuples(st.integers(0, 24), st.integers(0, 12)), HARD, max_size=12).map(
-    lambda terms: PlanePolynomial.of((i, j, c) for (i, j), c in terms.items())
-)
+POLYNOMIALS = st.dictionaries(
+    st.tuples(st.integers(0, 24), st.integers(0, 12)), HARD, max_size=12
+).map(lambda terms: PlanePolynomial.of((i, j, c) for (i, j), c in terms.items()))
 AXES = st.sampled_from(
     (
         "rho",
@@ -81,7 +83,9 @@ def read_latex(text: str, names: tuple[str, str]) -> PlanePolynomial:
         text = text.replace(name, f"x{k}")
     text = re.sub(r"\^\{(\d+)\}", r"^\1", text)
     assert not set(text) & set("{}\\")
-    return PlanePolynomial.of((e[0], e[1], int(c)) for e, c in monomials(text, ("x0", "x1")).items())
+    return PlanePolynomial.of(
+        (e[0], e[1], int(c)) for e, c in monomials(text, ("x0", "x1")).items()
+    )
 
 
 def read_back(text: str, names: tuple[str, str], style: Style) -> PlanePolynomial:
@@ -90,7 +94,10 @@ def read_back(text: str, names: tuple[str, str], style: Style) -> PlanePolynomia
     pair = (spelled[0], spelled[1])
     if style is Style.SYMPY:
         return of_sympy(
-            sympy.sympify(text, locals={name: sympy.Symbol(name) for name in pair}, convert_xor=False), pair
+            sympy.sympify(
+                text, locals={name: sympy.Symbol(name) for name in pair}, convert_xor=False
+            ),
+            pair,
         )
     if style is Style.MATHEMATICA:  # SymPy's reader takes some names for Python's or its own
         for k, name in enumerate(pair):
@@ -112,7 +119,9 @@ def test_what_is_written_is_the_polynomial(style: Style, polynomial: PlanePolyno
 
 @pytest.mark.parametrize("style", Style)
 @given(polynomial=POLYNOMIALS, width=st.integers(0, 130))
-def test_broken_lines_are_the_same_text(style: Style, polynomial: PlanePolynomial, width: int) -> None:
+def test_broken_lines_are_the_same_text(
+    style: Style, polynomial: PlanePolynomial, width: int
+) -> None:
     lines = polynomial_lines(polynomial, NAMES, style, width)
     assert " ".join(lines) == polynomial_text(polynomial, NAMES, style)
     for line in lines:

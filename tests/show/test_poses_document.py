@@ -21,7 +21,9 @@ from ptmcad.show.document.poses import FORMAT
 from ptmcad.text.enclosure import exact_text
 from ptmcad.text.numerals import fraction_of
 
-SCHEMA = json.loads((Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads(
+    (Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8")
+)
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 POINTS: list[dict[str, Any]] = [
     {"rho": 1, "L2": "3/2"},
@@ -32,7 +34,9 @@ POINTS: list[dict[str, Any]] = [
     {"rho": "1/3", "L2": "7/3", "k1": "1/3", "digits": 1},
 ]
 rationals = st.fractions().filter(bool) | st.builds(
-    lambda m, e: m * Fraction(10) ** e, st.fractions(max_denominator=50).filter(bool), st.integers(-40, 40)
+    lambda m, e: m * Fraction(10) ** e,
+    st.fractions(max_denominator=50).filter(bool),
+    st.integers(-40, 40),
 )
 
 
@@ -57,25 +61,33 @@ def test_text_is_the_number_rounded_to_nearest(value: Fraction, digits: int) -> 
 
 
 @given(rationals, st.integers(1, 12), st.integers(1, 20))
-def test_a_text_is_the_rounding_of_every_number_of_the_enclosure(value: Fraction, digits: int, narrow: int) -> None:
+def test_a_text_is_the_rounding_of_every_number_of_the_enclosure(
+    value: Fraction, digits: int, narrow: int
+) -> None:
     radius = abs(value) / 10**narrow
     around = Enclosure(value - radius * 2 / 3, value + radius / 3)
     shown = next((more for more in range(digits, digits + 6) if around.settles(more)), None)
     if shown is None:
         middle, error = map(Fraction, around.text(digits).split(" ± "))
-        assert middle - error <= around.low < around.high <= middle + error <= around.high + 3 * error
+        assert (
+            middle - error <= around.low < around.high <= middle + error <= around.high + 3 * error
+        )
         return
     ends = {Fraction(Decimal(exactly(end).text(shown))) for end in (around.low, around.high)}
     assert ends == {Fraction(Decimal(around.text(digits)))}
 
 
 @given(rationals, st.integers(1, 12))
-def test_a_narrow_enclosure_has_a_text_of_any_number_of_digits(value: Fraction, digits: int) -> None:
+def test_a_narrow_enclosure_has_a_text_of_any_number_of_digits(
+    value: Fraction, digits: int
+) -> None:
     """One that contains a single number halfway between two texts is written with one digit more."""
     radius = abs(value) / 10**40
     around = Enclosure(value - radius, value + radius)
     assume(around.low != around.high)
-    assert abs(Fraction(Decimal(around.text(digits))) / value - 1) <= Fraction(10) ** (1 - digits) / 2
+    assert (
+        abs(Fraction(Decimal(around.text(digits))) / value - 1) <= Fraction(10) ** (1 - digits) / 2
+    )
 
 
 @pytest.mark.parametrize(
@@ -114,7 +126,9 @@ def test_the_root_of_two() -> None:
 
 @given(st.fractions(max_denominator=1000), st.integers(1, 8))
 def test_a_rational_algebraic_number(value: Fraction, width: int) -> None:
-    number = AlgebraicNumber((-value.numerator, value.denominator), value - 1, value + Fraction(width))
+    number = AlgebraicNumber(
+        (-value.numerator, value.denominator), value - 1, value + Fraction(width)
+    )
     assert number.exact == value
     assert number.compare(value) == 0
     assert number.compare(value - 1) == 1
@@ -123,7 +137,9 @@ def test_a_rational_algebraic_number(value: Fraction, width: int) -> None:
 
 @given(st.integers(2, 10**6), st.integers(2, 7), st.integers(1, 40))
 def test_integer_roots_as_algebraic_numbers(n: int, degree: int, digits: int) -> None:
-    """The text lies within half a unit of the root: its neighbours at half a unit raised to the power enclose n."""
+    """The text lies within half a unit of the root: its neighbours at half a unit raised to the
+    power enclose n.
+    """
     if any(round(n ** (1 / d)) ** d == n for d in range(2, degree + 1)):
         return
     number = AlgebraicNumber((-n, *[0] * (degree - 1), 1), Fraction(0), Fraction(n))
@@ -184,7 +200,9 @@ def test_schema_and_reader_agree_on_the_keys() -> None:
     ],
     ids=str,
 )
-def test_a_changed_document_is_refused_with_its_place(place: tuple[Any, ...], value: object, fault: str) -> None:
+def test_a_changed_document_is_refused_with_its_place(
+    place: tuple[Any, ...], value: object, fault: str
+) -> None:
     data = json.loads(solve(rho=1, L2="3/2").to_json())
     target = data["equilibria"][0]
     for step in place[:-1]:
@@ -195,7 +213,9 @@ def test_a_changed_document_is_refused_with_its_place(place: tuple[Any, ...], va
     assert fault in str(refused.value)
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"format": "ptmcad-poses/0"}', "[" * 100_000, '{"a": 1, "a": 2}'])
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{}", '{"format": "ptmcad-poses/0"}', "[" * 100_000, '{"a": 1, "a": 2}']
+)
 def test_what_is_no_document_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r"."):
         Poses.from_json(text)
@@ -227,4 +247,6 @@ def test_the_table_with_fewer_digits_rounds_once() -> None:
     poses = solve(rho="7/10", L2="3/2", F3=-10, F4=-10, digits=40)
     for digits in (3, 9, 20, 40):
         assert poses.equilibria[0].energy.text(digits) in poses.table(digits)
-        assert str(solve(rho="7/10", L2="3/2", F3=-10, F4=-10, digits=digits)) == poses.table(digits)
+        assert str(solve(rho="7/10", L2="3/2", F3=-10, F4=-10, digits=digits)) == poses.table(
+            digits
+        )

@@ -1,4 +1,6 @@
-"""Poses of mechanisms with closed loops and X-joints: bars keep their lengths, energies are those of the springs."""
+"""Poses of mechanisms with closed loops and X-joints: bars keep their lengths, energies are those
+of the springs.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +53,9 @@ def test_bars_keep_their_lengths_and_energies_are_told(name: str) -> None:
         at = {n: (float(x.center), float(y.center)) for n, (x, y) in pose.nodes.items()}
         far = {a + b: hypot(at[a][0] - at[b][0], at[a][1] - at[b][1]) for a, b in mechanism.bars}
         assert far == pytest.approx(LENGTHS[name])
-        energy = -1.0 * sum(f * u for n, force in LOADS[name].items() for f, u in zip(force, at[n], strict=True))
+        energy = -1.0 * sum(
+            f * u for n, force in LOADS[name].items() for f, u in zip(force, at[n], strict=True)
+        )
         for spring in pose.springs:
             length = hypot(*(at[spring.start][k] - at[spring.end][k] for k in (0, 1)))
             assert float(spring.length.center) == pytest.approx(length)

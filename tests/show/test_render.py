@@ -1,4 +1,6 @@
-"""Pictures: what is drawn is what the map says, nothing is hidden, and the bytes are the same every time."""
+"""Pictures: what is drawn is what the map says, nothing is hidden, and the bytes are the same every
+time.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,17 @@ from matplotlib.text import Annotation
 from support.maps import shipped
 
 import ptmcad
-from ptmcad.answer.regionmap import Cell, Component, Kind, Region, RegionMap, Stack, Status, System, Wall
+from ptmcad.answer.regionmap import (
+    Cell,
+    Component,
+    Kind,
+    Region,
+    RegionMap,
+    Stack,
+    Status,
+    System,
+    Wall,
+)
 from ptmcad.model import known_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.show.render import draw
@@ -36,7 +48,13 @@ from ptmcad.show.units import unit
 from ptmcad.text.plane import PlanePolynomial
 
 ROOT = Path(__file__).resolve().parents[2]
-MAPS = [("fig2", "stable"), ("fig3", "stable"), ("fig3", "index"), ("fig4", "index"), ("forces", "total")]
+MAPS = [
+    ("fig2", "stable"),
+    ("fig3", "stable"),
+    ("fig3", "index"),
+    ("fig4", "index"),
+    ("forces", "total"),
+]
 HALF = Fraction(1, 2)
 
 
@@ -48,14 +66,19 @@ def bands(
     heights: list[Fraction],
     slope: Fraction = HALF,
     counts: list[int] | None = None,
-    window: tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]] = ((Fraction(0), Fraction(1)),) * 2,
+    window: tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]] = (
+        (Fraction(0), Fraction(1)),
+    )
+    * 2,
     title: str = "",
     names: tuple[str, str] = ("a", "b"),
     base: int = 0,
 ) -> RegionMap:
-    """A map whose walls are parallel lines, v = height + slope u in fractions of the window's sides.
+    """A map whose walls are parallel lines, v = height + slope u in fractions of the window's
+    sides.
 
-    Its regions' areas are those of the bands in fractions of the window (where the bands do not leave it).
+    Its regions' areas are those of the bands in fractions of the window (where the bands do not
+    leave it).
     """
     (p, q), (r, t) = window[base], window[1 - base]
     lines = []
@@ -76,16 +99,29 @@ def bands(
     numbers = range(len(counts))
     return RegionMap(
         slice=Slice(
-            "bands", known_of("other"), (Axis(names[0], *window[0]), Axis(names[1], *window[1])), {}, title=title
+            "bands",
+            known_of("other"),
+            (Axis(names[0], *window[0]), Axis(names[1], *window[1])),
+            {},
+            title=title,
         ),
         status=Status.EXACT,
         system=System((), (), "0", (), ()),
         base=base,
         components=tuple(lines),
-        stacks=(Stack(None, None, (p + q) / 2, tuple(Wall(k, 0) for k in range(len(heights))), tuple(numbers)),),
+        stacks=(
+            Stack(
+                None,
+                None,
+                (p + q) / 2,
+                tuple(Wall(k, 0) for k in range(len(heights))),
+                tuple(numbers),
+            ),
+        ),
         cells=tuple(Cell(0, k, sample(k), k, None, counts[k], None) for k in numbers),
         regions=tuple(
-            Region(counts[k], None, None, (levels[k + 1] - levels[k],) * 2, (k,), sample(k)) for k in numbers
+            Region(counts[k], None, None, (levels[k + 1] - levels[k],) * 2, (k,), sample(k))
+            for k in numbers
         ),
         undetermined=Fraction(0),
         versions={},
@@ -113,12 +149,18 @@ def test_polygons_have_the_certified_areas(name: str, count: str) -> None:
     sides = [a.high - a.low for a in result.slice.axes]
     for number, region in enumerate(result.regions):
         parts = [area(p) for p in whole.polygons(number)]
-        assert all(a >= 0 for a in parts) or all(a <= 0 for a in parts), "all parts turn the same way"
+        assert all(a >= 0 for a in parts) or all(a <= 0 for a in parts), (
+            "all parts turn the same way"
+        )
         drawn = abs(sum(parts)) * float(sides[0] * sides[1])
-        assert drawn == pytest.approx(float(region.area[0]), rel=2e-3, abs=2e-4 * float(sides[0] * sides[1]))
+        assert drawn == pytest.approx(
+            float(region.area[0]), rel=2e-3, abs=2e-4 * float(sides[0] * sides[1])
+        )
 
 
-@pytest.mark.parametrize("view", [None, View((Fraction(0), Fraction(1, 300)), (Fraction(4, 5), Fraction(6, 5)))])
+@pytest.mark.parametrize(
+    "view", [None, View((Fraction(0), Fraction(1, 300)), (Fraction(4, 5), Fraction(6, 5)))]
+)
 def test_vertices_lie_on_the_curve(view: View | None) -> None:
     """The stored polynomial changes its sign near every vertex."""
     result = classified("fig4", "index")
@@ -174,14 +216,18 @@ def test_neighbouring_stacks_meet() -> None:
 def test_vertical_lines_are_drawn(tmp_path: Path) -> None:
     """Without load the boundaries do not depend on k: over rho they are vertical lines."""
     record = tmp_path / "record.yaml"
-    record.write_text("name: lines\nmechanism: ptm\nparameters: {L1: 1, L2: 3/2}\naxes: {rho: [0, 2], k: [1, 200]}\n")
+    record.write_text(
+        "name: lines\nmechanism: ptm\nparameters: {L1: 1, L2: 3/2}\naxes: {rho: [0, 2], k: [1, 200]}\n"
+    )
     result = ptmcad.classify(ptmcad.load(record))
     assert len(result.regions) == 3
     strong = [line for _, separates, line in outline(result).walls() if separates]
     across = sorted({round(float(x), 6) for line in strong for x in line[:, 0]})
     assert across == [0.125, 0.625], "rho = 1/4 and 5/4"
     for x in across:
-        covered = sum(abs(line[-1, 1] - line[0, 1]) for line in strong if abs(line[0, 0] - x) < 1e-5)
+        covered = sum(
+            abs(line[-1, 1] - line[0, 1]) for line in strong if abs(line[0, 0] - x) < 1e-5
+        )
         assert covered == pytest.approx(1, abs=1e-6)
 
 
@@ -206,7 +252,10 @@ def test_the_sliver_has_an_arrow_and_an_inset(name: str, x_end: str, tmp_path: P
     assert f'id="arrow-{thin[0]}"' in text
     (zoom,) = zooms(outline(result), thin)
     assert zoom.outline.view.x[1] < Fraction(x_end)
-    assert result.locate(**dict(zip(result.slice.axis_names, zoom.slivers[0].at, strict=True))).region == thin[0]
+    assert (
+        result.locate(**dict(zip(result.slice.axis_names, zoom.slivers[0].at, strict=True))).region
+        == thin[0]
+    )
 
 
 @pytest.mark.parametrize("exponent", [3, 7, 15, 30, 100])
@@ -262,7 +311,8 @@ def test_labels_of_crowded_tips_are_apart() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "count", "dpi"), [(*m, 100) for m in MAPS] + [pytest.param("fig4", "index", 300, marks=pytest.mark.slow)]
+    ("name", "count", "dpi"),
+    [(*m, 100) for m in MAPS] + [pytest.param("fig4", "index", 300, marks=pytest.mark.slow)],
 )
 @pytest.mark.fast_cases("fig2-stable-100")
 def test_every_colour_is_in_the_picture(name: str, count: str, dpi: int, tmp_path: Path) -> None:
@@ -279,7 +329,9 @@ def test_every_colour_is_in_the_picture(name: str, count: str, dpi: int, tmp_pat
 
 
 def pixels_of(image: np.ndarray, colour: tuple[float, float, float]) -> int:
-    return int(np.logical_and.reduce([np.abs(image[:, :, k] - colour[k]) < 0.01 for k in range(3)]).sum())
+    return int(
+        np.logical_and.reduce([np.abs(image[:, :, k] - colour[k]) < 0.01 for k in range(3)]).sum()
+    )
 
 
 def test_no_seams_between_the_cells_of_a_region(tmp_path: Path) -> None:
@@ -293,12 +345,16 @@ def test_no_seams_between_the_cells_of_a_region(tmp_path: Path) -> None:
     image = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255
     box = figure.axes[0].get_window_extent()
     part = image[round(box.y0) + 2 : round(box.y1) - 2, round(box.x0) + 2 : round(box.x1) - 2]
-    faces = {tuple(np.round(255 * np.array(to_rgb(fill_of(r, Count.STABLE).face))).astype(int)) for r in result.regions}
+    faces = {
+        tuple(np.round(255 * np.array(to_rgb(fill_of(r, Count.STABLE).face))).astype(int))
+        for r in result.regions
+    }
     pixels = np.round(255 * part).astype(int)
     known = np.zeros(pixels.shape[:2], dtype=bool)
     for face in faces:
         known |= (pixels == face).all(axis=2)
-    # the rest is the walls, whose anti-aliasing makes pixels darker than the lighter face, never lighter
+    # the rest is the walls, whose anti-aliasing makes pixels darker than the lighter face, never
+    # lighter
     lightest = max(sum(face) for face in faces)
     assert known.mean() > 0.97
     assert pixels.sum(axis=2).max() == lightest
@@ -314,7 +370,9 @@ def test_png_has_the_size_that_dpi_tells(dpi: int, tmp_path: Path) -> None:
     assert width == pytest.approx(8.45 * dpi, abs=1.5)
     assert height == pytest.approx(5.77 * dpi, abs=1.5)
     physical = data.index(b"pHYs") + 4
-    assert int.from_bytes(data[physical : physical + 4], "big") == pytest.approx(dpi / 0.0254, abs=1)
+    assert int.from_bytes(data[physical : physical + 4], "big") == pytest.approx(
+        dpi / 0.0254, abs=1
+    )
     assert b"Software" not in data and b"Matplotlib" not in data
 
 
@@ -381,7 +439,10 @@ def test_samples_are_drawn_when_asked_for(tmp_path: Path) -> None:
 
 def test_walls_that_separate_nothing_are_thin(tmp_path: Path) -> None:
     """With counts of stable equilibria the (1, 3, 2) sliver's boundary separates nothing."""
-    stable, index = svg(classified("fig3", "stable"), tmp_path), svg(classified("fig3", "index"), tmp_path)
+    stable, index = (
+        svg(classified("fig3", "stable"), tmp_path),
+        svg(classified("fig3", "index"), tmp_path),
+    )
     assert re.search(r'id="curve-\d+-thin"', stable)
     assert not re.search(r'id="curve-\d+-thin"', index)
 
@@ -401,18 +462,31 @@ def test_another_format_is_refused(tmp_path: Path) -> None:
     [
         pytest.param(bands([]), id="one region"),
         pytest.param(bands([Fraction(0)], slope=Fraction(1)), id="corner to corner"),
-        pytest.param(bands([HALF], title="$5 & <b>x_1^{ \\frac \x07 ü ρ 弹 % #"), id="special characters"),
+        pytest.param(
+            bands([HALF], title="$5 & <b>x_1^{ \\frac \x07 ü ρ 弹 % #"), id="special characters"
+        ),
         pytest.param(bands([HALF], names=("rho_very_long_" * 9, "b_$c")), id="long names"),
         pytest.param(bands([HALF], title="word " * 200), id="long title"),
         pytest.param(
-            bands([HALF / 2], window=((Fraction(0), Fraction(1, 10**20)), (Fraction(-(10**20)), Fraction(10**20)))),
+            bands(
+                [HALF / 2],
+                window=(
+                    (Fraction(0), Fraction(1, 10**20)),
+                    (Fraction(-(10**20)), Fraction(10**20)),
+                ),
+            ),
             id="1e-20 and 1e20",
         ),
         pytest.param(
-            bands([HALF / 2], window=((Fraction(10**20), 10**20 + Fraction(1)), (Fraction(0), Fraction(10**400)))),
+            bands(
+                [HALF / 2],
+                window=((Fraction(10**20), 10**20 + Fraction(1)), (Fraction(0), Fraction(10**400))),
+            ),
             id="beyond floats",
         ),
-        pytest.param(bands([Fraction(k, 40) for k in range(1, 20)], counts=list(range(20))), id="many counts"),
+        pytest.param(
+            bands([Fraction(k, 40) for k in range(1, 20)], counts=list(range(20))), id="many counts"
+        ),
     ],
 )
 @pytest.mark.slow_cases(
@@ -433,7 +507,11 @@ def test_degenerate_maps_are_drawn(result: RegionMap, suffix: str, tmp_path: Pat
 
 @pytest.mark.slow
 def test_special_characters_are_written_as_pdf(tmp_path: Path) -> None:
-    draw(bands([HALF], title="$5 & <b>x_1^{ \\frac \x07 ü ρ 弹 % #"), tmp_path / "map.pdf", samples=True)
+    draw(
+        bands([HALF], title="$5 & <b>x_1^{ \\frac \x07 ü ρ 弹 % #"),
+        tmp_path / "map.pdf",
+        samples=True,
+    )
     assert (tmp_path / "map.pdf").stat().st_size > 1000
 
 
@@ -453,7 +531,10 @@ def test_the_palette_falls_in_lightness(row: tuple[str, ...]) -> None:
 
 
 def test_index_colours_differ_on_grey_prints() -> None:
-    shades = [lightness(fill_of(region(index=i), Count.INDEX).face) for i in ((1, 2, 1), (2, 3, 1), (1, 3, 2))]
+    shades = [
+        lightness(fill_of(region(index=i), Count.INDEX).face)
+        for i in ((1, 2, 1), (2, 3, 1), (1, 3, 2))
+    ]
     assert min(abs(a - b) for a, b in combinations(shades, 2)) > 10
 
 
@@ -466,14 +547,20 @@ def test_indices_of_any_sum_have_different_fills(unknowns: int) -> None:
 
 @pytest.mark.parametrize("maxima", range(3))
 def test_indices_of_three_unknowns_with_as_many_maxima_have_different_fills(maxima: int) -> None:
-    fills = [fill_of_index((minima, saddles, 0, maxima)) for minima in range(5) for saddles in range(5)]
+    fills = [
+        fill_of_index((minima, saddles, 0, maxima)) for minima in range(5) for saddles in range(5)
+    ]
     assert len(set(fills)) == len(fills)
     assert all(len(fill.hatch) < 20 for fill in fills)
 
 
-def region(stable: int = 0, total: int = 0, index: tuple[int, int, int] = (0, 0, 0), admissible: int = 0) -> Region:
+def region(
+    stable: int = 0, total: int = 0, index: tuple[int, int, int] = (0, 0, 0), admissible: int = 0
+) -> Region:
     at = Point(("a", "b"), HALF, HALF)
-    return Region(stable, total, index, (Fraction(1), Fraction(1)), (0,), at, {"admissible": admissible})
+    return Region(
+        stable, total, index, (Fraction(1), Fraction(1)), (0,), at, {"admissible": admissible}
+    )
 
 
 @pytest.mark.parametrize("count", list(Count))
@@ -482,7 +569,9 @@ def test_different_counts_have_different_fills(count: Count) -> None:
         Count.STABLE: [region(stable=n) for n in range(40)],
         Count.TOTAL: [region(total=n) for n in range(40)],
         Count.ADMISSIBLE: [region(admissible=n) for n in range(40)],
-        Count.INDEX: [region(index=(a, a + b, b)) for a in range(9) for b in range(9)],  # on a torus
+        Count.INDEX: [
+            region(index=(a, a + b, b)) for a in range(9) for b in range(9)
+        ],  # on a torus
     }[count]
     fills = [fill_of(r, count) for r in regions]
     assert len(set(fills)) == len(fills)
@@ -495,16 +584,25 @@ def test_the_same_count_has_the_same_colour_in_every_picture() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "printed"), [("rho", "ρ"), ("L2", "L₂"), ("F3x", "F₃ₓ"), ("k", "k"), ("k1", "k₁"), ("load", "load")]
+    ("name", "printed"),
+    [("rho", "ρ"), ("L2", "L₂"), ("F3x", "F₃ₓ"), ("k", "k"), ("k1", "k₁"), ("load", "load")],
 )
 def test_symbols(name: str, printed: str) -> None:
     assert symbol(name) == printed
 
 
 def test_units() -> None:
-    assert [unit(ptmcad.load(ROOT / "configs" / "fig3.yaml"), k) for k in (0, 1)] == ["length", "force"]
-    assert [unit(ptmcad.load(ROOT / "configs" / "stiffness.yaml"), k) for k in (0, 1)] == ["force/length", "length"]
-    assert unit(replace(ptmcad.load(ROOT / "configs" / "fig3.yaml"), model=known_of("other")), 0) == ""
+    assert [unit(ptmcad.load(ROOT / "configs" / "fig3.yaml"), k) for k in (0, 1)] == [
+        "length",
+        "force",
+    ]
+    assert [unit(ptmcad.load(ROOT / "configs" / "stiffness.yaml"), k) for k in (0, 1)] == [
+        "force/length",
+        "length",
+    ]
+    assert (
+        unit(replace(ptmcad.load(ROOT / "configs" / "fig3.yaml"), model=known_of("other")), 0) == ""
+    )
 
 
 @pytest.mark.parametrize("low", ["0", "-1", "1e-20", "-1e20", "123456.789", "1e400"])

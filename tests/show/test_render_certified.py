@@ -1,4 +1,6 @@
-"""Pictures and pages of certified maps: what is undetermined is seen, at its size, and the rest as in exact maps."""
+"""Pictures and pages of certified maps: what is undetermined is seen, at its size, and the rest as
+in exact maps.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,9 @@ STEPS = 2**20
 
 def tube(low: float, high: float) -> RegionMap:
     """An upright strip that is undetermined, between two regions of two stable equilibria."""
-    return certified(Cover(STEPS, ((int(low * STEPS), int(high * STEPS), 0, STEPS),)), lambda x, y: 2)
+    return certified(
+        Cover(STEPS, ((int(low * STEPS), int(high * STEPS), 0, STEPS),)), lambda x, y: 2
+    )
 
 
 def map_pixels(result: RegionMap, folder: Path, dpi: int) -> np.ndarray:
@@ -64,7 +68,9 @@ def test_what_is_undetermined_looks_like_no_count() -> None:
     pytest.param(crossing(7), 300, id="300-crossing", marks=pytest.mark.slow),
 ])  # fmt: skip
 @pytest.mark.slow_cases("100-crossing")
-def test_a_picture_shows_counts_where_they_are_and_grey_elsewhere(result: RegionMap, dpi: int, tmp_path: Path) -> None:
+def test_a_picture_shows_counts_where_they_are_and_grey_elsewhere(
+    result: RegionMap, dpi: int, tmp_path: Path
+) -> None:
     image = map_pixels(result, tmp_path, dpi)
     n = len(image)
     raster = shapes(result).raster(n, n)[::-1]
@@ -85,9 +91,11 @@ def test_a_picture_shows_counts_where_they_are_and_grey_elsewhere(result: Region
 @pytest.mark.parametrize("dpi", [100, 150, 300])
 @pytest.mark.parametrize("width", [1e-5, 1e-4, 1e-3])
 @pytest.mark.fast_cases("0.0001-100")
-def test_a_narrow_tube_is_seen_as_grey_between_its_rims(dpi: int, width: float, tmp_path: Path) -> None:
-    """Some pixel across it is of clearly another colour, and no more of them than a line with two rims touches; where
-    pixels are small enough one of them is as grey as the legend's."""
+def test_a_narrow_tube_is_seen_as_grey_between_its_rims(
+    dpi: int, width: float, tmp_path: Path
+) -> None:
+    """Some pixel across it is of clearly another colour, and no more of them than a line with two
+    rims touches; where pixels are small enough one of them is as grey as the legend's."""
     row = map_pixels(tube(0.4, 0.4 + width), tmp_path, dpi)[int(SIDE * dpi) // 2]
     middle = np.abs(row - np.median(row, axis=0)).max(axis=1)[10:-10]
     assert middle.max() > 0.15
@@ -126,7 +134,9 @@ def test_admissible_counts_have_colours_and_a_legend() -> None:
 def test_the_same_map_gives_the_same_bytes(suffix: str, tmp_path: Path) -> None:
     for name in ("first", "second"):
         draw(crossing(6), tmp_path / f"{name}.{suffix}")
-    assert (tmp_path / f"first.{suffix}").read_bytes() == (tmp_path / f"second.{suffix}").read_bytes()
+    assert (tmp_path / f"first.{suffix}").read_bytes() == (
+        tmp_path / f"second.{suffix}"
+    ).read_bytes()
 
 
 @pytest.mark.slow
@@ -139,16 +149,23 @@ def test_the_svg_of_many_rectangles_is_small(tmp_path: Path) -> None:
 
 
 def test_a_thin_region_is_marked_and_zoomed() -> None:
-    cover = Cover(STEPS, ((STEPS // 2, STEPS // 2 + 64, 0, STEPS), (STEPS // 2 + 2000, STEPS // 2 + 2064, 0, STEPS)))
+    cover = Cover(
+        STEPS,
+        ((STEPS // 2, STEPS // 2 + 64, 0, STEPS), (STEPS // 2 + 2000, STEPS // 2 + 2064, 0, STEPS)),
+    )
     figure = MapDrawing(certified(cover, lambda x, y: 3 if 0.5 < x < 0.502 else 1)).figure()
     assert [axes.get_gid() for axes in figure.axes] == ["map", "sliver-2"]
 
 
-@pytest.mark.parametrize("result", [circle(6), crossing(6), cusp(7)], ids=["circle", "crossing", "cusp"])
+@pytest.mark.parametrize(
+    "result", [circle(6), crossing(6), cusp(7)], ids=["circle", "crossing", "cusp"]
+)
 @pytest.mark.slow_cases("circle", "crossing")
 def test_polygons_and_raster_agree_with_the_exact_answer(result: RegionMap) -> None:
     """At points that are farther from any outline than simplification moves it."""
-    seen = shapes(result).in_view(View((Fraction(1, 3), Fraction(3, 2)), (Fraction(2, 5), Fraction(7, 4))))
+    seen = shapes(result).in_view(
+        View((Fraction(1, 3), Fraction(3, 2)), (Fraction(2, 5), Fraction(7, 4)))
+    )
     n = 41
     raster = seen.raster(n, n)
     polygons = [list(seen.polygons(number)) for number in range(len(result.regions))]
@@ -163,13 +180,17 @@ def test_polygons_and_raster_agree_with_the_exact_answer(result: RegionMap) -> N
             assert raster[i, j] == exact
             if np.abs(edges - at).max(axis=1).min() < 0.02:
                 continue
-            inside = [k for k, p in enumerate(polygons) if sum(Curve(c).contains_point(at) for c in p) % 2]
+            inside = [
+                k for k, p in enumerate(polygons) if sum(Curve(c).contains_point(at) for c in p) % 2
+            ]
             assert inside == ([exact] if exact >= 0 else [])
 
 
 @settings(deadline=None)
 @given(st.lists(st.tuples(st.integers(0, 60), st.integers(0, 60)), min_size=1, max_size=60))
-def test_simplified_polygons_stay_near_and_keep_their_corners(corners: list[tuple[int, int]]) -> None:
+def test_simplified_polygons_stay_near_and_keep_their_corners(
+    corners: list[tuple[int, int]],
+) -> None:
     points = np.array(corners, dtype=float) * 0.4 * TOLERANCE
     few = simplified_polygons(points, np.array([len(points)]), TOLERANCE)[0]
     assert {tuple(p) for p in few.tolist()} <= {tuple(p) for p in points.tolist()}
@@ -178,7 +199,9 @@ def test_simplified_polygons_stay_near_and_keep_their_corners(corners: list[tupl
     for p in points:
         a, b = few, np.roll(few, -1, axis=0)
         along = b - a
-        share = np.clip(((p - a) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1)
+        share = np.clip(
+            ((p - a) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1
+        )
         assert np.hypot(*(p - a - share[:, None] * along).T).min() <= TOLERANCE * 1.000001
 
 
@@ -191,11 +214,21 @@ def distance(points: np.ndarray, polygon: np.ndarray) -> float:
 
 
 @settings(deadline=None)
-@given(st.lists(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=20), min_size=1, max_size=6))
-def test_polygons_that_are_simplified_together_are_what_each_is_by_itself(corners: list[list[tuple[int, int]]]) -> None:
+@given(
+    st.lists(
+        st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=20),
+        min_size=1,
+        max_size=6,
+    )
+)
+def test_polygons_that_are_simplified_together_are_what_each_is_by_itself(
+    corners: list[list[tuple[int, int]]],
+) -> None:
     """Empty ones, and such as collapse to a point, too."""
     polygons = [np.array(each, dtype=float).reshape(-1, 2) for each in corners]
-    together = simplified_polygons(np.concatenate(polygons), np.array([len(p) for p in polygons]), 1.5)
+    together = simplified_polygons(
+        np.concatenate(polygons), np.array([len(p) for p in polygons]), 1.5
+    )
     assert [p.tolist() for p in together] == [
         simplified_polygons(p, np.array([len(p)]), 1.5)[0].tolist() for p in polygons
     ]
@@ -207,8 +240,12 @@ def test_a_triangle_stays_however_flat() -> None:
 
 
 @pytest.mark.parametrize("height", [3.0, 0.3])
-def test_a_long_flight_of_stairs_is_simplified_in_few_steps(height: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Halving splits off stair by stair: so many stairs, higher than the tolerance, took half as many steps."""
+def test_a_long_flight_of_stairs_is_simplified_in_few_steps(
+    height: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Halving splits off stair by stair: so many stairs, higher than the tolerance, took half as
+    many steps.
+    """
     steps: list[int] = []
     measured = simplification._distances
 
@@ -255,7 +292,9 @@ def test_the_page_tells_status_undetermined_area_and_bounds() -> None:
     assert "Certified result." in plain
     share = f"{float(result.undetermined) * 100:.2f}"[:3]
     assert f"Undetermined: {share}" in plain
-    bounds = [tuple(map(Fraction, pair)) for pair in re.findall(r"proved: ([0-9.]+) to ([0-9.]+)", plain)]
+    bounds = [
+        tuple(map(Fraction, pair)) for pair in re.findall(r"proved: ([0-9.]+) to ([0-9.]+)", plain)
+    ]
     for (low, high), region in zip(bounds, result.regions, strict=True):
         assert low <= region.area[0] < region.area[1] <= high
         assert high - low < region.area[1] - region.area[0] + Fraction(1, 10**5)
@@ -293,20 +332,29 @@ def test_a_damaged_certified_map_has_no_page(fault: str) -> None:
         page(replace(result, cells=(damaged, second)))
 
 
-def test_a_stored_certified_map_has_a_page_and_pictures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_stored_certified_map_has_a_page_and_pictures(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "map.json"
     path.write_text(circle(6).to_json(), encoding="utf-8")
     assert run(["report", str(path)]) == 0
     assert "Certified result." in (tmp_path / "map.html").read_text(encoding="utf-8")
     assert run(["plot", str(path), "--format", "png,svg", "--dpi", "100"]) == 0
-    assert capsys.readouterr().out.splitlines()[1:] == [str(tmp_path / "map.png"), str(tmp_path / "map.svg")]
+    assert capsys.readouterr().out.splitlines()[1:] == [
+        str(tmp_path / "map.png"),
+        str(tmp_path / "map.svg"),
+    ]
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_damaged_certified_map_has_no_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_damaged_certified_map_has_no_picture(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     made = circle(6)
     first = replace(made.cells[0], sample=Point(made.slice.axis_names, Fraction(1, 2), Fraction(1)))
-    (tmp_path / "map.json").write_text(replace(made, cells=(first, made.cells[1])).to_json(), encoding="utf-8")
+    (tmp_path / "map.json").write_text(
+        replace(made, cells=(first, made.cells[1])).to_json(), encoding="utf-8"
+    )
     assert run(["plot", str(tmp_path / "map.json")]) == 2
     message = capsys.readouterr().err
     assert "contradicts itself" in message and message.count("\n") == 1
@@ -319,7 +367,10 @@ def test_a_damaged_certified_map_has_no_picture(tmp_path: Path, capsys: pytest.C
         ("", ("B: 3", "zoomed")),
         ("0.002", ("B: 3", "area 0.002, zoomed")),
         ("0.00000898 to 0.00001195", ("B: 3, zoomed", "area 0.00000898 to 0.00001195")),
-        ("0.00001046712345 to 0.00001046712351", ("B: 3, zoomed, area 0.00001046712345", "to 0.00001046712351")),
+        (
+            "0.00001046712345 to 0.00001046712351",
+            ("B: 3, zoomed, area 0.00001046712345", "to 0.00001046712351"),
+        ),
     ],
 )
 def test_what_stands_over_a_zoomed_view_is_not_cut_off(area: str, lines: tuple[str, str]) -> None:

@@ -53,9 +53,11 @@ def test_where_the_branch_changes_is_an_edge_which_no_contour_crosses() -> None:
     assert field.jumps is not None
     right, above = field.jumps
     assert not right.any() and above.shape == (69, 70)
-    # another way to know: the exact poses below the two lines on which it changes, between them and above
+    # another way to know: the exact poses below the two lines on which it changes, between them and
+    # above
     exact = [
-        poses_at(result, (Fraction(2), w)).equilibria[0] for w in (Fraction(-1, 2), Fraction(-1, 10), Fraction(1, 2))
+        poses_at(result, (Fraction(2), w)).equilibria[0]
+        for w in (Fraction(-1, 2), Fraction(-1, 10), Fraction(1, 2))
     ]
     assert [float(pose.degrees[1].center) > 0 for pose in exact] == [True, False, True]
     rows = np.nonzero(above.any(axis=1))[0]
@@ -112,17 +114,23 @@ def test_a_quantitys_map_has_all_text_on_the_page_and_none_too_small(preset: str
         canvas.draw()
         renderer = canvas.get_renderer()
     shown = [text for text in made.findobj(Text) if text.get_text().strip() and text.get_visible()]
-    assert {"the count changes", "the branch of pose 3 changes"} <= {text.get_text() for text in shown}
+    assert {"the count changes", "the branch of pose 3 changes"} <= {
+        text.get_text() for text in shown
+    }
     assert min(text.get_fontsize() for text in shown) >= MIN_FONT
     boxes = [text.get_window_extent(renderer) for text in shown]
     width, height = made.bbox.width, made.bbox.height
     assert all(b.x0 >= 0 and b.y0 >= 0 and b.x1 <= width and b.y1 <= height for b in boxes)
-    assert not [1 for a, b in combinations(boxes, 2) if a.shrunk(0.9, 0.9).overlaps(b.shrunk(0.9, 0.9))]
+    assert not [
+        1 for a, b in combinations(boxes, 2) if a.shrunk(0.9, 0.9).overlaps(b.shrunk(0.9, 0.9))
+    ]
 
 
 @pytest.mark.slow
 def test_a_contour_goes_on_over_a_curve_at_which_its_branch_does_not_change() -> None:
-    """The bistable slider's 140 degrees, by symmetry at both sides of F = 0, cross the astroid to where c is 0.33."""
+    """The bistable slider's 140 degrees, by symmetry at both sides of F = 0, cross the astroid to
+    where c is 0.33.
+    """
     result = ptmcad.classify(CONFIGS / "mechanisms" / "bistable-slider.yaml", areas=False)
     field = result.field("angle:th", columns=100, rows=100)
     axes: Any = Figure().add_axes((0, 0, 1, 1))

@@ -42,7 +42,9 @@ def test_pdf_has_truetype_fonts(tmp_path: Path) -> None:
 
 
 def test_svg_has_text_that_can_be_searched_in_fonts_that_are_there(tmp_path: Path) -> None:
-    root = ElementTree.fromstring(drawn(tmp_path, "svg", name="ieee", title="a < b & 'DejaVu Sans'"))
+    root = ElementTree.fromstring(
+        drawn(tmp_path, "svg", name="ieee", title="a < b & 'DejaVu Sans'")
+    )
     texts = list(root.iter("{http://www.w3.org/2000/svg}text"))
     said = [text.text for text in texts]
     assert {"equilibria", "area 3.2536", "0.5", "L₂ (length)", "a < b & 'DejaVu Sans'"} <= set(said)

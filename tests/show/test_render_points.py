@@ -50,7 +50,9 @@ def around(texts: tuple[str, ...], style: PictureStyle) -> Figure:
     for texts in (AT[:1], AT[:2], AT) for size in (None, "13x7in")
 ])  # fmt: skip
 @pytest.mark.slow_cases("texts5-13x7in")
-def test_poses_stand_beside_the_map_each_led_to_its_point(texts: tuple[str, ...], size: str | None) -> None:
+def test_poses_stand_beside_the_map_each_led_to_its_point(
+    texts: tuple[str, ...], size: str | None
+) -> None:
     made = around(texts, styled(size=size))
     if size is not None:
         assert tuple(made.get_size_inches()) == (13, 7)
@@ -63,7 +65,9 @@ def test_poses_stand_beside_the_map_each_led_to_its_point(texts: tuple[str, ...]
         end = (leader.get_xdata()[-1], leader.get_ydata()[-1])
         assert end == (mark.get_xdata()[0], mark.get_ydata()[0])
         at = chart.transData.inverted().transform(made.dpi_scale_trans.transform(end))
-        assert tuple(at) == pytest.approx([float(v) for v in places(shipped("fig4"), [text])[0]], abs=1e-9)
+        assert tuple(at) == pytest.approx(
+            [float(v) for v in places(shipped("fig4"), [text])[0]], abs=1e-9
+        )
     boxes = [axes.get_window_extent() for axes in (*panels, chart)]
     width, height = made.bbox.width, made.bbox.height
     assert all(b.x0 >= 0 and b.y0 >= 0 and b.x1 <= width and b.y1 <= height for b in boxes)
@@ -88,7 +92,9 @@ def test_poses_that_are_too_tall_are_refused_by_the_option_with_a_size_that_does
     points = [word for text in AT[:2] for word in ("--at", text)]
     assert run(["plot", stored, "--style", "beamer", *points]) == 2
     said = capsys.readouterr().err
-    assert re.search(r"error: --size: poses at 2 points need a height of [\d.]+ inches, and there are 2.76", said)
+    assert re.search(
+        r"error: --size: poses at 2 points need a height of [\d.]+ inches, and there are 2.76", said
+    )
     (size,) = re.findall(r"such as ([\d.]+x[\d.]+in)", said)
     assert run(["plot", stored, "--style", "beamer", "--size", size, "--dpi", "50", *points]) == 0
 
@@ -106,18 +112,37 @@ def test_in_a_journals_style_poses_are_as_wide_as_two_columns(
 
 @pytest.mark.slow
 def test_lines_to_points_cross_neither_each_other_nor_text() -> None:
-    # for points in a row from above, straight lines from blocks beside them cross; and some lie beside the legend
-    texts = ("rho=1,L2=3/2", "rho=3/2,L2=1/2", "rho=1/2,L2=1/2", "rho=1/2,L2=7/4", "rho=7/4,L2=7/4", "rho=4/5,L2=1")
+    # for points in a row from above, straight lines from blocks beside them cross; and some lie
+    # beside the legend
+    texts = (
+        "rho=1,L2=3/2",
+        "rho=3/2,L2=1/2",
+        "rho=1/2,L2=1/2",
+        "rho=1/2,L2=7/4",
+        "rho=7/4,L2=7/4",
+        "rho=4/5,L2=1",
+    )
     made = around(texts, styled())
-    leaders = {a.get_gid(): a for a in made.findobj(Line2D) if str(a.get_gid()).startswith("leader-")}
+    leaders = {
+        a.get_gid(): a for a in made.findobj(Line2D) if str(a.get_gid()).startswith("leader-")
+    }
     courses = [tuple(zip(*leader.get_data(), strict=True)) for leader in leaders.values()]
     assert len(courses) == len(texts) and any(len(course) == 3 for course in courses)
     assert not any(meet(a, b) for a, b in combinations(courses, 2))
     renderer = made.canvas.get_renderer()  # type: ignore[attr-defined]
     said = [text for text in made.findobj(Text) if text.get_text().strip() and text.get_visible()]
-    boxes = [text.get_window_extent(renderer) for text in said if text.axes is None or text.axes.get_gid() == "map"]
+    boxes = [
+        text.get_window_extent(renderer)
+        for text in said
+        if text.axes is None or text.axes.get_gid() == "map"
+    ]
     strokes = [Stroke(*pair, 0.0) for course in courses for pair in pairwise(course)]
-    assert not [s for b in boxes for s in strokes if crosses(s, tuple(v / made.dpi for v in (b.x0, b.y0, b.x1, b.y1)))]
+    assert not [
+        s
+        for b in boxes
+        for s in strokes
+        if crosses(s, tuple(v / made.dpi for v in (b.x0, b.y0, b.x1, b.y1)))
+    ]
 
 
 def test_lines_are_untangled_by_the_order_beside_the_map() -> None:
@@ -135,8 +160,12 @@ def test_lines_are_untangled_by_the_order_beside_the_map() -> None:
     assert len(courses[2]) == 3
 
 
-@pytest.mark.parametrize(("text", "words"), [("rho=1", "rho and L2"), ("rho=1,L2=9", "outside"), ("rho=x,L2=1", "x")])
-def test_a_bad_point_is_refused(text: str, words: str, stored: str, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    ("text", "words"), [("rho=1", "rho and L2"), ("rho=1,L2=9", "outside"), ("rho=x,L2=1", "x")]
+)
+def test_a_bad_point_is_refused(
+    text: str, words: str, stored: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["plot", stored, "--at", text]) == 2
     said = capsys.readouterr().err
     assert "--at" in said and words in said
@@ -146,14 +175,22 @@ def test_measured_points_are_compared_with_the_map(tmp_path: Path) -> None:
     table = tmp_path / "points.csv"
     table.write_text("L2,rho,label,count\n1.5,0.7,a,2\n1,1.5,b,2\n0.5,1.2,,\n9,9,out,1\n")
     found, outside = measured(shipped("fig4"), table)
-    assert [point.agreement for point in found] == [Agreement.SAME, Agreement.OTHER, Agreement.UNTOLD]
+    assert [point.agreement for point in found] == [
+        Agreement.SAME,
+        Agreement.OTHER,
+        Agreement.UNTOLD,
+    ]
     assert [point.label for point in found] == ["a", "b", ""]
     assert found[0].at == (Fraction(7, 10), Fraction(3, 2)) and outside == 1
     with settings():
         made = MapDrawing(shipped("fig4"), styled(size="6x4in"), 100, overlay=found).figure()
     said = [t.get_text() for t in made.texts]
     assert {"measured point", "measured, another count", "1 point"} <= set(said)
-    marks = {a.get_gid(): a for a in made.axes[0].findobj(Line2D) if str(a.get_gid()).startswith("measured")}
+    marks = {
+        a.get_gid(): a
+        for a in made.axes[0].findobj(Line2D)
+        if str(a.get_gid()).startswith("measured")
+    }
     assert [float(v) for v in marks["measured-other"].get_data()[0]] == [0.75]
 
 

@@ -1,4 +1,6 @@
-"""Pictures of poses, of the energy over the torus, and of a map with poses: all is drawn, clear, and the same again."""
+"""Pictures of poses, of the energy over the torus, and of a map with poses: all is drawn, clear,
+and the same again.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,15 @@ from ptmcad.show.render.figure import draw_figure
 from ptmcad.show.render.landscape import contour_levels, copies, draw_landscape, energy_of
 from ptmcad.show.render.mechanism import PALE, STRONG
 from ptmcad.show.render.poses import draw_poses, printed_number, value_text
-from ptmcad.show.render.sketch import BAR_WIDTHS, MIN_TURNS, PIN, SPIRAL, arrow_lengths, frame_of, sketch
+from ptmcad.show.render.sketch import (
+    BAR_WIDTHS,
+    MIN_TURNS,
+    PIN,
+    SPIRAL,
+    arrow_lengths,
+    frame_of,
+    sketch,
+)
 from ptmcad.text.enclosure import Enclosure
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -82,7 +92,9 @@ def test_every_pose_has_a_panel_with_all_its_parts(name: str) -> None:
         assert sum(p.startswith(f"{prefix}node-") for p in parts) == 4
         loads = {p.removeprefix(f"{prefix}load-") for p in parts if p.startswith(f"{prefix}load-")}
         assert loads == {n for n, v in found.parameters.items() if n.startswith("F") and v}
-        labels = "".join(p.removeprefix(f"{prefix}label-") for p in parts if p.startswith(f"{prefix}label-"))
+        labels = "".join(
+            p.removeprefix(f"{prefix}label-") for p in parts if p.startswith(f"{prefix}label-")
+        )
         assert sorted(labels.replace(", ", "")) == sorted("A₁A₂A₃A₄")
 
 
@@ -95,7 +107,9 @@ def test_stable_ones_come_first_and_are_strong() -> None:
     assert colours == [STRONG.bars[0]] * 2 + [PALE.bars[0]] * 4
     texts = [t.get_text() for t in figure.texts]
     kinds = ["stable (minimum)"] * 2 + ["saddle"] * 3 + ["maximum"]
-    assert [t for t in texts if t[0].isdigit() and "  " in t[:3]] == [f"{n}  {k}" for n, k in enumerate(kinds, 1)]
+    assert [t for t in texts if t[0].isdigit() and "  " in t[:3]] == [
+        f"{n}  {k}" for n, k in enumerate(kinds, 1)
+    ]
 
 
 def test_a_degenerate_pose_is_named_with_its_multiplicity() -> None:
@@ -131,7 +145,12 @@ def test_labels_are_clear_of_all_strokes_and_of_each_other(name: str) -> None:
 @pytest.mark.slow
 @settings(max_examples=examples(12), deadline=None)
 @example(["7/10", "12", "-1/50", "35", "-29/10", "0"])  # three nodes within a few points
-@given(st.tuples(*[st.fractions(0, 30, max_denominator=100)] * 2, *[st.fractions(-60, 60, max_denominator=9)] * 4))
+@given(
+    st.tuples(
+        *[st.fractions(0, 30, max_denominator=100)] * 2,
+        *[st.fractions(-60, 60, max_denominator=9)] * 4,
+    )
+)
 def test_labels_of_any_mechanism_are_clear(values: Sequence[Fraction | str]) -> None:
     rho, l2, *loads = values
     given_loads = dict(zip(("F3", "F4", "F3x", "F4x"), loads, strict=True))
@@ -150,7 +169,9 @@ def labels_are_clear(found: Poses) -> None:
         boxes = [placed.box for placed in seen.labels]
         for box in boxes:
             assert not any(crosses(stroke, box) for stroke in strokes)
-            assert not any(overlap(box, (x - PIN, y - PIN, x + PIN, y + PIN)) for x, y in seen.nodes.values())
+            assert not any(
+                overlap(box, (x - PIN, y - PIN, x + PIN, y + PIN)) for x, y in seen.nodes.values()
+            )
             assert box[0] >= 0 and box[1] >= 0 and box[2] <= frame.width and box[3] <= frame.height
         assert not any(overlap(a, b) for a, b in combinations(boxes, 2))
         inside = [*seen.nodes.values(), *(p for line in seen.coils.values() for p in line)]
@@ -173,7 +194,9 @@ def test_a_springs_teeth_stand_across_it_at_any_length_and_slope(name: str) -> N
             axis = edges.sum(axis=0) / np.hypot(*edges.sum(axis=0))
             along, across = edges[1:-1] @ axis, abs(edges[1:-1] @ (-axis[1], axis[0]))
             assert along.min() > 1.4, "the way from tooth to tooth is longer than the line is wide"
-            assert (across > 1.3 * along).all(), "no edge lies so flat that the spring looks like stairs"
+            assert (across > 1.3 * along).all(), (
+                "no edge lies so flat that the spring looks like stairs"
+            )
 
 
 def test_springs_on_bars_are_drawn_aside() -> None:
@@ -184,7 +207,9 @@ def test_springs_on_bars_are_drawn_aside() -> None:
     assert len(flat) == 4
     for pose in flat:
         seen = sketch(found.model, pose, frame, {})
-        middles = [np.mean(line[1:-1], axis=0)[1] - seen.nodes["A1"][1] for line in seen.coils.values()]
+        middles = [
+            np.mean(line[1:-1], axis=0)[1] - seen.nodes["A1"][1] for line in seen.coils.values()
+        ]
         bars = [(min(a[0], b[0]), max(a[0], b[0])) for a, b in seen.bars]
         for line, middle in zip(seen.coils.values(), middles, strict=True):
             if any(low < np.mean(line, axis=0)[0] < high for low, high in bars):
@@ -207,7 +232,9 @@ def test_labels_of_any_points_are_apart(points: list[tuple[float, float]]) -> No
 
 
 @given(st.tuples(*[st.floats(-9, 9)] * 4), st.floats(0, 2))
-def test_a_stroke_meets_a_box_where_one_of_its_points_does(ends: tuple[float, ...], half: float) -> None:
+def test_a_stroke_meets_a_box_where_one_of_its_points_does(
+    ends: tuple[float, ...], half: float
+) -> None:
     box = (-3.0, -2.0, 3.0, 2.0)
     a, b = ends[:2], ends[2:]
     points = np.linspace(a, b, 400)
@@ -227,20 +254,28 @@ def test_a_stroke_meets_a_box_where_one_of_its_points_does(ends: tuple[float, ..
 def test_every_equilibrium_is_marked_and_numbered_once(name: str) -> None:
     found, figure = poses(name), picture(draw_landscape, name)
     n = len(found.equilibria)
-    assert sorted(identifiers(figure, "equilibrium-")) == [f"equilibrium-{k}" for k in range(1, n + 1)]
+    assert sorted(identifiers(figure, "equilibrium-")) == [
+        f"equilibrium-{k}" for k in range(1, n + 1)
+    ]
     assert sorted(identifiers(figure, "number-")) == [f"number-{k}" for k in range(1, n + 1)]
-    markers = {a.get_gid(): a for a in figure.findobj() if str(a.get_gid()).startswith("equilibrium-")}
+    markers = {
+        a.get_gid(): a for a in figure.findobj() if str(a.get_gid()).startswith("equilibrium-")
+    }
     symbols = {0: "o", 1: "X", 2: "^", None: "*"}
     for number, pose in enumerate(found.in_order, 1):
         marker = markers[f"equilibrium-{number}"]
         assert marker.get_marker() == symbols[pose.index]
-        for shown, degrees in zip((marker.get_xdata()[0], marker.get_ydata()[0]), pose.degrees, strict=True):
+        for shown, degrees in zip(
+            (marker.get_xdata()[0], marker.get_ydata()[0]), pose.degrees, strict=True
+        ):
             assert min(abs(shown - float(degrees) + turn) for turn in (-360, 0, 360)) < 0.3
 
 
 @CASES
 def test_the_drawn_energy_is_that_of_the_poses(name: str) -> None:
-    """Two ways to the same number: the potential over the torus, and the certified energy of each equilibrium."""
+    """Two ways to the same number: the potential over the torus, and the certified energy of each
+    equilibrium.
+    """
     found = poses(name)
     energy = energy_of(found.model, found.parameters)
     h = 1e-4
@@ -249,7 +284,9 @@ def test_the_drawn_energy_is_that_of_the_poses(name: str) -> None:
         value = float(energy(np.array(th1), np.array(th2)))
         assert value == pytest.approx(energy.scaled(pose.energy.center), abs=1e-9)
         for d1, d2 in ((h, 0), (0, h)):
-            slope = energy(np.array(th1 + d1), np.array(th2 + d2)) - energy(np.array(th1 - d1), np.array(th2 - d2))
+            slope = energy(np.array(th1 + d1), np.array(th2 + d2)) - energy(
+                np.array(th1 - d1), np.array(th2 - d2)
+            )
             assert abs(float(slope)) / (2 * h) < 1e-6
 
 
@@ -271,9 +308,13 @@ def test_levels_separate_critical_energies(critical: list[float]) -> None:
 
 
 def test_equilibria_on_the_same_place_stay_visible() -> None:
-    """At 1e-20 from the fold of fig. 2: two stable ones and a saddle, drawn over each other with falling sizes."""
+    """At 1e-20 from the fold of fig. 2: two stable ones and a saddle, drawn over each other with
+    falling sizes.
+    """
     figure = draw_landscape(solve(rho=Fraction(5, 4) - Fraction(1, 10**20), L2="3/2"))
-    found = {a.get_gid(): a for a in figure.findobj() if str(a.get_gid()).startswith("equilibrium-")}
+    found = {
+        a.get_gid(): a for a in figure.findobj() if str(a.get_gid()).startswith("equilibrium-")
+    }
     sizes = [found[f"equilibrium-{k}"].get_markersize() for k in (1, 2, 3)]
     assert sizes[0] > sizes[1] + 3 > sizes[2] + 6
 
@@ -283,8 +324,14 @@ def test_the_edges_of_the_torus_are_one() -> None:
     assert copies(0.0) == (0.0,)
     figure = picture(draw_landscape, "paper, fig. 2")
     (maximum,) = [a for a in figure.findobj() if a.get_gid() == "equilibrium-6"]
-    same = [a for a in figure.axes[0].lines + figure.axes[0].artists if a.get_marker() == maximum.get_marker()]
-    assert {(a.get_xdata()[0], a.get_ydata()[0]) for a in same} == {(x, y) for x in (180, -180) for y in (180, -180)}
+    same = [
+        a
+        for a in figure.axes[0].lines + figure.axes[0].artists
+        if a.get_marker() == maximum.get_marker()
+    ]
+    assert {(a.get_xdata()[0], a.get_ydata()[0]) for a in same} == {
+        (x, y) for x in (180, -180) for y in (180, -180)
+    }
 
 
 # ------------------------------------------------------------------------------------------- the map and the poses
@@ -317,13 +364,20 @@ def boxes_of(figure: Figure) -> list[matplotlib.transforms.Bbox]:
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
         renderer = canvas.get_renderer()
-        return [t.get_window_extent(renderer) for t in figure.texts + [t for a in figure.axes for t in a.texts]]
+        return [
+            t.get_window_extent(renderer)
+            for t in figure.texts + [t for a in figure.axes for t in a.texts]
+        ]
 
 
 @pytest.mark.parametrize("draw", DRAWN)
 @CASES
-@pytest.mark.fast_cases("paper, fig. 4-draw_landscape", "lengths 1e9 apart, loads 1e30-draw_landscape")
-def test_texts_do_not_overlap_and_are_on_the_page(name: str, draw: Callable[[Poses], Figure]) -> None:
+@pytest.mark.fast_cases(
+    "paper, fig. 4-draw_landscape", "lengths 1e9 apart, loads 1e30-draw_landscape"
+)
+def test_texts_do_not_overlap_and_are_on_the_page(
+    name: str, draw: Callable[[Poses], Figure]
+) -> None:
     figure = picture(draw, name)
     boxes = boxes_of(figure)
     width, height = figure.canvas.get_width_height()
@@ -335,7 +389,9 @@ def test_texts_do_not_overlap_and_are_on_the_page(name: str, draw: Callable[[Pos
 @pytest.mark.parametrize(("name", "count"), [("fig4", "stable"), ("fig3", "index")])
 @pytest.mark.slow_cases("fig3-index")
 def test_texts_of_the_figure_do_not_overlap(name: str, count: str) -> None:
-    boxes = boxes_of(draw_figure(classified(name, count), FIGURE_POINTS[name], poses(f"paper, fig. {name[-1]}")))
+    boxes = boxes_of(
+        draw_figure(classified(name, count), FIGURE_POINTS[name], poses(f"paper, fig. {name[-1]}"))
+    )
     assert not [1 for a, b in combinations(boxes, 2) if a.overlaps(b)]
 
 
@@ -382,7 +438,11 @@ def lightness(colour: str) -> float:
 
 
 def test_strong_and_pale_differ_on_grey_prints() -> None:
-    pairs = [*zip(STRONG.bars, PALE.bars, strict=True), (STRONG.spring, PALE.spring), (STRONG.load, PALE.load)]
+    pairs = [
+        *zip(STRONG.bars, PALE.bars, strict=True),
+        (STRONG.spring, PALE.spring),
+        (STRONG.load, PALE.load),
+    ]
     assert all(lightness(pale) - lightness(strong) >= 25 for strong, pale in pairs)
     for style in (STRONG, PALE):
         assert abs(lightness(style.bars[0]) - lightness(style.bars[1])) >= 10
@@ -390,7 +450,8 @@ def test_strong_and_pale_differ_on_grey_prints() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "printed"), [("-1.5", "−1.5"), ("1e-12", "10⁻¹²"), ("-2.5e30", "−2.5·10³⁰"), ("-1e3", "−10³")]
+    ("text", "printed"),
+    [("-1.5", "−1.5"), ("1e-12", "10⁻¹²"), ("-2.5e30", "−2.5·10³⁰"), ("-1e3", "−10³")],
 )
 def test_numbers_are_printed(text: str, printed: str) -> None:
     assert printed_number(text) == printed
@@ -399,7 +460,9 @@ def test_numbers_are_printed(text: str, printed: str) -> None:
 def test_rounded_values_say_so() -> None:
     assert value_text(Fraction(1, 4)).startswith("=")
     assert value_text(1 + Fraction(1, 10**20)).startswith("≈")
-    assert Enclosure(Fraction(1, 3), Fraction(1, 3)).text(7) in value_text(Fraction(10**30 + 1, 3 * 10**30))
+    assert Enclosure(Fraction(1, 3), Fraction(1, 3)).text(7) in value_text(
+        Fraction(10**30 + 1, 3 * 10**30)
+    )
 
 
 def test_the_legend_tells_loads_apart_and_names_torsion_springs() -> None:
@@ -445,16 +508,28 @@ def test_torsion_springs_are_spirals_at_their_joints_in_every_pose() -> None:
     shown = jaw().in_order
     scene = frame_of(shown)
     for number, pose in enumerate(shown, 1):
-        lines = {line.get_gid(): line.get_xydata() for line in figure.axes[number - 1].lines if line.get_gid()}
-        assert {gid for gid in lines if "torsion" in gid} == {f"pose-{number}-torsion-{k}" for k in (1, 2, 4)}
+        lines = {
+            line.get_gid(): line.get_xydata()
+            for line in figure.axes[number - 1].lines
+            if line.get_gid()
+        }
+        assert {gid for gid in lines if "torsion" in gid} == {
+            f"pose-{number}-torsion-{k}" for k in (1, 2, 4)
+        }
         nodes = scene.nodes(pose)
-        for k, joint, arm, least in ((1, "P", "Q", PIN), (2, "O", "P", PIN), (4, "P", "O", SPIRAL[1])):
+        for k, joint, arm, least in (
+            (1, "P", "Q", PIN),
+            (2, "O", "P", PIN),
+            (4, "P", "O", SPIRAL[1]),
+        ):
             line = lines[f"pose-{number}-torsion-{k}"] - np.array(nodes[joint])
             radii = np.hypot(*line.T)
             assert (np.diff(radii) > 0).all(), "it opens"
             assert radii[0] > least, "clear of the pin, and of another one"
             along = np.array(nodes[arm]) - np.array(nodes[joint])
-            assert line[-1] == pytest.approx(along / np.hypot(*along) * radii[-1]), "its end is on the arm"
+            assert line[-1] == pytest.approx(along / np.hypot(*along) * radii[-1]), (
+                "its end is on the arm"
+            )
 
 
 def test_labels_keep_clear_of_torsion_springs() -> None:
@@ -466,6 +541,8 @@ def test_labels_keep_clear_of_torsion_springs() -> None:
 
 
 def test_the_legend_says_where_torsion_springs_are() -> None:
-    text = " ".join(t.get_text() for t in draw_poses(jaw()).texts).replace("\N{NO-BREAK SPACE}", " ")
+    text = " ".join(t.get_text() for t in draw_poses(jaw()).texts).replace(
+        "\N{NO-BREAK SPACE}", " "
+    )
     assert "torsion springs on φ − θ at P, θ at O, φ − 3*θ at P" in text
     assert "torsion spring on 2*θ; not drawn" in text

@@ -1,4 +1,6 @@
-"""Pictures of a stated size and style: everything is on the page, nothing is too small to be read on paper."""
+"""Pictures of a stated size and style: everything is on the page, nothing is too small to be read
+on paper.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,15 @@ from ptmcad.show.render import draw
 from ptmcad.show.render.clearance import overlap
 from ptmcad.show.render.colours import GREYS, Fill, filler
 from ptmcad.show.render.fitting import rewrapped
-from ptmcad.show.render.layout import BOTTOM, INSET_ABOVE, INSET_BELOW, INSET_LEFT, LEFT, WIDEST, flowing
+from ptmcad.show.render.layout import (
+    BOTTOM,
+    INSET_ABOVE,
+    INSET_BELOW,
+    INSET_LEFT,
+    LEFT,
+    WIDEST,
+    flowing,
+)
 from ptmcad.show.render.legend import Entry, Type, entries
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import MapDrawing, left_out
@@ -43,11 +53,14 @@ MAPS = {
     "fig4": lambda: shipped("fig4"),
     "index": lambda: shipped("fig4", "index"),
     "slivers": lambda: bands(SLIVERS, title="word " * 30),
-    "large numbers": lambda: bands([Fraction(1, 2)], window=((Fraction(10**9), Fraction(10**9 + 1)),) * 2),
+    "large numbers": lambda: bands(
+        [Fraction(1, 2)], window=((Fraction(10**9), Fraction(10**9 + 1)),) * 2
+    ),
 }
 JOURNALS = tuple(name for name in PRESETS if name != "default")
 PAGES = [
-    # every preset and every map with either place of the legend, and what has least room in the smallest preset
+    # every preset and every map with either place of the legend, and what has least room in the
+    # smallest preset
     pytest.param(
         legend, preset, name, id=f"{legend}-{preset}-{name}",
         marks=() if (k - j) % len(MAPS) == i or (preset, name) == ("ieee", "slivers") else pytest.mark.slow,
@@ -79,7 +92,9 @@ def texts(made: Figure) -> list[Text]:
     "below-ieee-fig4",
     "below-springer-slivers",
 )
-def test_everything_is_on_the_page_apart_and_legible(legend: str | None, preset: str, name: str) -> None:
+def test_everything_is_on_the_page_apart_and_legible(
+    legend: str | None, preset: str, name: str
+) -> None:
     style = styled(preset, legend=legend)
     if legend == "below" and style.size is not None:
         style = style._replace(size=(style.size[0], 1.5 * style.size[1]))
@@ -95,22 +110,33 @@ def test_everything_is_on_the_page_apart_and_legible(legend: str | None, preset:
         boxes += [box for box in found if box is not None]
         width, height = canvas.get_width_height()
         for box in boxes:
-            assert box.x0 >= -0.5 and box.y0 >= -0.5 and box.x1 <= width + 0.5 and box.y1 <= height + 0.5
+            assert (
+                box.x0 >= -0.5
+                and box.y0 >= -0.5
+                and box.x1 <= width + 0.5
+                and box.y1 <= height + 0.5
+            )
         for first, second in combinations(boxes, 2):
             overlap = first.intersection(first, second)
             assert overlap is None or min(overlap.width, overlap.height) < 1.5
 
 
-@pytest.mark.parametrize(("text", "inches"), [("3.5x2.6in", (3.5, 2.6)), ("90x70mm", (90 / 25.4, 70 / 25.4))])
+@pytest.mark.parametrize(
+    ("text", "inches"), [("3.5x2.6in", (3.5, 2.6)), ("90x70mm", (90 / 25.4, 70 / 25.4))]
+)
 @pytest.mark.slow_cases("3.5x2.6in-inches0")
-def test_the_picture_has_the_size_that_is_asked_for(text: str, inches: tuple[float, float], tmp_path: Path) -> None:
+def test_the_picture_has_the_size_that_is_asked_for(
+    text: str, inches: tuple[float, float], tmp_path: Path
+) -> None:
     draw(shipped("fig2"), tmp_path / "map.png", dpi=200, style=styled(size=text))
     rows, columns = imread(tmp_path / "map.png").shape[:2]
     assert (columns, rows) == tuple(int(200 * side) for side in inches)
     draw(shipped("fig2"), tmp_path / "map.svg", style=styled(size=text))
     found = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', (tmp_path / "map.svg").read_text())
     assert found is not None
-    assert (float(found[1]), float(found[2])) == pytest.approx(tuple(72 * side for side in inches), abs=0.01)
+    assert (float(found[1]), float(found[2])) == pytest.approx(
+        tuple(72 * side for side in inches), abs=0.01
+    )
 
 
 def legend_of(made: Figure) -> str:
@@ -120,7 +146,9 @@ def legend_of(made: Figure) -> str:
 @pytest.mark.slow
 def test_insets_go_first_then_the_legend_moves_then_areas_go() -> None:
     result = bands(SLIVERS[:2])
-    large, medium, small = (figure(result, styled(size=size, font_size=8)) for size in ((7, 5), (3.5, 2.6), (2.9, 2.9)))
+    large, medium, small = (
+        figure(result, styled(size=size, font_size=8)) for size in ((7, 5), (3.5, 2.6), (2.9, 2.9))
+    )
     assert [len(made.axes) for made in (large, medium, small)] == [2, 1, 1]
     assert ["area" in legend_of(made) for made in (large, medium, small)] == [True, True, False]
     arrows = [t.get_gid() for t in small.findobj(Text) if str(t.get_gid()).startswith("arrow")]
@@ -149,12 +177,18 @@ MANY = [Fraction(k // 2 + 1, 14) + (k % 2) * Fraction(1, 10**4) for k in range(2
 
 
 @pytest.mark.parametrize("size", few([(3.5, 2.6), (3.5, 3.2), (2.6, 2.6)], (3.5, 2.6)))
-def test_labels_that_no_inset_explains_are_apart_and_the_rest_is_told(size: tuple[float, float]) -> None:
-    """First the count that is seen nowhere else, a label at a thin region; they are counts without letters."""
+def test_labels_that_no_inset_explains_are_apart_and_the_rest_is_told(
+    size: tuple[float, float],
+) -> None:
+    """First the count that is seen nowhere else, a label at a thin region; they are counts without
+    letters.
+    """
     counts = [1 + k % 2 for k in range(27)]
     counts[13] = 5
     made = figure(bands(MANY, Fraction(0), counts), styled(size=size, font_size=7))
-    labels = [t.get_text() for t in made.findobj(Annotation) if str(t.get_gid()).startswith("arrow")]
+    labels = [
+        t.get_text() for t in made.findobj(Annotation) if str(t.get_gid()).startswith("arrow")
+    ]
     assert len(made.axes) == 1 and "5" in labels and set(labels) <= {"1", "2", "5"}
     assert crowded(made) == []
     hidden = re.search(r"(\d+) more regions? (?:are|is) too thin for a label", legend_of(made))
@@ -188,13 +222,21 @@ def test_what_does_not_fit_is_refused_with_the_least_size_that_does() -> None:
 def test_a_title_of_ones_own_or_none() -> None:
     assert "My title" in legend_of(figure(shipped("fig4"), styled("ieee", title="My title")))
     with settings():
-        assert MapDrawing(shipped("fig4"), dpi=100).figure().texts[0].get_text().startswith("Equal loads")
+        assert (
+            MapDrawing(shipped("fig4"), dpi=100)
+            .figure()
+            .texts[0]
+            .get_text()
+            .startswith("Equal loads")
+        )
         untitled = MapDrawing(shipped("fig4"), styled(title=""), 100).figure()
     assert "Equal loads" not in legend_of(untitled)
 
 
 def test_colours_of_ones_own_are_those_of_the_counts_in_order(tmp_path: Path) -> None:
-    draw(shipped("fig4"), tmp_path / "map.png", style=styled(palette="#123456, orange", size="3x3in"))
+    draw(
+        shipped("fig4"), tmp_path / "map.png", style=styled(palette="#123456, orange", size="3x3in")
+    )
     image = imread(tmp_path / "map.png")[:, :, :3].reshape(-1, 3)
     colours, numbers = np.unique(np.round(image * 255).astype(int), axis=0, return_counts=True)
     found = {tuple(int(v) for v in c): n for c, n in zip(colours, numbers, strict=True)}
@@ -211,7 +253,9 @@ def test_the_grey_palette_is_grey_and_tells_counts_apart(tmp_path: Path) -> None
     many = bands([Fraction(k, 20) for k in range(1, 16)], counts=[2 * k for k in range(16)])
     for palette in ("grey", ("#ffffff", "#ff0000")):
         fill = filler(many.regions, many.slice.count, palette)
-        assert len({fill(region) for region in many.regions}) == len({r.stable for r in many.regions})
+        assert len({fill(region) for region in many.regions}) == len(
+            {r.stable for r in many.regions}
+        )
 
 
 @pytest.mark.parametrize(
@@ -233,7 +277,9 @@ def test_the_grey_palette_is_grey_and_tells_counts_apart(tmp_path: Path) -> None
 def test_bad_values_are_refused_before_anything_is_computed(
     option: str, value: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(["classify", "--slice", "L2,rho", "--out", str(tmp_path / "out"), option, value]) == 2
+    assert (
+        run(["classify", "--slice", "L2,rho", "--out", str(tmp_path / "out"), option, value]) == 2
+    )
     said = capsys.readouterr().err
     assert option in said and words in said and "Traceback" not in said
     assert len(said.strip().splitlines()[-1:]) == 1
@@ -242,10 +288,37 @@ def test_bad_values_are_refused_before_anything_is_computed(
 
 def test_the_command_line_draws_in_a_style(tmp_path: Path) -> None:
     folder = str(tmp_path)
-    assert run(["classify", "--slice", "L2,rho", "--out", folder, "--format", "json,png", "--style", "ieee"]) == 0
+    assert (
+        run(
+            [
+                "classify",
+                "--slice",
+                "L2,rho",
+                "--out",
+                folder,
+                "--format",
+                "json,png",
+                "--style",
+                "ieee",
+            ]
+        )
+        == 0
+    )
     assert imread(tmp_path / "slice-L2-rho.png").shape[:2] == (390, 525)
     assert (
-        run(["plot", str(tmp_path / "slice-L2-rho.json"), "--style", "ieee", "--size", "100x50mm", "--dpi", "254"]) == 0
+        run(
+            [
+                "plot",
+                str(tmp_path / "slice-L2-rho.json"),
+                "--style",
+                "ieee",
+                "--size",
+                "100x50mm",
+                "--dpi",
+                "254",
+            ]
+        )
+        == 0
     )
     assert imread(tmp_path / "slice-L2-rho.png").shape[:2] == (500, 1000)
 
@@ -268,7 +341,9 @@ def test_a_map_is_drawn_into_axes_in_the_units_of_its_own(tmp_path: Path) -> Non
     result.plot(ax=right, title="second")
     assert (left.get_xlim(), left.get_ylabel(), left.get_legend()) == ((0, 2), "L₂ (length)", None)
     assert [t.get_text() for t in right.get_legend().get_texts()] == ["1", "2"]
-    many = replace(result, regions=tuple(replace(r, stable=8 + (r.stable or 0)) for r in result.regions))
+    many = replace(
+        result, regions=tuple(replace(r, stable=8 + (r.stable or 0)) for r in result.regions)
+    )
     legend = many.plot(ax=Figure().subplots()).get_legend()
     assert [t.get_text() for t in legend.get_texts()] == ["9", "10"]  # as numbers, not as texts
     left.set_xlim(0.5, 1.0)
@@ -277,7 +352,9 @@ def test_a_map_is_drawn_into_axes_in_the_units_of_its_own(tmp_path: Path) -> Non
     image = np.asarray(canvas.buffer_rgba())[::-1]
     for at, colour in (((0.6, 1.0), "#ffa500"), ((0.95, 0.5), "#123456")):
         column, row = left.transData.transform(at)
-        assert tuple(image[int(row), int(column), :3] / 255) == pytest.approx(to_rgb(colour), abs=0.01)
+        assert tuple(image[int(row), int(column), :3] / 255) == pytest.approx(
+            to_rgb(colour), abs=0.01
+        )
         assert result.locate(rho=at[0], L2=at[1]).stable == (2 if colour == "#ffa500" else 1)
 
 
@@ -317,7 +394,8 @@ def test_a_line_in_the_legend_has_something_to_show_and_what_is_shown_has_a_line
     thin = replace(result, slice=replace(result.slice, count=Count.TOTAL))
     plain = figure(thin, styled(size="6x4in", font_size=9))
     assert "another curve" not in legend_of(plain) and not thin_curves(plain)
-    # where the part's label has no room either, the curve's trace at the frame is left out, and that is said
+    # where the part's label has no room either, the curve's trace at the frame is left out, and
+    # that is said
     drawing = MapDrawing(result, styled("ieee"), 100)
     seen, layout = drawing.fit()
     bare = replace(seen, views=(), thin_lines=False, unnamed=1)
@@ -347,22 +425,35 @@ def test_what_has_no_room_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[
 
 
 def test_areas_are_those_of_the_table() -> None:
-    for result in (shipped("fig4"), shipped("fig2"), bands([Fraction(k, 40) for k in range(1, 13)])):
+    for result in (
+        shipped("fig4"),
+        shipped("fig2"),
+        bands([Fraction(k, 40) for k in range(1, 13)]),
+    ):
         said = legend_of(figure(result, styled(size="7x6in", font_size=9)))
         for region in result.regions if len(result.regions) < 9 else ():
-            assert area_text(result, region.area) in said and area_text(result, region.area) in result.table()
+            assert (
+                area_text(result, region.area) in said
+                and area_text(result, region.area) in result.table()
+            )
     assert "7 regions, in all 0.85" in said
 
 
 def test_the_legend_says_of_how_many_solutions_even_where_these_differ() -> None:
-    assert "1 of 4 or 6 equilibria" in legend_of(figure(shipped("fig4"), styled(size="6x4in", font_size=9)))
-    assert "1 of 4 equilibria" in legend_of(figure(shipped("fig2"), styled(size="6x4in", font_size=9)))
+    assert "1 of 4 or 6 equilibria" in legend_of(
+        figure(shipped("fig4"), styled(size="6x4in", font_size=9))
+    )
+    assert "1 of 4 equilibria" in legend_of(
+        figure(shipped("fig2"), styled(size="6x4in", font_size=9))
+    )
 
 
 @pytest.mark.parametrize("size", ["3.5x3in", "8x5in"])
 @pytest.mark.slow_cases("8x5in")
 def test_no_text_is_smaller_than_is_read_on_paper(size: str) -> None:
-    """Even where the legend's own text is as small as that: details, numbers at insets and labels of arrows."""
+    """Even where the legend's own text is as small as that: details, numbers at insets and labels
+    of arrows.
+    """
     made = figure(bands(SLIVERS), styled(size=size, font_size=6))
     assert min(t.get_fontsize() for t in texts(made)) == MIN_FONT
     assert (len(made.axes) > 1) == (size == "8x5in")
@@ -379,12 +470,22 @@ def test_however_much_is_zoomed_a_picture_is_at_most_so_wide(number: int) -> Non
     legend = [Entry(("count", "area"), Fill("#ffffff"))] * 8
     made = flowing(["title"], legend, Type(), number, 0.0, 0.0)
     assert len(made.insets) == number and made.size[0] <= WIDEST < 11.1
-    boxes = [(x - INSET_LEFT, y - INSET_BELOW, x + w, y + h + INSET_ABOVE) for x, y, w, h in made.insets] + [
-        (made.chart[0] - LEFT, made.chart[1] - BOTTOM, made.chart[0] + made.chart[2], made.chart[1] + made.chart[3])
+    boxes = [
+        (x - INSET_LEFT, y - INSET_BELOW, x + w, y + h + INSET_ABOVE) for x, y, w, h in made.insets
+    ] + [
+        (
+            made.chart[0] - LEFT,
+            made.chart[1] - BOTTOM,
+            made.chart[0] + made.chart[2],
+            made.chart[1] + made.chart[3],
+        )
     ]
     inner = [(a + 1e-6, b + 1e-6, c - 1e-6, d - 1e-6) for a, b, c, d in boxes]
     assert not any(overlap(a, b) for a, b in combinations(inner, 2))
-    assert all(a + 1e-9 >= 0 and b + 1e-9 >= 0 and c <= made.size[0] and d <= made.size[1] for a, b, c, d in boxes)
+    assert all(
+        a + 1e-9 >= 0 and b + 1e-9 >= 0 and c <= made.size[0] and d <= made.size[1]
+        for a, b, c, d in boxes
+    )
 
 
 def test_a_heading_of_two_lines_is_in_one_size() -> None:

@@ -1,4 +1,6 @@
-"""The HTML report without a browser: what is in it, what cannot get into it, and that it can be posed again."""
+"""The HTML report without a browser: what is in it, what cannot get into it, and that it can be
+posed again.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,14 @@ from ptmcad.question.config import load, slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Point
 from ptmcad.show.render.axes import scale_of
 from ptmcad.show.report import page
-from ptmcad.show.report.bounds import Bounds, cosine_sine, decimal_text, degrees, exactly, square_root
+from ptmcad.show.report.bounds import (
+    Bounds,
+    cosine_sine,
+    decimal_text,
+    degrees,
+    exactly,
+    square_root,
+)
 from ptmcad.show.report.equilibria import at_sample
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.show.report.frame import ticks
@@ -71,16 +80,25 @@ def test_every_cell_is_on_the_map_and_in_the_data(shipped: Shipped, name: str) -
     areas = [int(a["data-cell"] or "") for a in elements.with_class("cell")]
     chips = [int(number) for number in re.findall(r'<button class="chip">(\d+)</button>', text)]
     assert set(areas) == set(range(len(result.cells)))
-    assert sorted(chips) == sorted(n for r in result.regions for n in r.cells) == list(range(len(result.cells)))
+    assert (
+        sorted(chips)
+        == sorted(n for r in result.regions for n in r.cells)
+        == list(range(len(result.cells)))
+    )
     data = data_of(text)
     for cell, told in zip(result.cells, data["cells"], strict=True):
         assert len(told["equilibria"]) == cell.total
         assert [e["kind"] for e in told["equilibria"]].count("stable") == cell.stable
-        assert [both.split()[0] for both in told["sample"]] == [text_of(cell.sample[0]), text_of(cell.sample[1])]
+        assert [both.split()[0] for both in told["sample"]] == [
+            text_of(cell.sample[0]),
+            text_of(cell.sample[1]),
+        ]
     assert data["names"] == list(result.slice.axis_names)
 
 
-ENTRIES = st.one_of(st.integers(0, 2), st.sampled_from(["a long text", "another one"]), st.lists(st.none()))
+ENTRIES = st.one_of(
+    st.integers(0, 2), st.sampled_from(["a long text", "another one"]), st.lists(st.none())
+)
 INNER = st.lists(st.fixed_dictionaries({"x": ENTRIES, "y": ENTRIES}))
 
 
@@ -96,17 +114,30 @@ def test_what_is_the_same_everywhere_is_written_once() -> None:
 
 
 def test_the_page_asks_for_nothing(shipped: Shipped) -> None:
-    """No element that loads, no address, no style or event attribute; the policy names two hashes and nothing else."""
+    """No element that loads, no address, no style or event attribute; the policy names two hashes
+    and nothing else.
+    """
     text = page(shipped("fig4"))
     elements = Elements(text)
-    assert not {"link", "img", "iframe", "object", "embed", "base", "form", "video", "audio", "image"} & {
-        tag for tag, _ in elements.tags
-    }
+    assert not {
+        "link",
+        "img",
+        "iframe",
+        "object",
+        "embed",
+        "base",
+        "form",
+        "video",
+        "audio",
+        "image",
+    } & {tag for tag, _ in elements.tags}
     for _, attributes in elements.tags:
         assert not {"src", "style", "srcset", "action"} & set(attributes)
         assert not any(name.startswith("on") for name in attributes)
         assert (attributes.get("href") or "#").startswith("#")
-    policy = next(a["content"] for _, a in elements.tags if a.get("http-equiv") == "Content-Security-Policy")
+    policy = next(
+        a["content"] for _, a in elements.tags if a.get("http-equiv") == "Content-Security-Policy"
+    )
     assert re.fullmatch(
         r"default-src 'none'; style-src 'sha256-[\w+/=]+'; script-src 'sha256-[\w+/=]+'; base-uri 'none'; "
         r"form-action 'none'",
@@ -130,7 +161,9 @@ CUBIC = {"name": "cubic", "unknowns": {"x": "real"}, "equations": ["x^3 - a*x - 
 @pytest.mark.parametrize("title", ["", "a mass < 1 & its two\nsprings"])
 def test_what_is_asked_of_has_its_own_title(key: str, model: dict[str, object], title: str) -> None:
     described = {**model, "title": title} if title else model
-    result = ptmcad.classify(slice_from_mapping({key: described, "axes": {"a": [0, 2], "f": [-1, 1]}}))
+    result = ptmcad.classify(
+        slice_from_mapping({key: described, "axes": {"a": [0, 2], "f": [-1, 1]}})
+    )
     stored = RegionMap.from_json(result.to_json())
     shown = escape(" ".join(title.split())) or model["name"]
     assert stored.slice == result.slice
@@ -150,10 +183,15 @@ def test_nothing_of_a_result_becomes_markup(shipped: Shipped) -> None:
     """Every text of the file that its reader lets pass is put where markup would hurt."""
     result = shipped("fig3")
     slice = replace(result.slice, title=HOSTILE)
-    slices = (replace(slice, text={"F3": HOSTILE}), replace(slice, model=known_of(HOSTILE[:90]), text={}))
+    slices = (
+        replace(slice, text={"F3": HOSTILE}),
+        replace(slice, model=known_of(HOSTILE[:90]), text={}),
+    )
     evil = replace(
         result,
-        components=tuple(replace(c, left_out=HOSTILE) if c.left_out else c for c in result.components),
+        components=tuple(
+            replace(c, left_out=HOSTILE) if c.left_out else c for c in result.components
+        ),
         plan=tuple(replace(s, what=HOSTILE, reason=HOSTILE) for s in result.plan),
         versions={HOSTILE: HOSTILE},
         precision={HOSTILE: 3},
@@ -161,12 +199,16 @@ def test_nothing_of_a_result_becomes_markup(shipped: Shipped) -> None:
     )
     clean = Elements(page(result))
     for slice in slices:
-        text = page(RegionMap.from_json(replace(evil, slice=slice).to_json()))  # such a file is read
+        text = page(
+            RegionMap.from_json(replace(evil, slice=slice).to_json())
+        )  # such a file is read
         dirty = Elements(text)
         assert {tag for tag, _ in dirty.tags} <= {tag for tag, _ in clean.tags}
         assert sum(tag == "script" for tag, _ in dirty.tags) == 2
         assert "<img" not in text
-        assert {key for _, a in dirty.tags for key in a} <= {key for _, a in clean.tags for key in a}
+        assert {key for _, a in dirty.tags for key in a} <= {
+            key for _, a in clean.tags for key in a
+        }
         assert HOSTILE in unescape(text)
 
 
@@ -196,7 +238,9 @@ def core(slice: ptmcad.Slice) -> ptmcad.Slice:
 
 @pytest.mark.parametrize("count", list(ptmcad.Count), ids=lambda c: c.value)
 @pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.yaml")), ids=lambda p: p.stem)
-def test_record_and_command_pose_the_slice_again(path: Path, count: ptmcad.Count, tmp_path: Path) -> None:
+def test_record_and_command_pose_the_slice_again(
+    path: Path, count: ptmcad.Count, tmp_path: Path
+) -> None:
     slice = replace(load(path), count=count)
     posed, command = reproduction(slice)
     if count is ptmcad.Count.ADMISSIBLE and not slice.has_free_lengths:
@@ -232,7 +276,10 @@ def test_a_record_poses_the_slice_of_another_model_again(path: Path, tmp_path: P
 
 
 def test_the_commands_on_the_page_give_the_same_result(
-    shipped: Shipped, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    shipped: Shipped,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     """They are run as they stand on the page, all of them, in an empty folder."""
     result = ptmcad.classify(load(CONFIGS / "fig2.yaml"))
@@ -276,7 +323,9 @@ def test_a_slice_that_no_record_gives_is_said_to_be_so(shipped: Shipped) -> None
     width=st.fractions(min_value=0, max_value=1),
     exponent=st.integers(-12, 3),
 )
-def test_decimals_are_within_a_unit_of_both_bounds(low: Fraction, width: Fraction, exponent: int) -> None:
+def test_decimals_are_within_a_unit_of_both_bounds(
+    low: Fraction, width: Fraction, exponent: int
+) -> None:
     text = decimal_text((low, low + width), exponent).replace("−", "-")
     mantissa, _, power_of_ten = text.partition("e")
     decimals = len(mantissa.partition(".")[2])
@@ -291,7 +340,9 @@ def test_angles_contain_the_true_one(degree: int, slack: int) -> None:
     import mpmath
 
     with mpmath.workdps(40):
-        c, s = (Fraction(str(f(mpmath.mpf(degree) * mpmath.pi / 180))) for f in (mpmath.cos, mpmath.sin))
+        c, s = (
+            Fraction(str(f(mpmath.mpf(degree) * mpmath.pi / 180))) for f in (mpmath.cos, mpmath.sin)
+        )
     radius = Fraction(1, 10**slack) if slack else Fraction(1, 10**20)
     found = degrees(Bounds(c - radius, c + radius), Bounds(s - radius, s + radius))
     assert found is not None
@@ -315,20 +366,27 @@ def test_cosines_and_sines_of_bounds_contain_the_true_ones(middle: Fraction, sla
 
 
 def test_poses_with_free_lengths_satisfy_the_mechanism() -> None:
-    """Lengths, forces and energy of any two angles, against plain floating point from the geometry of method.md."""
+    """Lengths, forces and energy of any two angles, against plain floating point from the geometry
+    of method.md.
+    """
     result = certified_map()
     one, two = Fraction(3, 5), Fraction(-9, 4)
     cell = replace(result.cells[0], solutions=(Solution((one, two), Fraction(1, 10**12), "++"),))
     (pose,) = at_sample(result, cell)["equilibria"]
     rho, l2, l0, k, f3, f4 = 0.5, 2.5, 0.2, 100, -10, -10
     nodes = [(0, 0), (rho, 0), (cos(one), sin(one)), (rho - l2 * cos(two), l2 * sin(two))]
-    lengths = [hypot(a[0] - b[0], a[1] - b[1]) for a, b in ((nodes[0], nodes[3]), (nodes[1], nodes[2]), nodes[2:])]
+    lengths = [
+        hypot(a[0] - b[0], a[1] - b[1])
+        for a, b in ((nodes[0], nodes[3]), (nodes[1], nodes[2]), nodes[2:])
+    ]
     energy = sum(k / 2 * (d - l0) ** 2 for d in lengths) - f3 * nodes[2][1] - f4 * nodes[3][1]
     numbers = [[float(t.replace("−", "-")) for t in pose[name]] for name in ("lengths", "forces")]
     assert pose["nodes"] == [pytest.approx(node) for node in nodes]
     assert numbers == [pytest.approx(lengths), pytest.approx([k * (d - l0) for d in lengths])]
     assert float(pose["energy"]) == pytest.approx(energy) == pose["level"]
-    assert pose["unknowns"] == [f"{value * 180 / pi:.4f}°".replace("-", "−") for value in (one, two)]
+    assert pose["unknowns"] == [
+        f"{value * 180 / pi:.4f}°".replace("-", "−") for value in (one, two)
+    ]
 
 
 @pytest.mark.parametrize(
@@ -361,7 +419,9 @@ def test_square_roots_are_bounded_from_both_sides(value: Fraction) -> None:
 
 
 def unit_of(text: str) -> float:
-    """The unit of a decimal's last digit, and a little for the floating-point number that it is compared with."""
+    """The unit of a decimal's last digit, and a little for the floating-point number that it is
+    compared with.
+    """
     return 10.0 ** -len(text.partition(".")[2]) + 1e-7
 
 
@@ -380,7 +440,9 @@ def test_poses_satisfy_the_mechanism(shipped: Shipped) -> None:
             for text, length in zip(e["forces"], lengths, strict=True):
                 assert float(text) == pytest.approx(100 * length, abs=unit_of(text), rel=0)
             energy = 50 * sum(x * x for x in lengths) + 10 * (a3[1] + a4[1])
-            assert float(e["energy"].replace("−", "-")) == pytest.approx(energy, abs=unit_of(e["energy"]), rel=0)
+            assert float(e["energy"].replace("−", "-")) == pytest.approx(
+                energy, abs=unit_of(e["energy"]), rel=0
+            )
             for text, angle in zip(e["unknowns"], (atan2(s1, c1), atan2(s2, c2)), strict=True):
                 digits = text.replace("−", "-").rstrip("°")
                 assert float(digits) == pytest.approx(angle * 180 / pi, abs=unit_of(digits), rel=0)
@@ -388,7 +450,10 @@ def test_poses_satisfy_the_mechanism(shipped: Shipped) -> None:
             for *powers, c in told["potential"]:
                 p, q, r, s = powers
                 rest = c * c2**r * s2**s
-                gradient += rest * (q * s1 ** max(q - 1, 0) * c1 ** (p + 1) - p * c1 ** max(p - 1, 0) * s1 ** (q + 1))
+                gradient += rest * (
+                    q * s1 ** max(q - 1, 0) * c1 ** (p + 1)
+                    - p * c1 ** max(p - 1, 0) * s1 ** (q + 1)
+                )
             assert abs(gradient) < 1e-4
 
 
@@ -420,7 +485,11 @@ def test_the_sympy_form_on_the_page_runs(shipped: Shipped) -> None:
     import sympy
 
     result = shipped("fig4")
-    code = next(unescape(t) for t in re.findall(r"<code>([^<]*)</code></pre>", page(result)) if "sympy.symbols" in t)
+    code = next(
+        unescape(t)
+        for t in re.findall(r"<code>([^<]*)</code></pre>", page(result))
+        if "sympy.symbols" in t
+    )
     scope: dict[str, Any] = {"sympy": sympy}
     exec(code, scope)
     used = next(c for c in result.components if not c.left_out)
@@ -448,9 +517,13 @@ def damaged(result: RegionMap, kind: str) -> RegionMap:
         case "cell of no region":
             return replace(result, cells=(replace(cells[0], region=99), *cells[1:]))
         case "stack of no cell":
-            return replace(result, stacks=(replace(stacks[0], cells=(*stacks[0].cells[:-1], 999)), *stacks[1:]))
+            return replace(
+                result, stacks=(replace(stacks[0], cells=(*stacks[0].cells[:-1], 999)), *stacks[1:])
+            )
         case "wall too many":
-            return replace(result, stacks=(replace(stacks[0], walls=stacks[0].walls * 2), *stacks[1:]))
+            return replace(
+                result, stacks=(replace(stacks[0], walls=stacks[0].walls * 2), *stacks[1:])
+            )
         case "root that is not there":
             walls = tuple(replace(w, root=w.root + 9) for w in stacks[0].walls)
             return replace(result, stacks=(replace(stacks[0], walls=walls), *stacks[1:]))
@@ -460,7 +533,9 @@ def damaged(result: RegionMap, kind: str) -> RegionMap:
             far = Point(result.slice.axis_names, Fraction(10**400), Fraction(1))
             return replace(result, cells=(replace(cells[0], sample=far), *cells[1:]))
         case "an area upside down":
-            return replace(result, regions=(replace(regions[0], area=regions[0].area[::-1]), *regions[1:]))
+            return replace(
+                result, regions=(replace(regions[0], area=regions[0].area[::-1]), *regions[1:])
+            )
         case "a box without end":
             wide = replace(cells[0].solutions[0], radius=Fraction(10**400))
             return replace(result, cells=(replace(cells[0], solutions=(wide,)), *cells[1:]))
@@ -495,17 +570,36 @@ def test_damaged_results_are_refused(
 # ------------------------------------------------------------------------------------------------- the command
 
 
-def test_the_command_writes_one_file(shipped: Shipped, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_writes_one_file(
+    shipped: Shipped, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     file = tmp_path / "fig3.json"
     file.write_text(shipped("fig3").to_json(), encoding="utf-8")
     assert run(["report", str(file)]) == 0
-    assert (tmp_path / "fig3.html").read_text(encoding="utf-8") == page(RegionMap.from_json(file.read_text()))
-    assert run(["report", str(file), "--out", str(tmp_path / "new"), "--name", "other.html", "--no-timings"]) == 0
+    assert (tmp_path / "fig3.html").read_text(encoding="utf-8") == page(
+        RegionMap.from_json(file.read_text())
+    )
+    assert (
+        run(
+            [
+                "report",
+                str(file),
+                "--out",
+                str(tmp_path / "new"),
+                "--name",
+                "other.html",
+                "--no-timings",
+            ]
+        )
+        == 0
+    )
     assert [p.name for p in (tmp_path / "new").iterdir()] == ["other.html"]
     assert "other.html" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("name", ["../x", "", "a/b", ".hidden", "x" * 101, "a\nb", "nul", "Aux.html", "a. "])
+@pytest.mark.parametrize(
+    "name", ["../x", "", "a/b", ".hidden", "x" * 101, "a\nb", "nul", "Aux.html", "a. "]
+)
 def test_names_that_are_no_file_names(shipped: Shipped, tmp_path: Path, name: str) -> None:
     file = tmp_path / "fig3.json"
     file.write_text(shipped("fig3").to_json(), encoding="utf-8")
@@ -521,7 +615,10 @@ def test_a_result_that_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixtur
 CURVE = {
     "format": "ptmcad-error-time/1",
     "error": "relative width of the areas' bounds",
-    "series": [{"name": "exact <b>", "points": [[0.3, 1e-3], [0.5, 1e-9]]}, {"name": "grid", "points": [[1, 0.1]]}],
+    "series": [
+        {"name": "exact <b>", "points": [[0.3, 1e-3], [0.5, 1e-9]]},
+        {"name": "grid", "points": [[1, 0.1]]},
+    ],
 }
 
 

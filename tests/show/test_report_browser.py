@@ -1,4 +1,5 @@
-"""The HTML report in a real headless Chromium: pointer, touch, keyboard, themes, phones, print, no network, no errors.
+"""The HTML report in a real headless Chromium: pointer, touch, keyboard, themes, phones, print, no
+network, no errors.
 
 Screenshots go where PTMCAD_TESTS_SCREENSHOTS says, if it does; nothing is compared with them.
 """
@@ -48,7 +49,9 @@ def written_pages(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], P
 
 @pytest.fixture(name="view")
 def fresh_view(one: Browser, pages: Callable[..., Path]) -> Callable[..., Browser]:
-    """Opens a page on a desktop in light colours; afterwards nothing may have complained or asked for anything else."""
+    """Opens a page on a desktop in light colours; afterwards nothing may have complained or asked
+    for anything else.
+    """
 
     def open_page(name: str, count: str | None = None) -> Browser:
         one.media(prefers_color_scheme="light")
@@ -113,13 +116,23 @@ def test_a_click_draws_poses_and_landscape(view: Callable[..., Browser]) -> None
     assert (shown["poses"], shown["stable"]) == (6, 2)
     assert shown["marks"] >= 6 + 3  # in the picture, and in the legend
     assert shown["contours"] >= 15 + 3
-    assert b.run(f"document.querySelector('#map [data-cell=\"{number}\"]').getAttribute('aria-pressed')") == "true"
+    assert (
+        b.run(
+            f"document.querySelector('#map [data-cell=\"{number}\"]').getAttribute('aria-pressed')"
+        )
+        == "true"
+    )
     ink = "(() => { const c = document.querySelector('#poses canvas'); const d = c.getContext('2d')"
     ink += ".getImageData(0, 0, c.width, c.height).data; return new Set(d).size; })()"
     assert b.run(ink) > 10
     # each pose: two rods, three springs, four nodes, two loads
     for what, many in (("bar", 2), ("spring", 3), ("node", 4), ("load-head", 2)):
-        assert b.run(f"document.querySelectorAll('#poses .pose')[0].querySelectorAll('.{what}').length") == many
+        assert (
+            b.run(
+                f"document.querySelectorAll('#poses .pose')[0].querySelectorAll('.{what}').length"
+            )
+            == many
+        )
     b.picture("fig4-light.png")
     b.run("document.querySelector('#close').click()")
     assert b.run(FEW)["poses"] == 0
@@ -127,7 +140,9 @@ def test_a_click_draws_poses_and_landscape(view: Callable[..., Browser]) -> None
 
 
 def test_lowest_energy_is_where_the_picture_is_darkest(view: Callable[..., Browser]) -> None:
-    """The landscape that the browser computes has its least value at the stable pose of least certified energy."""
+    """The landscape that the browser computes has its least value at the stable pose of least
+    certified energy.
+    """
     b = view("fig4")
     for number in (8, 21):
         b.run(f"choose({number}, false)")
@@ -152,11 +167,15 @@ def test_the_keyboard_does_all_of_it(view: Callable[..., Browser]) -> None:
     stops = []
     for _ in range(6):
         b.press("Tab")
-        stops.append(b.run("document.activeElement.getAttribute('class') || document.activeElement.id"))
+        stops.append(
+            b.run("document.activeElement.getAttribute('class') || document.activeElement.id")
+        )
         if stops[-1].startswith("cell"):
             break
     assert stops[-1].startswith("cell"), stops
-    assert b.run("getComputedStyle(document.activeElement).strokeWidth") == "4px"  # the focus is seen
+    assert (
+        b.run("getComputedStyle(document.activeElement).strokeWidth") == "4px"
+    )  # the focus is seen
     visited = {b.run("Number(document.activeElement.dataset.cell)")}
     # every cell can be reached with the arrows
     stacks = computed("fig4").stacks
@@ -183,7 +202,9 @@ def test_the_keyboard_does_all_of_it(view: Callable[..., Browser]) -> None:
 @pytest.mark.parametrize(("axes", "base"), [("rho,L2", 0), ("L2,rho", 1)])
 @pytest.mark.slow_cases("L2,rho-1")
 def test_the_arrows_follow_the_map(one: Browser, tmp_path: Path, axes: str, base: int) -> None:
-    """Also where the stacks stand over the vertical axis: up is up; and samples are drawn within their cells."""
+    """Also where the stacks stand over the vertical axis: up is up; and samples are drawn within
+    their cells.
+    """
     result = ptmcad.classify(ptmcad.slice_from_options(CONFIGS / "fig4.yaml", slice=axes))
     assert result.base == base
     file = tmp_path / "map.html"
@@ -193,7 +214,12 @@ def test_the_arrows_follow_the_map(one: Browser, tmp_path: Path, axes: str, base
     one.open(file)
     moves = 0
     for number in range(len(result.cells)):
-        for key, axis, sign in (("ArrowRight", 0, 1), ("ArrowLeft", 0, -1), ("ArrowUp", 1, -1), ("ArrowDown", 1, 1)):
+        for key, axis, sign in (
+            ("ArrowRight", 0, 1),
+            ("ArrowLeft", 0, -1),
+            ("ArrowUp", 1, -1),
+            ("ArrowDown", 1, 1),
+        ):
             step = one.run(
                 f"(() => {{ const n = neighbour({number}, '{key}');"
                 f" return n === undefined ? null : DATA.cells[n].at[{axis}] - DATA.cells[{number}].at[{axis}]; }})()"
@@ -227,7 +253,10 @@ def test_light_dark_and_the_button(view: Callable[..., Browser]) -> None:
     b.until(f"{shade} !== {light_shade}")
     b.picture("fig3-index-dark.png")
     switch = "document.querySelector('#theme')"
-    shown, face = f"[{switch}.ariaPressed, {switch}.textContent]", f"getComputedStyle({switch}).backgroundColor"
+    shown, face = (
+        f"[{switch}.ariaPressed, {switch}.textContent]",
+        f"getComputedStyle({switch}).backgroundColor",
+    )
     assert b.run(shown) == ["true", "Dark: on"]
     pressed = b.run(face)
     b.run("document.querySelector('#theme').click()")
@@ -265,13 +294,19 @@ def test_text_has_contrast(view: Callable[..., Browser], scheme: str) -> None:
     assert least >= 4.5, where
 
 
-@pytest.mark.parametrize("width", [320, *(pytest.param(w, marks=pytest.mark.slow) for w in (360, 768))])
-def test_narrow_screens_need_no_sideways_scrolling(view: Callable[..., Browser], width: int) -> None:
+@pytest.mark.parametrize(
+    "width", [320, *(pytest.param(w, marks=pytest.mark.slow) for w in (360, 768))]
+)
+def test_narrow_screens_need_no_sideways_scrolling(
+    view: Callable[..., Browser], width: int
+) -> None:
     b = view("fig4")
     b.size(width, 740, phone=True)
     b.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
     b.run("document.querySelector('#map').scrollIntoView({ behavior: 'instant' })")
-    number = next(n for n, c in enumerate(computed("fig4").cells) if c.stable == 2 and c.sample["rho"] > 0.3)
+    number = next(
+        n for n, c in enumerate(computed("fig4").cells) if c.stable == 2 and c.sample["rho"] > 0.3
+    )
     b.tap(*place(b, number))
     b.until("document.querySelectorAll('#poses .pose').length === 6")
     assert f"Cell {number}, " in b.run("document.querySelector('#readout').textContent")
@@ -308,8 +343,12 @@ def strips() -> RegionMap:
 
 @pytest.mark.parametrize("width", [320, 390, 1200])
 @pytest.mark.parametrize("name", ["fig5-text", "stiffness", "views of thin regions"])
-@pytest.mark.fast_cases("views of thin regions-320", "views of thin regions-390", "views of thin regions-1200")
-def test_numbers_and_names_stand_beside_each_other(one: Browser, tmp_path: Path, name: str, width: int) -> None:
+@pytest.mark.fast_cases(
+    "views of thin regions-320", "views of thin regions-390", "views of thin regions-1200"
+)
+def test_numbers_and_names_stand_beside_each_other(
+    one: Browser, tmp_path: Path, name: str, width: int
+) -> None:
     """Within the picture, also where there are many digits and the type is large."""
     result = strips() if name.startswith("views") else computed(name)
     file = tmp_path / "map.html"
@@ -329,7 +368,9 @@ def test_copy_buttons_copy_what_stands_below_them(view: Callable[..., Browser]) 
     assert many >= 5 + 4
     b.run("window.seen = []; Object.defineProperty(navigator, 'clipboard', { configurable: true, value: "
           "{ writeText: async (t) => { window.seen.push(t); } } })")  # fmt: skip
-    b.run("(async () => { for (const c of document.querySelectorAll('button.copy')) { c.click(); await 0; } })()")
+    b.run(
+        "(async () => { for (const c of document.querySelectorAll('button.copy')) { c.click(); await 0; } })()"
+    )
     b.until(f"window.seen.length === {many}")
     expected = b.run("[...document.querySelectorAll('button.copy')].map((c) => "
                      "c.parentElement.querySelector('code').textContent)")  # fmt: skip
@@ -338,7 +379,11 @@ def test_copy_buttons_copy_what_stands_below_them(view: Callable[..., Browser]) 
     b.run("Object.defineProperty(navigator, 'clipboard', { configurable: true, value: undefined });"
           "document.addEventListener('copy', () => { const a = document.activeElement;"
           " window.old = a.value.slice(a.selectionStart, a.selectionEnd); })")  # fmt: skip
-    b.call("Runtime.evaluate", expression="document.querySelector('button.copy').click()", userGesture=True)
+    b.call(
+        "Runtime.evaluate",
+        expression="document.querySelector('button.copy').click()",
+        userGesture=True,
+    )
     b.until("document.querySelector('button.copy').textContent === 'Copied'")
     assert b.run("window.old") == expected[0]
     quiet(b, "fig4")
@@ -385,7 +430,11 @@ def test_the_policy_stops_what_is_not_the_pages_own(view: Callable[..., Browser]
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=() if name in ("fig4", "fig5-text") else pytest.mark.slow) for name in PAPER]
+    "name",
+    [
+        pytest.param(name, marks=() if name in ("fig4", "fig5-text") else pytest.mark.slow)
+        for name in PAPER
+    ],
 )
 @pytest.mark.slow_cases("fig5-text")
 def test_it_opens_within_a_second_and_is_small(view: Callable[..., Browser], name: str) -> None:
@@ -412,7 +461,9 @@ EXACT = [
 @pytest.mark.parametrize("name", EXACT)
 def test_the_page_of_every_shipped_slice_is_small(name: str) -> None:
     """That of four oscillators has a curve of 809 terms, and up to 14 solutions in each cell."""
-    assert len(page(computed(name)).encode()) < (600_000 if name == "systems/kuramoto-4" else 300_000)
+    assert len(page(computed(name)).encode()) < (
+        600_000 if name == "systems/kuramoto-4" else 300_000
+    )
 
 
 def test_reduced_motion_and_print(view: Callable[..., Browser], tmp_path: Path) -> None:
@@ -430,19 +481,37 @@ def test_reduced_motion_and_print(view: Callable[..., Browser], tmp_path: Path) 
         assert b.run(f"getComputedStyle(document.querySelector('{part}')).breakInside") == "avoid"
     # nothing is folded on paper, and afterwards all is as it was
     opened = "document.querySelectorAll('details[open]').length"
-    b.run("window.atPrint = 0; window.addEventListener('beforeprint', () => { window.atPrint = " + opened + "; })")
+    b.run(
+        "window.atPrint = 0; window.addEventListener('beforeprint', () => { window.atPrint = "
+        + opened
+        + "; })"
+    )
     before = b.run(opened)
     b.printed(tmp_path / "fig4-print.pdf")
-    assert b.run("window.atPrint") == b.run("document.querySelectorAll('details').length") > before == b.run(opened)
+    assert (
+        b.run("window.atPrint")
+        == b.run("document.querySelectorAll('details').length")
+        > before
+        == b.run(opened)
+    )
     assert (tmp_path / "fig4-print.pdf").read_bytes().startswith(b"%PDF")
     quiet(b, "fig4")
 
 
 CRANE: dict[str, Any] = {
     "mechanism": {
-        "parameters": {"a": {"kind": "length"}, "k": {"kind": "stiffness", "default": 10}, "W": {"kind": "force"}},
+        "parameters": {
+            "a": {"kind": "length"},
+            "k": {"kind": "stiffness", "default": 10},
+            "W": {"kind": "force"},
+        },
         "unknowns": {"th": "angle", "s": "length"},
-        "points": {"O": [0, 0], "B": [0, 1], "S": ["s*cos(th)", "s*sin(th)"], "T": ["a*cos(th)", "a*sin(th)"]},
+        "points": {
+            "O": [0, 0],
+            "B": [0, 1],
+            "S": ["s*cos(th)", "s*sin(th)"],
+            "T": ["a*cos(th)", "a*sin(th)"],
+        },
         "bars": [["O", "T"]],
         "springs": [{"between": ["B", "S"], "k": "k"}, {"between": ["S", "T"], "k": "k"}],
         "loads": {"T": {"weight": "W"}},
@@ -451,8 +520,12 @@ CRANE: dict[str, Any] = {
 }
 
 
-def test_all_poses_of_a_cell_are_at_one_scale_however_tall_one_of_them_is(one: Browser, tmp_path: Path) -> None:
-    """A card does not exceed a height: where a tall pose is shrunk to it, the others are shrunk alike."""
+def test_all_poses_of_a_cell_are_at_one_scale_however_tall_one_of_them_is(
+    one: Browser, tmp_path: Path
+) -> None:
+    """A card does not exceed a height: where a tall pose is shrunk to it, the others are shrunk
+    alike.
+    """
     path = tmp_path / "crane.html"
     path.write_text(page(ptmcad.classify(CRANE, areas=False)), encoding="utf-8")
     one.media(prefers_color_scheme="light")
@@ -460,7 +533,9 @@ def test_all_poses_of_a_cell_are_at_one_scale_however_tall_one_of_them_is(one: B
         one.size(width, 900)
         one.open(path)
         one.run("choose(0, false)")
-        scales = one.run("[...document.querySelectorAll('#poses .pose svg')].map((one) => one.getScreenCTM().a)")
+        scales = one.run(
+            "[...document.querySelectorAll('#poses .pose svg')].map((one) => one.getScreenCTM().a)"
+        )
         # the frame of a stable pose is a pixel wider
         assert len(scales) > 2 and max(scales) < 1.03 * min(scales)
         heads = one.run(
@@ -498,14 +573,22 @@ def test_every_cell_of_every_slice_can_be_chosen(view: Callable[..., Any]) -> No
         quiet(b, name, count)
 
 
-def test_a_landscape_under_a_moment_is_level_at_the_equilibria(one: Browser, tmp_path: Path) -> None:
-    """The browser's table of what is drawn, by differences around each equilibrium, against the moment left out."""
+def test_a_landscape_under_a_moment_is_level_at_the_equilibria(
+    one: Browser, tmp_path: Path
+) -> None:
+    """The browser's table of what is drawn, by differences around each equilibrium, against the
+    moment left out.
+    """
     record = {
         "name": "turned",
         "mechanism": {
             "parameters": {"M": {}, "F": {"kind": "force"}},
             "unknowns": {"th": "angle", "ph": "angle"},
-            "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"], "Q": ["cos(th) + cos(ph)/2", "sin(th) + sin(ph)/2"]},
+            "points": {
+                "O": [0, 0],
+                "P": ["cos(th)", "sin(th)"],
+                "Q": ["cos(th) + cos(ph)/2", "sin(th) + sin(ph)/2"],
+            },
             "torsion": [{"angle": "th", "k": 2}, {"angle": "ph - th", "k": 1}],
             "moments": {"th": "M", "ph": "1/5"},
             "loads": {"Q": ["F", 0]},
@@ -530,12 +613,15 @@ def test_a_landscape_under_a_moment_is_level_at_the_equilibria(one: Browser, tmp
     assert "not periodic" in found["title"] and len(found["rises"]) == result.cells[number].total
     step = 2 * pi / 1440
     for rises in found["rises"]:
-        # a grid's point is at most half a step away, and second derivatives are below 5; the moments are 1 / 5 and more
+        # a grid's point is at most half a step away, and second derivatives are below 5; the
+        # moments are 1 / 5 and more
         assert all(abs(rise) / (2 * step) < 5 * step for rise in rises[:2]) and abs(rises[2]) < 1e-3
     assert one.complaints() == []
 
 
-def test_torsion_springs_are_drawn_at_their_joints_and_told_in_numbers(one: Browser, tmp_path: Path) -> None:
+def test_torsion_springs_are_drawn_at_their_joints_and_told_in_numbers(
+    one: Browser, tmp_path: Path
+) -> None:
     record = {
         "name": "bent",
         "mechanism": {

@@ -1,4 +1,6 @@
-"""The report's point that mouse, finger, slider and keys move: what the browser follows, against exact poses."""
+"""The report's point that mouse, finger, slider and keys move: what the browser follows, against
+exact poses.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,9 @@ SHARE = "live.share"
 def page_of_a_map(one: Browser, tmp_path: Path) -> Iterator[Callable[..., Browser]]:
     """Opens a map's page; afterwards nothing may have complained or asked for anything else."""
 
-    def open_page(result: RegionMap, width: int = 1200, height: int = 1000, phone: bool = False) -> Browser:
+    def open_page(
+        result: RegionMap, width: int = 1200, height: int = 1000, phone: bool = False
+    ) -> Browser:
         file = tmp_path / "live.html"
         file.write_text(page_of(result), encoding="utf-8")
         one.media(prefers_color_scheme="light", prefers_reduced_motion="reduce")
@@ -77,8 +81,13 @@ def spot(view: Browser, x: float, y: float) -> tuple[float, float]:
 
 
 def exact(result: RegionMap, x: float, y: float) -> list[tuple[str, tuple[float, ...]]]:
-    """Kinds and angles of all poses by exact computation, at shares of the window that are doubles exactly."""
-    at = [axis.low + Fraction(s) * (axis.high - axis.low) for axis, s in zip(result.slice.axes, (x, y), strict=True)]
+    """Kinds and angles of all poses by exact computation, at shares of the window that are doubles
+    exactly.
+    """
+    at = [
+        axis.low + Fraction(s) * (axis.high - axis.low)
+        for axis, s in zip(result.slice.axes, (x, y), strict=True)
+    ]
     kinds = ("stable", "saddle", "maximum")
     return [
         (kinds[pose.index or 0], tuple(float(angle.center) for angle in pose.angles))
@@ -87,16 +96,22 @@ def exact(result: RegionMap, x: float, y: float) -> list[tuple[str, tuple[float,
 
 
 def followed(view: Browser) -> list[tuple[str, tuple[float, ...]]]:
-    return [(kind, tuple(at)) for kind, at in view.run("live.found.map((one) => [one.kind, one.at])")]
+    return [
+        (kind, tuple(at)) for kind, at in view.run("live.found.map((one) => [one.kind, one.at])")
+    ]
 
 
 def same(a: tuple[float, ...], b: tuple[float, ...], slack: float = 1e-6) -> bool:
     return all(abs((x - y + pi) % (2 * pi) - pi) < slack for x, y in zip(a, b, strict=True))
 
 
-def agrees(one: list[tuple[str, tuple[float, ...]]], other: list[tuple[str, tuple[float, ...]]]) -> bool:
+def agrees(
+    one: list[tuple[str, tuple[float, ...]]], other: list[tuple[str, tuple[float, ...]]]
+) -> bool:
     """Whether each is in the other, with its kind."""
-    return len(one) == len(other) and all(any(k == m and same(p, q) for m, q in other) for k, p in one)
+    return len(one) == len(other) and all(
+        any(k == m and same(p, q) for m, q in other) for k, p in one
+    )
 
 
 def test_what_is_followed_anywhere_are_the_exact_poses(view: Callable[..., Browser]) -> None:
@@ -113,16 +128,26 @@ def test_what_is_followed_anywhere_are_the_exact_poses(view: Callable[..., Brows
 
 
 def test_with_free_lengths_too(view: Callable[..., Browser]) -> None:
-    """A certified map's stable poses: at its samples those that it stores, and elsewhere those of `ptmcad.solve`."""
+    """A certified map's stable poses: at its samples those that it stores, and elsewhere those of
+    `ptmcad.solve`.
+    """
     result = part_of_free02()
     b = view(result)
     for number, cell in enumerate(result.cells):
         b.run(f"choose({number}, false)")
         stored = [tuple(float(c) for c in s.center) for s in cell.solutions]
-        assert b.run("document.querySelectorAll('#poses .pose.stable').length") == len(stored) == cell.stable
+        assert (
+            b.run("document.querySelectorAll('#poses .pose.stable').length")
+            == len(stored)
+            == cell.stable
+        )
         texts = b.run(f"DATA.cells[{number}].equilibria.map((pose) => pose.unknowns)")
-        shown = [tuple(radians(float(t.replace("−", "-").rstrip("°"))) for t in row) for row in texts]
-        slack = radians(10 ** -min(len(t.rstrip("°").partition(".")[2]) for row in texts for t in row))
+        shown = [
+            tuple(radians(float(t.replace("−", "-").rstrip("°"))) for t in row) for row in texts
+        ]
+        slack = radians(
+            10 ** -min(len(t.rstrip("°").partition(".")[2]) for row in texts for t in row)
+        )
         assert max(float(s.radius) for s in cell.solutions) / 10 < slack < 1e-3
         assert sum(same(p, q, slack) for p in shown for q in stored) == len(stored)
     assert b.run("document.querySelectorAll('#poses .landscape').length") == 1
@@ -139,14 +164,20 @@ def test_with_free_lengths_too(view: Callable[..., Browser]) -> None:
         compared += 1
 
 
-@pytest.mark.parametrize("result", few([crossing(7), cusp(9)], crossing(7)), ids=["crossing", "cusp"])
-def test_no_point_is_said_to_be_in_a_cell_that_it_is_not_in(view: Callable[..., Browser], result: RegionMap) -> None:
+@pytest.mark.parametrize(
+    "result", few([crossing(7), cusp(9)], crossing(7)), ids=["crossing", "cusp"]
+)
+def test_no_point_is_said_to_be_in_a_cell_that_it_is_not_in(
+    view: Callable[..., Browser], result: RegionMap
+) -> None:
     """However near to a rim; and away from the rims every point has its cell."""
     b = view(result)
     assert result.cover is not None
     chance, slack = random.Random(5), SLACK / SIDE
     points: list[tuple[float, float]] = []
-    for left, right, bottom, top in chance.choices(result.cover.rectangles, k=400):  # across a side of each
+    for left, right, bottom, top in chance.choices(
+        result.cover.rectangles, k=400
+    ):  # across a side of each
         x = chance.choice((left, right)) / result.cover.steps + chance.uniform(-2, 2) * slack
         y = chance.uniform(bottom, top) / result.cover.steps
         points += [point for point in ((x, y), (y, x)) if all(0.01 < v < 0.99 for v in point)]
@@ -180,7 +211,10 @@ def test_what_is_pointed_at_is_what_is_there(view: Callable[..., Browser]) -> No
       });
     }"""
     chosen = random.Random(8).choices(result.cover.rectangles, k=40)
-    sides = [(right / result.cover.steps, (bottom + top) / 2 / result.cover.steps) for _, right, bottom, top in chosen]
+    sides = [
+        (right / result.cover.steps, (bottom + top) / 2 / result.cover.steps)
+        for _, right, bottom, top in chosen
+    ]
     seen = set()
     for found, x, y in (one for row in b.run(f"{json.dumps(sides)}.map({across})") for one in row):
         true = result.locate(rho=2 * x, L2=2 * y).cell
@@ -189,7 +223,9 @@ def test_what_is_pointed_at_is_what_is_there(view: Callable[..., Browser]) -> No
     assert seen == {(True, True), (True, False), (False, False)}
 
 
-def test_at_a_sample_the_cell_is_known_however_near_its_rims_are(view: Callable[..., Browser]) -> None:
+def test_at_a_sample_the_cell_is_known_however_near_its_rims_are(
+    view: Callable[..., Browser],
+) -> None:
     b = view(part_of_free02())
     b.run("DATA.slack = 600; choose(0, false)")
     assert "exact count of this region" in b.run(STATUS) and len(followed(b)) > 0
@@ -216,7 +252,9 @@ TURNED = {
 
 
 @pytest.mark.parametrize("name", ["fig4", "free", "turned", "kuramoto", "escape", "schloegl"])
-def test_the_script_has_the_equations_of_the_description(view: Callable[..., Browser], name: str) -> None:
+def test_the_script_has_the_equations_of_the_description(
+    view: Callable[..., Browser], name: str
+) -> None:
     """Residuals and their derivatives at random points, against NumPy's from the same description."""
     if name in ("fig4", "free"):
         slice = ptmcad.load(CONFIGS / ("fig4.yaml" if name == "fig4" else "free02.yaml"))
@@ -251,7 +289,10 @@ def test_the_mouse_drags_the_point(view: Callable[..., Browser]) -> None:
     move(b, 0.5, 0.5)
     b.run("document.querySelector('#map').scrollIntoView({ behavior: 'instant' })")
     start, end = spot(b, 0.5, 0.5), spot(b, 0.3125, 0.5625)
-    way = [(start[0] + (end[0] - start[0]) * k / 8, start[1] + (end[1] - start[1]) * k / 8) for k in range(9)]
+    way = [
+        (start[0] + (end[0] - start[0]) * k / 8, start[1] + (end[1] - start[1]) * k / 8)
+        for k in range(9)
+    ]
     b.drag(*way)
     b.until(f"Math.abs({SHARE}[0] - 0.3125) < 0.004 && Math.abs({SHARE}[1] - 0.5625) < 0.004")
     assert "2 stable of 6 equilibria" in b.run(STATUS) and "floating point" in b.run(STATUS)
@@ -290,20 +331,26 @@ def test_keys_move_the_point(view: Callable[..., Browser]) -> None:
     b.press("ArrowLeft", "ArrowDown", shift=True)
     assert b.run(SHARE) == pytest.approx([0.46, 0.455])
     assert b.run("document.querySelector('#said').textContent") == b.run(STATUS) != ""
-    assert b.run("getComputedStyle(document.querySelector('.probe .ring')).strokeWidth") == "5px"  # the focus is seen
+    assert (
+        b.run("getComputedStyle(document.querySelector('.probe .ring')).strokeWidth") == "5px"
+    )  # the focus is seen
     for _ in range(12):
         b.press("ArrowLeft", shift=True)
     assert b.run(SHARE)[0] == 0.0005  # it stays in the window
 
 
 def test_a_slider_leads_to_the_snap(view: Callable[..., Browser]) -> None:
-    """It is at the map's wall: exact poses have what vanishes there on one side, and where it goes to on the other."""
+    """It is at the map's wall: exact poses have what vanishes there on one side, and where it goes
+    to on the other.
+    """
     result = computed("fig4")
     b = view(result)
     move(b, 0.3125, 0.625)
     poses = followed(b)
     number = next(k for k, (kind, at) in enumerate(poses) if kind == "stable" and at[0] > 0)
-    b.run(f"document.querySelectorAll('#live .grid-of-poses .pose')[{number}].querySelector('.follow').click()")
+    b.run(
+        f"document.querySelectorAll('#live .grid-of-poses .pose')[{number}].querySelector('.follow').click()"
+    )
     assert b.run("document.querySelectorAll('#live .pose.followed').length") == 1
     b.run("live.sliders[0].input.focus()")
     before = 0
@@ -318,7 +365,9 @@ def test_a_slider_leads_to_the_snap(view: Callable[..., Browser]) -> None:
     assert l2 == pytest.approx(1.25)
 
     def stable(shift: float) -> list[tuple[float, ...]]:
-        found = exact_at(result, Fraction(round((rho + shift) * 10**6), 10**6), Fraction(5, 4)).equilibria
+        found = exact_at(
+            result, Fraction(round((rho + shift) * 10**6), 10**6), Fraction(5, 4)
+        ).equilibria
         return [tuple(float(a.center) for a in pose.angles) for pose in found if pose.stable]
 
     # on one side there are two, a little further there is one, which is where it has gone
@@ -359,7 +408,9 @@ def test_it_says_so_where_fewer_solutions_are_found(view: Callable[..., Browser]
 
 
 def test_at_a_degenerate_point_it_says_so(view: Callable[..., Browser]) -> None:
-    """Where the exact poses are two, one of them triple, the count beside it is that of the region around."""
+    """Where the exact poses are two, one of them triple, the count beside it is that of the region
+    around.
+    """
     result = computed("mechanisms/bistable-slider")
     b = view(result)
     move(b, 0.5, 0.5)
@@ -374,16 +425,16 @@ def test_paper_shows_no_controls(view: Callable[..., Browser], tmp_path: Path) -
     shown = "[...document.querySelectorAll('button, .axis, .hint, #readout')].filter((e) => e.checkVisibility()).length"
     assert b.run(shown) > 10
     b.media(media="print")
-    chips = b.run("[...document.querySelectorAll('.chip')].filter((e) => e.checkVisibility()).length")
+    chips = b.run(
+        "[...document.querySelectorAll('.chip')].filter((e) => e.checkVisibility()).length"
+    )
     assert b.run(shown) == chips == 22
     b.printed(tmp_path / "fig4-live-print.pdf")
     # the landscape has light colours on paper, whatever the screen has
     b.media(prefers_color_scheme="dark")
     b.until("document.querySelector('#live .landscape') !== null")
     shade = "(() => { const copy = document.createElement('canvas').getContext('2d', { willReadFrequently: true });"
-    shade += (
-        "copy.drawImage(document.querySelector('#live canvas'), 0, 0); const all = copy.getImageData(0, 0, 256, 256)"
-    )
+    shade += "copy.drawImage(document.querySelector('#live canvas'), 0, 0); const all = copy.getImageData(0, 0, 256, 256)"
     shade += ".data; return Math.max(...all.filter((_, k) => k % 4 === 0)); })()"
     dark = b.run(shade)
     b.media(prefers_color_scheme="dark", media="print")
@@ -396,7 +447,9 @@ def test_paper_shows_no_controls(view: Callable[..., Browser], tmp_path: Path) -
 
 
 def test_a_system_without_points_is_listed(view: Callable[..., Browser]) -> None:
-    result = ptmcad.classify(ptmcad.load(CONFIGS / "systems" / "schloegl.yaml"), area_tolerance="1/10")
+    result = ptmcad.classify(
+        ptmcad.load(CONFIGS / "systems" / "schloegl.yaml"), area_tolerance="1/10"
+    )
     b = view(result)
     move(b, 0.5, 0.5)
     cell = result.cells[b.run("live.cell")]
@@ -404,7 +457,9 @@ def test_a_system_without_points_is_listed(view: Callable[..., Browser]) -> None
 
 
 def test_no_step_leaps_over_a_snap(view: Callable[..., Browser]) -> None:
-    """However far the point is thrown: the pose is followed to the wall, found there, and falls once."""
+    """However far the point is thrown: the pose is followed to the wall, found there, and falls
+    once.
+    """
     b = view(computed("fig4"))
     for y in (0.5625, 0.625, 0.6875, 0.75, 0.8125, 0.875, 0.9375):
         falls, ends = b.run(

@@ -37,7 +37,9 @@ def corners(data: str) -> list[tuple[float, float]]:
     return [(x / GRID, y / GRID) for x, y in found]
 
 
-COORDINATES = st.one_of(st.floats(-600, 1200), st.sampled_from([0.0, 1.0, 0.5, 99.99, 100.0, 600.0]))
+COORDINATES = st.one_of(
+    st.floats(-600, 1200), st.sampled_from([0.0, 1.0, 0.5, 99.99, 100.0, 600.0])
+)
 
 
 @given(st.lists(st.tuples(COORDINATES, COORDINATES), min_size=1, max_size=30), st.booleans())
@@ -55,7 +57,9 @@ def test_each_corner_is_within_half_a_step(line: list[tuple[float, float]], clos
         at = rest.index(b)
         for one, other in pairwise([*rest[:at], b]):
             assert all(min(a[k], b[k]) <= other[k] <= max(a[k], b[k]) for k in (0, 1))
-            assert abs(b[0] - other[0]) + abs(b[1] - other[1]) <= abs(b[0] - one[0]) + abs(b[1] - one[1])
+            assert abs(b[0] - other[0]) + abs(b[1] - other[1]) <= abs(b[0] - one[0]) + abs(
+                b[1] - one[1]
+            )
             assert other in (one, b) or a[0] == other[0] == b[0] or a[1] == other[1] == b[1]
         rest = rest[at:]
     assert set(rest) == {found[-1]}
@@ -71,10 +75,14 @@ def placed(polygon: np.ndarray) -> list[tuple[float, float]]:
     return [(x * SIDE, (1 - y) * SIDE) for x, y in polygon.tolist()]
 
 
-@pytest.mark.parametrize("result", [circle(6), crossing(6), cusp(9)], ids=["circle", "crossing", "cusp"])
+@pytest.mark.parametrize(
+    "result", [circle(6), crossing(6), cusp(9)], ids=["circle", "crossing", "cusp"]
+)
 @pytest.mark.slow_cases("cusp")
 def test_the_cells_of_a_page_are_those_of_the_map(result: RegionMap) -> None:
-    """Every corner of the map's own outline is as near to what is drawn as `SLACK` says; and it is drawn once."""
+    """Every corner of the map's own outline is as near to what is drawn as `SLACK` says; and it is
+    drawn once.
+    """
     text = page(result)
     for number, polygons in shapes(result).cells(1e-9):
         (data,) = re.findall(rf'<path id="map-{number}" class="outline" d="([^"]*)"', text)
@@ -102,10 +110,14 @@ def speck(side: int) -> RegionMap:
 
 @pytest.mark.parametrize("side", [1, 2, 3, 40])
 def test_no_speck_of_what_is_undetermined_is_left_out(side: int) -> None:
-    """However small it is, a rim of its own is there, and at least twice as wide as the rims may be moved."""
+    """However small it is, a rim of its own is there, and at least twice as wide as the rims may be
+    moved.
+    """
     text = page(speck(side))
     (data,) = re.findall(r'<path id="map-0" class="outline" d="([^"]*)"', text)
-    inner, outer = sorted((corners(f"M{part}") for part in data.split("M")[1:]), key=lambda part: abs(area(part)))
+    inner, outer = sorted(
+        (corners(f"M{part}") for part in data.split("M")[1:]), key=lambda part: abs(area(part))
+    )
     assert len(outer) == 4 and len(inner) >= 2
     assert min(distance(p, (600 * 3 / 8, 600 * 3 / 8)) for p in inner) < SLACK + 1e-9
     widths = re.findall(r'<use class="(?:rim|open)" [^>]*stroke-width="([^"]*)"', text)

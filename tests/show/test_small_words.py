@@ -11,7 +11,10 @@ from ptmcad.model import Mechanism, ptm
 from ptmcad.show.ranges.table import _heights
 from ptmcad.show.table import table
 
-LINE = {"system": {"unknowns": {"x": "real"}, "equations": ["x - a + b"]}, "axes": {"a": [0, 1], "b": [0, 1]}}
+LINE = {
+    "system": {"unknowns": {"x": "real"}, "equations": ["x - a + b"]},
+    "axes": {"a": [0, 1], "b": [0, 1]},
+}
 
 
 def test_heights_have_the_names_of_points() -> None:
@@ -37,4 +40,6 @@ def test_one_is_not_many() -> None:
 
 def test_no_names_are_no_list() -> None:
     with pytest.raises(ConfigError, match="; no name is known here"):
-        ptmcad.Mechanism(unknowns={"th": "angle"}, points={"O": ["c", 0], "P": ["sin(th)", "cos(th)"]})
+        ptmcad.Mechanism(
+            unknowns={"th": "angle"}, points={"O": ["c", 0], "P": ["sin(th)", "cos(th)"]}
+        )

@@ -35,7 +35,9 @@ def test_axes_and_areas_have_the_declared_units() -> None:
     result = ptmcad.classify(RECORD)
     assert [axis_name(result.slice, k) for k in (0, 1)] == ["ρ (mm)", "L₂ (mm)"]
     assert "1: 3.2536 mm²; 2: 0.7464 mm²" in result.table()
-    said = [t.get_text() for t in result.plot(style="ieee").findobj(lambda a: hasattr(a, "get_text"))]
+    said = [
+        t.get_text() for t in result.plot(style="ieee").findobj(lambda a: hasattr(a, "get_text"))
+    ]
     assert {"ρ (mm)", "L₂ (mm)"} <= set(said)
     assert "area 0.7464 mm²" in " ".join(said)  # perhaps on two lines, as narrow as a column is
 
@@ -44,12 +46,18 @@ def test_axes_and_areas_have_the_declared_units() -> None:
     ("axes", "units", "expected"),
     [
         ({"k": [50, 200], "F3": [-10, 0]}, {"length": "mm", "force": "N"}, ("N/mm", "N", "N/mm·N")),
-        ({"k": [50, 200], "k1": [50, 200]}, {"length": "m", "force": "kN"}, ("kN/m", "kN/m", "(kN/m)²")),
+        (
+            {"k": [50, 200], "k1": [50, 200]},
+            {"length": "m", "force": "kN"},
+            ("kN/m", "kN/m", "(kN/m)²"),
+        ),
         ({"L2": [0, 2], "F3": [-10, 0]}, {"length": "mm"}, ("mm", "force", "")),
         ({"L2": [0, 2], "rho": [0, 2]}, {}, ("length", "length", "")),
     ],
 )
-def test_derived_units(axes: dict[str, list[int]], units: dict[str, str], expected: tuple[str, str, str]) -> None:
+def test_derived_units(
+    axes: dict[str, list[int]], units: dict[str, str], expected: tuple[str, str, str]
+) -> None:
     slice = slice_from({"axes": axes, "units": units})
     assert (unit(slice, 0), unit(slice, 1), area_unit(slice)) == expected
 
@@ -58,11 +66,16 @@ def test_derived_units(axes: dict[str, list[int]], units: dict[str, str], expect
     ("stiffness", "spring", "expected"),
     [("2*c", "k", "N·mm"), ("c", "k", "N·mm"), ("c*L^2", "k", "N/mm"), ("c", "c", "N/mm")],
 )
-def test_a_torsion_springs_stiffness_is_a_moment(stiffness: str, spring: str, expected: str) -> None:
+def test_a_torsion_springs_stiffness_is_a_moment(
+    stiffness: str, spring: str, expected: str
+) -> None:
     """Unless a length makes one of it, or a spring between points has it, too."""
     record = {
         "mechanism": {
-            "parameters": {"L": {"kind": "length"}, **{name: {"kind": "stiffness", "default": 1} for name in "kc"}},
+            "parameters": {
+                "L": {"kind": "length"},
+                **{name: {"kind": "stiffness", "default": 1} for name in "kc"},
+            },
             "unknowns": {"th": "angle"},
             "points": {"A": [0, 3], "P": ["L*cos(th)", "L*sin(th)"]},
             "springs": [{"between": ["A", "P"], "k": spring}, {"between": ["A", "P"], "k": "k/9"}],
@@ -82,7 +95,9 @@ def test_stored_results_keep_units_and_match_the_schemas() -> None:
     assert ptmcad.RegionMap.from_json(text).slice.units == {"length": "mm", "force": "N"}
     schema = json.loads((ROOT / "docs" / "region-map.schema.json").read_text())
     Draft202012Validator(schema).validate(json.loads(text))
-    Draft202012Validator(json.loads((ROOT / "ptmcad" / "record.schema.json").read_text())).validate(RECORD)
+    Draft202012Validator(json.loads((ROOT / "ptmcad" / "record.schema.json").read_text())).validate(
+        RECORD
+    )
     bare = ptmcad.classify({key: value for key, value in RECORD.items() if key != "units"})
     assert "units" not in json.loads(bare.to_json())["slice"]
 
@@ -113,16 +128,32 @@ def test_units_of_quantities(units: dict[str, str], expected: list[str]) -> None
     ],
 )
 def test_quantities_have_the_declared_units(
-    units: dict[str, str], energy: str, force: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    units: dict[str, str],
+    energy: str,
+    force: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     (tmp_path / "u.yaml").write_text(json.dumps({"name": "u", **RECORD, "units": units}))
     config, out = str(tmp_path / "u.yaml"), ["--out", str(tmp_path)]
     asked = ["--along", "rho", "--at", "L2=3/2", "--over", "L2", "--rows", "3", "--path", "1"]
     quantities = ["--quantity", "energy", "--quantity", "force:k1", "--quantity", "th1"]
     assert run(["range", config, *asked, *quantities, "--format", "json,svg", *out]) == 0
-    head = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("from ") and "kind" in line)
-    assert re.split(r"  +", head)[3:] == [f"energy ({energy})", f"force:k1 ({force})", "th1 (degrees)"]
-    assert json.loads((tmp_path / "u-range.json").read_text())["branches"]["units"] == [energy, force, "degrees"]
+    head = next(
+        line
+        for line in capsys.readouterr().out.splitlines()
+        if line.startswith("from ") and "kind" in line
+    )
+    assert re.split(r"  +", head)[3:] == [
+        f"energy ({energy})",
+        f"force:k1 ({force})",
+        "th1 (degrees)",
+    ]
+    assert json.loads((tmp_path / "u-range.json").read_text())["branches"]["units"] == [
+        energy,
+        force,
+        "degrees",
+    ]
     length = units.get("length", "length")
     for part, words in {
         "-branches": [f"energy ({energy})", f"force k₁ ({force})", "θ₁ (degrees)", f"ρ ({length})"],
@@ -132,7 +163,24 @@ def test_quantities_have_the_declared_units(
         root = ElementTree.parse(tmp_path / f"u-range{part}.svg").getroot()
         said = {text.text for text in root.iter("{http://www.w3.org/2000/svg}text")}
         assert set(words) <= said
-    assert run(["map", config, "--value", "energy", "--pixels", "9", "--checks", "0", "--format", "svg", *out]) == 0
+    assert (
+        run(
+            [
+                "map",
+                config,
+                "--value",
+                "energy",
+                "--pixels",
+                "9",
+                "--checks",
+                "0",
+                "--format",
+                "svg",
+                *out,
+            ]
+        )
+        == 0
+    )
     assert re.search(rf"energy of stable:1: \S+ to \S+ {energy}, at", capsys.readouterr().out)
     root = ElementTree.parse(tmp_path / "u-energy-stable-1.svg").getroot()
     said = {text.text for text in root.iter("{http://www.w3.org/2000/svg}text")}
@@ -173,7 +221,17 @@ SVG_TEXT = "{http://www.w3.org/2000/svg}text"
 
 
 def solved(record: Path, formats: str) -> None:
-    asked = ["solve", str(record), "--at", "P=2,b=2", "--format", formats, "--landscape", "--out", str(record.parent)]
+    asked = [
+        "solve",
+        str(record),
+        "--at",
+        "P=2,b=2",
+        "--format",
+        formats,
+        "--landscape",
+        "--out",
+        str(record.parent),
+    ]
     assert run(asked) == 0
 
 
@@ -196,7 +254,10 @@ def test_poses_their_pictures_and_the_landscape_have_the_declared_units(
     record.write_text(LIFT)
     solved(record, "table,json,svg")
     said = " ".join(capsys.readouterr().out.split())
-    assert "units lengths and coordinates in m, forces in kN, energies and the Hessian's eigenvalues in kN·m" in said
+    assert (
+        "units lengths and coordinates in m, forces in kN, energies and the Hessian's eigenvalues in kN·m"
+        in said
+    )
     text = (tmp_path / "poses.json").read_text(encoding="utf-8")
     poses = ptmcad.Poses.from_json(text)
     assert poses.units == {"length": "m", "force": "kN"} and poses.to_json() == text

@@ -1,4 +1,6 @@
-"""A notebook's living map: what Python knows of its point, and the page in a frame that a browser drives."""
+"""A notebook's living map: what Python knows of its point, and the page in a frame that a browser
+drives.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ from ptmcad.errors import ConfigError, PtmcadError
 from ptmcad.show.report import page
 
 SCRIPT = Path(chromium.__file__).parents[2] / "ptmcad" / "show" / "widget.js"
-needs_anywidget = pytest.mark.skipif(find_spec("anywidget") is None, reason="anywidget is not installed")
+needs_anywidget = pytest.mark.skipif(
+    find_spec("anywidget") is None, reason="anywidget is not installed"
+)
 
 
 @needs_anywidget
@@ -86,7 +90,9 @@ def test_where_there_is_no_answer_that_is_said(monkeypatch: pytest.MonkeyPatch) 
 
 def test_without_anywidget_the_message_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(extras, "find_spec", lambda name: None)
-    with pytest.raises(ConfigError, match=r"anywidget, which is not installed: pip install 'ptmcad\[notebook\]'"):
+    with pytest.raises(
+        ConfigError, match=r"anywidget, which is not installed: pip install 'ptmcad\[notebook\]'"
+    ):
         shipped("fig4").explore()
 
 
@@ -131,7 +137,9 @@ def inside(view: Browser, expression: str) -> Any:
     """The value of an expression in the widget's frame, which is a process of its own."""
     (frame,) = [t for t in view.call("Target.getTargets")["targetInfos"] if t["type"] == "iframe"]
     outer = view.session
-    view.session = view.call("Target.attachToTarget", targetId=frame["targetId"], flatten=True)["sessionId"]
+    view.session = view.call("Target.attachToTarget", targetId=frame["targetId"], flatten=True)[
+        "sessionId"
+    ]
     try:
         return view.run(expression)
     finally:
@@ -143,10 +151,17 @@ def test_the_frame_shows_the_map_alone_and_says_where_its_point_is(view: Browser
     assert inside(view, "getComputedStyle(document.querySelector('header')).display") == "none"
     assert inside(view, "getComputedStyle(document.querySelector('#cells')).display") == "block"
     # nothing of the notebook is within its reach
-    assert inside(view, "(() => { try { return String(parent.document); } catch { return 'no'; } })()") == "no"
+    assert (
+        inside(view, "(() => { try { return String(parent.document); } catch { return 'no'; } })()")
+        == "no"
+    )
     assert view.run("document.querySelector('iframe').sandbox.value") == "allow-scripts"
     view.until("document.querySelector('iframe').style.height.endsWith('px')")
-    assert 300 < float(view.run("document.querySelector('iframe').style.height").removesuffix("px")) <= 720
+    assert (
+        300
+        < float(view.run("document.querySelector('iframe').style.height").removesuffix("px"))
+        <= 720
+    )
 
 
 @pytest.mark.slow
@@ -157,7 +172,9 @@ def test_a_drag_tells_python_where_it_rests(view: Browser) -> None:
     left, top = view.run("(() => { const b = document.querySelector('iframe').getBoundingClientRect();"
                          " return [b.left, b.top]; })()")  # fmt: skip
     ring = inside(view, "live.share")
-    places = [(left + x + s * side, top + y + (1 - t) * side) for s, t in (ring, (0.5, 0.6), (0.35, 0.75))]
+    places = [
+        (left + x + s * side, top + y + (1 - t) * side) for s, t in (ring, (0.5, 0.6), (0.35, 0.75))
+    ]
     view.drag(*places)
     view.until(f"saved.length > {before}")
     told = view.run("saved.at(-1)")
@@ -168,12 +185,18 @@ def test_a_drag_tells_python_where_it_rests(view: Browser) -> None:
 @pytest.mark.slow
 def test_python_moves_the_point_and_answers(view: Browser) -> None:
     before = view.run("saved.length")
-    view.run("model.set('point', {rho: 1.5, L2: 0.5}); model.set('_answer', 'four <b>of them</b>'); 0")
+    view.run(
+        "model.set('point', {rho: 1.5, L2: 0.5}); model.set('_answer', 'four <b>of them</b>'); 0"
+    )
     view.until("document.querySelector('.ptmcad-answer').textContent === 'four <b>of them</b>'")
     for _ in range(200):
         if inside(view, "pointOf(live.share)") == pytest.approx([1.5, 0.5]):
             break
     else:
         raise AssertionError("the point has not moved")
-    assert "exact count of this region: 1 stable of 4 equilibria" in inside(view, "live.status.textContent")
-    assert view.run("new Promise((done) => setTimeout(() => done(saved.length), 400))") == before  # no echo
+    assert "exact count of this region: 1 stable of 4 equilibria" in inside(
+        view, "live.status.textContent"
+    )
+    assert (
+        view.run("new Promise((done) => setTimeout(() => done(saved.length), 400))") == before
+    )  # no echo

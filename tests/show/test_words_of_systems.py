@@ -1,4 +1,6 @@
-"""What the terminal and pictures say of systems and of several solutions of one kind, where only words can be wrong."""
+"""What the terminal and pictures say of systems and of several solutions of one kind, where only
+words can be wrong.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,9 @@ QUINTIC: Mapping[str, Any] = {
     "parameters": {"c": "1/(1 - b - 3)"},
     "axes": {"a": [-2, 2], "b": [-1, 2]},
 }
-"""At a = 1/3 two roots that are not stable vanish at b = 1.318, and two stable ones are left on either side."""
+"""At a = 1/3 two roots that are not stable vanish at b = 1.318, and two stable ones are left on
+either side.
+"""
 
 CONDITION_THAT_VANISHES: Mapping[str, Any] = {
     "system": {"unknowns": {"x": "real"}, "equations": ["(x - a)*(x^2 - b)"], "stable": ["a - x"]},
@@ -46,18 +50,25 @@ def test_neighbours_with_as_many_stable_solutions_are_one_range() -> None:
     (range_,) = found.operation
     assert [i.total for i in range_.parts] == [5, 3]
     assert (range_.low, range_.high) == (-1, 2)
-    assert "range with two stable solutions: -1 to 2, width 3 (the whole window)" in table(found).splitlines()
+    assert (
+        "range with two stable solutions: -1 to 2, width 3 (the whole window)"
+        in table(found).splitlines()
+    )
     assert part(found, 6)["line"]["operation"] == [0, 1]
 
 
 def test_a_system_has_no_operation_range(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ptmcad.exact.ranges.width._MAX_PIECES", 50)  # where exactly it is widest is not asked
+    monkeypatch.setattr(
+        "ptmcad.exact.ranges.width._MAX_PIECES", 50
+    )  # where exactly it is widest is not asked
     slice = slice_of(QUINTIC)
     widths = operation_widths(slice, "b", 3)
     text = table(intervals(slice, "b", {"a": "1/3"})) + width_table(widths)
     assert "operation" not in text
     assert "widest range with three stable solutions: " in text
-    assert [len(row["operation"]) for row in part(widths, 6)["over"]["rows"]] == [len(r.operation) for r in widths.rows]
+    assert [len(row["operation"]) for row in part(widths, 6)["over"]["rows"]] == [
+        len(r.operation) for r in widths.rows
+    ]
 
 
 @pytest.mark.parametrize(
@@ -91,6 +102,10 @@ def test_a_condition_that_is_zero_is_told() -> None:
 
 def test_a_legend_says_maxima_of_two() -> None:
     system = {"unknowns": {"t": "angle"}, "potential": "cos(2*t) + a*cos(t)/9 + b*sin(t)/9"}
-    figure = draw_landscape(solved({"system": system, "axes": {"a": [0, 1], "b": [0, 1]}}, a="1", b="1/2"))
-    texts = {text.get_text() for text in figure.findobj(match=lambda artist: hasattr(artist, "get_text"))}
+    figure = draw_landscape(
+        solved({"system": system, "axes": {"a": [0, 1], "b": [0, 1]}}, a="1", b="1/2")
+    )
+    texts = {
+        text.get_text() for text in figure.findobj(match=lambda artist: hasattr(artist, "get_text"))
+    }
     assert {"2 stable (minima)", "2 maxima"} <= texts

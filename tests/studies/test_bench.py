@@ -26,7 +26,9 @@ def test_maps_with_free_lengths_are_not_timed_by_default(
     """They take as long as they are given."""
     monkeypatch.chdir(CONFIGS.parent)
     seen: list[str] = []
-    monkeypatch.setattr(command, "turns", lambda jobs, options: seen.extend(job.subject for job in jobs))
+    monkeypatch.setattr(
+        command, "turns", lambda jobs, options: seen.extend(job.subject for job in jobs)
+    )
     monkeypatch.setattr(command, "check", lambda slice: SimpleNamespace(forecast=None))
     assert command.main(["times"]) == 0
     assert {*seen} == {"floor", *(f"configs/{path.stem}" for path in EXACT)}
@@ -57,7 +59,10 @@ def test_a_job_is_a_row_of_a_table() -> None:
     row = rows.iloc[0]
     assert (row["runs"], row["seconds"], row["least"], row["most"]) == (3, 2.0, 1.0, 3.0)
     assert (row["processor"], row["peak MiB"]) == (0.5, 30.0)
-    assert rows["over one"].tolist()[:2] == [1.0, 2.0] and rows["over one"].isna().tolist()[2:] == [True, True]
+    assert rows["over one"].tolist()[:2] == [1.0, 2.0] and rows["over one"].isna().tolist()[2:] == [
+        True,
+        True,
+    ]
     assert rows["reason"].tolist()[2:] == ["not in 60 s", "not run"]
     lines = table(rows).splitlines()
     assert lines[0].split()[-1] == "reason" and lines[3].endswith("not in 60 s")
@@ -67,7 +72,11 @@ def test_a_program_that_fails_hangs_or_is_silent(tmp_path: Path) -> None:
     for code, reason, more in (
         ("import sys; sys.exit('no good')", "failed: no good", {}),
         ("pass", "failed: no answer", {"answer": tmp_path / "answer"}),
-        ("print('x')", "failed: not that", {"check": lambda usage: "not that" if usage.output == "x\n" else ""}),
+        (
+            "print('x')",
+            "failed: not that",
+            {"check": lambda usage: "not that" if usage.output == "x\n" else ""},
+        ),
         ("import time; time.sleep(60)", "not in 0.5 s", {}),
     ):
         failing = job(code, **more)
@@ -113,7 +122,11 @@ def test_a_study_ends_with_1_where_an_answer_differs(
     ids=lambda x: " ".join(x) if isinstance(x, list) else "",
 )
 def test_bad_input(
-    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: Any
+    arguments: list[str],
+    message: str,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: Any,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("file").write_text("")
@@ -128,7 +141,12 @@ def test_bad_input(
 @pytest.mark.slow
 def test_ablation(tmp_path: Path) -> None:
     """One round on the smallest slice: every saving is there, and nothing differs."""
-    assert command.main(["ablation", str(CONFIGS / "fig2.yaml"), "--rounds", "1", "--out", str(tmp_path)]) == 0
+    assert (
+        command.main(
+            ["ablation", str(CONFIGS / "fig2.yaml"), "--rounds", "1", "--out", str(tmp_path)]
+        )
+        == 0
+    )
     rows = json.loads((tmp_path / "ablation.json").read_text(encoding="utf-8"))["rows"]
     assert {row["subject"] for row in rows} == {"fig2", "fig2, axes exchanged"}
     assert {"all made", "axis-order", "imports", "all"} <= {row["setting"] for row in rows}

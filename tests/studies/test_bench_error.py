@@ -1,4 +1,6 @@
-"""The error of drawn maps: known areas, a second way to compute them, and what a grid of the paper's slices gives."""
+"""The error of drawn maps: known areas, a second way to compute them, and what a grid of the
+paper's slices gives.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +55,9 @@ def exact(name: str) -> tuple[RegionMap, dict[str, Truth]]:
 @cache
 def grid(name: str, n: int) -> np.ndarray:
     asked = json.loads(question(ptmcad.load(CONFIGS / f"{name}.yaml")))
-    return byhand.counts("companion", byhand.grid_values(asked, n)).reshape(2, n, n).astype(np.int16)
+    return (
+        byhand.counts("companion", byhand.grid_values(asked, n)).reshape(2, n, n).astype(np.int16)
+    )
 
 
 def polyline(heights: list[Fraction]) -> Truth:
@@ -61,7 +65,9 @@ def polyline(heights: list[Fraction]) -> Truth:
     parts = len(heights) - 1
     points = np.array([[k / parts, float(a)] for k, a in enumerate(heights)])
     edge = np.array([[0.0, 1.0], [1.0, 1.0]])
-    return Truth(0, (0, 1), (1, 2), (Wall(points, 0.0, 0, 1), Wall(edge, 0.0, 1, -1)), np.zeros((0, 3)))
+    return Truth(
+        0, (0, 1), (1, 2), (Wall(points, 0.0, 0, 1), Wall(edge, 0.0, 1, -1)), np.zeros((0, 3))
+    )
 
 
 def wrong_area(truth: Truth, picture: np.ndarray) -> float:
@@ -72,7 +78,9 @@ def wrong_area(truth: Truth, picture: np.ndarray) -> float:
     return 1 - float(shown_areas(truth, pieces, picture.ravel()).sum())
 
 
-def clipped(polygon: list[tuple[Fraction, Fraction]], a: Fraction, b: Fraction, c: Fraction) -> list:
+def clipped(
+    polygon: list[tuple[Fraction, Fraction]], a: Fraction, b: Fraction, c: Fraction
+) -> list:
     """The part of a convex polygon where a x + b y <= c."""
     kept = []
     for p, q in zip(polygon, polygon[1:] + polygon[:1], strict=True):
@@ -87,7 +95,16 @@ def clipped(polygon: list[tuple[Fraction, Fraction]], a: Fraction, b: Fraction, 
 
 def area_of(polygon: list) -> Fraction:
     return (
-        abs(sum((p[0] * q[1] - q[0] * p[1] for p, q in zip(polygon, polygon[1:] + polygon[:1], strict=True)), ZERO)) / 2
+        abs(
+            sum(
+                (
+                    p[0] * q[1] - q[0] * p[1]
+                    for p, q in zip(polygon, polygon[1:] + polygon[:1], strict=True)
+                ),
+                ZERO,
+            )
+        )
+        / 2
     )
 
 
@@ -107,11 +124,15 @@ def wrong_by_clipping(heights: list[Fraction], picture: np.ndarray) -> Fraction:
                 pixel = [(low, bottom), (high, bottom), (high, top), (low, top)]
                 below = clipped(pixel, -slope, ONE, a - slope * left)
                 under = area_of(below) if len(below) > 2 else ZERO
-                total += {1: area_of(pixel) - under, 2: under}.get(int(picture[i, j]), area_of(pixel))
+                total += {1: area_of(pixel) - under, 2: under}.get(
+                    int(picture[i, j]), area_of(pixel)
+                )
     return total
 
 
-@given(st.lists(shares, min_size=2, max_size=5), st.integers(1, 6), st.randoms(use_true_random=False))
+@given(
+    st.lists(shares, min_size=2, max_size=5), st.integers(1, 6), st.randoms(use_true_random=False)
+)
 def test_wrong_area_by_clipping_pixels(heights: list[Fraction], n: int, random: object) -> None:
     """Any picture of any piecewise linear boundary, the third count being wrong everywhere."""
     picture = np.array([[random.randint(1, 3) for _ in range(n)] for _ in range(n)], dtype=np.int16)  # type: ignore[attr-defined]
@@ -124,7 +145,9 @@ def test_wrong_area_by_clipping_pixels(heights: list[Fraction], n: int, random: 
     ids=lambda x: f"{x}",
 )
 def test_half_plane_of_known_error(n: int, expected: Fraction) -> None:
-    """Below the diagonal 1, above it 2: of each pixel on the diagonal just half is wrong, so 1 / (2 n)."""
+    """Below the diagonal 1, above it 2: of each pixel on the diagonal just half is wrong, so
+    1 / (2 n).
+    """
     centre = (np.arange(n) + 0.5) / n
     picture = np.where(centre[None, :] < centre[:, None], 1, 2).astype(np.int16)
     assert abs(wrong_area(polyline([ZERO, ONE]), picture) - expected) < 1e-12
@@ -133,12 +156,18 @@ def test_half_plane_of_known_error(n: int, expected: Fraction) -> None:
 
 
 def test_walls_that_leave_a_cusp_side_by_side_are_shut_in() -> None:
-    """(2 v - 1)^2 = u^7: near 0 the walls are too close together for slopes to be proved, but not for heights."""
-    source = curve(0, from_plane(PlanePolynomial.of([(0, 2, 4), (0, 1, -4), (0, 0, 1), (7, 0, -1)])), 0)
+    """(2 v - 1)^2 = u^7: near 0 the walls are too close together for slopes to be proved, but not
+    for heights.
+    """
+    source = curve(
+        0, from_plane(PlanePolynomial.of([(0, 2, 4), (0, 1, -4), (0, 0, 1), (7, 0, -1)])), 0
+    )
     unit = (fmpq(0), fmpq(1))
     span = (Fraction(1, 2**32), 1 - Fraction(1, 2**32))
     for root, side in ((0, -1), (1, 1)):
-        found = chords(WallBranch(source, root, unit, unit), span, Fraction(1, 2**18), Fraction(1, 2**24))
+        found = chords(
+            WallBranch(source, root, unit, unit), span, Fraction(1, 2**18), Fraction(1, 2**24)
+        )
         assert len(found) < 2000
         assert max(c.distance for c in found) <= FLAT
         assert sum(c.distance * (c.right - c.left) for c in found) < Fraction(1, 2**17)
@@ -146,7 +175,8 @@ def test_walls_that_leave_a_cusp_side_by_side_are_shut_in() -> None:
             for part in (Fraction(1, 9), Fraction(1, 2), Fraction(8, 9)):
                 x = c.left + (c.right - c.left) * part
                 line = c.at_left + (c.at_right - c.at_left) * part
-                # the wall's v is 1/2 + side sqrt(u^7) / 2: both ends of the chord's band, squared exactly
+                # the wall's v is 1/2 + side sqrt(u^7) / 2: both ends of the chord's band, squared
+                # exactly
                 ends = [2 * side * (line + s * c.distance - Fraction(1, 2)) for s in (-1, 1)]
                 low, high = min(ends), max(ends)
                 assert (low < 0 or low**2 <= x**7) and high > 0 and x**7 <= high**2
@@ -155,7 +185,9 @@ def test_walls_that_leave_a_cusp_side_by_side_are_shut_in() -> None:
 def test_blank_picture_of_fig3_is_wrong_where_two_are_stable() -> None:
     """The reference's area 7.352277514 of 20; the other counts' regions add up to the rest."""
     found, known = exact("fig3")
-    low, high = grid_error(known["stable"], found.grid(4).cell.T, np.ones((4, 4), dtype=np.int16))["wrong"]
+    low, high = grid_error(known["stable"], found.grid(4).cell.T, np.ones((4, 4), dtype=np.int16))[
+        "wrong"
+    ]
     assert low <= 7.352277514 / 20 <= high
     assert high - low < 1e-5
     assert len(known["stable"].counts) == 3
@@ -169,7 +201,10 @@ def test_walls_are_within_their_distances() -> None:
     lines = chains(found, Fraction(1, 2**19))
     assert max(w.distance for w in known["index"].walls) < 2.0**-11
     edge = 2
-    assert {len(w.points) for w in known["index"].walls} <= {edge, *(len(c.points) for walls in lines for c in walls)}
+    assert {len(w.points) for w in known["index"].walls} <= {
+        edge,
+        *(len(c.points) for walls in lines for c in walls),
+    }
 
 
 def test_error_of_grids_shrinks_with_their_pixels() -> None:
@@ -177,10 +212,16 @@ def test_error_of_grids_shrinks_with_their_pixels() -> None:
     errors = []
     for n in (10, 20, 40):
         stable, total = grid("fig3", n)
-        errors.append(grid_error(known["index"], found.grid(n).cell.T, shown_count(stable, total, "index")))
+        errors.append(
+            grid_error(known["index"], found.grid(n).cell.T, shown_count(stable, total, "index"))
+        )
     assert [e["wrong_centres"] for e in errors] == [0, 0, 0]
     assert errors[0]["wrong"][0] > 1.5 * errors[1]["wrong"][1] > 2.25 * errors[2]["wrong"][1]
-    assert [e["missed"] for e in errors] == [1, 1, 1]  # the sliver of (6, 1) near rho = 0 is between the centres
+    assert [e["missed"] for e in errors] == [
+        1,
+        1,
+        1,
+    ]  # the sliver of (6, 1) near rho = 0 is between the centres
     assert errors[2]["faintest"] is not None and errors[2]["faintest"][0] == 0
     assert errors[2]["distance"] is not None and errors[2]["distance"][0] > 0.05
 
@@ -199,9 +240,15 @@ def test_wrong_counts_are_seen() -> None:
     assert grid_error(known["stable"], cells, damaged)["undetermined"] == 1 / 400
 
 
-@given(st.fractions(0, 1, max_denominator=97).filter(lambda h: 0 < h < 1), st.integers(1, 9), st.integers(1, 9))
+@given(
+    st.fractions(0, 1, max_denominator=97).filter(lambda h: 0 < h < 1),
+    st.integers(1, 9),
+    st.integers(1, 9),
+)
 def test_distance_of_two_levels(height: Fraction, n: int, row: int) -> None:
-    """A level wall and a level boundary that is drawn at a pixel's edge are as far apart as their heights."""
+    """A level wall and a level boundary that is drawn at a pixel's edge are as far apart as their
+    heights.
+    """
     if row >= n:
         return
     picture = np.ones((n, n), dtype=np.int16)
@@ -231,7 +278,10 @@ def test_companion_and_newton_agree_where_both_are_right() -> None:
         ("fig4", 40),
         ("forces", 30),
         ("horizontal", 30),
-        *(pytest.param(name, 30, marks=pytest.mark.slow) for name in ("unequal-springs", "stiffness")),
+        *(
+            pytest.param(name, 30, marks=pytest.mark.slow)
+            for name in ("unequal-springs", "stiffness")
+        ),
     ],
 )
 @pytest.mark.slow_cases("horizontal-30", "forces-30")
@@ -248,7 +298,9 @@ def test_companion_is_right_at_centres(name: str, n: int) -> None:
 
 
 def test_error_of_a_certified_map() -> None:
-    """Nothing but its cover is wrong, which is measured exactly; a count that is changed shows with its cell's area."""
+    """Nothing but its cover is wrong, which is measured exactly; a count that is changed shows with
+    its cell's area.
+    """
     pytest.importorskip("numba")
     found, known = exact("fig3")
     result = ptmcad.classify(found.slice, engine="certified", tolerance="1/5")
@@ -257,7 +309,9 @@ def test_error_of_a_certified_map() -> None:
         assert error is not None
         assert abs(error["wrong"][0] - result.undetermined) < 1e-6
         assert error["wrong"][1] - error["wrong"][0] < 1e-5
-    largest = max(range(len(result.cells)), key=lambda n: result.regions[result.cells[n].region].area[0])
+    largest = max(
+        range(len(result.cells)), key=lambda n: result.regions[result.cells[n].region].area[0]
+    )
     cells = list(result.cells)
     cells[largest] = replace(cells[largest], stable=7)
     damaged = cover_error(known["stable"], replace(result, cells=tuple(cells)), "stable")
@@ -267,7 +321,9 @@ def test_error_of_a_certified_map() -> None:
 
 @pytest.mark.slow
 def test_error_of_a_certified_map_with_slanted_pieces() -> None:
-    """What is between tubes is shown: the error is near the undetermined share, and another count is seen."""
+    """What is between tubes is shown: the error is near the undetermined share, and another count
+    is seen.
+    """
     pytest.importorskip("numba")
     slice = ptmcad.load(CONFIGS / "systems" / "cubic.yaml")
     known = truths(ptmcad.classify(slice))
@@ -276,8 +332,15 @@ def test_error_of_a_certified_map_with_slanted_pieces() -> None:
     assert result.cover is not None and result.cover.patches
     error = cover_error(known["total"], result, "total")
     assert error is not None and error["faintest"] is not None
-    assert error["wrong"][0] <= result.undetermined <= error["wrong"][1] < result.undetermined + Fraction(1, 10**4)
+    assert (
+        error["wrong"][0]
+        <= result.undetermined
+        <= error["wrong"][1]
+        < result.undetermined + Fraction(1, 10**4)
+    )
     assert error["faintest"][0] > 0.99
     first = replace(result.cells[0], total=7)
-    damaged = cover_error(known["total"], replace(result, cells=(first, *result.cells[1:])), "total")
+    damaged = cover_error(
+        known["total"], replace(result, cells=(first, *result.cells[1:])), "total"
+    )
     assert damaged is not None and damaged["wrong"][0] > 0.1

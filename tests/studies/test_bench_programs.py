@@ -1,4 +1,6 @@
-"""Programs beside ptmcad: they get the right question, and what they answer or do not answer is told as that."""
+"""Programs beside ptmcad: they get the right question, and what they answer or do not answer is
+told as that.
+"""
 
 from __future__ import annotations
 
@@ -36,32 +38,41 @@ def case(folder: Path, exact: RegionMap | None, name: str = "systems/cubic") -> 
 def terms_of(polynomial: str) -> set[tuple[str, ...]]:
     """The terms, whatever their order and that of their factors."""
     return {
-        tuple(sorted(term.split("*"))) for term in re.findall(r"[+-]?[^+-]+", "+" * (polynomial[0] != "-") + polynomial)
+        tuple(sorted(term.split("*")))
+        for term in re.findall(r"[+-]?[^+-]+", "+" * (polynomial[0] != "-") + polynomial)
     }
 
 
 def test_the_question_about_a_slice() -> None:
-    """The system that ``ptmcad variety --format msolve`` writes, with other names for its variables."""
+    """The system that ``ptmcad variety --format msolve`` writes, with other names for its
+    variables.
+    """
     slice = ptmcad.load(CONFIGS / "systems" / "cubic.yaml")
     assert programs.elimination(slice, True) == (["v0", "u0", "u1"], ["v0^3-v0*u0+u1", "3*v0^2-u0"])
     kuramoto = ptmcad.load(CONFIGS / "systems" / "kuramoto.yaml")
     names, polynomials = programs.elimination(kuramoto, False)
     given, _, *lines = ptmcad.slice_variety(kuramoto).text("msolve").splitlines()
     renamed = dict(zip(given.split(","), names, strict=True))
-    expected = [re.sub(r"[^\W\d]\w*", lambda name: renamed[name[0]], line.rstrip(",")) for line in lines]
+    expected = [
+        re.sub(r"[^\W\d]\w*", lambda name: renamed[name[0]], line.rstrip(",")) for line in lines
+    ]
     assert [terms_of(p) for p in polynomials] == [terms_of(p) for p in expected]
 
 
 @needs_qepcad
 @pytest.mark.parametrize("base", [0, 1])
-def test_qepcad_gets_the_axis_first_over_which_the_maps_stacks_stand(base: int, tmp_path: Path) -> None:
+def test_qepcad_gets_the_axis_first_over_which_the_maps_stacks_stand(
+    base: int, tmp_path: Path
+) -> None:
     found = jobs("qepcad", case(tmp_path, replace(cubic(), base=base)))
     assert not isinstance(found, str)
     (job,) = found
     assert job.text.splitlines()[1] == ("(a, b)" if base == 0 else "(b, a)")
 
 
-def test_what_cannot_be_asked_has_its_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_cannot_be_asked_has_its_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(programs.shutil, "which", lambda name: None)
     monkeypatch.setattr(programs.msolve, "program", lambda: None)
     monkeypatch.setattr(study, "find_spec", lambda name: None)
@@ -77,7 +88,9 @@ def test_what_cannot_be_asked_has_its_reason(tmp_path: Path, monkeypatch: pytest
     assert jobs("exact", free) == "square roots: springs have a free length"
 
 
-def test_without_a_map_there_are_no_curves_to_decompose(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_map_there_are_no_curves_to_decompose(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(study, "find_spec", lambda name: True)
     assert jobs("gcad", case(tmp_path, None)) == "there are no finished curves"
     assert jobs("qepcad", case(tmp_path, None)) == "there are no finished curves"
@@ -148,8 +161,12 @@ def test_recorded_answers_are_compared(tmp_path: Path) -> None:
     assert agreement("msolve", "[4a3-27b2]:", tmp_path).startswith("DIFFERS: cannot be read")
     assert agreement("gcad", '{"cells": 5}', tmp_path) == "5 cells, the map has 4"
     assert agreement("qepcad", QEPCAD, tmp_path).startswith("DIFFERS: 1 cells, in 1 of the map's 4")
-    assert agreement("qepcad", QEPCAD.replace(": T", ": F"), tmp_path).startswith("DIFFERS: cannot be read")
-    irrational = QEPCAD.replace("Coordinate 2 = 1/2", "Coordinate 2 = the unique root of x^2 - 2 between 1 and 2")
+    assert agreement("qepcad", QEPCAD.replace(": T", ": F"), tmp_path).startswith(
+        "DIFFERS: cannot be read"
+    )
+    irrational = QEPCAD.replace(
+        "Coordinate 2 = 1/2", "Coordinate 2 = the unique root of x^2 - 2 between 1 and 2"
+    )
     assert agreement("qepcad", irrational, tmp_path).startswith("DIFFERS: cannot be read")
 
 
@@ -160,7 +177,10 @@ def test_recorded_answers_are_compared(tmp_path: Path) -> None:
         (programs.END, SINGULAR[:20]),
         (programs.END, ""),
         (programs.QUIT, QEPCAD[: QEPCAD.index("Quitting")]),
-        (programs.QUIT, QEPCAD + "Failure occurred in: GCSI\nReason for the failure: too few cells"),
+        (
+            programs.QUIT,
+            QEPCAD + "Failure occurred in: GCSI\nReason for the failure: too few cells",
+        ),
     ],
 )
 def test_a_session_without_an_answer(end: str, output: str) -> None:
@@ -168,10 +188,16 @@ def test_a_session_without_an_answer(end: str, output: str) -> None:
 
 
 def test_a_session_with_an_answer() -> None:
-    assert programs.incomplete(programs.END, told(SINGULAR)) == programs.incomplete(programs.QUIT, told(QEPCAD)) == ""
+    assert (
+        programs.incomplete(programs.END, told(SINGULAR))
+        == programs.incomplete(programs.QUIT, told(QEPCAD))
+        == ""
+    )
 
 
-def test_singular_gets_the_system_in_names_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_singular_gets_the_system_in_names_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A variable may be called as something else is in Singular, as the axis r of orthogonal-3r."""
     monkeypatch.setattr(programs.shutil, "which", lambda name: name)
     found = jobs("singular", case(tmp_path, cubic()))
@@ -184,14 +210,21 @@ def test_singular_gets_the_system_in_names_of_its_own(tmp_path: Path, monkeypatc
 
 def test_curves_are_compared_as_sets_of_irreducible_ones() -> None:
     result = shipped("fig2")
-    lines = [c.polynomial.text(("u0", "u1")).replace(" ", "") for c in result.components if c.kind.value == "critical"]
+    lines = [
+        c.polynomial.text(("u0", "u1")).replace(" ", "")
+        for c in result.components
+        if c.kind.value == "critical"
+    ]
     product = programs.curves(lines, factors=True)
     assert programs.same_curves(result, product)[0]
     both = programs.curves(["2*u0^2-2*u1^2", "1/3*u0+1/3*u1"])
     assert both == programs.curves(["u0+u1"], factors=True)
     assert not programs.same_curves(result, set(list(product)[1:]))[0]
     other = programs.curves(["7*u0-3*u1"])
-    assert programs.same_curves(result, product | other) == (False, "4 of 4 critical curves, 1 others")
+    assert programs.same_curves(result, product | other) == (
+        False,
+        "4 of 4 critical curves, 1 others",
+    )
     with pytest.raises(ValueError, match="not understood"):
         programs.curves(["u0+q"])
 

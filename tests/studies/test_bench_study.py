@@ -1,4 +1,6 @@
-"""`ptmcad bench`: what is stored, compared, said and drawn, on studies that are made up; and the command itself."""
+"""`ptmcad bench`: what is stored, compared, said and drawn, on studies that are made up; and the
+command itself.
+"""
 
 from __future__ import annotations
 
@@ -65,7 +67,9 @@ def pixels(n: int, seconds: float, wrong: float, missed: int, faint: float) -> R
 
 def exact(tolerance: str, seconds: float, width: float) -> Row:
     taken = {"seconds": times(seconds), "computing": times(seconds - 0.1), "peak": 35.0}
-    return measurement("exact", f"area tolerance {tolerance}", **taken, figures={"index": NONE}, area_width=width)
+    return measurement(
+        "exact", f"area tolerance {tolerance}", **taken, figures={"index": NONE}, area_width=width
+    )
 
 
 STUDY: Row = {
@@ -86,7 +90,9 @@ STUDY: Row = {
         pixels(25, 0.2, 0.02, 1, 0.0),
         pixels(400, 1.5, 0.001, 0, 0.4),
         pixels(800, 6.0, 0.0005, 0, 0.992),
-        measurement("companion", "N = 1600", reason="left out: the 60 s for each method were used up"),
+        measurement(
+            "companion", "N = 1600", reason="left out: the 60 s for each method were used up"
+        ),
         measurement(
             "qepcad",
             "where 6, where 4",
@@ -124,7 +130,9 @@ def test_written_and_read_again() -> None:
     ],
     ids=str,
 )
-def test_damaged_documents_are_refused_with_the_place(path: tuple[Any, ...], value: Any, told: str) -> None:
+def test_damaged_documents_are_refused_with_the_place(
+    path: tuple[Any, ...], value: Any, told: str
+) -> None:
     data = json.loads(write_study(STUDY))
     at = data
     for key in path[:-1]:
@@ -134,7 +142,9 @@ def test_damaged_documents_are_refused_with_the_place(path: tuple[Any, ...], val
         study_of(json.dumps(data))
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "docs" / "benchmarks").glob("*.bench.json")), ids=lambda p: p.stem)
+@pytest.mark.parametrize(
+    "path", sorted((ROOT / "docs" / "benchmarks").glob("*.bench.json")), ids=lambda p: p.stem
+)
 def test_stored_studies_are_valid(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     jsonschema.validate(json.loads(text), SCHEMA)
@@ -171,7 +181,10 @@ def test_rounding_keeps_bounds(a: Fraction, b: Fraction) -> None:
 
 def test_smallest_grids() -> None:
     said = " ".join(sentences(STUDY))
-    assert "by index: the smallest grid with a pixel in each is 400 x 400; with at least 99% of each, 800 x 800" in said
+    assert (
+        "by index: the smallest grid with a pixel in each is 400 x 400; with at least 99% of each, 800 x 800"
+        in said
+    )
     assert "by equilibria: the smallest grid with a pixel in each is none up to 800 x 800" in said
     assert "no error after 0.30 s; the 400 x 400 grid has 5.0 times that time" in said
 
@@ -185,7 +198,9 @@ def verdicts(found: tuple[Row, ...]) -> dict[tuple[str, str], list[str]]:
 
 def test_the_same_study_has_not_changed() -> None:
     assert {c["verdict"] for c in compare(STUDY, STUDY)} == {"same"}
-    assert comparison_table(compare(STUDY, STUDY)).endswith("nothing became slower or worse beyond noise")
+    assert comparison_table(compare(STUDY, STUDY)).endswith(
+        "nothing became slower or worse beyond noise"
+    )
 
 
 @pytest.mark.parametrize(
@@ -194,8 +209,14 @@ def test_the_same_study_has_not_changed() -> None:
         (changed(0, seconds=times(0.6)), "slower"),
         (changed(0, seconds=times(0.1)), "faster"),
         (changed(0, seconds=times(0.32)), "same"),  # within a tenth and the spread
-        (changed(0, seconds={**times(0.6), "minimum": 0.31, "maximum": 0.7}), "same"),  # one of its runs was as fast
-        (changed(0, seconds=times(0.42, runs=1, spread=0.0)), "same"),  # once: half as much again is noise
+        (
+            changed(0, seconds={**times(0.6), "minimum": 0.31, "maximum": 0.7}),
+            "same",
+        ),  # one of its runs was as fast
+        (
+            changed(0, seconds=times(0.42, runs=1, spread=0.0)),
+            "same",
+        ),  # once: half as much again is noise
         (changed(0, seconds=times(0.6, runs=1, spread=0.0)), "slower"),
         (changed(0, area_width=3e-3), "worse"),
         (changed(0, area_width=1e-3), "better"),
@@ -218,7 +239,10 @@ def test_a_slower_machine_is_no_slower_program() -> None:
 
     def slow(m: Row) -> Row:
         t = m["seconds"]
-        return {**m, "seconds": t and {name: x if name == "runs" else 3 * x for name, x in t.items()}}
+        return {
+            **m,
+            "seconds": t and {name: x if name == "runs" else 3 * x for name, x in t.items()},
+        }
 
     there = {**STUDY, "floor": times(0.6), "measurements": tuple(map(slow, STUDY["measurements"]))}
     assert not {*BAD} & {c["verdict"] for c in compare(STUDY, there)}
@@ -252,7 +276,9 @@ def test_a_record_is_there_in_any_folder(tmp_path: Path, monkeypatch: pytest.Mon
     """What ``ptmcad bench`` measures without CONFIG."""
     monkeypatch.chdir(tmp_path)
     assert load("fig4").name == "fig4"
-    with pytest.raises(ConfigError, match="fig6: there is no such file, and no record of this name is shipped"):
+    with pytest.raises(
+        ConfigError, match="fig6: there is no such file, and no record of this name is shipped"
+    ):
         load("fig6")
 
 
@@ -265,13 +291,20 @@ def test_a_record_is_there_in_any_folder(tmp_path: Path, monkeypatch: pytest.Mon
         (["--time-limit", "0"], "--time-limit: 0.0 is not a positive number"),
         (["--compare", "a.json", "b.json"], "a.json"),
         (["--compare", "a.json", "b.json", "fig4.yaml"], "takes no CONFIG"),
-        ([str(CONFIGS / "fig3.yaml"), str(CONFIGS / "fig3.yaml")], "two records have the name fig3"),
+        (
+            [str(CONFIGS / "fig3.yaml"), str(CONFIGS / "fig3.yaml")],
+            "two records have the name fig3",
+        ),
         ([str(CONFIGS / "fig3.yaml"), "--out", "file"], "file"),
     ],
     ids=lambda x: " ".join(x)[-40:] if isinstance(x, list) else "",
 )
 def test_bad_input_gets_one_message(
-    arguments: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    arguments: list[str],
+    told: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("file").write_text("", encoding="utf-8")
@@ -284,12 +317,17 @@ def test_bad_input_gets_one_message(
 
 @pytest.mark.slow
 def test_one_slice_by_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """All files are written, belong together, and can be read by what reads them; the reference passed verify."""
+    """All files are written, belong together, and can be read by what reads them; the reference
+    passed verify.
+    """
     arguments = ["bench", str(CONFIGS / "fig2.yaml"), "--quick", "--rounds", "1", "--method", "exact", "--method",
                  "companion", "--page", "--out", str(tmp_path)]  # fmt: skip
     assert run(arguments) == 0
     shown = capsys.readouterr().out
-    names = {f"fig2.{s}" for s in ("bench.json", "bench.csv", "bench.svg", "bench.png", "error-time.json")}
+    names = {
+        f"fig2.{s}"
+        for s in ("bench.json", "bench.csv", "bench.svg", "bench.png", "error-time.json")
+    }
     assert {path.name for path in tmp_path.iterdir()} == names | {"error-time.md"}
     study = study_of((tmp_path / "fig2.bench.json").read_text(encoding="utf-8"))
     assert study["verified"] is True
@@ -302,9 +340,9 @@ def test_one_slice_by_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]
         assert wrong == (0.0, 0.0) if m["method"] == "exact" else 0 < wrong[0] < 0.1
     assert terminal(study) in shown
     assert len(read_error_curve(tmp_path / "fig2.error-time.json").series) == 2
-    assert "![Error against seconds for fig2](fig2.bench.svg)" in (tmp_path / "error-time.md").read_text(
-        encoding="utf-8"
-    )
+    assert "![Error against seconds for fig2](fig2.bench.svg)" in (
+        tmp_path / "error-time.md"
+    ).read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
@@ -331,7 +369,10 @@ def test_a_zero_is_drawn_below_the_logarithms() -> None:
     assert axes.get_ylim()[0] < 0
     assert (
         len(
-            {line.get_color() + line.get_marker() + str(line.get_linestyle()) for line in figure.legends[0].get_lines()}
+            {
+                line.get_color() + line.get_marker() + str(line.get_linestyle())
+                for line in figure.legends[0].get_lines()
+            }
         )
         == 4
     )
@@ -354,7 +395,9 @@ def test_page_tells_what_is_left_out_and_what_is_claimed() -> None:
     assert "passed `ptmcad verify`" in text
     assert "did NOT pass" in page([{**STUDY, "verified": False}])
     assert "](fig4.bench.svg)" in text
-    assert ".svg" not in page([{**STUDY, "measurements": STUDY["measurements"][-1:]}])  # nothing to draw
+    assert ".svg" not in page(
+        [{**STUDY, "measurements": STUDY["measurements"][-1:]}]
+    )  # nothing to draw
 
 
 STOPPING = """
@@ -370,8 +413,12 @@ raise SystemExit(main())
 
 
 @pytest.mark.slow
-def test_a_certified_run_that_is_stopped_is_a_point_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What was left undetermined then, marked; what no time is left for is left out. No clock decides which."""
+def test_a_certified_run_that_is_stopped_is_a_point_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was left undetermined then, marked; what no time is left for is left out. No clock
+    decides which.
+    """
     pytest.importorskip("numba")
     taken = {"1e-1": 2.0, "1e-2": 5.0, "1e-3": 593.0}
 
@@ -383,7 +430,14 @@ def test_a_certified_run_that_is_stopped_is_a_point_too(tmp_path: Path, monkeypa
 
     measured = harness.run
     monkeypatch.setattr(harness, "run", timed)
-    arguments = ["bench", str(ROOT / "configs" / "free02.yaml"), "--method", "certified", "--rounds", "1"]
+    arguments = [
+        "bench",
+        str(ROOT / "configs" / "free02.yaml"),
+        "--method",
+        "certified",
+        "--rounds",
+        "1",
+    ]
     assert run([*arguments, "--time-limit", "600", "--out", str(tmp_path)]) == 0
     study = study_of((tmp_path / "free02.bench.json").read_text(encoding="utf-8"))
     told = {m["setting"].split()[-1]: m for m in study["measurements"]}
@@ -391,7 +445,11 @@ def test_a_certified_run_that_is_stopped_is_a_point_too(tmp_path: Path, monkeypa
         m = told.pop(tolerance)
         assert m["seconds"]["median"] == seconds
         share = next(iter(m["figures"].values()))["undetermined"]
-        assert (share > float(tolerance)) == ("stopped at the limit" in m["note"]) == (tolerance == "1e-3")
+        assert (
+            (share > float(tolerance))
+            == ("stopped at the limit" in m["note"])
+            == (tolerance == "1e-3")
+        )
         assert share < 1
     left_out = told.pop("1e-4")
     assert left_out["seconds"] is None and left_out["reason"].startswith("left out")

@@ -71,7 +71,12 @@ def test_pages_escape_what_they_show() -> None:
     assert set(Links(page).names) == {claim.name for claim in made_up()}
     text = claims_markdown(made_up())
     assert r"\_x\_" in text and "&lt;b>" in text
-    assert re.findall(r"^## (.*)$", text, re.MULTILINE) == ["Abstract", "Section 2", "Section 3", "Conclusions"]
+    assert re.findall(r"^## (.*)$", text, re.MULTILINE) == [
+        "Abstract",
+        "Section 2",
+        "Section 3",
+        "Conclusions",
+    ]
 
 
 def test_index_is_self_contained_and_names_what_is_not_confirmed() -> None:
@@ -116,7 +121,9 @@ def test_equations_are_the_right_ones() -> None:
     k = names["k"]
 
     def stated(name: str, key: str = "printed") -> sp.Expr:
-        return sp.sympify(texts()[name][key][0].partition(" = ")[2].replace("^", "**"), locals=names)
+        return sp.sympify(
+            texts()[name][key][0].partition(" = ")[2].replace("^", "**"), locals=names
+        )
 
     fifteen, sixteen = (
         sp.sympify(text.replace("^", "**"), locals=names | {"F": names["F4"]})
@@ -130,26 +137,38 @@ def test_equations_are_the_right_ones() -> None:
     assert sp.expand(read("(15)") - fifteen) == 0
     assert sp.expand(read("(16)") - sixteen) == 0
     root = k * names["rho"] * names["t2"] ** 2 - names["F4"] * names["t2"] - k * names["rho"]
-    assert sp.cancel(read("(13)") + 4 * names["L1"] ** 2 * root**2 / (1 + names["t2"] ** 2) ** 2) == 0
+    assert (
+        sp.cancel(read("(13)") + 4 * names["L1"] ** 2 * root**2 / (1 + names["t2"] ** 2) ** 2) == 0
+    )
 
 
 def test_latex_is_balanced() -> None:
     text = equations.as_latex()
-    assert text.count(r"\begin{dmath*}") == text.count(r"\end{dmath*}") == len(equations.equations())
+    assert (
+        text.count(r"\begin{dmath*}") == text.count(r"\end{dmath*}") == len(equations.equations())
+    )
     for left, right in (("{", "}"), (r"\left(", r"\right)")):
         assert text.count(left) == text.count(right)
 
 
 def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "ptmcad", "paper", *arguments], cwd=cwd, capture_output=True, text=True, check=False
+        [sys.executable, "-m", "ptmcad", "paper", *arguments],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        check=False,
     )
 
 
 def test_unwritable_folder_is_one_message(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("kept")
     done = run("--out", "file", cwd=tmp_path)
-    assert done.returncode == 2 and done.stderr.startswith("error: ") and "Traceback" not in done.stderr
+    assert (
+        done.returncode == 2
+        and done.stderr.startswith("error: ")
+        and "Traceback" not in done.stderr
+    )
     assert (tmp_path / "file").read_text() == "kept"
 
 
@@ -162,7 +181,9 @@ def test_time_limit_leaves_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_whole_paper_under_a_minute(tmp_path: Path) -> None:
-    """Issue 4: ``ptmcad paper`` ends under 60 s on 2 cores (its own clock, which a loaded machine slows)."""
+    """Issue 4: ``ptmcad paper`` ends under 60 s on 2 cores (its own clock, which a loaded machine
+    slows).
+    """
     done = run("--out", "out", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert {p.name for p in (tmp_path / "out").iterdir()} == set(FILES)
@@ -177,4 +198,6 @@ def test_the_whole_paper_under_a_minute(tmp_path: Path) -> None:
         if not reference.startswith(("data:", "#")):
             assert (tmp_path / "out" / reference.partition("#")[0]).exists()
     names = set(Links((tmp_path / "out" / "claims.html").read_text()).names)
-    assert {r.partition("#")[2] for r in Links(page).references if r.startswith("claims.html#")} <= names
+    assert {
+        r.partition("#")[2] for r in Links(page).references if r.startswith("claims.html#")
+    } <= names

@@ -12,7 +12,9 @@ from ptmcad.studies import byhand
 
 
 def test_the_derivatives_by_hand_are_those_of_the_record() -> None:
-    """With free lengths, springs that differ and all loads: mpmath differentiates the energy that the record says."""
+    """With free lengths, springs that differ and all loads: mpmath differentiates the energy that
+    the record says.
+    """
     p = {name: 0.3 + 0.2 * n for n, name in enumerate(ptm().parameters)}
     at = (0.7, -2.1)
     found = byhand.at(p, *(np.array(angle) for angle in at))

@@ -60,16 +60,26 @@ def test_the_engine_finds_the_regions_of_many_folds(name: str, n: int) -> None:
 
 
 @settings(max_examples=examples(40))
-@given(st.sampled_from(FOLDED), st.fractions(0, 1, max_denominator=997), st.fractions(0, 1, max_denominator=991))
-def test_folds_have_the_known_count_everywhere(which: tuple[str, int], s: Fraction, t: Fraction) -> None:
-    """2 stable poses where |L2 - L1| < 2 rho < L2 + L1 (REFERENCE: unloaded), at any point off these lines."""
+@given(
+    st.sampled_from(FOLDED),
+    st.fractions(0, 1, max_denominator=997),
+    st.fractions(0, 1, max_denominator=991),
+)
+def test_folds_have_the_known_count_everywhere(
+    which: tuple[str, int], s: Fraction, t: Fraction
+) -> None:
+    """2 stable poses where |L2 - L1| < 2 rho < L2 + L1 (REFERENCE: unloaded), at any point off
+    these lines.
+    """
     result = folded(*which)
     slice = result.slice
     at = tuple(a.low + (a.high - a.low) * u for a, u in zip(slice.axes, (s, t), strict=True))
     rho, bar = (slice.parameters[p].evaluate(*at) for p in ("rho", "L2"))
     if 0 < s < 1 and 0 < t < 1 and 2 * rho not in (abs(bar - 1), bar + 1):
         found = result.locate(**dict(zip(slice.axis_names, at, strict=True)))
-        if found.stable is not None:  # on a wall of the decomposition that is none of the variety, none is asked
+        if (
+            found.stable is not None
+        ):  # on a wall of the decomposition that is none of the variety, none is asked
             assert found.stable == (2 if abs(bar - 1) < 2 * rho < bar + 1 else 1)
 
 
@@ -108,7 +118,9 @@ def test_every_size_is_a_record_and_another_seed_draws_another(name: str) -> Non
 
 
 def fitted(points: Mapping[float, float]) -> float | None:
-    return exponent(pd.DataFrame({"setting": points.keys(), "computing": points.values()}, dtype=float))
+    return exponent(
+        pd.DataFrame({"setting": points.keys(), "computing": points.values()}, dtype=float)
+    )
 
 
 @settings(max_examples=examples(40))
@@ -136,7 +148,9 @@ def test_without_two_sizes_there_is_no_fit(points: dict[float, float]) -> None:
 
 
 def test_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Rows for each size and for the fits; another number of regions is a failure; the picture is drawn."""
+    """Rows for each size and for the fits; another number of regions is a failure; the picture is
+    drawn.
+    """
     small = FAMILIES["fold"]._replace(sizes=(1, 2, 3), regions=lambda n: n + 3 if n < 3 else 4)
     monkeypatch.setattr(scaling, "FAMILIES", {"small": small})
     assert command.main(["scaling", "small", "--rounds", "1", "--out", str(tmp_path)]) == 0

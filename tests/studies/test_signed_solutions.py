@@ -1,8 +1,10 @@
-"""All solutions of the equations with free lengths, over all signs of the lengths: exact elimination against others.
+"""All solutions of the equations with free lengths, over all signs of the lengths: exact
+elimination against others.
 
-Known answers: the reference values of the project for section 5.2 of the paper (128 complex solutions, 124 unloaded;
-6, 12, 26 and 30 equilibria). Other ways: msolve on the system in cosines, sines and 1/l_i, derived by SymPy from the
-energy; Krawczyk's test and Newton's method; the symmetries of the mechanism.
+Known answers: the reference values of the project for section 5.2 of the paper (128 complex
+solutions, 124 unloaded; 6, 12, 26 and 30 equilibria). Other ways: msolve on the system in cosines,
+sines and 1/l_i, derived by SymPy from the energy; Krawczyk's test and Newton's method; the
+symmetries of the mechanism.
 """
 
 from __future__ import annotations
@@ -26,7 +28,9 @@ PAPER: Numbers = ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10")
 UNLOADED: Numbers = ("7/10", "1", "3/2", "1/5", "0", "0")
 THIRTY: Numbers = ("0.75609", "1", "1", "1.43487", "0", "0")
 FLAT = 4
-"""Without loads there are so many flat poses, which are multiple roots, each a solution for all eight signs."""
+"""Without loads there are so many flat poses, which are multiple roots, each a solution for all
+eight signs.
+"""
 
 
 @pytest.mark.parametrize(("numbers", "total", "real", "equilibria"), [
@@ -45,7 +49,9 @@ def test_numbers_of_solutions(numbers: Numbers, total: int, real: int, equilibri
 
 @pytest.mark.slow
 def test_simple_roots_are_accounted_for() -> None:
-    """256 = 128 solutions + 128 pairs of equations with opposite signs of l3, at the design of section 5.2."""
+    """256 = 128 solutions + 128 pairs of equations with opposite signs of l3, at the design of
+    section 5.2.
+    """
     found = signed_solutions(PAPER)
     assert (len(found.solutions), found.opposed, found.unsettled) == (128, 128, 0)
     assert len({signs for *_, signs in found.solutions}) == 8
@@ -61,7 +67,9 @@ def test_solutions_satisfy_the_equations() -> None:
         (c1, s1), (c2, s2) = (((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)) for t in (t1, t2))
         x3, y3, x4, y4 = length1 * c1, length1 * s1, rho - length2 * c2, length2 * s2
         squares = (x4**2 + y4**2, (x3 - rho) ** 2 + y3**2, (x3 - x4) ** 2 + (y3 - y4) ** 2)
-        m1, m2, m3 = (1 - free / (sign * square**0.5) for sign, square in zip(signs, squares, strict=True))
+        m1, m2, m3 = (
+            1 - free / (sign * square**0.5) for sign, square in zip(signs, squares, strict=True)
+        )
         s12 = s1 * c2 + c1 * s2
         size = 1 + abs(s1 * c2) + abs(c1 * s2) + abs(m1) + abs(m2) + abs(m3)
         assert abs(m2 * rho * s1 + m3 * (rho * s1 - length2 * s12) - f3 * c1) < 1e-9 * size**2
@@ -88,7 +96,10 @@ def test_equilibria_one_by_one(numbers: Numbers) -> None:
     rounded = lambda values: sorted((round(a, 9), round(b, 9)) for a, b in values)  # noqa: E731
     roots = [(2 * atan(float(x.real)), 2 * atan(float(y.real))) for x, y, signs in signed_solutions(numbers).solutions
              if y.imag == 0 and signs == (1, 1, 1)]  # fmt: skip
-    poses = [tuple(float(angle.center) for angle in p.angles) for p in free.equilibria(numbers).equilibria]
+    poses = [
+        tuple(float(angle.center) for angle in p.angles)
+        for p in free.equilibria(numbers).equilibria
+    ]
     assert rounded(roots) == rounded(poses)
     assert free_length_equilibria(*(float(Fraction(x)) for x in numbers)) <= len(poses)
 
@@ -110,7 +121,10 @@ def system(numbers: Numbers) -> tuple[list[str], list[str]]:
     ]  # fmt: skip
     equations = [c1**2 + s1**2 - 1, c2**2 + s2**2 - 1, *torques]
     equations += [v**2 * q - 1 for v, q in zip((v1, v2, v3), squares, strict=True)]
-    texts = [str(sympy.Poly(e, *unknowns).clear_denoms()[1].as_expr()).replace("**", "^") for e in equations]
+    texts = [
+        str(sympy.Poly(e, *unknowns).clear_denoms()[1].as_expr()).replace("**", "^")
+        for e in equations
+    ]
     return [str(u) for u in unknowns], texts
 
 
@@ -119,13 +133,19 @@ def system(numbers: Numbers) -> tuple[list[str], list[str]]:
     PAPER, UNLOADED, *(pytest.param(random_design(n), marks=pytest.mark.slow) for n in range(4)),
 ])  # fmt: skip
 def test_real_solutions_by_msolve(numbers: Numbers) -> None:
-    """Real solutions over all signs: a Groebner basis and a rational parametrisation instead of a resultant."""
-    assert real_solutions(*system(numbers)) == signed_solutions(numbers).real + 8 * (FLAT if numbers == UNLOADED else 0)
+    """Real solutions over all signs: a Groebner basis and a rational parametrisation instead of a
+    resultant.
+    """
+    assert real_solutions(*system(numbers)) == signed_solutions(numbers).real + 8 * (
+        FLAT if numbers == UNLOADED else 0
+    )
 
 
 @pytest.mark.slow
 def test_symmetries() -> None:
-    """Swapping the rods with their loads, reversing the loads, scaling lengths keep all counts; l0 -> -l0 the signs."""
+    """Swapping the rods with their loads, reversing the loads, scaling lengths keep all counts;
+    l0 -> -l0 the signs.
+    """
     rho, length1, length2, length, f3, f4 = ("3/4", "1", "6/5", "9/10", "-1/10", "1/4")
     first = signed_solutions((rho, length1, length2, length, f3, f4))
     swapped = signed_solutions((rho, length2, length1, length, f4, f3))
@@ -136,6 +156,8 @@ def test_symmetries() -> None:
     assert counts == [counts[0]] * 4
 
     def by_signs(found: SignedSolutions, factor: int) -> Counter[tuple[int, ...]]:
-        return Counter(tuple(factor * x for x in signs) for _, t2, signs in found.solutions if t2.imag == 0)
+        return Counter(
+            tuple(factor * x for x in signs) for _, t2, signs in found.solutions if t2.imag == 0
+        )
 
     assert by_signs(first, 1) == by_signs(negative, -1)

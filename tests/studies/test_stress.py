@@ -172,7 +172,8 @@ def test_there_are_enough_cases_and_all_that_was_asked_for() -> None:
     assert len({c.name for c in CASES}) == len(CASES)
     assert all(c.source for c in CASES)
     reach = {
-        family: [math.log10(c.stiffness) for c in CASES if c.family == family] for family in {c.family for c in CASES}
+        family: [math.log10(c.stiffness) for c in CASES if c.family == family]
+        for family in {c.family for c in CASES}
     }
     for family, low, high in (
         ("stiffness", -12, 12), ("lengths", -9, 9), ("short base", -12, -3), ("forces", -30, 30), ("symmetry", -20, -5),
@@ -194,7 +195,9 @@ def test_double_precision_is_wrong() -> None:
     assert [name for name in WRONG_IN_DOUBLES if judged(name)["double_right"]] == []
 
 
-@pytest.mark.parametrize("name", ["units-force-1e30", "units-length-1e-9", "lengths-loaded-1e-9", "fold-few-1e-6"])
+@pytest.mark.parametrize(
+    "name", ["units-force-1e30", "units-length-1e-9", "lengths-loaded-1e-9", "fold-few-1e-6"]
+)
 def test_double_precision_is_right_where_nothing_cancels(name: str) -> None:
     verdict = judged(name)
     assert verdict["double_right"]
@@ -213,10 +216,16 @@ HARDEST = [
 
 
 @pytest.mark.parametrize("case", [pytest.param(c, id=c.name) for c in HARDEST if c is not None])
-@pytest.mark.fast_cases("stiffness-1e-12", "symmetry-inside-1e-20", "node-right-1e-30", "free-length-1e-12")
+@pytest.mark.fast_cases(
+    "stiffness-1e-12", "symmetry-inside-1e-20", "node-right-1e-30", "free-length-1e-12"
+)
 def test_an_extreme_case_takes_at_most_five_times_the_work_of_a_tame_one(case: Case) -> None:
-    """Work is counted in calls of functions, so that no clock is asked; the tame one has ordinary numbers."""
-    tame = point(l0=Fraction(1, 5), F3=-10, F4=-10) if free_lengths(case.question.parameters) else TAME
+    """Work is counted in calls of functions, so that no clock is asked; the tame one has ordinary
+    numbers.
+    """
+    tame = (
+        point(l0=Fraction(1, 5), F3=-10, F4=-10) if free_lengths(case.question.parameters) else TAME
+    )
     assert work_of(case.question) <= 5 * work_of(tame)
 
 
@@ -231,7 +240,8 @@ def test_precision_starts_low_and_grows_by_doubling() -> None:
         if c.family == "units" and not c.question.axes:
             assert ptmcad.solve(**c.question.parameters).bits == tame  # scaling cancels nothing
     reached = [
-        ptmcad.solve(**point(F3=-(Fraction(10) ** e), F4=-(Fraction(10) ** e)).parameters).bits for e in (-5, -15, -30)
+        ptmcad.solve(**point(F3=-(Fraction(10) ** e), F4=-(Fraction(10) ** e)).parameters).bits
+        for e in (-5, -15, -30)
     ]
     assert reached == sorted(reached)
     assert all(bits in (112, 224, 448, 896) for bits in reached)
@@ -240,7 +250,9 @@ def test_precision_starts_low_and_grows_by_doubling() -> None:
 # ---------------------------------------------------------------------------------------------------- constructions
 
 
-@pytest.mark.parametrize(("at", "multiplicity"), [(at, 3 if at.cusp else 2) for at in NAMED.values()], ids=list(NAMED))
+@pytest.mark.parametrize(
+    ("at", "multiplicity"), [(at, 3 if at.cusp else 2) for at in NAMED.values()], ids=list(NAMED)
+)
 def test_constructed_poses_are_degenerate(at: Degenerate, multiplicity: int) -> None:
     """On the fold itself two equilibria coincide, at the cusp three: zero is recognised exactly."""
     poses = ptmcad.solve(**at.parameters)
@@ -270,7 +282,9 @@ def test_cases_expect_what_the_constructions_say() -> None:
 
 
 def test_cases_expect_what_rose_and_astroid_say() -> None:
-    """The counts of the symmetric slice from its two curves, with x = 2 rho and y = |F|/k; L2 = 1 + 1e-20 is near."""
+    """The counts of the symmetric slice from its two curves, with x = 2 rho and y = |F|/k;
+    L2 = 1 + 1e-20 is near.
+    """
     for c in CASES:
         if c.source.startswith("the rose and the astroid"):
             p = c.question.parameters
@@ -310,7 +324,10 @@ def test_newton_in_balls_proves_what_the_sextic_finds() -> None:
 
 def test_newton_in_balls_proves_nothing_at_a_degenerate_pose() -> None:
     c1, s1, c2, s2 = map(float, NAMED["fold"].pose)
-    assert newton_pose(dict(NAMED["fold"].parameters), (math.atan2(s1, c1), math.atan2(s2, c2))) is None
+    assert (
+        newton_pose(dict(NAMED["fold"].parameters), (math.atan2(s1, c1), math.atan2(s2, c2)))
+        is None
+    )
 
 
 def test_double_precision_agrees_on_a_tame_point() -> None:
@@ -327,7 +344,9 @@ def test_a_wrong_answer_is_called_wrong() -> None:
     c = case("stiffness-1e4")
     other = ptmcad.solve(**point(k=10, F3=-10, F4=-10).parameters)
     assert not judge(c, other)["right"]
-    assert "reference" in " ".join(judge(c, ptmcad.solve(**point(k=1001, F3=-10, F4=-10).parameters))["remarks"])
+    assert "reference" in " ".join(
+        judge(c, ptmcad.solve(**point(k=1001, F3=-10, F4=-10).parameters))["remarks"]
+    )
     question = case("window-line-1e-20").question
     low, high = question.axes["rho"]
     halved = Question(question.parameters, {**question.axes, "rho": (low, (low + high) / 2)})
@@ -355,7 +374,11 @@ def test_random_cases_are_the_same_in_every_run_and_of_all_kinds() -> None:
 @settings(max_examples=examples(20), deadline=None)
 def test_symmetries_undo_each_other(seed: int, factor: Fraction) -> None:
     p, _ = tame(random.Random(seed))
-    assert changed(changed(p, "mirrored"), "mirrored") == changed(changed(p, "swapped"), "swapped") == p
+    assert (
+        changed(changed(p, "mirrored"), "mirrored")
+        == changed(changed(p, "swapped"), "swapped")
+        == p
+    )
     assert scaled(scaled(p, factor, 1 / factor**2), 1 / factor, factor**2) == p
 
 
@@ -367,7 +390,12 @@ def test_the_record_holds_every_figure() -> None:
     document = json.loads(to_json(found))
     assert document["complete"] is True
     first, second = document["cases"]
-    assert (first["expected"], first["found"], first["double"], first["right"]) == ("6/2", "6/2", "6/2", True)
+    assert (first["expected"], first["found"], first["double"], first["right"]) == (
+        "6/2",
+        "6/2",
+        "6/2",
+        True,
+    )
     assert second["double_error"] is None  # no pose at all
     page = markdown(found)
     assert "| symmetry-inside-1e-20 | 6/2 | 6/2 | none wrong | - |" in page
@@ -381,7 +409,10 @@ def test_the_record_holds_every_figure() -> None:
 
 @pytest.mark.slow
 def test_the_plot_has_a_panel_for_each_family_and_marks_what_is_wrong() -> None:
-    cases = [case(n) for n in ("fold-many-1e-6", "fold-many-1e-30", "symmetry-inside-1e-20", "stiffness-1e4")]
+    cases = [
+        case(n)
+        for n in ("fold-many-1e-6", "fold-many-1e-30", "symmetry-inside-1e-20", "stiffness-1e4")
+    ]
     figure = draw_stress(campaign(cases, seed=1, repeats=1)["cases"])
     assert [axes.get_title() for axes in figure.axes] == ["fold", "symmetry", "stiffness"]
     right, wrong, _ = figure.axes[0].lines[:3]
@@ -406,8 +437,19 @@ def test_a_table_alone_leaves_no_files(
     assert not list(tmp_path.iterdir())
 
 
-def test_the_command_runs_cases_and_writes_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["stress", "fold-many-1e-30", "--random", "2", "--repeats", "1", "--out", str(tmp_path)]
+def test_the_command_runs_cases_and_writes_files(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = [
+        "stress",
+        "fold-many-1e-30",
+        "--random",
+        "2",
+        "--repeats",
+        "1",
+        "--out",
+        str(tmp_path),
+    ]
     assert run([*arguments, "--format", "table,json,csv,svg"]) == 0
     out = capsys.readouterr().out
     assert "5/2 wrong" in out
@@ -420,8 +462,13 @@ def test_the_command_refuses_unknown_names(capsys: pytest.CaptureFixture[str]) -
     assert "did you mean 'stiffness'" in capsys.readouterr().err
 
 
-def test_a_time_limit_saves_what_there_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["stress", "units", "--timeout", "1e-9", "--format", "json", "--out", str(tmp_path)]) == 3
+def test_a_time_limit_saves_what_there_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert (
+        run(["stress", "units", "--timeout", "1e-9", "--format", "json", "--out", str(tmp_path)])
+        == 3
+    )
     document = json.loads((tmp_path / "stress.partial.json").read_text())
     assert document["complete"] is False
     assert "time limit" in capsys.readouterr().err
@@ -431,7 +478,11 @@ def test_a_wrong_answer_gives_exit_status_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def wrong(_case: Case, _found: object) -> Row:
-        return judged("stiffness-1e4") | {"found": "4/1", "right": False, "remarks": ["total 4, but 6 by construction"]}
+        return judged("stiffness-1e4") | {
+            "found": "4/1",
+            "right": False,
+            "remarks": ["total 4, but 6 by construction"],
+        }
 
     monkeypatch.setattr(campaign_module, "judge", wrong)
     assert run(["stress", "stiffness-1e4", "--repeats", "1", "--format", "table"]) == 1

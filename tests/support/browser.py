@@ -1,7 +1,7 @@
 """A headless Chromium that is driven over its debugging pipe, with the standard library only.
 
-Every request that a page makes, every message on its console and every error of its scripts is kept, so that a test can
-say that there were none.
+Every request that a page makes, every message on its console and every error of its scripts is
+kept, so that a test can say that there were none.
 """
 
 from __future__ import annotations
@@ -19,11 +19,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-PROGRAM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+PROGRAM = (
+    shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+)
 MISSING = "no chromium, chromium-browser or google-chrome is installed"
 PATIENCE = 20.0
 SHOTS = os.environ.get("PTMCAD_TESTS_SCREENSHOTS")
-"""The folder for screenshots, which take as long as the tests themselves and are compared with nothing."""
+"""The folder for screenshots, which take as long as the tests themselves and are compared with
+nothing.
+"""
 _FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run", "--disable-extensions",
     "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
@@ -58,7 +62,9 @@ class Browser:
         self.session: str | None = None
         self.events: list[dict[str, Any]] = []
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
-        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)[
+            "sessionId"
+        ]
         for domain in ("Page", "Runtime", "Log", "Network", "DOM"):
             self.call(f"{domain}.enable")
 
@@ -103,16 +109,22 @@ class Browser:
         self.events.clear()
         self.call("Page.navigate", url=address)
         end = time.monotonic() + PATIENCE
-        while not self.run(f"typeof DATA !== 'undefined' && document.readyState === 'complete' && ({ready})"):
+        while not self.run(
+            f"typeof DATA !== 'undefined' && document.readyState === 'complete' && ({ready})"
+        ):
             if time.monotonic() > end:
                 raise TimeoutError(f"{address}: {self.run('document.body.textContent')[:200]}")
             time.sleep(0.02)
 
     def tab(self) -> str:
-        """Another page of the same browser, to which commands go from now on; what `switch` takes to come back."""
+        """Another page of the same browser, to which commands go from now on; what `switch` takes
+        to come back.
+        """
         before, self.session = self.session, None
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
-        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)[
+            "sessionId"
+        ]
         for domain in ("Page", "Runtime", "Log", "Network", "DOM"):
             self.call(f"{domain}.enable")
         assert before is not None
@@ -127,7 +139,9 @@ class Browser:
 
     def run(self, expression: str) -> Any:
         """The value of a JavaScript expression in the page; a promise is waited for."""
-        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        answer = self.call(
+            "Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True
+        )
         if "exceptionDetails" in answer:
             raise RuntimeError(json.dumps(answer["exceptionDetails"])[:1000])
         return answer["result"].get("value")
@@ -149,7 +163,9 @@ class Browser:
     def media(self, **features: str) -> None:
         """Media features such as ``prefers_color_scheme="dark"``; ``media="print"`` for print."""
         kind = features.pop("media", "")
-        named = [{"name": name.replace("_", "-"), "value": value} for name, value in features.items()]
+        named = [
+            {"name": name.replace("_", "-"), "value": value} for name, value in features.items()
+        ]
         self.call("Emulation.setEmulatedMedia", media=kind, features=named)
 
     def point_at(self, x: float, y: float) -> None:
@@ -169,9 +185,19 @@ class Browser:
         kinds = ["mousePressed", *["mouseMoved"] * (len(places) - 1)]
         self.point_at(*places[0])
         for kind, (x, y) in zip(kinds, places, strict=True):
-            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
+            self.call(
+                "Input.dispatchMouseEvent",
+                type=kind,
+                x=x,
+                y=y,
+                button="left",
+                buttons=1,
+                clickCount=1,
+            )
         x, y = places[-1]
-        self.call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, button="left", clickCount=1)
+        self.call(
+            "Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, button="left", clickCount=1
+        )
 
     def swipe(self, *places: tuple[float, float]) -> None:
         """A finger, put down at the first place and lifted at the last."""
@@ -183,23 +209,33 @@ class Browser:
     def press(self, *keys: str, shift: bool = False) -> None:
         for key in keys:
             code, text = _KEYS[key]
-            base = {"key": key, "code": "Space" if key == " " else key, "windowsVirtualKeyCode": code}
+            base = {
+                "key": key,
+                "code": "Space" if key == " " else key,
+                "windowsVirtualKeyCode": code,
+            }
             base["modifiers"] = 8 if shift else 0
             self.call("Input.dispatchKeyEvent", type="keyDown", text=text, **base)
             self.call("Input.dispatchKeyEvent", type="keyUp", **base)
 
     def picture(self, name: str, whole: bool = True) -> None:
-        """A screenshot for people to look at, of the whole page or of what is seen, if they have asked for it."""
+        """A screenshot for people to look at, of the whole page or of what is seen, if they have
+        asked for it.
+        """
         if SHOTS is None:
             return
         file = Path(SHOTS) / name
-        data = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
+        data = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)[
+            "data"
+        ]
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(base64.b64decode(data))
 
     def printed(self, file: Path) -> None:
         """The page as PDF."""
-        data = self.call("Page.printToPDF", printBackground=True, paperWidth=8.27, paperHeight=11.7)["data"]
+        data = self.call(
+            "Page.printToPDF", printBackground=True, paperWidth=8.27, paperHeight=11.7
+        )["data"]
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(base64.b64decode(data))
 
@@ -207,12 +243,20 @@ class Browser:
         """Errors and messages of the page since it was opened."""
         self.run("0")
         kinds = ("Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded")
-        return [json.dumps(event["params"])[:500] for event in self.events if event.get("method") in kinds]
+        return [
+            json.dumps(event["params"])[:500]
+            for event in self.events
+            if event.get("method") in kinds
+        ]
 
     def requests(self) -> list[str]:
         """Addresses that were asked for since the page was opened."""
         self.run("0")
-        return [e["params"]["request"]["url"] for e in self.events if e.get("method") == "Network.requestWillBeSent"]
+        return [
+            e["params"]["request"]["url"]
+            for e in self.events
+            if e.get("method") == "Network.requestWillBeSent"
+        ]
 
     def close(self) -> None:
         os.close(self.commands)  # the program ends when nobody commands it

@@ -38,9 +38,14 @@ def around(function: Function, depth: int) -> Cover:
 
 
 def certified(
-    cover: Cover, stable: Callable[[float, float], int], count: Count = Count.STABLE, status: Status = Status.CERTIFIED
+    cover: Cover,
+    stable: Callable[[float, float], int],
+    count: Count = Count.STABLE,
+    status: Status = Status.CERTIFIED,
 ) -> RegionMap:
-    """The map of a cover over rho in [0, 2], L2 in [0, 2], one region for each component, largest first."""
+    """The map of a cover over rho in [0, 2], L2 in [0, 2], one region for each component, largest
+    first.
+    """
     record = {
         "name": "by-hand",
         "parameters": {"L1": 1, "k": 100, "F3": -10, "F4": -10, "l0": "1/5"},
@@ -59,7 +64,17 @@ def certified(
         point = Point(slice.axis_names, x, y)
         total, index = 2 * minima + 2, (minima, minima + 1, 1)
         cells.append(Cell(None, n, point, n, total, minima, index, (), {"admissible": minima}))
-        regions.append(Region(minima, total, index, (low * square, high * square), (n,), point, {"admissible": minima}))
+        regions.append(
+            Region(
+                minima,
+                total,
+                index,
+                (low * square, high * square),
+                (n,),
+                point,
+                {"admissible": minima},
+            )
+        )
     open_area = cover.steps**2 - sum(complement.areas)
     system = System(("th1", "th2"), (), "", (), ())
     return RegionMap(
@@ -75,7 +90,9 @@ def circle(depth: int = 9) -> RegionMap:
     def function(x: float, y: float) -> tuple[float, float]:
         return hypot(x - 0.5, y - 0.5) - 0.25, 1.0
 
-    return certified(around(function, depth), lambda x, y: 3 if hypot(x - 0.5, y - 0.5) < 0.25 else 2)
+    return certified(
+        around(function, depth), lambda x, y: 3 if hypot(x - 0.5, y - 0.5) < 0.25 else 2
+    )
 
 
 @cache
@@ -86,7 +103,10 @@ def cusp(depth: int = 13) -> RegionMap:
         u, v = x - 0.2, y - 0.5
         return v * v - u * u * u, 2.2
 
-    return certified(around(function, depth), lambda x, y: 4 if x > 0.2 and (y - 0.5) ** 2 < (x - 0.2) ** 3 else 1)
+    return certified(
+        around(function, depth),
+        lambda x, y: 4 if x > 0.2 and (y - 0.5) ** 2 < (x - 0.2) ** 3 else 1,
+    )
 
 
 @cache

@@ -18,13 +18,19 @@ PAPER = known_of("ptm")
 MIDDLE = Point(("x", "y"), Fraction(1, 2), Fraction(1, 2))
 
 
-def claims_of(values: Mapping[str, Fraction], count: Count, model: Model = PAPER) -> CertifiedClaims:
+def claims_of(
+    values: Mapping[str, Fraction], count: Count, model: Model = PAPER
+) -> CertifiedClaims:
     """A window on which nothing depends."""
     axes = (Axis("x", Fraction(0), Fraction(1)), Axis("y", Fraction(0), Fraction(1)))
-    return CertifiedClaims(map_of(Slice("", model, axes, {n: constant(v) for n, v in values.items()}, count), ()))
+    return CertifiedClaims(
+        map_of(Slice("", model, axes, {n: constant(v) for n, v in values.items()}, count), ())
+    )
 
 
-def counted_at(values: Mapping[str, Fraction], count: Count) -> tuple[CertifiedClaims, ModelCounting, CountedPoint]:
+def counted_at(
+    values: Mapping[str, Fraction], count: Count
+) -> tuple[CertifiedClaims, ModelCounting, CountedPoint]:
     """The window, the way of counting, and what is counted in its middle."""
     claims = claims_of(values, count)
     counting = counting_of(claims)

@@ -1,4 +1,6 @@
-"""Plane curves whose points over the square root of two are known: A(v) + (u^2 - 2) B(u, v) has those at A's roots."""
+"""Plane curves whose points over the square root of two are known: A(v) + (u^2 - 2) B(u, v) has
+those at A's roots.
+"""
 
 from __future__ import annotations
 
@@ -25,9 +27,13 @@ def _factor(root: Fraction) -> fmpz_mpoly:
 
 @st.composite
 def known_curves(draw: st.DrawFn) -> KnownCurves:
-    """One or two curves with at most one double root over the value, and at most one root in common."""
+    """One or two curves with at most one double root over the value, and at most one root in
+    common.
+    """
     u, v = RING.gens()
-    heights = draw(st.lists(st.fractions(-3, 3, max_denominator=9), min_size=2, max_size=5, unique=True))
+    heights = draw(
+        st.lists(st.fractions(-3, 3, max_denominator=9), min_size=2, max_size=5, unique=True)
+    )
     cut = draw(st.integers(1, len(heights)))
     own = [heights[:cut], heights[cut:]]
     how = draw(st.sampled_from(["simple", "double", "common"]))
@@ -45,7 +51,13 @@ def known_curves(draw: st.DrawFn) -> KnownCurves:
         if draw(st.booleans()):
             over = over * (v * v + draw(st.integers(1, 5)))
         small = st.integers(-4, 4)
-        other = sum((u**i * v**j * draw(small) for i in range(3) for j in range(len(roots))), RING.constant(0)) + 5 * u
+        other = (
+            sum(
+                (u**i * v**j * draw(small) for i in range(3) for j in range(len(roots))),
+                RING.constant(0),
+            )
+            + 5 * u
+        )
         p = over + (u * u - 2) * other
         found.append(tuple((int(i), int(j), int(c)) for (i, j), c in p.to_dict().items()))
     return KnownCurves(tuple(found), tuple(sorted(heights)))

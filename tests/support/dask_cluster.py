@@ -13,8 +13,12 @@ PATIENCE = 60
 
 
 @contextmanager
-def scheduler_with_workers(number: int, folder: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
-    """The scheduler's address and its workers, which compute one task at a time and are not replaced."""
+def scheduler_with_workers(
+    number: int, folder: Path
+) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """The scheduler's address and its workers, which compute one task at a time and are not
+    replaced.
+    """
     file = folder / "scheduler.json"
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder}
     start = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0",

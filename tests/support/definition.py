@@ -1,10 +1,13 @@
-"""What a description means, in mpmath from its data alone: equations, derivatives, energy, and what is told of a pose.
+"""What a description means, in mpmath from its data alone: equations, derivatives, energy, and what
+is told of a pose.
 
-Nothing of ptmcad is used but the data: expressions are interpreted here, an X-joint is a reflection, a moment is
-integrated numerically, and derivatives are differences at a high precision. A mechanism's residuals are the slopes of
-its energy less its moments; what is proportional to them elsewhere has to say by what.
+Nothing of ptmcad is used but the data: expressions are interpreted here, an X-joint is a
+reflection, a moment is integrated numerically, and derivatives are differences at a high precision.
+A mechanism's residuals are the slopes of its energy less its moments; what is proportional to them
+elsewhere has to say by what.
 
-Guarantee: values are right to about `DIGITS` digits where they and their derivatives are of a moderate size.
+Guarantee: values are right to about `DIGITS` digits where they and their derivatives are of a
+moderate size.
 """
 
 from __future__ import annotations
@@ -29,13 +32,15 @@ Function = Callable[[Numbers], mpf]
 
 @dataclass(frozen=True, kw_only=True)
 class Values:
-    """A model at one place, the unknowns in the order angles, then others; None for what is not known.
+    """A model at one place, the unknowns in the order angles, then others; None for what is not
+    known.
 
     Attributes
     ----------
     residuals, jacobian : zero at a solution, and their derivatives.
     energy : the potential; of moments it has what is of one value for each pose.
-    conditions, stability : positive at solutions that count, and at stable ones; those of a potential are not listed.
+    conditions, stability : positive at solutions that count, and at stable ones; those of a
+        potential are not listed.
     forces : of springs, positive where they pull.
     deflections : cosine and sine of each spring's angle beyond rest.
     """
@@ -51,13 +56,16 @@ class Values:
     deflections: Sequence[tuple[Any, Any]] | None = None
 
 
-def values_at(model: Any, parameters: Numbers, unknowns: Numbers, powers: Sequence[Sequence[int]] = ()) -> Values:
+def values_at(
+    model: Any, parameters: Numbers, unknowns: Numbers, powers: Sequence[Sequence[int]] = ()
+) -> Values:
     """The model at a place.
 
     Parameters
     ----------
     parameters : all variables of the description.
-    powers : for each residual the powers of `spans` by which it is multiplied, of a mechanism with X-joints.
+    powers : for each residual the powers of `spans` by which it is multiplied, of a mechanism with
+        X-joints.
     """
     with mp.workdps(_WORKING):
         at = {name: mpf(value) for name, value in {**parameters, **unknowns}.items()}
@@ -72,7 +80,9 @@ def values_at(model: Any, parameters: Numbers, unknowns: Numbers, powers: Sequen
             jacobian=[[_slope(f, name, at, 1) for name in names] for f in residuals],
             energy=_energy(mechanism, placed) + _conservative(mechanism, placed),
             stability=None if stability is None else stability(at),
-            points={n: (value(x, placed), value(y, placed)) for n, (x, y) in mechanism.points.items()},
+            points={
+                n: (value(x, placed), value(y, placed)) for n, (x, y) in mechanism.points.items()
+            },
             **_of_springs(mechanism, placed),
         )
 
@@ -81,7 +91,9 @@ def spans(mechanism: Any, at: Numbers) -> list[mpf]:
     """Of each X-joint the squared distance of its right ends."""
     with mp.workdps(_WORKING):
         placed = _with_followers(mechanism, at)
-        return [_squared(mechanism, joint.base[1], joint.top[1], placed) for joint in mechanism.xjoints]
+        return [
+            _squared(mechanism, joint.base[1], joint.top[1], placed) for joint in mechanism.xjoints
+        ]
 
 
 def value(tree: Any, at: Numbers) -> mpf:
@@ -107,8 +119,8 @@ def value(tree: Any, at: Numbers) -> mpf:
 
 
 def _with_followers(mechanism: Any, at: Numbers) -> dict[str, mpf]:
-    """The place with the angles of the second bars of X-joints: joints are symmetric about an axis that takes the right
-    end of the base to that of the top."""
+    """The place with the angles of the second bars of X-joints: joints are symmetric about an axis
+    that takes the right end of the base to that of the top."""
     known = dict(at)
     for joint in mechanism.xjoints:
         length, bars = value(joint.length, known), value(joint.bars, known)
@@ -160,7 +172,9 @@ def _conservative(mechanism: Any, at: Numbers) -> mpf:
         steady = work(mpf(0))
         if name in mechanism.angles:
             steady = sum((work(2 * mp.pi * k / nodes) for k in range(nodes)), mpf(0)) / nodes
-        total -= mp.quad(lambda u, work=work, steady=steady: work(u) - steady, mp.linspace(0, here, 7))
+        total -= mp.quad(
+            lambda u, work=work, steady=steady: work(u) - steady, mp.linspace(0, here, 7)
+        )
     return total
 
 
@@ -169,7 +183,9 @@ def _depends(tree: Any, name: str) -> bool:
     if type(tree).__name__ == "Name":
         return tree.name == name
     if type(tree).__name__ == "Chain":
-        return _depends(tree.first, name) or any(_depends(step.operand, name) for step in tree.steps)
+        return _depends(tree.first, name) or any(
+            _depends(step.operand, name) for step in tree.steps
+        )
     parts = (getattr(tree, part, None) for part in ("operand", "base", "exponent", "argument"))
     return any(_depends(part, name) for part in parts if part is not None)
 
@@ -195,14 +211,23 @@ def _equations(
 
     def slope(name: str, at: Numbers) -> mpf:
         """Of the energy by an unknown, less its moment."""
-        found = _slope(lambda there: _energy(mechanism, _with_followers(mechanism, there)), name, at, 0)
+        found = _slope(
+            lambda there: _energy(mechanism, _with_followers(mechanism, there)), name, at, 0
+        )
         return found - (value(moments[name], at) if name in moments else 0)
 
     def multiplied(name: str, exponents: Sequence[int], at: Numbers) -> mpf:
-        return slope(name, at) * mp.fprod(d**n for d, n in zip(spans(mechanism, at), exponents, strict=False))
+        return slope(name, at) * mp.fprod(
+            d**n for d, n in zip(spans(mechanism, at), exponents, strict=False)
+        )
 
     conditions = [
-        partial(lambda bar, at: _squared(mechanism, bar.start, bar.end, at) - value(bar.length, at) ** 2, bar)
+        partial(
+            lambda bar, at: (
+                _squared(mechanism, bar.start, bar.end, at) - value(bar.length, at) ** 2
+            ),
+            bar,
+        )
         for bar in mechanism.closing
     ]
 
@@ -211,7 +236,10 @@ def _equations(
 
     if not conditions:
         scales = powers or [()] * len(names)
-        return [partial(multiplied, name, exponents) for name, exponents in zip(names, scales, strict=True)], None
+        return [
+            partial(multiplied, name, exponents)
+            for name, exponents in zip(names, scales, strict=True)
+        ], None
     if len(names) == len(conditions) + 1:
 
         def along(at: Numbers) -> mpf:
@@ -229,7 +257,9 @@ def _equations(
     halves: list[Function] = [partial(lambda g, at: g(at) / 2, g) for g in conditions]
 
     def definite(at: Numbers) -> list[mpf]:
-        """The coefficients c_1, c_2 ... of the bordered determinant with s on the diagonal, the highest power first."""
+        """The coefficients c_1, c_2 ... of the bordered determinant with s on the diagonal, the
+        highest power first.
+        """
         hessian = [[_slope(p, name, at, 1) for name in names] for p in pulls]
         border = [[x / 2 for x in row] for row in rows(at)]
         free = len(names) - len(border)
@@ -239,9 +269,13 @@ def _equations(
                 [h + (s if i == j else 0) for j, h in enumerate(row)] + [b[i] for b in border]
                 for i, row in enumerate(hessian)
             ]
-            return (-1) ** len(border) * _determinant(matrix + [[*b, *[mpf(0)] * len(border)] for b in border])
+            return (-1) ** len(border) * _determinant(
+                matrix + [[*b, *[mpf(0)] * len(border)] for b in border]
+            )
 
-        powers_of_s = mp.matrix([[mpf(s) ** k for k in range(free, -1, -1)] for s in range(free + 1)])
+        powers_of_s = mp.matrix(
+            [[mpf(s) ** k for k in range(free, -1, -1)] for s in range(free + 1)]
+        )
         return list(mp.lu_solve(powers_of_s, mp.matrix([bordered(s) for s in range(free + 1)])))[1:]
 
     return [*pulls, *halves], definite
@@ -257,7 +291,9 @@ def _of_system(model: Any, at: Numbers) -> Values:
     if model.potential is not None:
         potential = partial(value, model.potential)
         energy = potential(at)
-        functions = [partial(lambda name, there: _slope(potential, name, there, 0), name) for name in names]
+        functions = [
+            partial(lambda name, there: _slope(potential, name, there, 0), name) for name in names
+        ]
     return Values(
         residuals=[f(at) for f in functions],
         jacobian=[[_slope(f, name, at, 1) for name in names] for f in functions],
@@ -287,7 +323,14 @@ def _determinant(rows: Sequence[Sequence[mpf]]) -> mpf:
 
 
 def _normal(rows: Sequence[Sequence[mpf]]) -> list[mpf]:
-    """At right angles to all rows, one fewer than columns: what a last row is multiplied by in the determinant."""
+    """At right angles to all rows, one fewer than columns: what a last row is multiplied by in the
+    determinant.
+    """
     width = len(rows) + 1
-    minors = [_determinant([[row[j] for j in kept] for row in rows]) for kept in combinations(range(width), width - 1)]
-    return [m * (-1) ** k for k, m in enumerate(minors)][::-1]  # the first minor leaves out the last column
+    minors = [
+        _determinant([[row[j] for j in kept] for row in rows])
+        for kept in combinations(range(width), width - 1)
+    ]
+    return [m * (-1) ** k for k, m in enumerate(minors)][
+        ::-1
+    ]  # the first minor leaves out the last column

@@ -1,6 +1,8 @@
-"""Equilibria with free lengths by a dense numerical search: many starts of Newton's method on the energy's gradient.
+"""Equilibria with free lengths by a dense numerical search: many starts of Newton's method on the
+energy's gradient.
 
-No proof and no code in common with `ptmcad`: the geometry is written out again, from the positions of the nodes.
+No proof and no code in common with `ptmcad`: the geometry is written out again, from the positions
+of the nodes.
 """
 
 from __future__ import annotations
@@ -64,7 +66,9 @@ def _starts(values: Mapping[str, float], grid: int) -> tuple[Floats, Floats]:
             y = h * np.sqrt(max(0.0, p**2 - x**2))
             centres.append((np.arctan2(y, x), np.arctan2(y, rho - x)))
     for radius in np.logspace(-5, -0.5, 14):
-        near.extend((ca + radius * np.cos(circle), cb + radius * np.sin(circle)) for ca, cb in centres)
+        near.extend(
+            (ca + radius * np.cos(circle), cb + radius * np.sin(circle)) for ca, cb in centres
+        )
         # and where springs 1 and 2 are short
         near.extend((t, np.full_like(t, s * radius)) for s in (1, -1))
         near.extend((np.full_like(t, s * radius), t) for s in (1, -1))
@@ -72,7 +76,9 @@ def _starts(values: Mapping[str, float], grid: int) -> tuple[Floats, Floats]:
 
 
 def dense_search(values: Mapping[str, float], grid: int = 160) -> dict[str, Any]:
-    """Counts: ``total``, ``stable``, ``admissible``, ``index``; and the smallest |det H|, relative, as ``margin``."""
+    """Counts: ``total``, ``stable``, ``admissible``, ``index``; and the smallest |det H|, relative,
+    as ``margin``.
+    """
     a, b = _starts(values, grid)
     arrived = []
     with np.errstate(all="ignore"):
@@ -83,12 +89,15 @@ def dense_search(values: Mapping[str, float], grid: int = 160) -> dict[str, Any]
             size = np.hypot(s1, s2)
             scale = np.where(size > 0.3, 0.3 / size, 1.0)
             a, b = a - scale * s1, b - scale * s2
-            # most are there after ten steps: to take the others' fifty with them would be most of the work
+            # most are there after ten steps: to take the others' fifty with them would be most of
+            # the work
             there = size < 1e-12
             arrived.append((a[there], b[there]))
             keep = np.isfinite(a) & np.isfinite(b) & ~there
             a, b = a[keep], b[keep]
-    a, b = (np.concatenate([*(found[k] for found in arrived), last]) for k, last in enumerate((a, b)))
+    a, b = (
+        np.concatenate([*(found[k] for found in arrived), last]) for k, last in enumerate((a, b))
+    )
     with np.errstate(all="ignore"):
         g1, g2, h11, h12, h22, _ = derivatives(values, a, b)
         det = h11 * h22 - h12 * h12

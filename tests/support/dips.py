@@ -18,11 +18,16 @@ THIN = Q(1, 10**9)
 
 
 def thin_dip(kind: str) -> tuple[Expression, Expression]:
-    """A function with a dip of width 1e-9 below zero; and the same one, raised until it is positive."""
+    """A function with a dip of width 1e-9 below zero; and the same one, raised until it is
+    positive.
+    """
     third, seventh = Q(1, 3), Q(-1, 7)
     low, deep = THIN**2, THIN**20
     return {
-        "middle": ((X - third) ** 2 + (Y - seventh) ** 2 - low, (X - third) ** 2 + (Y - seventh) ** 2 + low),
+        "middle": (
+            (X - third) ** 2 + (Y - seventh) ** 2 - low,
+            (X - third) ** 2 + (Y - seventh) ** 2 + low,
+        ),
         "line": ((X - third) ** 2 - low, (X - third) ** 2 + low),
         "diagonal": ((X - Y - third) ** 2 - low, (X - Y - third) ** 2 + low),
         "edge": (X + (Y - seventh) ** 2 - low, X + (Y - seventh) ** 2),
@@ -38,7 +43,10 @@ def thin_dip(kind: str) -> tuple[Expression, Expression]:
             (X - third) ** 8 + (Y - seventh) ** 6 - THIN**8,
             (X - third) ** 8 + (Y - seventh) ** 6 + THIN**8,
         ),
-        "irrational": ((X**2 - 2) ** 2 + (Y**2 - third) ** 2 - low, (X**2 - 2) ** 2 + (Y**2 - third) ** 2 + low),
+        "irrational": (
+            (X**2 - 2) ** 2 + (Y**2 - third) ** 2 - low,
+            (X**2 - 2) ** 2 + (Y**2 - third) ** 2 + low,
+        ),
         "high power": (Q(1, 10) - X**13 + 8191, 8193 - X**13 + 0 * Y),
     }[kind]
 

@@ -17,7 +17,9 @@ class Changed(NamedTuple):
 
 
 def changed_keys(text: str, free: Collection[str]) -> Iterator[Changed]:
-    """The document with each key changed that is fixed: of one object in each list, and not below the free keys."""
+    """The document with each key changed that is fixed: of one object in each list, and not below
+    the free keys.
+    """
     for path, key in _entries(json.loads(text), free):
         for dropped in (True, False):
             place = data = json.loads(text)
@@ -30,7 +32,9 @@ def changed_keys(text: str, free: Collection[str]) -> Iterator[Changed]:
             yield Changed(path, key, dropped, data)
 
 
-def _entries(data: Any, free: Collection[str], path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], str]]:
+def _entries(
+    data: Any, free: Collection[str], path: tuple[Any, ...] = ()
+) -> Iterator[tuple[tuple[Any, ...], str]]:
     if isinstance(data, dict):
         for key, value in data.items():
             yield path, key

@@ -1,4 +1,6 @@
-"""How many examples hypothesis draws: few in the fast suite, and all where ``make test-slow`` asks for them."""
+"""How many examples hypothesis draws: few in the fast suite, and all where ``make test-slow`` asks
+for them.
+"""
 
 from __future__ import annotations
 

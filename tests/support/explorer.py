@@ -46,7 +46,11 @@ class Explorer:
         self.entered: dict[str, str] = {}
 
     def send(
-        self, method: str, path: str, body: str | bytes | None = None, headers: Mapping[str, str] | None = None
+        self,
+        method: str,
+        path: str,
+        body: str | bytes | None = None,
+        headers: Mapping[str, str] | None = None,
     ) -> Reply:
         """One request, with no other headers than HTTP needs and those given."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE)
@@ -70,7 +74,12 @@ class Explorer:
 
     def ask(self, kind: str, tab: str = "test", **question: Any) -> Reply:
         """A question as the page asks it."""
-        body = {"tab": tab, "values": {}, **({"fine": False, "framed": False} if kind == "map" else {}), **question}
+        body = {
+            "tab": tab,
+            "values": {},
+            **({"fine": False, "framed": False} if kind == "map" else {}),
+            **question,
+        }
         return self.send("POST", f"/api/{kind}", json.dumps(body), self.own)
 
 

@@ -13,7 +13,8 @@ class Killed(BaseException):
 
 
 class FaultyDisk:
-    """What renames and removes while it is entered. Steps are counted from 1 on, also those that fail.
+    """What renames and removes while it is entered. Steps are counted from 1 on, also those that
+    fail.
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""False documents made from true ones: entries changed or left out, and lists with an entry less, twice or turned."""
+"""False documents made from true ones: entries changed or left out, and lists with an entry less,
+twice or turned.
+"""
 
 from __future__ import annotations
 

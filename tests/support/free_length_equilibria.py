@@ -6,7 +6,9 @@ from math import cos, hypot, pi, sin
 
 
 def free_length_equilibria(*values: float) -> int:
-    """Different equilibria for (rho, L1, L2, l0, f3, f4), found by Newton's method from a grid; all of them regular."""
+    """Different equilibria for (rho, L1, L2, l0, f3, f4), found by Newton's method from a grid; all
+    of them regular.
+    """
     rho, length1, length2, l0, f3, f4 = values
 
     def gradient(a: float, b: float) -> tuple[float, float]:
@@ -27,8 +29,14 @@ def free_length_equilibria(*values: float) -> int:
             a, b = (i + 0.3) * pi / 12, (j + 0.6) * pi / 12
             for _ in range(30):
                 g = gradient(a, b)
-                p = [(x - y) / (2 * h) for x, y in zip(gradient(a + h, b), gradient(a - h, b), strict=True)]
-                q = [(x - y) / (2 * h) for x, y in zip(gradient(a, b + h), gradient(a, b - h), strict=True)]
+                p = [
+                    (x - y) / (2 * h)
+                    for x, y in zip(gradient(a + h, b), gradient(a - h, b), strict=True)
+                ]
+                q = [
+                    (x - y) / (2 * h)
+                    for x, y in zip(gradient(a, b + h), gradient(a, b - h), strict=True)
+                ]
                 det = p[0] * q[1] - p[1] * q[0]
                 if abs(det) < 1e-9:
                     break

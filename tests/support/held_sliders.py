@@ -14,7 +14,12 @@ PAIR: dict[str, Any] = {
         | {n: {"kind": "stiffness"} for n in STIFF}
         | {n: {"kind": "free length"} for n in FREE},
         "unknowns": {"x": "length", "y": "length"},
-        "points": {"S": ["a*x", "b*x"], "T": ["1+c*y", "1/3+d*y"], "A": ["1/5", "-3/7"], "B": ["-1", "2/3"]},
+        "points": {
+            "S": ["a*x", "b*x"],
+            "T": ["1+c*y", "1/3+d*y"],
+            "A": ["1/5", "-3/7"],
+            "B": ["-1", "2/3"],
+        },
         "springs": [
             {"between": ["A", "S"], "k": "k", "free": "l"},
             {"between": ["B", "T"], "k": "m", "free": "r"},
@@ -23,10 +28,23 @@ PAIR: dict[str, Any] = {
         "loads": {"S": ["F", "1/9"], "T": [0, "G"]},
     },
     "axes": {"F": [-2, 2], "l": ["1/10", 2]},
-    "parameters": {"a": 1, "b": 2, "c": 3, "d": 1, "G": "1/7", "k": 1, "m": 1, "n": "1/2", "r": 1, "q": "1/4"},
+    "parameters": {
+        "a": 1,
+        "b": 2,
+        "c": 3,
+        "d": 1,
+        "G": "1/7",
+        "k": 1,
+        "m": 1,
+        "n": "1/2",
+        "r": 1,
+        "q": "1/4",
+    },
     "count": "index",
 }
-"""Two sliders, each with a spring to a point beside its guide, and one between them; unknowns are shares of vectors."""
+"""Two sliders, each with a spring to a point beside its guide, and one between them; unknowns are
+shares of vectors.
+"""
 SLANTED: dict[str, Any] = {
     "name": "slanted",
     "mechanism": {
@@ -40,4 +58,6 @@ SLANTED: dict[str, Any] = {
     "axes": {"a": ["-1/4", "3/4"], "F": [1, 2]},
     "count": "total",
 }
-"""Sliders on two guides with nothing but a spring between them, and a force on one: far away where a is small."""
+"""Sliders on two guides with nothing but a spring between them, and a force on one: far away where
+a is small.
+"""

@@ -1,8 +1,9 @@
-"""The command line under a limit of memory, each call in a process of its own that is forked from a warm one.
+"""The command line under a limit of memory, each call in a process of its own that is forked from a
+warm one.
 
-An interpreter's start and its imports take some hundred times as long as the call itself. So they are done once, in a
-process that has the limit already, has no thread, and does nothing else but fork: every call begins in the same state,
-under the same limit, and what it spoils is gone with it.
+An interpreter's start and its imports take some hundred times as long as the call itself. So they
+are done once, in a process that has the limit already, has no thread, and does nothing else but
+fork: every call begins in the same state, under the same limit, and what it spoils is gone with it.
 """
 
 from __future__ import annotations

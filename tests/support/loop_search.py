@@ -1,7 +1,7 @@
 """Critical points of an energy along a four-bar's loop, by a dense search along its own angle.
 
-Nothing of ptmcad is used: the coupler's end is where two circles meet, each closed curve of configurations is run
-through once, and the energy's changes of direction are counted.
+Nothing of ptmcad is used: the coupler's end is where two circles meet, each closed curve of
+configurations is run through once, and the energy's changes of direction are counted.
 """
 
 from __future__ import annotations
@@ -16,11 +16,14 @@ Energy = Callable[[Numbers, Numbers, Numbers, Numbers], Numbers]
 """Of the coordinates of P, at the first crank's end, and of Q, at the second one's."""
 
 
-def loop_of(lengths: Mapping[str, float], places: int = 6001) -> Iterator[tuple[Numbers, Numbers, Numbers, Numbers]]:
+def loop_of(
+    lengths: Mapping[str, float], places: int = 6001
+) -> Iterator[tuple[Numbers, Numbers, Numbers, Numbers]]:
     """The closed curves of configurations, each as the coordinates of P and Q at some places.
 
-    The cranks have the lengths L1 and L2, the coupler L3, and their pivots are b apart. The first crank's angle is
-    mid + half*sin(s) where it does not turn around, so that places are dense where the assemblies meet.
+    The cranks have the lengths L1 and L2, the coupler L3, and their pivots are b apart. The first
+    crank's angle is mid + half*sin(s) where it does not turn around, so that places are dense where
+    the assemblies meet.
     """
     a, c, coupler, b = (lengths[name] for name in ("L1", "L2", "L3", "b"))
     most, least = ((a * a + b * b - reach**2) / (2 * a * b) for reach in (c - coupler, c + coupler))
@@ -70,7 +73,9 @@ def taut_along(lengths: Mapping[str, float], energy: Energy, taut: Taut, places:
     return number
 
 
-def counts_along(lengths: Mapping[str, float], energy: Energy, places: int = 6001) -> tuple[int, int]:
+def counts_along(
+    lengths: Mapping[str, float], energy: Energy, places: int = 6001
+) -> tuple[int, int]:
     """The numbers of all critical points and of minima."""
     total = minima = 0
     for curve in loop_of(lengths, places):

@@ -1,6 +1,7 @@
 """Region maps that many tests read: each is computed once per run.
 
-The processes of a run share these maps as files: the one that comes first computes a map, any other waits for it.
+The processes of a run share these maps as files: the one that comes first computes a map, any other
+waits for it.
 """
 
 from __future__ import annotations
@@ -42,7 +43,9 @@ def shipped(name: str, count: str | None = None, area_tolerance: str = "1e-4") -
     """The region map of a shipped slice."""
 
     def compute() -> ptmcad.RegionMap:
-        return ptmcad.classify(ptmcad.load(CONFIGS / f"{name}.yaml"), count=count, area_tolerance=area_tolerance)
+        return ptmcad.classify(
+            ptmcad.load(CONFIGS / f"{name}.yaml"), count=count, area_tolerance=area_tolerance
+        )
 
     return once_per_run(f"{name} {count} {area_tolerance}", compute)
 
@@ -53,13 +56,17 @@ def shipped_certified(name: str, tolerance: str, count: str | None = None) -> pt
 
     def compute() -> ptmcad.RegionMap:
         slice = ptmcad.load(CONFIGS / f"{name}.yaml")
-        return ptmcad.classify(slice, engine="certified", tolerance=Fraction(tolerance), count=count, jobs=2)
+        return ptmcad.classify(
+            slice, engine="certified", tolerance=Fraction(tolerance), count=count, jobs=2
+        )
 
     return once_per_run(f"certified {name} {count} {tolerance}", compute)
 
 
 def record_of_part_of_free02() -> str:
-    """A window with two regions of each stable count, in a seventh of the time that all of free02 takes."""
+    """A window with two regions of each stable count, in a seventh of the time that all of free02
+    takes.
+    """
     text = (CONFIGS / "free02.yaml").read_text(encoding="utf-8")
     return re.sub("(?m)^axes: .*$", "axes: {rho: [1/4, 1], L2: [1/4, 3/4]}", text)
 
@@ -79,7 +86,9 @@ def heavier_fig4() -> ptmcad.RegionMap:
     """Fig. 4's window with other loads, with which fig. 4 is compared."""
 
     def compute() -> ptmcad.RegionMap:
-        slice = ptmcad.slice_from_options(slice="rho,L2", ranges=["rho=0:2", "L2=0:2"], sets=["F3=-14", "F4=-8"])
+        slice = ptmcad.slice_from_options(
+            slice="rho,L2", ranges=["rho=0:2", "L2=0:2"], sets=["F3=-14", "F4=-8"]
+        )
         return ptmcad.classify(slice)
 
     return once_per_run("heavier fig4", compute)

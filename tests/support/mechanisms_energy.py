@@ -1,4 +1,5 @@
-"""The energy of a mechanism from its record's numbers alone, with mpmath: springs, torsion is left out, and loads.
+"""The energy of a mechanism from its record's numbers alone, with mpmath: springs, torsion is left
+out, and loads.
 
 It shares nothing with the engines: a record's expressions are Python's own.
 """
@@ -13,7 +14,12 @@ from mpmath import mp, mpf
 
 def energy(record: Mapping[str, Any], values: Mapping[str, mpf], unknowns: Sequence[mpf]) -> mpf:
     """At values of all parameters and of the unknowns in the record's order."""
-    scope = {"cos": mp.cos, "sin": mp.sin, **values, **dict(zip(record["unknowns"], unknowns, strict=True))}
+    scope = {
+        "cos": mp.cos,
+        "sin": mp.sin,
+        **values,
+        **dict(zip(record["unknowns"], unknowns, strict=True)),
+    }
 
     def value(expression: object) -> mpf:
         return eval(str(expression).replace("^", "**"), {}, scope)

@@ -1,4 +1,6 @@
-"""Minima of an energy of two angles, by Newton's method from a grid on the torus; nothing of ptmcad is used."""
+"""Minima of an energy of two angles, by Newton's method from a grid on the torus; nothing of ptmcad
+is used.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,10 @@ def _descended(energy: Energy, p: Numbers, h: float) -> Numbers:
         gradient = np.array([e[2, 1] - e[0, 1], e[1, 2] - e[1, 0]]) / (2 * h)
         mixed = (e[2, 2] - e[2, 0] - e[0, 2] + e[0, 0]) / (4 * h * h)
         hessian = np.array(
-            [[(e[2, 1] - 2 * e[1, 1] + e[0, 1]) / h**2, mixed], [mixed, (e[1, 2] - 2 * e[1, 1] + e[1, 0]) / h**2]]
+            [
+                [(e[2, 1] - 2 * e[1, 1] + e[0, 1]) / h**2, mixed],
+                [mixed, (e[1, 2] - 2 * e[1, 1] + e[1, 0]) / h**2],
+            ]
         )
         values, vectors = np.linalg.eigh(hessian)
         move = -vectors @ ((vectors.T @ gradient) / np.maximum(np.abs(values), 1e-3))

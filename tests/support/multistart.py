@@ -1,8 +1,9 @@
 """Real solutions of a record's model by Newton's method from many starts, certified in 50 digits.
 
-Shares no code with the package: SymPy reads the record's texts and differentiates, NumPy searches, mpmath's intervals
-prove by Krawczyk's test that there is exactly one solution in a box around each end of the search. What is found is
-there; that nothing is missing is not proved, so that a caller searches on while it knows of more.
+Shares no code with the package: SymPy reads the record's texts and differentiates, NumPy searches,
+mpmath's intervals prove by Krawczyk's test that there is exactly one solution in a box around each
+end of the search. What is found is there; that nothing is missing is not proved, so that a caller
+searches on while it knows of more.
 """
 
 from __future__ import annotations
@@ -19,12 +20,14 @@ import sympy
 mpmath.iv.dps = 60
 
 SEPARATE = 1e-7
-"""Solutions nearer to each other than this are taken for one by the search; degenerate points are not asked for."""
+"""Solutions nearer to each other than this are taken for one by the search; degenerate points are
+not asked for.
+"""
 
 
 class Functions(NamedTuple):
-    """What is asked of a model at a point, as functions of the unknowns and then the parameters: in numbers of 50
-    digits, in intervals, or in NumPy's arrays. The Jacobian comes row by row."""
+    """What is asked of a model at a point, as functions of the unknowns and then the parameters: in
+    numbers of 50 digits, in intervals, or in NumPy's arrays. The Jacobian comes row by row."""
 
     equations: Callable[..., Sequence[Any]]
     jacobian: Callable[..., Sequence[Any]]
@@ -65,7 +68,9 @@ def model_of(record: Mapping[str, Any]) -> Model:
     for spring in given.get("springs", ()):
         (x0, y0), (x1, y1) = (points[p] for p in spring["between"])
         square = (x1 - x0) ** 2 + (y1 - y0) ** 2
-        energy += read(spring["k"]) * (square / 2 - read(spring.get("free", 0)) * sympy.sqrt(square))
+        energy += read(spring["k"]) * (
+            square / 2 - read(spring.get("free", 0)) * sympy.sqrt(square)
+        )
     for name, force in given.get("loads", {}).items():
         energy -= sum(read(f) * c for f, c in zip(force, points[name], strict=True))
     symbols = [sympy.Symbol(u) for u in given["unknowns"]]
@@ -93,7 +98,10 @@ class _Names(dict[str, Any]):
 
 
 def _model(
-    unknowns: Mapping[str, str], equations: Sequence[Any], positive: tuple[Any, ...], is_potential: bool
+    unknowns: Mapping[str, str],
+    equations: Sequence[Any],
+    positive: tuple[Any, ...],
+    is_potential: bool,
 ) -> Model:
     symbols = [sympy.Symbol(u) for u in unknowns]
     jacobian = [[sympy.diff(e, u) for u in symbols] for e in equations]
@@ -101,7 +109,12 @@ def _model(
     parameters = sorted(free, key=str)
     given = [*symbols, *parameters]
     asked = list(equations), [d for row in jacobian for d in row], list(positive)
-    of_intervals = {"mpf": mpmath.iv.mpf, "cos": mpmath.iv.cos, "sin": mpmath.iv.sin, "sqrt": mpmath.iv.sqrt}
+    of_intervals = {
+        "mpf": mpmath.iv.mpf,
+        "cos": mpmath.iv.cos,
+        "sin": mpmath.iv.sin,
+        "sqrt": mpmath.iv.sqrt,
+    }
 
     def functions(modules: Any) -> Functions:
         return Functions(*(sympy.lambdify(given, e, modules=modules, cse=True) for e in asked))
@@ -119,7 +132,9 @@ def _model(
 
 @dataclass(frozen=True)
 class Found:
-    """A certified solution: its coordinates to 40 digits, and the number of the Hessian's negative eigenvalues."""
+    """A certified solution: its coordinates to 40 digits, and the number of the Hessian's negative
+    eigenvalues.
+    """
 
     at: tuple[Any, ...]
     negative: int
@@ -133,7 +148,8 @@ def solutions(
 
     Parameters
     ----------
-    span : lengths start from -span to span with short steps, which finds peaks beside short springs; else of all sizes.
+    span : lengths start from -span to span with short steps, which finds peaks beside short
+        springs; else of all sizes.
     """
     generator = np.random.default_rng(seed)
     equations, jacobian = model.arrays.equations, model.arrays.jacobian
@@ -150,9 +166,9 @@ def solutions(
     with np.errstate(all="ignore"):
         for _ in range(60):
             f = np.array([np.broadcast_to(e, starts) for e in equations(*x, *numbers)], dtype=float)
-            j = np.array([np.broadcast_to(d, starts) for d in jacobian(*x, *numbers)], dtype=float).reshape(
-                n, n, starts
-            )
+            j = np.array(
+                [np.broadcast_to(d, starts) for d in jacobian(*x, *numbers)], dtype=float
+            ).reshape(n, n, starts)
             j = np.moveaxis(j, 2, 0)
             regular = np.isfinite(j).all((1, 2)) & np.isfinite(f).all(0)
             regular[regular] &= np.abs(np.linalg.det(j[regular])) > 1e-300
@@ -163,13 +179,18 @@ def solutions(
             x[:, ~regular] = np.nan
     ends: list[tuple[Any, ...]] = []
     for column in x.T[np.isfinite(x).all(0)]:
-        wrapped = [_wrapped(c) if u in model.angles else c for u, c in zip(model.unknowns, column, strict=True)]
+        wrapped = [
+            _wrapped(c) if u in model.angles else c
+            for u, c in zip(model.unknowns, column, strict=True)
+        ]
         if not any(_near(model, wrapped, other) for other in ends):
             ends.append(tuple(wrapped))
     found: list[Found] = []
     for end in ends:
         certified = _certified(model, values, end)
-        if certified is not None and not any(_near(model, certified.at, other.at) for other in found):
+        if certified is not None and not any(
+            _near(model, certified.at, other.at) for other in found
+        ):
             found.append(certified)
     return found
 
@@ -193,7 +214,9 @@ def _certified(model: Model, values: Mapping[str, Fraction], end: Sequence[float
     n = len(model.unknowns)
     with mpmath.workdps(50):
         exact = [mpmath.mpf(values[m].numerator) / values[m].denominator for m in model.parameters]
-        wide = [mpmath.iv.mpf(values[m].numerator) / values[m].denominator for m in model.parameters]
+        wide = [
+            mpmath.iv.mpf(values[m].numerator) / values[m].denominator for m in model.parameters
+        ]
 
         def slope(functions: Functions, *at: Any) -> list[list[Any]]:
             flat = functions.jacobian(*at)
@@ -217,10 +240,15 @@ def _certified(model: Model, values: Mapping[str, Fraction], end: Sequence[float
         here = model.intervals.equations(*(_interval(c, mpmath.mpf(0)) for c in x), *wide)
         inside = _interval(mpmath.mpf(0), radius / 2)
         for i in range(n):
-            moved = -sum((mpmath.iv.mpf(inverse[i, m]) * here[m] for m in range(n)), mpmath.iv.mpf(0))
+            moved = -sum(
+                (mpmath.iv.mpf(inverse[i, m]) * here[m] for m in range(n)), mpmath.iv.mpf(0)
+            )
             for k in range(n):
                 entry = mpmath.iv.mpf(int(i == k))
-                entry -= sum((mpmath.iv.mpf(inverse[i, m]) * slopes[m][k] for m in range(n)), mpmath.iv.mpf(0))
+                entry -= sum(
+                    (mpmath.iv.mpf(inverse[i, m]) * slopes[m][k] for m in range(n)),
+                    mpmath.iv.mpf(0),
+                )
                 moved += entry * (hull[k] - mpmath.iv.mpf(x[k]))
             if moved not in inside:
                 return None

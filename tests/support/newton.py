@@ -1,8 +1,9 @@
 """Equilibria found without ptmcad: a scan in floating point, then Newton's method with mpmath.
 
-Everything is derived from the coordinates of the nodes by the chain rule. For fixed th2, dU/dth1 = 0 is linear and
-homogeneous in (cos th1, sin th1), which leaves two opposite th1; along both, the sign changes of dU/dth2 are looked for
-on a grid of th2. `Found` then has every quantity of a pose to about 100 digits.
+Everything is derived from the coordinates of the nodes by the chain rule. For fixed th2,
+dU/dth1 = 0 is linear and homogeneous in (cos th1, sin th1), which leaves two opposite th1; along
+both, the sign changes of dU/dth2 are looked for on a grid of th2. `Found` then has every quantity
+of a pose to about 100 digits.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ class Found:
         return sum(value < 0 for value in self.eigenvalues)
 
 
-def gradient_and_hessian(p: Mapping[str, mpf], th1: mpf, th2: mpf, lib: object) -> tuple[list[mpf], list[mpf]]:
+def gradient_and_hessian(
+    p: Mapping[str, mpf], th1: mpf, th2: mpf, lib: object
+) -> tuple[list[mpf], list[mpf]]:
     """dU/dth1, dU/dth2 and U11, U12, U22 by the chain rule, from the coordinates of A3 and A4."""
     c1, s1, c2, s2 = lib.cos(th1), lib.sin(th1), lib.cos(th2), lib.sin(th2)  # type: ignore[attr-defined]
     x3, y3, x4, y4 = p["L1"] * c1, p["L1"] * s1, p["rho"] - p["L2"] * c2, p["L2"] * s2
@@ -97,7 +100,11 @@ def improved(parameters: Mapping[str, Fraction], start: Sequence[object]) -> Fou
         th1, th2 = _principal(th1), _principal(th2)
         x3, y3 = p["L1"] * mpmath.cos(th1), p["L1"] * mpmath.sin(th1)
         x4, y4 = p["rho"] - p["L2"] * mpmath.cos(th2), p["L2"] * mpmath.sin(th2)
-        lengths = (mpmath.hypot(x4, y4), mpmath.hypot(x3 - p["rho"], y3), mpmath.hypot(x4 - x3, y4 - y3))
+        lengths = (
+            mpmath.hypot(x4, y4),
+            mpmath.hypot(x3 - p["rho"], y3),
+            mpmath.hypot(x4 - x3, y4 - y3),
+        )
         stiffnesses = (p["k1"], p["k2"], p["k3"])
         energy = sum(k * length**2 / 2 for k, length in zip(stiffnesses, lengths, strict=True))
         energy -= p["F3x"] * x3 + p["F3"] * y3 + p["F4x"] * x4 + p["F4"] * y4

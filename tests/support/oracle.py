@@ -1,15 +1,19 @@
-"""A second way to count equilibria, which shares no code with ptmcad: rational arithmetic of Python and one unknown.
+"""A second way to count equilibria, which shares no code with ptmcad: rational arithmetic of Python
+and one unknown.
 
-With general springs, -dU/dth1 / L1 = c1 (k3 L2 s2 + F3) + s1 (k3 L2 c2 - a1) is linear and homogeneous in (c1, s1), so
-(c1, s1) = e (A, B) / r with A = a1 - k3 L2 c2, B = k3 L2 s2 + F3, r^2 = A^2 + B^2, e = 1 or -1; here
-a1 = (k2 + k3) rho + F3x and a2 = (k1 + k3) rho - F4x. The other equation becomes e k3 L1 P = r Q with
-P = a1 s2 + F3 c2 and Q = a2 s2 - F4 c2. Its square is a sextic in t = tan(th2/2), and th2 = pi is its root at infinity.
-Where Q is not 0, e r = k3 L1 P / Q, so there is one solution over th2, H11 has the sign of P Q, and det H that of
+With general springs, -dU/dth1 / L1 = c1 (k3 L2 s2 + F3) + s1 (k3 L2 c2 - a1) is linear and
+homogeneous in (c1, s1), so (c1, s1) = e (A, B) / r with A = a1 - k3 L2 c2, B = k3 L2 s2 + F3,
+r^2 = A^2 + B^2, e = 1 or -1; here a1 = (k2 + k3) rho + F3x and a2 = (k1 + k3) rho - F4x. The other
+equation becomes e k3 L1 P = r Q with P = a1 s2 + F3 c2 and Q = a2 s2 - F4 c2. Its square is a
+sextic in t = tan(th2/2), and th2 = pi is its root at infinity. Where Q is not 0, e r = k3 L1 P / Q,
+so there is one solution over th2, H11 has the sign of P Q, and det H that of
 
-    N = k3 L1 P^3 Q W - k3 L1 D P^2 Q^2 - (L2/L1) Q^4 D^2,   W = a2 c2 + F4 s2,   D = a1 c2 - F3 s2 - k3 L2.
+    N = k3 L1 P^3 Q W - k3 L1 D P^2 Q^2 - (L2/L1) Q^4 D^2,   W = a2 c2 + F4 s2,   D = a1 c2 - F3
+    s2 - k3 L2.
 
-Roots are counted by Sturm sequences, signs at them by Tarski queries: everything is exact but the signs over P = Q = 0
-(loads that let a rod stand by itself), which are taken with 400 digits and a margin.
+Roots are counted by Sturm sequences, signs at them by Tarski queries: everything is exact but the
+signs over P = Q = 0 (loads that let a rod stand by itself), which are taken with 400 digits and a
+margin.
 """
 
 from __future__ import annotations
@@ -36,7 +40,9 @@ class Untreated(Exception):
 
 
 def primitive(p: Sequence[int | Fraction]) -> Polynomial:
-    """A positive multiple with integer coefficients without common factor, and without leading zeros."""
+    """A positive multiple with integer coefficients without common factor, and without leading
+    zeros.
+    """
     scale = 1
     for c in p:
         if isinstance(c, int):
@@ -162,7 +168,10 @@ def exchanged(parameters: Mapping[str, Fraction]) -> dict[str, Fraction]:
     """The mirror image in a vertical line: the other rod comes first."""
     pairs = {"L1": "L2", "k1": "k2", "F3": "F4", "F3x": "F4x"}
     names = {**pairs, **{b: a for a, b in pairs.items()}}
-    return {n: -parameters[names.get(n, n)] if n in ("F3x", "F4x") else parameters[names.get(n, n)] for n in parameters}
+    return {
+        n: -parameters[names.get(n, n)] if n in ("F3x", "F4x") else parameters[names.get(n, n)]
+        for n in parameters
+    }
 
 
 def _count(parameters: Mapping[str, Fraction]) -> tuple[int, int, int]:
@@ -171,10 +180,14 @@ def _count(parameters: Mapping[str, Fraction]) -> tuple[int, int, int]:
     a1, a2 = (k2 + k3) * rho + f3x, (k1 + k3) * rho - f4x
     zero = Fraction(0)
     one = [Fraction(1), zero, Fraction(1)]
-    squared_r = linear(a1**2 + f3**2 + (k3 * length2) ** 2, -2 * a1 * k3 * length2, 2 * f3 * k3 * length2)
+    squared_r = linear(
+        a1**2 + f3**2 + (k3 * length2) ** 2, -2 * a1 * k3 * length2, 2 * f3 * k3 * length2
+    )
     w, d = linear(zero, a2, f4), linear(-k3 * length2, a1, -f3)
     minima, saddles, maxima = 0, 0, 0
-    free = a1**2 + f3**2 == (k3 * length2) ** 2  # r = 0 for one th2, where th1 is free: sin(th1 + th2) = Q / (k3 L1)
+    free = (
+        a1**2 + f3**2 == (k3 * length2) ** 2
+    )  # r = 0 for one th2, where th1 is free: sin(th1 + th2) = Q / (k3 L1)
     if free and a1 * f4 + a2 * f3 == 0:
         raise Untreated
     if a1 * f4 + a2 * f3 == 0:  # P and Q vanish together
@@ -184,7 +197,11 @@ def _count(parameters: Mapping[str, Fraction]) -> tuple[int, int, int]:
         for side in (1, -1):
             for e in (1, -1):
                 index = _standing(along, side, e, (a1, a2, f3, f4, k3, length1, length2))
-                minima, saddles, maxima = minima + (index == 0), saddles + (index == 1), maxima + (index == 2)
+                minima, saddles, maxima = (
+                    minima + (index == 0),
+                    saddles + (index == 1),
+                    maxima + (index == 2),
+                )
         # P = p l, Q = q l with l = along[0] s2 - along[1] c2
         q = Fraction(1 if a2 or f4 else 0)
         p = a1 / along[0] if along[0] else -f3 / along[1]
@@ -192,7 +209,8 @@ def _count(parameters: Mapping[str, Fraction]) -> tuple[int, int, int]:
     else:
         top, bottom = linear(zero, f3, a1), linear(zero, -f4, a2)
     sextic = plus(
-        [(k3 * length1) ** 2 * c for c in times(top, top, one)], [-c for c in times(squared_r, bottom, bottom)]
+        [(k3 * length1) ** 2 * c for c in times(top, top, one)],
+        [-c for c in times(squared_r, bottom, bottom)],
     )
     n = plus(
         [k3 * length1 * c for c in times(top, top, top, bottom, w, one)],
@@ -250,10 +268,16 @@ def quotient_at_infinity_too(p: Sequence[int | Fraction], q: Polynomial) -> list
     return exact_quotient(primitive(p), q) + [0] * zeros
 
 
-def _standing(along: tuple[Fraction, Fraction], side: int, e: int, values: Sequence[Fraction]) -> int:
-    """Morse index of the solution with P = Q = 0, (c2, s2) along side * along, (c1, s1) = e (A, B) / r."""
+def _standing(
+    along: tuple[Fraction, Fraction], side: int, e: int, values: Sequence[Fraction]
+) -> int:
+    """Morse index of the solution with P = Q = 0, (c2, s2) along side * along, (c1, s1) = e (A,
+    B) / r.
+    """
     with mpmath.workdps(DIGITS):
-        a1, a2, f3, f4, k3, length1, length2 = (mpmath.mpf(v.numerator) / v.denominator for v in values)
+        a1, a2, f3, f4, k3, length1, length2 = (
+            mpmath.mpf(v.numerator) / v.denominator for v in values
+        )
         x, y = (mpmath.mpf(v.numerator) / v.denominator for v in along)
         norm = mpmath.sqrt(x * x + y * y)
         c2, s2 = side * x / norm, side * y / norm

@@ -1,7 +1,9 @@
-"""An independent model of the paper's mechanism: slopes and bends of its energy, written down from the nodes.
+"""An independent model of the paper's mechanism: slopes and bends of its energy, written down from
+the nodes.
 
-With d the vector of a spring, l its length and k (l - l0)^2/2 its energy, the slope by an angle i is k (1 - l0/l) d.d_i
-and the bend by i and j is k (1 - l0/l) (d_i.d_j + d.d_ij) + k l0 (d.d_i) (d.d_j)/l^3. Nothing here is ptmcad's.
+With d the vector of a spring, l its length and k (l - l0)^2/2 its energy, the slope by an angle i
+is k (1 - l0/l) d.d_i and the bend by i and j is k (1 - l0/l) (d_i.d_j + d.d_ij) + k l0 (d.d_i)
+(d.d_j)/l^3. Nothing here is ptmcad's.
 """
 
 from __future__ import annotations

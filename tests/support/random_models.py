@@ -7,7 +7,9 @@ from typing import Any
 
 
 def random_system(seed: int) -> dict[str, Any]:
-    """One or two unknowns, real or on the circle; sparse equations of low degree, or a potential; inequalities."""
+    """One or two unknowns, real or on the circle; sparse equations of low degree, or a potential;
+    inequalities.
+    """
     source = random.Random(f"system {seed}")
     names = ["x", "y"][: 1 + seed % 2]
     unknowns = {name: source.choice(["real", "real", "angle"]) for name in names}
@@ -20,21 +22,29 @@ def random_system(seed: int) -> dict[str, Any]:
 
     def expression(degree: int) -> str:
         parameters = source.choice(["a", "b", "a - b", "a*b", "(2*a + 1)"])
-        return " + ".join([*(term(degree) for _ in range(source.randint(2, 3))), f"{parameters}*{term(1)}"])
+        return " + ".join(
+            [*(term(degree) for _ in range(source.randint(2, 3))), f"{parameters}*{term(1)}"]
+        )
 
     record: dict[str, Any] = {"name": "s", "unknowns": unknowns}
     if source.random() < 0.35:
         powers = " + ".join(f"{n}^4" for n, kind in unknowns.items() if kind == "real")
         record["potential"] = " + ".join(filter(None, [powers, expression(3), f"b*{atoms[-1]}"]))
     else:
-        record["equations"] = [f"{expression(3)} + {source.choice(['a', 'b', '1', 'a + b'])}" for _ in names]
+        record["equations"] = [
+            f"{expression(3)} + {source.choice(['a', 'b', '1', 'a + b'])}" for _ in names
+        ]
         if source.random() < 0.5:
-            record["positive"] = [source.choice([atoms[0], f"{atoms[-1]} + a", f"2 - {atoms[0]} + b"])]
+            record["positive"] = [
+                source.choice([atoms[0], f"{atoms[-1]} + a", f"2 - {atoms[0]} + b"])
+            ]
     return {"system": record, "axes": {"a": [-2, 2], "b": [-2, 2]}, "count": "total"}
 
 
 def random_mechanism(seed: int) -> dict[str, Any]:
-    """A chain of one to three bars from the origin, springs to fixed points and between joints, loads."""
+    """A chain of one to three bars from the origin, springs to fixed points and between joints,
+    loads.
+    """
     source = random.Random(f"mechanism {seed}")
     bars = 1 + seed % 3
 

@@ -1,19 +1,24 @@
-"""Random slices of the mechanism, the same in every run: any two parameters as axes, linked, loaded sideways, ugly.
+"""Random slices of the mechanism, the same in every run: any two parameters as axes, linked, loaded
+sideways, ugly.
 
-`drawn(number, attempt)` is a problem record. The numbers have fixed roles, so that every unordered pair of the model's
-parameters occurs; the rest of a record comes from a generator with the seed (number, attempt). Attempts that the
-engine has to refuse (the whole slice inside the variety, a length that is not positive) stand in `REFUSED` with the
-exception's name, and the next attempt takes their place.
+`drawn(number, attempt)` is a problem record. The numbers have fixed roles, so that every unordered
+pair of the model's parameters occurs; the rest of a record comes from a generator with the seed
+(number, attempt). Attempts that the engine has to refuse (the whole slice inside the variety, a
+length that is not positive) stand in `REFUSED` with the exception's name, and the next attempt
+takes their place.
 
-Left out, because they take minutes: more than four slices with three different springs and four loads; formulas of a
-degree above 2 in the axes; and windows narrower than a tenth around a cusp, which `test_degenerate_geometry` has.
+Left out, because they take minutes: more than four slices with three different springs and four
+loads; formulas of a degree above 2 in the axes; and windows narrower than a tenth around a cusp,
+which `test_degenerate_geometry` has.
 
-Points of the variety that are rational come from the equations: at an equilibrium with the angles th1, th2
+Points of the variety that are rational come from the equations: at an equilibrium with the angles
+th1, th2
 
     H11 = L1 (a1 - k3 L2 c2) / c1,   H22 = L2 (a2 - k3 L1 c1) / c2,   H12 = -k3 L1 L2 c12,
 
-with a1 = (k2 + k3) rho + F3x and a2 = (k1 + k3) rho - F4x, so that det H = 0 is linear in a2. The third derivative
-along the kernel (v1, v2) is 3 k3 L1 L2 s12 v1 v2 (v1 + v2) there, which vanishes, for a cusp, when H11 = H12 = H22.
+with a1 = (k2 + k3) rho + F3x and a2 = (k1 + k3) rho - F4x, so that det H = 0 is linear in a2. The
+third derivative along the kernel (v1, v2) is 3 k3 L1 L2 s12 v1 v2 (v1 + v2) there, which vanishes,
+for a cusp, when H11 = H12 = H22.
 """
 
 from __future__ import annotations
@@ -33,7 +38,9 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True)
 class Draw:
-    """A problem record, and a rational point of its window that is known to lie on the variety, if there is one."""
+    """A problem record, and a rational point of its window that is known to lie on the variety, if
+    there is one.
+    """
 
     record: Record
     role: str
@@ -64,7 +71,9 @@ def drawn(number: int, attempt: int = 0) -> Draw:
 
 
 def _number(dice: random.Random, *simple: str) -> Fraction:
-    """One of the simple numbers; in one of six cases changed a little, to a number with a long denominator."""
+    """One of the simple numbers; in one of six cases changed a little, to a number with a long
+    denominator.
+    """
     value = Fraction(dice.choice(simple))
     style = dice.random()
     if style < 1 / 12:
@@ -103,7 +112,9 @@ def _window(dice: random.Random, name: str) -> tuple[Fraction, Fraction]:
     if style == "narrow":
         middle = scale * _number(dice, "1/2", "1", "3/4")
         return middle - scale * Fraction(1, 100), middle + scale * Fraction(1, 70)
-    return (-scale * _number(dice, "1", "3/2") if force else scale * _number(dice, "1/5", "1/10")), scale * Fraction(2)
+    return (
+        -scale * _number(dice, "1", "3/2") if force else scale * _number(dice, "1/5", "1/10")
+    ), scale * Fraction(2)
 
 
 def _record(axes: dict[str, tuple[Fraction, Fraction]], parameters: dict[str, Any]) -> Record:
@@ -123,7 +134,9 @@ def _springs(dice: random.Random, equal: float) -> dict[str, Fraction]:
     return {name: _value(dice, name) for name in ("k1", "k2", "k3")}
 
 
-def _fixed(dice: random.Random, axes: tuple[str, ...], equal: float, sideways: float) -> dict[str, Fraction]:
+def _fixed(
+    dice: random.Random, axes: tuple[str, ...], equal: float, sideways: float
+) -> dict[str, Fraction]:
     """Values of all that is not an axis."""
     values = {name: _value(dice, name) for name in ("L1", "L2", "rho", "F3", "F4")}
     if dice.random() < sideways:
@@ -204,14 +217,23 @@ def _formula(dice: random.Random, number: int) -> Draw:
         windows[name] = _window(dice, like)
     values = dict(parameters)
     for name in ("F3", "F4", "rho"):
-        if dice.random() < 1 / 3 and name not in axes and values.get(name, "1").lstrip("-").replace("/", "").isdigit():
+        if (
+            dice.random() < 1 / 3
+            and name not in axes
+            and values.get(name, "1").lstrip("-").replace("/", "").isdigit()
+        ):
             values[name] = str(_value(dice, name))
     return Draw(_record(windows, values), "formula")
 
 
 def _flat(dice: random.Random, _number_: int) -> Draw:
-    """Rods that may lie flat with their nodes on one line over the whole window: without loads that is refused."""
-    values = {"rho": dice.choice(["(L1+L2)/2", "(L1+L2)/2", "(L1+L2)/3"]), "F3": dice.choice(["0", "-10", "20"])}
+    """Rods that may lie flat with their nodes on one line over the whole window: without loads that
+    is refused.
+    """
+    values = {
+        "rho": dice.choice(["(L1+L2)/2", "(L1+L2)/2", "(L1+L2)/3"]),
+        "F3": dice.choice(["0", "-10", "20"]),
+    }
     return Draw(_record(_windows(dice, "L1", "L2"), values), "flat")
 
 
@@ -220,13 +242,26 @@ def _general(dice: random.Random, _number_: int) -> Draw:
     axes = dice.choice([("rho", "F3"), ("F3", "F4"), ("rho", "F4"), ("F3x", "F4"), ("k1", "F3")])
     values = {name: _value(dice, name) for name in ("L1", "L2", "rho", "F3", "F4")}
     values |= {"F3x": Fraction(dice.choice([5, -3, 8])), "F4x": Fraction(dice.choice([-2, 4, 9]))}
-    values |= {"k1": Fraction(100), "k2": Fraction(dice.choice([80, 120])), "k3": Fraction(dice.choice([60, 150]))}
+    values |= {
+        "k1": Fraction(100),
+        "k2": Fraction(dice.choice([80, 120])),
+        "k3": Fraction(dice.choice([60, 150])),
+    }
     return Draw(_record(_windows(dice, *axes), values), "general")
 
 
 ANGLES = tuple(
     (Fraction(c, h), Fraction(s, h))
-    for c, s, h in ((3, 4, 5), (4, 3, 5), (5, 12, 13), (12, 5, 13), (-3, 4, 5), (-4, 3, 5), (15, 8, 17), (8, -15, 17))
+    for c, s, h in (
+        (3, 4, 5),
+        (4, 3, 5),
+        (5, 12, 13),
+        (12, 5, 13),
+        (-3, 4, 5),
+        (-4, 3, 5),
+        (15, 8, 17),
+        (8, -15, 17),
+    )
 )
 """Cosine and sine."""
 
@@ -235,7 +270,9 @@ def singular(
     first: tuple[Fraction, Fraction], second: tuple[Fraction, Fraction], lengths: tuple[Fraction, Fraction],
     springs: tuple[Fraction, Fraction, Fraction], rho: Fraction, f3x: Fraction | None
 ) -> dict[str, Fraction]:  # fmt: skip
-    """Parameters with a singular equilibrium at these angles; a cusp of the variety when ``f3x`` is None."""
+    """Parameters with a singular equilibrium at these angles; a cusp of the variety when ``f3x`` is
+    None.
+    """
     (c1, s1), (c2, s2) = first, second
     (length1, length2), (k1, k2, k3) = lengths, springs
     c12, s12 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2
@@ -243,7 +280,9 @@ def singular(
         a1, a2 = k3 * length2 * (c2 - c1 * c12), k3 * length1 * (c1 - c2 * c12)
     else:
         a1 = (k2 + k3) * rho + f3x
-        a2 = k3 * length1 * c1 + k3**2 * length1 * length2 * c1 * c2 * c12**2 / (a1 - k3 * length2 * c2)
+        a2 = k3 * length1 * c1 + k3**2 * length1 * length2 * c1 * c2 * c12**2 / (
+            a1 - k3 * length2 * c2
+        )
     return {
         "L1": length1, "L2": length2, "rho": rho, "k1": k1, "k2": k2, "k3": k3,
         "F3": (a1 * s1 - k3 * length2 * s12) / c1, "F4": (a2 * s2 - k3 * length1 * s12) / c2,
@@ -251,8 +290,12 @@ def singular(
     }  # fmt: skip
 
 
-def paper_cusp(first: tuple[Fraction, Fraction], second: tuple[Fraction, Fraction]) -> dict[str, Fraction]:
-    """A cusp with equal springs, no sideways loads and L1 = 1: L2 = s2 / s1, 2 rho = L2 s1 s12, F3 = -k L2 s12 c1."""
+def paper_cusp(
+    first: tuple[Fraction, Fraction], second: tuple[Fraction, Fraction]
+) -> dict[str, Fraction]:
+    """A cusp with equal springs, no sideways loads and L1 = 1: L2 = s2 / s1, 2 rho = L2 s1 s12,
+    F3 = -k L2 s12 c1.
+    """
     (c1, s1), (c2, s2) = first, second
     s12 = s1 * c2 + c1 * s2
     length2 = s2 / s1
@@ -260,15 +303,24 @@ def paper_cusp(first: tuple[Fraction, Fraction], second: tuple[Fraction, Fractio
     return singular(first, second, (Fraction(1), length2), springs, length2 * s1 * s12 / 2, None)
 
 
-def _around(dice: random.Random, name: str, value: Fraction, width: Fraction) -> tuple[Fraction, Fraction]:
+def _around(
+    dice: random.Random, name: str, value: Fraction, width: Fraction
+) -> tuple[Fraction, Fraction]:
     """A range that holds the value, off its middle; lengths and springs stay positive."""
     scale = width * (20 if name in FORCES else 100 if name in SPRINGS else 1)
-    low, high = value - scale * Fraction(dice.randint(1, 9), 10), value + scale * Fraction(dice.randint(1, 9), 10)
+    low, high = (
+        value - scale * Fraction(dice.randint(1, 9), 10),
+        value + scale * Fraction(dice.randint(1, 9), 10),
+    )
     return (low if name in FORCES else max(low, Fraction(0))), high
 
 
 def _anchored(
-    dice: random.Random, role: str, values: dict[str, Fraction], axes: tuple[str, str], widths: tuple[str, ...]
+    dice: random.Random,
+    role: str,
+    values: dict[str, Fraction],
+    axes: tuple[str, str],
+    widths: tuple[str, ...],
 ) -> Draw:
     width = Fraction(dice.choice(widths))
     windows = {name: _around(dice, name, values[name], width) for name in axes}
@@ -277,18 +329,29 @@ def _anchored(
 
 def _fold(dice: random.Random, _number_: int) -> Draw:
     """Through a rational point of the fold curve."""
-    first, second = dice.choice([(a, b) for a in ANGLES for b in ANGLES if a[0] * b[0] != a[1] * b[1]])
+    first, second = dice.choice(
+        [(a, b) for a in ANGLES for b in ANGLES if a[0] * b[0] != a[1] * b[1]]
+    )
     springs = dice.choice([(100, 100, 100), (100, 100, 100), (80, 120, 100)])
     k1, k2, k3 = map(Fraction, springs)
     lengths = (Fraction(1), Fraction(dice.choice(["1", "3/2", "1/2", "7/5"])))
-    values = singular(first, second, lengths, (k1, k2, k3), Fraction(dice.choice(["1/2", "3/4", "1"])), Fraction(0))
+    values = singular(
+        first,
+        second,
+        lengths,
+        (k1, k2, k3),
+        Fraction(dice.choice(["1/2", "3/4", "1"])),
+        Fraction(0),
+    )
     axes = dice.choice([("F3", "F4"), ("rho", "F4"), ("rho", "F4x"), ("L2", "rho"), ("F3", "L1")])
     return _anchored(dice, "fold", values, axes, ("1", "1/10", "1/1000", "1e-12", "1e-30"))
 
 
 def _cusp(dice: random.Random, _number_: int) -> Draw:
     """Through a rational cusp of the fold curve."""
-    first, second = dice.choice([(a, b) for a in ANGLES[:4] for b in ANGLES[:4] if a[0] * b[0] != a[1] * b[1]])
+    first, second = dice.choice(
+        [(a, b) for a in ANGLES[:4] for b in ANGLES[:4] if a[0] * b[0] != a[1] * b[1]]
+    )
     axes = dice.choice([("F3", "F4"), ("rho", "L2"), ("rho", "F4"), ("L2", "F3")])
     return _anchored(dice, "cusp", paper_cusp(first, second), axes, ("1", "1/2", "1/10"))
 
@@ -308,5 +371,8 @@ ROLES = (
 )  # fmt: skip
 NUMBERS = range(len(ROLES))
 
-REFUSED: dict[int, tuple[str, ...]] = {220: ("DegenerateSliceError",), 223: ("DegenerateSliceError",)}
+REFUSED: dict[int, tuple[str, ...]] = {
+    220: ("DegenerateSliceError",),
+    223: ("DegenerateSliceError",),
+}
 """For a number, the exceptions of the attempts before the one that is classified."""

@@ -15,7 +15,10 @@ TRUSS: dict[str, Any] = {
         },
         "unknowns": {"h": "length"},
         "points": {"A": ["-a", 0], "B": ["a", 0], "P": [0, "h"]},
-        "springs": [{"between": ["A", "P"], "k": "k", "free": "l0"}, {"between": ["B", "P"], "k": "k", "free": "l0"}],
+        "springs": [
+            {"between": ["A", "P"], "k": "k", "free": "l0"},
+            {"between": ["B", "P"], "k": "k", "free": "l0"},
+        ],
         "loads": {"P": [0, "f"]},
     },
     "parameters": {"l0": 1},

@@ -23,12 +23,13 @@ def exchanged(record: Path, folder: Path) -> Path:
 
 
 def difference(one: RegionMap, other: RegionMap) -> str:
-    """What two maps of one slice disagree on, whatever their decompositions; empty when they say the same.
+    """What two maps of one slice disagree on, whatever their decompositions; empty when they say
+    the same.
 
     Guarantee
     ---------
-    Empty only if no sample's counts contradict each other, and if the regions of exact maps correspond one to one, with
-    the same pairs of neighbours and areas whose bounds overlap.
+    Empty only if no sample's counts contradict each other, and if the regions of exact maps
+    correspond one to one, with the same pairs of neighbours and areas whose bounds overlap.
     """
     pairs: set[tuple[int, int]] = set()
     for first, second in ((one, other), (other, one)):
@@ -43,7 +44,13 @@ def difference(one: RegionMap, other: RegionMap) -> str:
     if one.cover is not None:
         return ""
     partner = dict(pairs)
-    if not len(pairs) == len(partner) == len(set(partner.values())) == len(one.regions) == len(other.regions):
+    if (
+        not len(pairs)
+        == len(partner)
+        == len(set(partner.values()))
+        == len(one.regions)
+        == len(other.regions)
+    ):
         return f"{len(one.regions)} regions and {len(other.regions)}, which do not correspond"
     for n, m in partner.items():
         (low, high), (least, most) = one.regions[n].area, other.regions[m].area
@@ -56,4 +63,8 @@ def difference(one: RegionMap, other: RegionMap) -> str:
 def neighbours(result: RegionMap) -> set[frozenset[int]]:
     """Pairs of regions that share an arc."""
     region = [cell.region for cell in result.cells]
-    return {frozenset((region[a.first], region[a.second])) for a in result.adjacencies if a.merge is Merge.SEPARATED}
+    return {
+        frozenset((region[a.first], region[a.second]))
+        for a in result.adjacencies
+        if a.merge is Merge.SEPARATED
+    }

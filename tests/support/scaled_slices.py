@@ -1,7 +1,8 @@
-"""Random slices at any scale: windows from 1e-30 to 1e9, some about a wall of the map, far from zero or vast, and
-unknowns and equations that are multiplied by powers of ten.
+"""Random slices at any scale: windows from 1e-30 to 1e9, some about a wall of the map, far from
+zero or vast, and unknowns and equations that are multiplied by powers of ten.
 
-`scaled(seed)` is a record, the same in every run; None where the random model has no map to begin with.
+`scaled(seed)` is a record, the same in every run; None where the random model has no map to begin
+with.
 """
 
 from __future__ import annotations
@@ -51,22 +52,36 @@ def _paper(dice: random.Random) -> Record:
 
 
 def _slider(dice: random.Random) -> Record:
-    """A crank, a slider and two springs: its folds and pitchforks, where the crank points along the guide."""
+    """A crank, a slider and two springs: its folds and pitchforks, where the crank points along the
+    guide.
+    """
 
     def number() -> str:
         return f"{dice.randint(-6, 6)}/{dice.randint(1, 3)}"
 
     sideways = dice.choice(["0", "0", number()])
     turn = f"(({dice.choice([1, 2, -2, 3])})*cos(th)"
-    tip = [f"{turn} - ({sideways})*sin(th))", f"{turn.replace('cos', 'sin')} + ({sideways})*cos(th))"]
-    points = {"A": [number(), "-1"], "B": [number(), dice.choice(["0", number()])], "S": ["x", "0"], "P": tip}
+    tip = [
+        f"{turn} - ({sideways})*sin(th))",
+        f"{turn.replace('cos', 'sin')} + ({sideways})*cos(th))",
+    ]
+    points = {
+        "A": [number(), "-1"],
+        "B": [number(), dice.choice(["0", number()])],
+        "S": ["x", "0"],
+        "P": tip,
+    }
     record = {
         "name": "slider", "parameters": {"F": {"kind": "force"}, "G": {"kind": "force"}},
         "unknowns": {"th": "angle", "x": "length"}, "points": points,
         "springs": [{"between": ["P", "S"], "k": 1}, {"between": ["B", "S"], "k": dice.randint(1, 3)}],
         "loads": dice.choice([{"S": ["F", "G"], "P": ["0", "G"]}, {"S": ["F", "0"], "P": ["G", "0"]}]),
     }  # fmt: skip
-    return {"mechanism": record, "axes": {"F": [-4, 4], "G": [-4, 4]}, "count": dice.choice(["stable", "index"])}
+    return {
+        "mechanism": record,
+        "axes": {"F": [-4, 4], "G": [-4, 4]},
+        "count": dice.choice(["stable", "index"]),
+    }
 
 
 def _singularity(dice: random.Random) -> Record:
@@ -80,7 +95,11 @@ def _singularity(dice: random.Random) -> Record:
         (["x", "y"], ["x^2 - a*y + b", "y^2 - x - a*b"], ["x + y"]),
         (["x", "y"], ["x^3 - y - a*x", "y - b*x"], ["2 + x - y"]),
     ])  # fmt: skip
-    system: Record = {"name": "s", "unknowns": dict.fromkeys(unknowns, "real"), "equations": equations}
+    system: Record = {
+        "name": "s",
+        "unknowns": dict.fromkeys(unknowns, "real"),
+        "equations": equations,
+    }
     if dice.random() < 1 / 2:
         system["positive"] = positive
     return {"system": system, "axes": {"a": [-1, 2], "b": [-1, 1]}, "count": "total"}
@@ -134,21 +153,31 @@ def scaled_certified(seed: int) -> Record | None:
     base = _BASES_CERTIFIED[seed % len(_BASES_CERTIFIED)](dice)
     if "system" in base and dice.random() < 2 / 3:
         base = _other_units(base, dice)
-    return dice.choice([_about_a_change, _about_a_change, _vast, _shifted, _units_of_axes])(base, dice)
+    return dice.choice([_about_a_change, _about_a_change, _vast, _shifted, _units_of_axes])(
+        base, dice
+    )
 
 
 def _about_a_change(record: Record, dice: random.Random) -> Record | None:
-    """A small window about a point at which the counts change, found by halving the way between two samples."""
+    """A small window about a point at which the counts change, found by halving the way between two
+    samples.
+    """
     try:
         result = ptmcad.classify(record, engine="certified", tolerance="1/4", timeout=10)
-        pairs = [(a, b) for a, b in combinations(result.cells, 2) if (a.total, a.stable) != (b.total, b.stable)]
+        pairs = [
+            (a, b)
+            for a, b in combinations(result.cells, 2)
+            if (a.total, a.stable) != (b.total, b.stable)
+        ]
         if not pairs:
             return None
         one, two = dice.choice(pairs)
         low, high = list(one.sample), list(two.sample)
 
         def number(at: list[Fraction]) -> tuple[int, int]:
-            poses = ptmcad.solve(record, **dict(zip(result.slice.axis_names, at, strict=True))).equilibria
+            poses = ptmcad.solve(
+                record, **dict(zip(result.slice.axis_names, at, strict=True))
+            ).equilibria
             return len(poses), sum(bool(pose.stable) for pose in poses)
 
         there = number(low)
@@ -178,23 +207,36 @@ def _other_units(record: Record, dice: random.Random) -> Record:
                for name, kind in system["unknowns"].items() if kind == "real"}  # fmt: skip
 
     def changed(text: str) -> str:
-        return re.sub(r"\b[a-z]+\b(?!\()", lambda m: f"({factors[m[0]]}*{m[0]})" if m[0] in factors else m[0], text)
+        return re.sub(
+            r"\b[a-z]+\b(?!\()",
+            lambda m: f"({factors[m[0]]}*{m[0]})" if m[0] in factors else m[0],
+            text,
+        )
 
     for key in ("equations", "positive"):
         times = [dice.choice(["1", "1e12", "1e-12"]) for _ in system.get(key, ())]
         if key in system:
-            system[key] = [f"{by}*({changed(text)})" for by, text in zip(times, system[key], strict=True)]
+            system[key] = [
+                f"{by}*({changed(text)})" for by, text in zip(times, system[key], strict=True)
+            ]
     if "potential" in system:
         system["potential"] = changed(system["potential"])
     return {**record, "system": system}
 
 
 def _through(record: Record, maps: dict[str, tuple[str, Fraction, Fraction]]) -> Record:
-    """The record whose axes go through functions of new ones: an old name to (function, low, high) of its new axis."""
+    """The record whose axes go through functions of new ones: an old name to (function, low, high)
+    of its new axis.
+    """
     names = dict(zip(maps, ("u", "v"), strict=True))
-    fixed = {key: _with_axes(str(value), maps, names) for key, value in record.get("parameters", {}).items()}
+    fixed = {
+        key: _with_axes(str(value), maps, names)
+        for key, value in record.get("parameters", {}).items()
+    }
     # of the paper's mechanism an axis may be a name of its own, on which parameters depend
-    own = record.get("system", record["mechanism"] if isinstance(record.get("mechanism"), dict) else MODEL)
+    own = record.get(
+        "system", record["mechanism"] if isinstance(record.get("mechanism"), dict) else MODEL
+    )
     fixed |= {
         name: function.replace("@", names[name])
         for name, (function, _, _) in maps.items()
@@ -204,8 +246,14 @@ def _through(record: Record, maps: dict[str, tuple[str, Fraction, Fraction]]) ->
     return {**record, "parameters": fixed, "axes": axes}
 
 
-def _with_axes(text: str, maps: dict[str, tuple[str, Fraction, Fraction]], names: dict[str, str]) -> str:
-    return re.sub(r"\b\w+\b", lambda m: f"({maps[m[0]][0].replace('@', names[m[0]])})" if m[0] in maps else m[0], text)
+def _with_axes(
+    text: str, maps: dict[str, tuple[str, Fraction, Fraction]], names: dict[str, str]
+) -> str:
+    return re.sub(
+        r"\b\w+\b",
+        lambda m: f"({maps[m[0]][0].replace('@', names[m[0]])})" if m[0] in maps else m[0],
+        text,
+    )
 
 
 def _window(record: Record) -> dict[str, tuple[Fraction, Fraction]]:
@@ -215,14 +263,20 @@ def _window(record: Record) -> dict[str, tuple[Fraction, Fraction]]:
 def _vast(record: Record, dice: random.Random) -> Record:
     """A window of 2e9, or of 2e6, in both directions; lengths stay positive."""
     size = Fraction(dice.choice(["1e9", "1e6"]))
-    axes = {name: [str(-size) if low < 0 else str(low), str(size - 1)] for name, (low, _) in _window(record).items()}
+    axes = {
+        name: [str(-size) if low < 0 else str(low), str(size - 1)]
+        for name, (low, _) in _window(record).items()
+    }
     return {**record, "axes": axes}
 
 
 def _shifted(record: Record, dice: random.Random) -> Record:
     """The same map over axes that begin far from zero."""
     far = Fraction(dice.choice(["1e9", "1e15", "123456789123"]))
-    return _through(record, {n: (f"@ - {far}", low + far, high + far) for n, (low, high) in _window(record).items()})
+    return _through(
+        record,
+        {n: (f"@ - {far}", low + far, high + far) for n, (low, high) in _window(record).items()},
+    )
 
 
 def _units_of_axes(record: Record, dice: random.Random) -> Record:
@@ -247,7 +301,10 @@ def _about_a_wall(record: Record, dice: random.Random) -> Record | None:
     size = Fraction(dice.choice(SIZES))
     axes = {}
     for name, middle in zip(record["axes"], at, strict=True):
-        low, high = middle - size * Fraction(dice.randint(1, 9), 10), middle + size * Fraction(dice.randint(1, 9), 10)
+        low, high = (
+            middle - size * Fraction(dice.randint(1, 9), 10),
+            middle + size * Fraction(dice.randint(1, 9), 10),
+        )
         axes[name] = [str(low), str(high)]
     return {**record, "axes": axes}
 
@@ -255,7 +312,10 @@ def _about_a_wall(record: Record, dice: random.Random) -> Record | None:
 def _walls(result: ptmcad.RegionMap) -> Any:
     """Points, to some 60 digits, of curves between neighbouring cells of different counts."""
     names = result.slice.axis_names
-    functions = [compile(c.polynomial.text(names).replace("^", "**"), "component", "eval") for c in result.components]
+    functions = [
+        compile(c.polynomial.text(names).replace("^", "**"), "component", "eval")
+        for c in result.components
+    ]
 
     def value(f: Any, at: list[Fraction]) -> Fraction:
         return Fraction(eval(f, dict(zip(names, at, strict=True))))

@@ -1,10 +1,12 @@
-"""What QEPCAD is asked about the paper's mechanism: its equilibria counted by the sextic, as an expert would let it.
+"""What QEPCAD is asked about the paper's mechanism: its equilibria counted by the sextic, as an
+expert would let it.
 
-The sextic's real roots t2 = tan(theta2/2) are, over all parameters outside a set of measure zero, in one-to-one
-correspondence with the equilibria of the slice. On that set QEPCAD is allowed to be wrong (it is two to five times
-faster so); and an equilibrium at theta2 = pi has no t2. The elimination is that of `ptmcad.studies.byhand`, with roots
-t of p = N. Up to positive factors H11 is V W and, where that is positive, the second derivative of the energy along the
-curve E1 = 0 is -V p'(t). So a root is a stable equilibrium exactly if V W > 0 and V p' < 0.
+The sextic's real roots t2 = tan(theta2/2) are, over all parameters outside a set of measure zero,
+in one-to-one correspondence with the equilibria of the slice. On that set QEPCAD is allowed to be
+wrong (it is two to five times faster so); and an equilibrium at theta2 = pi has no t2. The
+elimination is that of `ptmcad.studies.byhand`, with roots t of p = N. Up to positive factors H11 is
+V W and, where that is positive, the second derivative of the energy along the curve E1 = 0 is -V
+p'(t). So a root is a stable equilibrium exactly if V W > 0 and V p' < 0.
 """
 
 from __future__ import annotations
@@ -25,7 +27,9 @@ _FORMULA = re.compile(r"An equivalent quantifier-free formula:\s*(.*?)\n\s*\n", 
 
 
 def formulas(output: str) -> list[str]:
-    """The quantifier-free formulas that QEPCAD wrote; after most errors it writes none and exits with 0."""
+    """The quantifier-free formulas that QEPCAD wrote; after most errors it writes none and exits
+    with 0.
+    """
     return [" ".join(found.split()) for found in _FORMULA.findall(output)]
 
 
@@ -42,7 +46,9 @@ Terms = list[tuple[int, int, int, Fraction]]
 
 
 class Question(NamedTuple):
-    """The sextic over a window, its derivative in t, and the numerators of V and W, up to positive factors."""
+    """The sextic over a window, its derivative in t, and the numerators of V and W, up to positive
+    factors.
+    """
 
     sextic: Terms
     slope: Terms
@@ -50,21 +56,28 @@ class Question(NamedTuple):
     w: Terms
     axes: tuple[Axis, Axis]
 
-    def problem(self, task: Task, *, swapped: bool = False, then: Sequence[str] = ("solution T",)) -> str:
+    def problem(
+        self, task: Task, *, swapped: bool = False, then: Sequence[str] = ("solution T",)
+    ) -> str:
         """One problem of a session.
 
         Parameters
         ----------
-        swapped : eliminate the first axis before the second, instead of the second before the first.
+        swapped : eliminate the first axis before the second, instead of the second before the
+            first.
         then : the commands that are given once the decomposition is made.
         """
         p, slope, v, w = (
-            " ".join(signed_terms((((i, j, n), c) for i, j, n, c in terms), "xyt", times=" ", number=str))
+            " ".join(
+                signed_terms((((i, j, n), c) for i, j, n, c in terms), "xyt", times=" ", number=str)
+            )
             for terms in self[:4]
         )
         condition = f"{p} = 0"
         if task is Task.TWO_STABLE:
-            condition += rf" /\ [[{v} > 0 /\ {w} > 0 /\ {slope} < 0] \/ [{v} < 0 /\ {w} < 0 /\ {slope} > 0]]"
+            condition += (
+                rf" /\ [[{v} > 0 /\ {w} > 0 /\ {slope} < 0] \/ [{v} < 0 /\ {w} < 0 /\ {slope} > 0]]"
+            )
         (x0, x1), (y0, y1) = ((axis.low, axis.high) for axis in self.axes)
         return "\n".join((
             f"[ x is {self.axes[0].name}, y is {self.axes[1].name} ]",
@@ -88,4 +101,8 @@ def question(slice: Slice) -> Question | str:
 
 
 def _terms(polynomial: Sequence[Expression]) -> Terms:
-    return [(i, j, n, c) for n, coefficient in enumerate(polynomial) for i, j, c in coefficient.numerator]
+    return [
+        (i, j, n, c)
+        for n, coefficient in enumerate(polynomial)
+        for i, j, c in coefficient.numerator
+    ]

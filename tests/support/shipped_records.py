@@ -10,7 +10,8 @@ CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 _ALL = tuple(sorted(CONFIGS.glob("*.yaml")))
 _OTHER = tuple(path for path in sorted(CONFIGS.glob("*/*.yaml")) if path.parent.name != "families")
 OTHER_FREE = tuple(path for path in _OTHER if "free:" in path.read_text(encoding="utf-8"))
-"""Records of slices of other mechanisms whose springs have free lengths, for the certified engine."""
+"""Records of slices of other mechanisms whose springs have free lengths, for the certified engine.
+"""
 OTHER = tuple(path for path in _OTHER if path not in OTHER_FREE)
 """Those of other mechanisms and systems that the exact one answers."""
 LINES_ONLY = {"five-bar", "three-bar-chain", "two-dof-tensegrity-loaded", "two-x-joints"}

@@ -1,7 +1,7 @@
 """Solutions of a system at a rational point, counted by signatures of Hermite forms.
 
-Guarantee: `count_by_signature` is exact for any number of unknowns, and shares nothing with `ptmcad.exact.counting` but
-the multiplication matrices of `ptmcad.exact.point_system`.
+Guarantee: `count_by_signature` is exact for any number of unknowns, and shares nothing with
+`ptmcad.exact.counting` but the multiplication matrices of `ptmcad.exact.point_system`.
 """
 
 from __future__ import annotations
@@ -29,11 +29,12 @@ def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
 def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> Counts:
     """Counts at rational values of all parameters, by signatures of Hermite matrices.
 
-    The signature of the form (u, v) -> trace(u^T W v) on vectors of elements of the quotient algebra, W a symmetric
-    matrix of such elements, is the sum of the signatures of W over the real solutions. Of a regular symmetric matrix
-    of size n with i negative eigenvalues the k-th compound matrix has the signature K_k(i; n), a Krawtchouk
-    polynomial, the sum of the products of k of its n eigenvalues' signs; k = 0 ... n tell how many solutions have
-    which i. Where a condition g must be positive, W is multiplied by (g + g^2)/2 in the place of its sign.
+    The signature of the form (u, v) -> trace(u^T W v) on vectors of elements of the quotient
+    algebra, W a symmetric matrix of such elements, is the sum of the signatures of W over the real
+    solutions. Of a regular symmetric matrix of size n with i negative eigenvalues the k-th compound
+    matrix has the signature K_k(i; n), a Krawtchouk polynomial, the sum of the products of k of its
+    n eigenvalues' signs; k = 0 ... n tell how many solutions have which i. Where a condition g must
+    be positive, W is multiplied by (g + g^2)/2 in the place of its sign.
 
     Raises
     ------
@@ -47,7 +48,9 @@ def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
         return evaluate(point.algebra, _lifted(p, width))
 
     def query(conditions: Sequence[fmpq_mat], weights: Sequence[Sequence[fmpq_mat]]) -> int:
-        """The sum of the weights' signatures over the real solutions at which all conditions are positive."""
+        """The sum of the weights' signatures over the real solutions at which all conditions are
+        positive.
+        """
         total = 0
         for exponents in product((1, 2), repeat=len(conditions)):
             factor = one
@@ -62,10 +65,14 @@ def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
     if not point.algebra.dimension:
         return counts_of_signs((), system.criterion)
     one = matrix({(0,) * width: fmpq(1)})
-    inequalities, stability = (tuple(map(matrix, conditions)) for conditions in (point.inequalities, point.stability))
+    inequalities, stability = (
+        tuple(map(matrix, conditions)) for conditions in (point.inequalities, point.stability)
+    )
     total = query(inequalities, [[one]])
     if not system.criterion.order:
-        return Counts(total, query((*inequalities, *stability), [[one]]) if stability else None, None)
+        return Counts(
+            total, query((*inequalities, *stability), [[one]]) if stability else None, None
+        )
     hessian = [[matrix(h) for h in row] for row in point.jacobian]
     n = len(hessian)
     if _minor(hessian, range(n), range(n)).det() == 0:
@@ -74,7 +81,9 @@ def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
     for k in range(1, n + 1):
         chosen = list(combinations(range(n), k))
         sums.append(query(inequalities, [[_minor(hessian, a, b) for b in chosen] for a in chosen]))
-    krawtchouk = fmpq_mat(n + 1, n + 1, [_krawtchouk(k, i, n) for k in range(n + 1) for i in range(n + 1)])
+    krawtchouk = fmpq_mat(
+        n + 1, n + 1, [_krawtchouk(k, i, n) for k in range(n + 1) for i in range(n + 1)]
+    )
     numbers = krawtchouk.solve(fmpq_mat(n + 1, 1, sums))
     index = tuple(int(numbers[i, 0].p) for i in range(n + 1))
     return Counts(total, index[0], index)
@@ -85,7 +94,9 @@ def _krawtchouk(k: int, i: int, n: int) -> int:
     return sum((-1 if j % 2 else 1) * comb(i, j) * comb(n - i, k - j) for j in range(k + 1))
 
 
-def _minor(matrix: Sequence[Sequence[fmpq_mat]], rows: Sequence[int], columns: Sequence[int]) -> fmpq_mat:
+def _minor(
+    matrix: Sequence[Sequence[fmpq_mat]], rows: Sequence[int], columns: Sequence[int]
+) -> fmpq_mat:
     """The determinant of some rows and columns of a matrix of commuting matrices."""
     if len(rows) == 1:
         return matrix[rows[0]][columns[0]]
@@ -104,11 +115,12 @@ def _lifted(p: RationalPolynomial, width: int) -> RationalPolynomial:
 
 
 def block_hermite_matrix(algebra: FibreAlgebra, weights: Sequence[Sequence[fmpq_mat]]) -> fmpq_mat:
-    """The matrix of blocks trace(weights[k][l] b_i b_j), for a symmetric matrix of multiplication matrices.
+    """The matrix of blocks trace(weights[k][l] b_i b_j), for a symmetric matrix of multiplication
+    matrices.
 
-    Its signature is the sum over the real solutions of the signatures of the weights' values there: the form is the sum
-    over all solutions of that of the value, evaluated at the values of the elements, and the parts of two conjugate
-    solutions together have signature zero.
+    Its signature is the sum over the real solutions of the signatures of the weights' values there:
+    the form is the sum over all solutions of that of the value, evaluated at the values of the
+    elements, and the parts of two conjugate solutions together have signature zero.
     """
     size = algebra.dimension
     multiplications = []
@@ -119,10 +131,14 @@ def block_hermite_matrix(algebra: FibreAlgebra, weights: Sequence[Sequence[fmpq_
                 m = matrix * m
         multiplications.append(m)
     # the traces of all w b_i, for w = sum of w_j b_j, are this matrix times the w_j
-    traces = fmpq_mat(size, 1, [sum((m[i, i] for i in range(size)), fmpq(0)) for m in multiplications])
+    traces = fmpq_mat(
+        size, 1, [sum((m[i, i] for i in range(size)), fmpq(0)) for m in multiplications]
+    )
     # column j of a multiplication is the normal form of its element times b_j
     transposed = [m.transpose() for m in multiplications]
-    traces_of_products = fmpq_mat(size, size, [t for m in transposed for t in (m * traces).entries()])
+    traces_of_products = fmpq_mat(
+        size, size, [t for m in transposed for t in (m * traces).entries()]
+    )
     number = len(weights)
     entries = fmpq_mat(number * size, number * size)
     for k, row in enumerate(weights):
@@ -136,7 +152,9 @@ def block_hermite_matrix(algebra: FibreAlgebra, weights: Sequence[Sequence[fmpq_
 
 
 def signature(symmetric: fmpq_mat) -> tuple[int, int]:
-    """(number of positive eigenvalues, number of negative ones), by Descartes' rule, exact as all roots are real."""
+    """(number of positive eigenvalues, number of negative ones), by Descartes' rule, exact as all
+    roots are real.
+    """
     coefficients = symmetric.charpoly().coeffs()
     positive = _sign_changes(coefficients)
     negative = _sign_changes([c if i % 2 == 0 else -c for i, c in enumerate(coefficients)])

@@ -1,8 +1,9 @@
-"""A shipped slice as Singular sees it: the potential from the nodes' coordinates, and ideals in cosines and sines.
+"""A shipped slice as Singular sees it: the potential from the nodes' coordinates, and ideals in
+cosines and sines.
 
-Guarantee: nothing of ptmcad's engine, model or parser of expressions takes part. The record is read as YAML, the
-parameters go into Singular's script as they are written there, and Singular differentiates the potential itself:
-along theta the derivative of c is -s and that of s is c.
+Guarantee: nothing of ptmcad's engine, model or parser of expressions takes part. The record is read
+as YAML, the parameters go into Singular's script as they are written there, and Singular
+differentiates the potential itself: along theta the derivative of c is -s and that of s is c.
 """
 
 from __future__ import annotations
@@ -58,7 +59,9 @@ def axes(name: str) -> tuple[str, str]:
 
 
 def _record(name: str) -> dict[str, dict[str, object]]:
-    record: dict[str, dict[str, object]] = yaml.safe_load((CONFIGS / f"{name}.yaml").read_text(encoding="utf-8"))
+    record: dict[str, dict[str, object]] = yaml.safe_load(
+        (CONFIGS / f"{name}.yaml").read_text(encoding="utf-8")
+    )
     return record
 
 
@@ -72,7 +75,9 @@ def parameters(name: str) -> dict[str, str]:
 
 def _preamble(name: str, order: str = "dp") -> str:
     """A ring R with the slice's `equilibria`, its H11 and H = det of the Hessian."""
-    fixed = "\n".join(f"poly {p} = {value};" for p, value in parameters(name).items() if p not in axes(name))
+    fixed = "\n".join(
+        f"poly {p} = {value};" for p, value in parameters(name).items() if p not in axes(name)
+    )
     return f"ring R = 0, (c1, s1, c2, s2, {', '.join(axes(name))}), {order};\n{fixed}\n{_MECHANISM}"
 
 
@@ -86,10 +91,11 @@ def _curves(name: str, output: str) -> frozenset[PlanePolynomial]:
 
 @cache
 def critical_curves(name: str) -> frozenset[PlanePolynomial]:
-    """The irreducible curves over Q of the elimination ideal of <E1, E2, circles, det H> in Q[x, y].
+    """The irreducible curves over Q of the elimination ideal of <E1, E2, circles, det H> in Q[x,
+    y].
 
-    In characteristic 0, all at once. A basis in the cheap order before the elimination saves most of the time (on the
-    slices of fig. 5 it takes one second, without it more than 90).
+    In characteristic 0, all at once. A basis in the cheap order before the elimination saves most
+    of the time (on the slices of fig. 5 it takes one second, without it more than 90).
     """
     return _curves(
         name,
@@ -106,11 +112,13 @@ def critical_curves(name: str) -> frozenset[PlanePolynomial]:
 
 @cache
 def improper_curves(name: str) -> frozenset[PlanePolynomial]:
-    """The irreducible curves over which some complex solution is at infinity, or over which there are infinitely many.
+    """The irreducible curves over which some complex solution is at infinity, or over which there
+    are infinitely many.
 
-    A Groebner basis in a block order that first compares degrees in the unknowns, made homogeneous in the unknowns
-    with a new one h, generates the ideal of the closure of {(solution, parameters)} in P^4 x A^2. Its points with
-    h = 0 are found in the four charts; projecting along P^4 is a closed map, so nothing is lost by the elimination.
+    A Groebner basis in a block order that first compares degrees in the unknowns, made homogeneous
+    in the unknowns with a new one h, generates the ideal of the closure of {(solution, parameters)}
+    in P^4 x A^2. Its points with h = 0 are found in the four charts; projecting along P^4 is a
+    closed map, so nothing is lost by the elimination.
     """
     charts = "\n".join(
         f"L = K, {v} - 1; L = std(L); J = eliminate(L, c1*s1*c2*s2); common = 0;\n"
@@ -143,7 +151,8 @@ ideal L; ideal J; poly common; poly product = 1;
 
 
 def solutions_over(name: str, curve: PlanePolynomial, at: Fraction) -> Fraction | None:
-    """Mean number of complex solutions, with multiplicity, over the curve's points on a line x = at or y = at.
+    """Mean number of complex solutions, with multiplicity, over the curve's points on a line x = at
+    or y = at.
 
     None when there are infinitely many. The line is across the axis that the curve depends on.
     """
@@ -151,7 +160,9 @@ def solutions_over(name: str, curve: PlanePolynomial, at: Fraction) -> Fraction 
     free, fixed = axes(name)[along], axes(name)[1 - along]
     cut: Counter[int] = Counter()
     for *exponents, c in curve.terms:
-        cut[exponents[along]] += int(c * at ** exponents[1 - along] * at.denominator ** max(curve.degrees))
+        cut[exponents[along]] += int(
+            c * at ** exponents[1 - along] * at.denominator ** max(curve.degrees)
+        )
     degree = max(e for e, c in cut.items() if c)
     assert degree > 0, f"{fixed} = {at} is a special line of the curve"
     relation = " + ".join(f"({c})*{free}^{e}" for e, c in cut.items())
@@ -165,7 +176,8 @@ def solutions_over(name: str, curve: PlanePolynomial, at: Fraction) -> Fraction 
 
 @dataclass(frozen=True, slots=True)
 class CountingFormula:
-    """The equilibria at a rational point in one unknown w = c1 + 2 s1 + 3 c2 + 5 s2; coefficients, constant first.
+    """The equilibria at a rational point in one unknown w = c1 + 2 s1 + 3 c2 + 5 s2; coefficients,
+    constant first.
 
     Attributes
     ----------
@@ -179,7 +191,9 @@ class CountingFormula:
     h11: tuple[int, ...]
 
 
-def counting_formulas(name: str, points: Sequence[tuple[Fraction, Fraction]]) -> list[CountingFormula]:
+def counting_formulas(
+    name: str, points: Sequence[tuple[Fraction, Fraction]]
+) -> list[CountingFormula]:
     """The formula at each point, from a lexicographic Groebner basis.
 
     Raises

@@ -1,4 +1,6 @@
-"""What every region map must satisfy, whatever the slice: checked from the stored map alone, with exact numbers."""
+"""What every region map must satisfy, whatever the slice: checked from the stored map alone, with
+exact numbers.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,8 @@ def check_structure(result: RegionMap) -> None:
         assert region.sample in [result.cells[n].sample for n in region.cells]
         assert result.locate(**region.sample).region == number
 
-    # links: valid, once each, equal counts where the arc is off the variety, and signs as the component says
+    # links: valid, once each, equal counts where the arc is off the variety, and signs as the
+    # component says
     pairs = [(a.first, a.second) for a in result.adjacencies]
     assert all(a != b and a in cells and b in cells for a, b in pairs)
     assert len({frozenset(p) for p in pairs}) == len(pairs)
@@ -49,8 +52,12 @@ def check_structure(result: RegionMap) -> None:
     for a in result.adjacencies:
         first, second = result.cells[a.first], result.cells[a.second]
         equal = key(first, result.slice.count) == key(second, result.slice.count)
-        assert equal == (first.region == second.region), "a separating wall, or a merge that was missed"
-        assert a.merge is (Merge.PROVEN if a.component is None else Merge.EQUAL_COUNT if equal else Merge.SEPARATED)
+        assert equal == (first.region == second.region), (
+            "a separating wall, or a merge that was missed"
+        )
+        assert a.merge is (
+            Merge.PROVEN if a.component is None else Merge.EQUAL_COUNT if equal else Merge.SEPARATED
+        )
         if a.component is None:
             assert first.index == second.index
         else:
@@ -104,7 +111,9 @@ def _check_stacks(result: RegionMap) -> None:
             cell = result.cells[n]
             assert (cell.stack, cell.level) == (s, level)
             assert cell.sample[result.base] == stack.sample
-            assert all(a.low < v < a.high for a, v in zip(result.slice.axes, cell.sample, strict=True))
+            assert all(
+                a.low < v < a.high for a, v in zip(result.slice.axes, cell.sample, strict=True)
+            )
         number += len(stack.cells)
         high = result.critical_values[s].low if s < len(result.critical_values) else axis.high
         assert previous < stack.sample < high

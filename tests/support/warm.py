@@ -1,8 +1,9 @@
-"""Programs in processes of their own that begin after their imports: forked from one that has done them.
+"""Programs in processes of their own that begin after their imports: forked from one that has done
+them.
 
-For tests of what a process does once it runs, and how it ends: half of its time would go to imports that are the same
-every time, and of random moments half would fall into them. A forked program is a process like any other, with its own
-standard streams, and ends by the interpreter's own end.
+For tests of what a process does once it runs, and how it ends: half of its time would go to imports
+that are the same every time, and of random moments half would fall into them. A forked program is a
+process like any other, with its own standard streams, and ends by the interpreter's own end.
 """
 
 from __future__ import annotations
@@ -54,7 +55,9 @@ exec(compile(request["program"], "<string>", "exec"), {"__name__": "__main__"})
 
 
 class Started:
-    """A forked process, with what the tests use of `subprocess.Popen`; it leads a group of processes of its own."""
+    """A forked process, with what the tests use of `subprocess.Popen`; it leads a group of
+    processes of its own.
+    """
 
     def __init__(self, server: _Server, pid: int, out: int, err: int) -> None:
         self.pid = pid
@@ -79,7 +82,9 @@ class Started:
         """What was printed, when the streams are closed and the process has ended."""
         deadline = time.monotonic() + timeout
         while self._open:
-            ready, _, _ = select.select(list(self._open), [], [], max(0.0, deadline - time.monotonic()))
+            ready, _, _ = select.select(
+                list(self._open), [], [], max(0.0, deadline - time.monotonic())
+            )
             assert ready, "the streams are not closed"
             for file in ready:
                 data = os.read(file, 1 << 16)

@@ -1,4 +1,6 @@
-"""Work that depends on no clock: how many functions are called to answer a question of a stress case."""
+"""Work that depends on no clock: how many functions are called to answer a question of a stress
+case.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,9 @@ from ptmcad.studies.stress.case import Question
 
 
 def work_of(question: Question) -> int:
-    """Functions called, Python's and built in; not of the first answer in a process, which also loads modules."""
+    """Functions called, Python's and built in; not of the first answer in a process, which also
+    loads modules.
+    """
     answer(question)
     calls = 0
 

@@ -1,4 +1,6 @@
-"""Sweeps: members equal single runs, share results, fail alone, and are computed once whatever interrupts them."""
+"""Sweeps: members equal single runs, share results, fail alone, and are computed once whatever
+interrupts them.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +48,11 @@ SQUARES = {
     "name": "squares",
     **PLANE,
     "parameters": {"c": "F*F/100", "d": "L"},
-    "sweep": [{"F": [0, 10, -10], "L": [1]}, {"F": [1], "L": [1, 0]}, {"F": ["10/1"], "L": ["2/2"]}],
+    "sweep": [
+        {"F": [0, 10, -10], "L": [1]},
+        {"F": [1], "L": [1, 0]},
+        {"F": ["10/1"], "L": ["2/2"]},
+    ],
 }
 """Two members have the slice of another one, and of one a length is zero."""
 
@@ -58,25 +64,38 @@ def mapped(record: dict[str, Any], folder: Path, **options: Any) -> Sweep:
 @pytest.mark.slow
 def test_a_member_equals_the_record_classified_alone(tmp_path: Path) -> None:
     """In processes that have computed others before; all that the index says is of that document."""
-    record = {"name": "few", "parameters": {"L1": 1, "F3": "F", "F4": "F"}, "axes": AXES, "sweep": {"F": [0, -10]}}
+    record = {
+        "name": "few",
+        "parameters": {"L1": 1, "F3": "F", "F4": "F"},
+        "axes": AXES,
+        "sweep": {"F": [0, -10]},
+    }
     sweep = ptmcad.sweep(record, tmp_path / "few", jobs=1)
     assert (len(sweep), sweep.states, sweep.complete) == (2, {State.DONE: 2}, True)
     for member in sweep:
         load = int(member.parameters["F"])
-        alone = ptmcad.classify({"name": "few", "parameters": {"L1": 1, "F3": load, "F4": load}, "axes": AXES})
+        alone = ptmcad.classify(
+            {"name": "few", "parameters": {"L1": 1, "F3": load, "F4": load}, "axes": AXES}
+        )
         text = (tmp_path / "few" / member.file).read_text(encoding="utf-8")
         assert text == alone.to_json(timings=False)
         assert sha256(text.encode()).hexdigest() == member.digest
         assert sweep.result(member.number) == alone
         found = member.summary
-        assert (found.status, found.cells, found.regions) == ("exact", len(alone.cells), len(alone.regions))
+        assert (found.status, found.cells, found.regions) == (
+            "exact",
+            len(alone.cells),
+            len(alone.regions),
+        )
         for area in found.areas:
             own = [region.area for region in alone.regions if region.stable == int(area.count)]
             assert area.regions == len(own)
             assert float(area.area[0]) == pytest.approx(float(sum(low for low, _ in own)))
         widest = ptmcad.operation_widths(alone.slice, "rho", 1).maxima
         assert float(found.widest.width[0]) == pytest.approx(float(widest[0].width.low))
-        assert [float(low) for low, _ in found.widest.places] == pytest.approx([float(m.at.low) for m in widest])
+        assert [float(low) for low, _ in found.widest.places] == pytest.approx(
+            [float(m.at.low) for m in widest]
+        )
 
 
 def test_members_with_one_slice_are_computed_once(tmp_path: Path) -> None:
@@ -87,7 +106,10 @@ def test_members_with_one_slice_are_computed_once(tmp_path: Path) -> None:
     assert found[2].summary == found[1].summary and found[2].file == found[1].file
     assert len(list((tmp_path / "s" / "results").rglob("*.json"))) == 3
     refused = found[4]
-    assert (refused.state, refused.error) == (State.REFUSED, "parameters.d: d is 0, but a length must be positive")
+    assert (refused.state, refused.error) == (
+        State.REFUSED,
+        "parameters.d: d is 0, but a length must be positive",
+    )
 
 
 def test_the_answer_can_be_read_in_several_ways(tmp_path: Path) -> None:
@@ -106,7 +128,9 @@ def test_the_answer_can_be_read_in_several_ways(tmp_path: Path) -> None:
     text = sweep.to_csv()
     assert text.splitlines()[0].startswith("member,c,d,state,status,same_as,")
     assert "seconds" not in text.splitlines()[0]
-    assert ptmcad.sweep(CUSPS, tmp_path / "u", wanted={"areas": False, "along": ""}).to_csv() == text
+    assert (
+        ptmcad.sweep(CUSPS, tmp_path / "u", wanted={"areas": False, "along": ""}).to_csv() == text
+    )
     for wrong in ({"area": 1}, {"engine": "exactly"}, {"along": "c"}):
         with pytest.raises(ConfigError, match=r"options are|none of auto|no axis: choose a or b"):
             ptmcad.sweep(CUSPS, tmp_path / "w", wanted=wrong)
@@ -122,7 +146,9 @@ def test_the_index_does_not_depend_on_the_number_of_processes(tmp_path: Path) ->
 
 
 def test_a_worker_that_dies_fails_its_member_alone() -> None:
-    """The members that waited at the dead one go to another; the one that failed can be given again."""
+    """The members that waited at the dead one go to another; the one that failed can be given
+    again.
+    """
     pool = Pool(Work(sweep_from(CUSPS), QUICK), 1)
     try:
         pool.submit(0)
@@ -163,9 +189,13 @@ def test_an_unexpected_error_is_its_members_failure(monkeypatch: pytest.MonkeyPa
 
 
 def test_a_member_that_overruns_its_time_is_a_failure(tmp_path: Path) -> None:
-    """Also in code that does not look at the clock: the process is killed, and the words are the same."""
+    """Also in code that does not look at the clock: the process is killed, and the words are the
+    same.
+    """
     question = sweep_from(CUSPS)
-    assert compute(Work(question, Wanted(timeout=1e-6)), 0) == Failed("the member's time limit of 1e-06 s was reached")
+    assert compute(Work(question, Wanted(timeout=1e-6)), 0) == Failed(
+        "the member's time limit of 1e-06 s was reached"
+    )
     pool = Pool(Work(question, Wanted(timeout=1e-3)), 1)
     try:
         pool.submit(0)
@@ -189,19 +219,28 @@ def test_other_versions_and_orders_are_told_apart(tmp_path: Path) -> None:
     assert compute(work, 0).error.endswith("and the sweep was asked with 0.0")
     mapped(CUSPS, tmp_path / "u")
     for record, options in (({**CUSPS, "count": "total"}, {}), (CUSPS, {"wanted": Wanted()})):
-        with pytest.raises(ConfigError, match="holds the sweep of another record, or other options"):
+        with pytest.raises(
+            ConfigError, match="holds the sweep of another record, or other options"
+        ):
             mapped(record, tmp_path / "u", **options)
-    with index.opened(tmp_path / "u"), pytest.raises(OutputError, match="another process is working on the sweep"):
+    with (
+        index.opened(tmp_path / "u"),
+        pytest.raises(OutputError, match="another process is working on the sweep"),
+    ):
         mapped(CUSPS, tmp_path / "u")
 
 
 def test_a_time_limit_leaves_what_is_done(tmp_path: Path) -> None:
-    with pytest.raises(LimitReached, match=r"of 0.001 s was reached; 0 of 6 members are done, in .*goes on"):
+    with pytest.raises(
+        LimitReached, match=r"of 0.001 s was reached; 0 of 6 members are done, in .*goes on"
+    ):
         mapped(CUSPS, tmp_path / "u", timeout=1e-3)
     assert mapped(CUSPS, tmp_path / "u").complete
 
 
-def test_a_result_that_is_lost_is_made_again_and_one_that_was_changed_is_told(tmp_path: Path) -> None:
+def test_a_result_that_is_lost_is_made_again_and_one_that_was_changed_is_told(
+    tmp_path: Path,
+) -> None:
     sweep = mapped(CUSPS, tmp_path / "u")
     text = sweep.to_csv()
     files = [tmp_path / "u" / member.file for member in sweep]
@@ -210,9 +249,13 @@ def test_a_result_that_is_lost_is_made_again_and_one_that_was_changed_is_told(tm
     changed = files[5].read_text(encoding="utf-8").replace("-2", "-1", 1)
     files[5].write_text(changed, encoding="utf-8")
     for number in (3, 5):  # by a run, which does not write over it, as by whoever reads it
-        with pytest.raises(ConfigError, match=rf"00000{number}\.json: has been changed since it was computed"):
+        with pytest.raises(
+            ConfigError, match=rf"00000{number}\.json: has been changed since it was computed"
+        ):
             mapped(CUSPS, tmp_path / "u")
-        with pytest.raises(ConfigError, match=rf"00000{number}\.json: has been changed since it was computed"):
+        with pytest.raises(
+            ConfigError, match=rf"00000{number}\.json: has been changed since it was computed"
+        ):
             sweep.result(number)
         files[number].unlink()
     assert mapped(CUSPS, tmp_path / "u").to_csv() == text
@@ -232,21 +275,29 @@ def done_in(folder: Path) -> set[int]:
     """The members that the index says are done, by another process."""
     try:
         rows = sqlite3.connect(f"file:{folder / index.INDEX}?mode=ro", uri=True)
-        found = {number for (number,) in rows.execute("SELECT number FROM members WHERE state = 'done'")}
+        found = {
+            number for (number,) in rows.execute("SELECT number FROM members WHERE state = 'done'")
+        }
         rows.close()
     except sqlite3.OperationalError:  # not there yet
         return set()
     return found
 
 
-def interrupted(record: Path, folder: Path, kills: int, moment: Callable[[int], int], jobs: int) -> int:
-    """Runs that are killed when so many members are done; how many of the kills hit a run under way."""
+def interrupted(
+    record: Path, folder: Path, kills: int, moment: Callable[[int], int], jobs: int
+) -> int:
+    """Runs that are killed when so many members are done; how many of the kills hit a run under
+    way.
+    """
     hits = 0
     command = [sys.executable, "-m", "ptmcad", "sweep", str(record), "--out", str(folder), "--no-ranges", "--no-areas",
                "--jobs", str(jobs)]  # fmt: skip
     for number in range(kills):
         before = done_in(folder)
-        process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        process = subprocess.Popen(
+            command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+        )
         wanted = moment(number)
         while process.poll() is None and len(done_in(folder)) < wanted:
             time.sleep(0.005)
@@ -275,7 +326,9 @@ def check_once(sweep: Sweep) -> None:
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="processes are looked up in /proc")
 def test_killed_twice_it_goes_on_and_leaves_the_same_index(tmp_path: Path) -> None:
-    many = CUSPS | {"sweep": {"c": {"from": 0, "to": 1, "steps": 12}, "d": {"from": 1, "to": 2, "steps": 5}}}
+    many = CUSPS | {
+        "sweep": {"c": {"from": 0, "to": 1, "steps": 12}, "d": {"from": 1, "to": 2, "steps": 5}}
+    }
     record = tmp_path / "cusps.yaml"
     record.write_text(yaml.safe_dump(many, sort_keys=False), encoding="utf-8")
     assert interrupted(record, tmp_path / "killed", 2, lambda k: 5 + 20 * k, 1) == 2
@@ -318,7 +371,9 @@ def test_workers_end_with_the_process_that_has_started_them(tmp_path: Path) -> N
         f"while not os.path.exists({str(tmp_path / 'asleep')!r}):\n    time.sleep(0.01)\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
     )
-    process = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    process = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     assert process.returncode == -signal.SIGKILL, process.stderr
     worker = Path("/proc") / process.stdout.strip()
     end = time.monotonic() + 10
@@ -372,7 +427,9 @@ def test_a_cluster_needs_its_extra(
     assert "pip install 'ptmcad[distributed]'" in capsys.readouterr().err
 
 
-def test_check_says_how_many_members_there_are(squares: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_says_how_many_members_there_are(
+    squares: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["check", str(squares)]) == 0
     said = capsys.readouterr().out
     assert "sweep       6 members over F, L" in said
@@ -383,7 +440,9 @@ def test_check_says_how_many_members_there_are(squares: Path, capsys: pytest.Cap
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(find_spec("distributed") is None, reason="distributed is not installed (ptmcad[distributed])")
+@pytest.mark.skipif(
+    find_spec("distributed") is None, reason="distributed is not installed (ptmcad[distributed])"
+)
 def test_a_cluster_gives_the_same_index_although_a_worker_is_killed(tmp_path: Path) -> None:
     from support.dask_cluster import scheduler_with_workers
 
@@ -395,14 +454,20 @@ def test_a_cluster_gives_the_same_index_although_a_worker_is_killed(tmp_path: Pa
                 killed.set()
                 workers[0].kill()
 
-        there = ptmcad.sweep(FAMILY, tmp_path / "there", scheduler=address, wanted=QUICK, progress=kill)
+        there = ptmcad.sweep(
+            FAMILY, tmp_path / "there", scheduler=address, wanted=QUICK, progress=kill
+        )
     assert killed.is_set()
     assert there.to_csv() == whole(FAMILY, tmp_path / "here").to_csv()
 
 
-@pytest.mark.skipif(find_spec("distributed") is None, reason="distributed is not installed (ptmcad[distributed])")
+@pytest.mark.skipif(
+    find_spec("distributed") is None, reason="distributed is not installed (ptmcad[distributed])"
+)
 @pytest.mark.slow
-def test_a_scheduler_that_does_not_answer_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scheduler_that_does_not_answer_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     from ptmcad.sweeping import cluster
 
     monkeypatch.setattr(cluster, "CONNECT_SECONDS", 1)
@@ -412,7 +477,9 @@ def test_a_scheduler_that_does_not_answer_is_told(tmp_path: Path, monkeypatch: p
 
 @pytest.mark.slow
 def test_memory_does_not_grow_with_the_members(tmp_path: Path) -> None:
-    """Ten thousand members, by a stand-in for the engine: from a tenth of them on next to nothing grows."""
+    """Ten thousand members, by a stand-in for the engine: from a tenth of them on next to nothing
+    grows.
+    """
     code = f"""
 import json, resource, sys
 from pathlib import Path
@@ -442,6 +509,8 @@ sweep = run.sweep(record, {str(tmp_path / "many")!r}, progress=progress)
 assert sweep.complete and len(sweep) == 10000
 print(json.dumps(peaks))
 """
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
     peaks = json.loads(done.stdout)
     assert peaks["10000"] - peaks["1000"] < 4 << 20

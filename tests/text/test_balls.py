@@ -35,7 +35,9 @@ def test_an_enclosure_holds_the_ball_and_settles_its_digits(
 
 
 def test_a_number_between_two_texts_is_not_settled_by_rounding() -> None:
-    """A ball around 0.5 has six digits; one around 0.5000005 has not: it lies halfway between two texts."""
+    """A ball around 0.5 has six digits; one around 0.5000005 has not: it lies halfway between two
+    texts.
+    """
     with ctx.workprec(200):
         near = arb(fmpq(5 * 10**11 + 1, 10**12))
         ball = near + arb(0, fmpq(1, 10**40))

@@ -1,4 +1,6 @@
-"""Codecs read off annotations: what is written is read back and valid, and what is wrong is refused with its place."""
+"""Codecs read off annotations: what is written is read back and valid, and what is wrong is refused
+with its place.
+"""
 
 from __future__ import annotations
 
@@ -69,7 +71,9 @@ SCHEMA = document_schema("ptmcad-whole/1", WHOLE.schema)
 
 texts = st.text(st.characters(categories=["Lu", "Ll", "Nd"]), max_size=8)
 numbers = st.fractions(max_denominator=10**6)
-parts = st.builds(Part, numbers, st.sampled_from(Shape), st.lists(st.integers(0, 9), max_size=3).map(tuple))
+parts = st.builds(
+    Part, numbers, st.sampled_from(Shape), st.lists(st.integers(0, 9), max_size=3).map(tuple)
+)
 wholes = st.builds(
     Whole,
     texts,
@@ -87,7 +91,13 @@ def test_what_is_written_is_read_back_and_valid(whole: Whole) -> None:
     assert WHOLE.read(opened(text, "ptmcad-whole/1", 10**6, "nothing")) == whole
 
 
-GIVEN: Any = {"name": "a", "pieces": [{"size": "1/2", "shape": "flat"}], "number": 1, "ends": None, "by_name": {}}
+GIVEN: Any = {
+    "name": "a",
+    "pieces": [{"size": "1/2", "shape": "flat"}],
+    "number": 1,
+    "ends": None,
+    "by_name": {},
+}
 
 
 def test_defaults_are_not_written() -> None:
@@ -99,9 +109,15 @@ def test_defaults_are_not_written() -> None:
     [
         ({"name": 1}, "name is not a text"),
         ({"pieces": [{"size": "1/2"}]}, "pieces[0] lacks the key 'shape'"),
-        ({"pieces": [{"size": "1/2", "shape": "flat", "colour": 1}]}, "pieces[0] has the unknown key 'colour'"),
+        (
+            {"pieces": [{"size": "1/2", "shape": "flat", "colour": 1}]},
+            "pieces[0] has the unknown key 'colour'",
+        ),
         ({"pieces": [{"size": "x", "shape": "flat"}]}, "pieces[0].size is wrong"),
-        ({"pieces": [{"size": "1/2", "shape": "square"}]}, "pieces[0].shape is 'square', not one of round, flat"),
+        (
+            {"pieces": [{"size": "1/2", "shape": "square"}]},
+            "pieces[0].shape is 'square', not one of round, flat",
+        ),
         ({"pieces": []}, "number is not '0', as the rest says"),
         ({"ends": ["1"]}, "ends has 1 entries, not 2"),
         ({"by_name": {"b": 0}}, "by_name.b is not true or false"),
@@ -113,11 +129,15 @@ def test_what_is_wrong_is_refused_with_its_place(change: dict[str, Any], fault: 
         WHOLE.read(Node(GIVEN | change, ""))
     assert fault in str(refused.value)
     if "number" not in fault:
-        assert not jsonschema.Draft202012Validator(SCHEMA).is_valid({"format": "ptmcad-whole/1", **GIVEN} | change)
+        assert not jsonschema.Draft202012Validator(SCHEMA).is_valid(
+            {"format": "ptmcad-whole/1", **GIVEN} | change
+        )
 
 
 def test_a_document_without_a_derived_key_is_an_earlier_one_where_it_has_a_default() -> None:
-    codec = record_of(Part, {Shape: choice(Shape)}, area=derived(lambda part: 7, NATURAL, default=0))
+    codec = record_of(
+        Part, {Shape: choice(Shape)}, area=derived(lambda part: 7, NATURAL, default=0)
+    )
     found = Part(Fraction(1), Shape.FLAT, (1,))
     data = json.loads(json.dumps(codec.write(found)))
     assert data["area"] == 7

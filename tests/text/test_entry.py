@@ -17,7 +17,9 @@ TEXT = 'size: "2"\nparts:\n- {name: a}\n- {nam: b}\n- 3\ncolour: red\n'
 
 
 def of(kind: str, faults: Faults) -> Node:
-    return Node.of(from_python(DATA, Place()) if kind == "data" else read_text(TEXT, "record.yaml"), faults)
+    return Node.of(
+        from_python(DATA, Place()) if kind == "data" else read_text(TEXT, "record.yaml"), faults
+    )
 
 
 def word(entry: Node) -> str:
@@ -29,7 +31,10 @@ def word(entry: Node) -> str:
 WORD = reading(word, type="string")
 PART: Codec[dict[str, Any]] = record(dict, "{name: a}", name=part(WORD, "Its name.", instead=""))
 WHOLE: Codec[dict[str, Any]] = record(
-    dict, size=part(WORD, default=""), parts=part(listed(PART, most=9), "Of it."), weight=part(WORD, instead="none")
+    dict,
+    size=part(WORD, default=""),
+    parts=part(listed(PART, most=9), "Of it."),
+    weight=part(WORD, instead="none"),
 )
 
 
@@ -44,7 +49,9 @@ def test_all_faults_are_noted_and_the_rest_is_read(kind: str) -> None:
         ("parts.2.name", "is missing"), ("parts.3", "expected a mapping, such as {name: a}"),
     ]  # fmt: skip
     assert faults.found[2].message == "unknown key; did you mean 'name'?"
-    assert [fault.line for fault in faults.found] == [6, 1, 4, 4, 5] if kind == "nodes" else [None] * 5
+    assert (
+        [fault.line for fault in faults.found] == [6, 1, 4, 4, 5] if kind == "nodes" else [None] * 5
+    )
     with pytest.raises(ConfigError) as refused:
         faults.check()
     assert len(refused.value.faults) == 5
@@ -53,7 +60,9 @@ def test_all_faults_are_noted_and_the_rest_is_read(kind: str) -> None:
 def test_what_has_nothing_instead_is_left_out_with_one_fault_for_each_key() -> None:
     pair: Codec[dict[str, Any]] = record(dict, first=part(WORD), second=part(WORD))
     faults = Faults()
-    found = named(pair).read(Node.of(from_python({"a": {"first": 1, "second": [2]}, "b": {}}, Place()), faults))
+    found = named(pair).read(
+        Node.of(from_python({"a": {"first": 1, "second": [2]}, "b": {}}, Place()), faults)
+    )
     assert found == {}
     assert [fault.key for fault in faults.found] == ["a.first", "a.second", "b.first", "b.second"]
 
@@ -75,7 +84,9 @@ def test_the_schema_is_what_is_read() -> None:
 
 def test_a_key_is_found_in_the_tree_and_a_missing_one_where_it_would_be() -> None:
     tree = read_text(TEXT, "record.yaml")
-    places = [place_at(tree, key) for key in ("parts.2.nam", "parts.2.name", "size.x", "", "parts.7")]
+    places = [
+        place_at(tree, key) for key in ("parts.2.nam", "parts.2.name", "size.x", "", "parts.7")
+    ]
     assert [(p.key, p.line) for p in places] == [
         ("parts.2.nam", 4), ("parts.2.name", 4), ("size.x", 1), (None, 1), ("parts.7", 2),
     ]  # fmt: skip
@@ -87,7 +98,11 @@ def test_a_key_is_found_in_the_tree_and_a_missing_one_where_it_would_be() -> Non
         ([1, 2], "mapping", "expected a mapping, such as {a: 1}"),
         ("a", "items", "expected a list, such as {a: 1}"),
         (None, "items", "has no value: write one, such as {a: 1}, or leave the key out"),
-        ({str(n): n for n in range(401)}, "mapping", "401 entries, more than the 400 that can be computed with"),
+        (
+            {str(n): n for n in range(401)},
+            "mapping",
+            "401 entries, more than the 400 that can be computed with",
+        ),
     ],
 )
 def test_another_shape_is_refused(value: Any, shape: str, message: str) -> None:

@@ -48,7 +48,9 @@ def trees(draw: st.DrawFn, depth: int = 4) -> tuple[str, object]:
 
 
 @given(trees(), small, small)
-def test_values_equal_those_of_fractions(tree: tuple[str, object], x: Fraction, y: Fraction) -> None:
+def test_values_equal_those_of_fractions(
+    tree: tuple[str, object], x: Fraction, y: Fraction
+) -> None:
     text, function = tree
     try:
         expected = function(x, y)
@@ -91,7 +93,10 @@ def test_any_text_is_an_expression_or_a_refusal(text: str) -> None:
         ("-1/10", Fraction(-1, 10)),
         ("1e-30", Fraction(1, 10**30)),
         ("3/4", Fraction(3, 4)),
-        ("1.234567890123456789012345678901234567891", Fraction(1234567890123456789012345678901234567891, 10**39)),
+        (
+            "1.234567890123456789012345678901234567891",
+            Fraction(1234567890123456789012345678901234567891, 10**39),
+        ),
         ("-2^2", Fraction(-4)),
         ("2^-2", Fraction(1, 4)),
         ("2^3^2", Fraction(512)),

@@ -32,10 +32,14 @@ from ptmcad.text.tree import Number
 
 
 def test_the_table_of_a_damaged_result_ends() -> None:
-    """An area between 10^4298 and 2 once made the table look for the magnitude of a negative number for ever."""
+    """An area between 10^4298 and 2 once made the table look for the magnitude of a negative number
+    for ever.
+    """
     result = shipped("fig2")
     first, *others = result.regions
-    damaged = replace(result, regions=(replace(first, area=(Fraction(10) ** 4298, Fraction(2))), *others))
+    damaged = replace(
+        result, regions=(replace(first, area=(Fraction(10) ** 4298, Fraction(2))), *others)
+    )
     assert damaged.table().endswith("unknown")
     with pytest.raises(ValueError, match="magnitude"):
         magnitude(Fraction(-1))
@@ -74,7 +78,8 @@ def test_limits_of_length_are_exact() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "-", "1/", "/2", "1.", ".5", "1e", "e3", "1e1234567", "+1", "1/2e3", "1/-2", "١", "1 "]
+    "text",
+    ["", "-", "1/", "/2", "1.", ".5", "1e", "e3", "1e1234567", "+1", "1/2e3", "1/-2", "١", "1 "],
 )
 def test_what_is_no_exact_number(text: str) -> None:
     with pytest.raises(ValueError, match="is not an exact number such as 7"):
@@ -98,10 +103,14 @@ def test_a_zero_denominator_is_named() -> None:
 @pytest.mark.parametrize("digits", [1, 3999, 4000, 4001, 4299, 4301, 8000, 8001, 20_011])
 @pytest.mark.parametrize("head", ["1", "9", "-1", "-5"])
 def test_long_integers_and_back(head: str, digits: int) -> None:
-    """Split at powers of ten, with zeros in front of the lower half kept; 4300 is where Python refuses."""
+    """Split at powers of ten, with zeros in front of the lower half kept; 4300 is where Python
+    refuses.
+    """
     for tail in ("0", "7"):
         text = head + (digits - 1) * tail
-        n = int(Fraction(head) * 10 ** (digits - 1)) + (0 if tail == "0" else _sevens(digits - 1, head))
+        n = int(Fraction(head) * 10 ** (digits - 1)) + (
+            0 if tail == "0" else _sevens(digits - 1, head)
+        )
         assert integer_text(n) == text
         assert integer_of(text.removeprefix("-")) == abs(n)
         assert text_of(n) == text
@@ -187,8 +196,8 @@ def test_decimals_of_results_and_of_expressions_are_the_same(text: str) -> None:
     | st.from_regex(r"0?[0-9]*\.?[0-9]*([eE][+-]?[0-9])?", fullmatch=True)
 )
 def test_decimals_that_one_of_them_refuses(text: str) -> None:
-    """Results are written without a sign of the exponent and with digits around the point; records without zeros that
-    lead."""
+    """Results are written without a sign of the exponent and with digits around the point; records
+    without zeros that lead."""
     stored, expressed = told(fraction_of, text), told(number_in, text)
     assert {stored, expressed} <= {None, told(Fraction, text)}
     if stored is not None and expressed is None:

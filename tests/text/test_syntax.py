@@ -1,4 +1,6 @@
-"""Trees of arithmetic: their shape, their positions, and that what is printed is read as the same tree."""
+"""Trees of arithmetic: their shape, their positions, and that what is printed is read as the same
+tree.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,19 @@ from hypothesis import strategies as st
 
 from ptmcad.errors import ExpressionError
 from ptmcad.text.syntax import MAX_DEPTH, names_in, parse
-from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, interpret, names_of, to_text
+from ptmcad.text.tree import (
+    Call,
+    Chain,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Step,
+    Tree,
+    interpret,
+    names_of,
+    to_text,
+)
 
 
 def without_positions(tree: Tree) -> Tree:
@@ -34,7 +48,11 @@ def without_positions(tree: Tree) -> Tree:
 # decimals of all lengths, the longest that are read among them
 numbers = st.one_of(
     st.integers(0, 100).map(Fraction),
-    st.builds(lambda m, e: Fraction(m) * Fraction(10) ** e, st.integers(0, 10**30), st.integers(-1000, 1000)),
+    st.builds(
+        lambda m, e: Fraction(m) * Fraction(10) ** e,
+        st.integers(0, 10**30),
+        st.integers(-1000, 1000),
+    ),
 ).map(Number)
 here = st.just(0)
 names = st.sampled_from(["rho", "L2", "th1", "cos", "e1"]).map(Name)
@@ -42,7 +60,9 @@ names = st.sampled_from(["rho", "L2", "th1", "cos", "e1"]).map(Name)
 
 def joined(parts: st.SearchStrategy[Tree]) -> st.SearchStrategy[Tree]:
     def chain(operators: str) -> st.SearchStrategy[Tree]:
-        steps = st.lists(st.builds(Step, st.sampled_from(operators), parts, here), min_size=1, max_size=4)
+        steps = st.lists(
+            st.builds(Step, st.sampled_from(operators), parts, here), min_size=1, max_size=4
+        )
         return st.builds(Chain, parts, steps.map(tuple))
 
     return st.one_of(
@@ -66,7 +86,12 @@ def test_what_is_printed_is_read_as_the_same_tree(tree: Tree) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["." + "1" * 1999 + "e-1000", "1" * 2000 + "e1000", "0." + "0" * 1996 + "3e-1000", "1" * 1000 + "." + "1" * 999],
+    [
+        "." + "1" * 1999 + "e-1000",
+        "1" * 2000 + "e1000",
+        "0." + "0" * 1996 + "3e-1000",
+        "1" * 1000 + "." + "1" * 999,
+    ],
     ids=["decimals", "digits", "small", "both"],
 )
 def test_the_longest_numbers_are_printed_as_they_are_read(text: str) -> None:
@@ -78,7 +103,10 @@ def test_the_longest_numbers_are_printed_as_they_are_read(text: str) -> None:
     [
         ("a - b + c", Chain(Name("a"), (Step("-", Name("b"), 2), Step("+", Name("c", 8), 6)))),
         ("-x^2", Negative(Power(Name("x"), Number(Fraction(2)), 2))),
-        ("2^3^2", Power(Number(Fraction(2)), Power(Number(Fraction(3)), Number(Fraction(2)), 3), 1)),
+        (
+            "2^3^2",
+            Power(Number(Fraction(2)), Power(Number(Fraction(3)), Number(Fraction(2)), 3), 1),
+        ),
         ("cos(th2 - th1)", Call("cos", Chain(Name("th2"), (Step("-", Name("th1")),)))),
         ("cos", Name("cos")),
         ("+5", Number(Fraction(5))),
@@ -94,7 +122,10 @@ def test_shapes(text: str, tree: Tree) -> None:
 def test_positions() -> None:
     tree = parse("rho - L2*cos(th2)^2")
     match tree:
-        case Chain(Name("rho", 0), (Step("-", Chain(Name("L2", 6), (Step("*", Power(call, two, 17), 8),)), 4),)):
+        case Chain(
+            Name("rho", 0),
+            (Step("-", Chain(Name("L2", 6), (Step("*", Power(call, two, 17), 8),)), 4),),
+        ):
             assert call == Call("cos", Name("th2", 13), 9)
             assert two == Number(Fraction(2), 18)
         case _:
@@ -122,7 +153,9 @@ class Value:
 
     def joined(self, left: Fraction, step: Step, right: Fraction) -> Fraction:
         self.asked.append(step.operator)
-        return {"+": left + right, "-": left - right, "*": left * right, "/": left / right}[step.operator]
+        return {"+": left + right, "-": left - right, "*": left * right, "/": left / right}[
+            step.operator
+        ]
 
     def power(self, base: Fraction, power: Power, exponent: Fraction) -> Fraction:
         return Fraction(base**exponent)

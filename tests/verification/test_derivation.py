@@ -1,4 +1,6 @@
-"""The checker's own derivation of the potential, against the engine's and against the record by numbers."""
+"""The checker's own derivation of the potential, against the engine's and against the record by
+numbers.
+"""
 
 from __future__ import annotations
 
@@ -20,10 +22,15 @@ from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.derivation import derivation_at, derivation_of
 
-# coordinates with quotients, powers and sums of three angles, which the built-in mechanism does not have
+# coordinates with quotients, powers and sums of three angles, which the built-in mechanism does not
+# have
 RECORD = {
     "name": "chain",
-    "parameters": {"a": {"default": 1}, "k": {"kind": "stiffness", "default": 1}, "F": {"kind": "force"}},
+    "parameters": {
+        "a": {"default": 1},
+        "k": {"kind": "stiffness", "default": 1},
+        "F": {"kind": "force"},
+    },
     "unknowns": {"u": "angle", "v": "angle", "w": "angle"},
     "points": {
         "O": [0, 1],
@@ -52,7 +59,9 @@ def test_the_engine_and_the_checker_derive_the_same_potential(m: Mechanism) -> N
     found, engines = derivation_at(m, values(m)).energy, system_from(m).potential
     assert found is not None
     assert engines is not None
-    assert found(*coordinates(m)) == engines(*map(from_fraction, values(m).values()), *coordinates(m))
+    assert found(*coordinates(m)) == engines(
+        *map(from_fraction, values(m).values()), *coordinates(m)
+    )
 
 
 def test_the_polynomials_have_the_values_and_derivatives_of_the_record() -> None:
@@ -80,7 +89,9 @@ def test_the_polynomials_have_the_values_and_derivatives_of_the_record() -> None
 
 def test_loops_that_differ_in_a_free_length_only_are_told_apart() -> None:
     """Without free lengths they have the same equations."""
-    record = yaml.safe_load((CONFIGS / "mechanisms" / "four-bar-free.yaml").read_text(encoding="utf-8"))
+    record = yaml.safe_load(
+        (CONFIGS / "mechanisms" / "four-bar-free.yaml").read_text(encoding="utf-8")
+    )
     record.pop("reference")
     longer = deepcopy(record)
     longer["mechanism"]["springs"][0]["free"] = 2

@@ -1,4 +1,6 @@
-"""The free area that is proved free of critical curves: nothing true is excluded, no dropped piece passes."""
+"""The free area that is proved free of critical curves: nothing true is excluded, no dropped piece
+passes.
+"""
 
 from __future__ import annotations
 
@@ -47,7 +49,10 @@ ZEEMAN: dict[str, Any] = {
         },
         "unknowns": {"th": "angle"},
         "points": {"B": ["cos(th)", "sin(th)"], "A": [-3, 0], "P": ["X", "Y"]},
-        "springs": [{"between": ["A", "B"], "k": "k", "free": "l0"}, {"between": ["B", "P"], "k": "k", "free": "l0"}],
+        "springs": [
+            {"between": ["A", "B"], "k": "k", "free": "l0"},
+            {"between": ["B", "P"], "k": "k", "free": "l0"},
+        ],
     },
     "axes": {"X": ["3/2", 5], "Y": [-2, 2]},
     "count": "total",
@@ -56,7 +61,12 @@ ZEEMAN: dict[str, Any] = {
 
 def paper(count: str, free: str, rho: list[str], l2: list[str]) -> dict[str, Any]:
     parameters = {"L1": 1, "k": 100, "F3": -10, "F4": -10, "l0": free}
-    return {"mechanism": "ptm", "parameters": parameters, "axes": {"rho": rho, "L2": l2}, "count": count}
+    return {
+        "mechanism": "ptm",
+        "parameters": parameters,
+        "axes": {"rho": rho, "L2": l2},
+        "count": count,
+    }
 
 
 PAPER = {
@@ -74,7 +84,10 @@ CRANK: dict[str, Any] = {
         "unknowns": {"th": "angle"},
         "points": {"O": [0, 0], "A": [2, 0], "B": [-1, 2], "P": ["cos(th)", "sin(th)"]},
         "bars": [["O", "P"]],
-        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}, {"between": ["B", "P"], "k": 1, "free": "1/2"}],
+        "springs": [
+            {"between": ["A", "P"], "k": 1, "free": "l0"},
+            {"between": ["B", "P"], "k": 1, "free": "1/2"},
+        ],
         "loads": {"P": [0, "F"]},
     },
     "axes": {"F": [1, 2], "l0": [2, 3]},
@@ -87,7 +100,9 @@ RECORDS = {"crank": CRANK, "zeeman": ZEEMAN, "truss": TRUSS, "loop": LOOP}
 @cache
 def a_map(name: str, tolerance: float = 3e-3) -> RegionMap:
     def made() -> RegionMap:
-        return ptmcad.classify((RECORDS | PAPER)[name], engine="certified", tolerance=str(tolerance))
+        return ptmcad.classify(
+            (RECORDS | PAPER)[name], engine="certified", tolerance=str(tolerance)
+        )
 
     return once_per_run(f"exclusion-{name}-{tolerance}", made)
 
@@ -101,13 +116,17 @@ def without(stored: RegionMap, number: int) -> RegionMap:
         del rectangles[number]
     else:
         del patches[number - len(rectangles)]
-    return replace(stored, cover=replace(cover, rectangles=tuple(rectangles), patches=tuple(patches)))
+    return replace(
+        stored, cover=replace(cover, rectangles=tuple(rectangles), patches=tuple(patches))
+    )
 
 
 @pytest.mark.parametrize("name", RECORDS)
 @pytest.mark.slow_cases("zeeman", "loop", "truss")
 def test_all_of_a_true_map_is_proved(name: str) -> None:
-    assert check_free_area(MAX_EFFORT, CertifiedClaims(a_map(name))).startswith("100 % of the free area")
+    assert check_free_area(MAX_EFFORT, CertifiedClaims(a_map(name))).startswith(
+        "100 % of the free area"
+    )
 
 
 def test_more_effort_proves_more(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -199,12 +218,16 @@ def test_a_piece_of_a_billionth_of_the_window_is_found() -> None:
     stored = with_one_cell(a_map("zeeman", 1e-5))
     assert stored.cover is not None
     areas = [
-        2 * t.half * (p.frame[1 + 2 * p.along] - p.frame[2 * p.along]) for p in stored.cover.patches for t in p.tubes
+        2 * t.half * (p.frame[1 + 2 * p.along] - p.frame[2 * p.along])
+        for p in stored.cover.patches
+        for t in p.tubes
     ]
     smallest = sorted(range(len(areas)), key=lambda k: areas[k])[len(areas) // 3]
     assert areas[smallest] < stored.cover.steps**2 * 1e-9
     with pytest.raises(Violation, match="critical curve"):
-        check_free_area(8, CertifiedClaims(without(stored, len(stored.cover.rectangles) + smallest)))
+        check_free_area(
+            8, CertifiedClaims(without(stored, len(stored.cover.rectangles) + smallest))
+        )
 
 
 @pytest.mark.parametrize("count", PAPER)
@@ -225,7 +248,17 @@ def test_a_dropped_piece_of_the_paper_s_mechanism_is_found(count: str) -> None:
         check_free_area(4, CertifiedClaims(without(stored, middle)))
 
 
-OPERATIONS = ("add", "subtract", "multiply", "divide", "cosine", "sine", "inverse_length", "length", "direction")
+OPERATIONS = (
+    "add",
+    "subtract",
+    "multiply",
+    "divide",
+    "cosine",
+    "sine",
+    "inverse_length",
+    "length",
+    "direction",
+)
 
 
 def some_formula(f: Formulas, rng: random.Random) -> int:
@@ -278,13 +311,18 @@ def test_a_shortened_tape_has_the_values_of_the_whole_one() -> None:
         kept, still, where = tape_of(f, wanted[:1], wanted[3:])
         assert first == still <= len(kept.code) < len(tape.code)
         at = np.array([rng.uniform(-2, 2) for _ in range(MAX_VARIABLES)])
-        box, forms = np.stack([at, at + 0.1], axis=1), [np.empty((len(t.code), WIDTH)) for t in (tape, kept)]
+        box, forms = (
+            np.stack([at, at + 0.1], axis=1),
+            [np.empty((len(t.code), WIDTH)) for t in (tape, kept)],
+        )
         for t, found in zip((tape, kept), forms, strict=True):
             evaluate(t, box, found, 0, len(t.code))
         assert np.array_equal(forms[0][places[::3]], forms[1][where])
 
 
-def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     claims = CertifiedClaims(a_map("loop"))
     system, pieces = systems_of(claims)[0], no_pieces(claims.sweep.steps)
 
@@ -301,7 +339,9 @@ def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(monkeypatch
 
 
 def test_formulas_that_exclude_nothing_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The search looks at hardly more boxes then, and evaluates much less; what it leaves for good was tried by all."""
+    """The search looks at hardly more boxes then, and evaluates much less; what it leaves for good
+    was tried by all.
+    """
     claims = CertifiedClaims(a_map("loop"))
     system, pieces, tapes = systems_of(claims)[0], no_pieces(claims.sweep.steps), list[int]()
     tried_by_all = set[bytes]()
@@ -340,7 +380,10 @@ def test_what_is_held_lies_in_the_cover(drawn: int) -> None:
             a = rng.uniform(f[2 * along], f[2 * along + 1])
             b = min(a + size * (f[2 * along + 1] - f[2 * along]), steps)
             middle = rng.uniform(f[2 - 2 * along], f[3 - 2 * along])
-            slope, half = rng.gauss(0, 1), 10 ** rng.uniform(-3, 0) * size * (f[3 - 2 * along] - f[2 - 2 * along])
+            slope, half = (
+                rng.gauss(0, 1),
+                10 ** rng.uniform(-3, 0) * size * (f[3 - 2 * along] - f[2 - 2 * along]),
+            )
             ends = [middle, middle + slope * (b - a)]
             low, high = max(0.0, min(ends) - half), min(float(steps), max(ends) + half)
             if not (

@@ -1,4 +1,6 @@
-"""Where compiled code leaves solutions: none that balls find is outside, and formulas are those of the balls."""
+"""Where compiled code leaves solutions: none that balls find is outside, and formulas are those of
+the balls.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +53,10 @@ SLIDING: dict[str, Any] = {
         "parameters": {"F": {"kind": "force"}, "l": {"kind": "free length"}},
         "unknowns": {"x": "length"},
         "points": {"O": [0, 0], "B": [0, 1], "S": ["x", 0]},
-        "springs": [{"between": ["O", "S"], "k": 1, "free": "l"}, {"between": ["B", "S"], "k": 1, "free": "l"}],
+        "springs": [
+            {"between": ["O", "S"], "k": 1, "free": "l"},
+            {"between": ["B", "S"], "k": 1, "free": "l"},
+        ],
         "loads": {"S": ["F", 0]},
     },
     "axes": {"F": [-2, 2], "l": ["1/10", 2]},
@@ -70,7 +75,11 @@ CASES += [("loop", "stable"), ("loop", "total")]
 @cache
 def a_map(name: str, count: str) -> RegionMap:
     def made() -> RegionMap:
-        record = replace(load(LOOP), count=Count(count)) if name == "loop" else RECORDS[name] | {"count": count}
+        record = (
+            replace(load(LOOP), count=Count(count))
+            if name == "loop"
+            else RECORDS[name] | {"count": count}
+        )
         return ptmcad.classify(record, engine="certified", tolerance="1/10")
 
     found: RegionMap = once_per_run(f"places-{name}-{count}", made)
@@ -83,7 +92,10 @@ def test_places_have_bounds_of_their_own_where_the_window_has_none() -> None:
         halves_over(claims)
     find, rng = SolutionPlaces(claims), random.Random(1)
     (one, two), steps = at_random(claims, rng), claims.sweep.steps
-    point, whole = find((one, one), (two, two)), find((Fraction(0), Fraction(steps)), (Fraction(0), Fraction(steps)))
+    point, whole = (
+        find((one, one), (two, two)),
+        find((Fraction(0), Fraction(steps)), (Fraction(0), Fraction(steps))),
+    )
     assert point is not None
     assert max(point.whole) < 100
     assert whole is None
@@ -152,27 +164,36 @@ def test_places_over_a_box_have_those_over_its_points(name: str, count: str) -> 
                 continue
             told += 1
             kept = [e for e in there.found if count != "stable" or "-" not in e.signs]
-            assert all(any(inside(e.center, box) for boxes in whole.boxes for box in boxes) for e in kept)
+            assert all(
+                any(inside(e.center, box) for boxes in whole.boxes for box in boxes) for e in kept
+            )
     assert told > 8
 
 
 def inside(at: tuple[float, ...], box: Box) -> bool:
     """Whether a point is in a box, but for whole turns and rounding."""
-    turned = [min(abs(x - m + 2 * k * pi) for k in (-1, 0, 1)) for x, m in zip(at, box[0], strict=True)]
+    turned = [
+        min(abs(x - m + 2 * k * pi) for k in (-1, 0, 1)) for x, m in zip(at, box[0], strict=True)
+    ]
     return all(d <= r + 1e-9 for d, r in zip(turned, box[1], strict=True))
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
 @pytest.mark.slow_cases("paper-index", "paper-stable", "loop-total", "pair-index")
 def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
-    """Equations and Jacobian at random configurations, compiled and in balls: they share the formulas."""
+    """Equations and Jacobian at random configurations, compiled and in balls: they share the
+    formulas.
+    """
     claims, rng = CertifiedClaims(a_map(name, count)), random.Random(count)
     form, slice = form_of(claims.result.slice), claims.result.slice
     for side in sides(form):
         equations = window_equations(claims)
         equations.sides = side
         rows = equations.hessian(equations.directions())
-        wanted = [*equations.equations(equations.directions()), *(entry for row in rows for entry in row)]
+        wanted = [
+            *equations.equations(equations.directions()),
+            *(entry for row in rows for entry in row),
+        ]
         tape, _, places = tape_of(equations.list, wanted, [])
         factors = [tape_of(equations.list, [f], []) for f in equations.factors]
         for _ in range(3):
@@ -180,9 +201,9 @@ def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
             at = [rng.uniform(-2, 2) for _ in range(form.size)]
             x, y = (arb(str(float(c))) for c in claims.off_lattice(u, v))
             values = {n: arb(0) for n in slice.model.free_lengths}
-            jet = BallEquations(form, values | {n: over(e, x, y) for n, e in slice.parameters.items()}, sides=side)(
-                [arb(c) for c in at]
-            )
+            jet = BallEquations(
+                form, values | {n: over(e, x, y) for n, e in slice.parameters.items()}, sides=side
+            )([arb(c) for c in at])
             box = np.array([[float(c)] * 2 for c in (u, v)] + [[c, c] for c in at])
             numbers = numbers_of(tape, box)[places]
             scale = [numbers_of(t, box)[p[0]] for t, _, p in factors]
@@ -199,7 +220,9 @@ def numbers_of(tape: Any, box: Any) -> Any:
 
 
 @pytest.mark.parametrize("name", ["truss", pytest.param("paper", marks=pytest.mark.slow)])
-def test_a_search_that_is_spent_leaves_what_it_has(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_that_is_spent_leaves_what_it_has(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     claims = CertifiedClaims(a_map(name, "index"))
     at = at_random(claims, random.Random(1))
     true = counting_of(claims).at(claims, *claims.off_lattice(*at))
@@ -215,7 +238,11 @@ def test_a_search_that_is_spent_leaves_what_it_has(name: str, monkeypatch: pytes
 def test_without_compiled_code_balls_search_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     claims = CertifiedClaims(a_map("sliding", "index"))
     with_places = check_points(claims, places_of(claims))
-    for name in [n for n in sys.modules if n.startswith("ptmcad.verification.exclusion.") and n != check.__name__]:
+    for name in [
+        n
+        for n in sys.modules
+        if n.startswith("ptmcad.verification.exclusion.") and n != check.__name__
+    ]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "numba", None)
     assert places_of(claims) is None
@@ -224,5 +251,10 @@ def test_without_compiled_code_balls_search_alone(monkeypatch: pytest.MonkeyPatc
 
 def test_forged_counts_are_refused_with_places() -> None:
     true = a_map("pair", "stable")
-    wrong = replace(true, cells=tuple(replace(c, stable=(c.stable or 0) + (k == 0)) for k, c in enumerate(true.cells)))
+    wrong = replace(
+        true,
+        cells=tuple(
+            replace(c, stable=(c.stable or 0) + (k == 0)) for k, c in enumerate(true.cells)
+        ),
+    )
     assert not ptmcad.verify(wrong).ok

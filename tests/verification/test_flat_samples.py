@@ -1,4 +1,6 @@
-"""Samples at which spring 3 has no length with the bars in line, and the forces balance any direction of it."""
+"""Samples at which spring 3 has no length with the bars in line, and the forces balance any
+direction of it.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,9 @@ DIFFERENCE = {"rho": ["49/100", "51/100"], "L2": ["149/100", "151/100"]}
 
 def map_of(axes: dict[str, list[str]], **parameters: str) -> RegionMap:
     def compute() -> RegionMap:
-        given = {name: value for name, value in {**UNLOADED, **parameters}.items() if name not in axes}
+        given = {
+            name: value for name, value in {**UNLOADED, **parameters}.items() if name not in axes
+        }
         record = {"name": "flat", "parameters": given, "axes": axes, "count": "stable"}
         return ptmcad.classify(record, tolerance="1/4", jobs=1)
 
@@ -49,7 +53,11 @@ def counted_once() -> Iterator[None]:
     own, found = ModelCounting.at, dict[tuple[str, Fraction, Fraction], CountedPoint | Unproved]()
 
     def at(
-        counting: ModelCounting, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None
+        counting: ModelCounting,
+        claims: Claims,
+        x: Fraction,
+        y: Fraction,
+        where: Where | None = None,
     ) -> CountedPoint:
         slice = claims.result.slice
         key = (f"{slice.parameters} {slice.count}", x, y)
@@ -97,7 +105,9 @@ def test_bars_that_point_the_same_way() -> None:
     number = true.locate(**at).cell
     assert number is not None
     solutions = tuple(
-        Solution(tuple((angle.low + angle.high) / 2 for angle in pose.angles), Fraction(1, 10**9), "++")
+        Solution(
+            tuple((angle.low + angle.high) / 2 for angle in pose.angles), Fraction(1, 10**9), "++"
+        )
         for pose in ptmcad.solve(**UNLOADED, **loads, **at).equilibria
         if pose.stable
     )
@@ -113,17 +123,25 @@ def test_bars_that_point_the_same_way() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("offset", ["1/400", "-1/400", "1/1000000"])
 def test_samples_that_are_nearly_flat(offset: str) -> None:
-    """No test in the two angles decides them in the squares that it may take: what is beside them does."""
+    """No test in the two angles decides them in the squares that it may take: what is beside them
+    does.
+    """
     true = map_of(DIFFERENCE)
     e = Fraction(offset)
     at = {"rho": Fraction(1, 2) + 3 * e / 4, "L2": Fraction(3, 2) + abs(e) / 2}
     number = true.locate(**at).cell
     assert number is not None
     values = {name: float(v.evaluate(*at.values())) for name, v in true.slice.parameters.items()}
-    place = np.array([[float(x) for x in solution.center] for solution in true.cells[number].solutions]).T
-    for _ in range(30):  # `solve` does not tell them apart there; Newton's method leads from the map's own sample
+    place = np.array(
+        [[float(x) for x in solution.center] for solution in true.cells[number].solutions]
+    ).T
+    for _ in range(
+        30
+    ):  # `solve` does not tell them apart there; Newton's method leads from the map's own sample
         place = place - newton_step(state_at(true.slice.model, values, place))
-    solutions = tuple(Solution(tuple(map(Fraction, x)), Fraction(1, 10**9), "++") for x in place.T.tolist())
+    solutions = tuple(
+        Solution(tuple(map(Fraction, x)), Fraction(1, 10**9), "++") for x in place.T.tolist()
+    )
     sample, region = Point(("rho", "L2"), *at.values()), true.cells[number].region
     moved = replace(
         true,
@@ -147,7 +165,9 @@ def one_less(r: RegionMap) -> RegionMap:
     return replace(r, cells=cells, regions=put(r.regions, 0, stable=1))
 
 
-def with_boxes(change: Callable[[tuple[Solution, ...]], tuple[Solution, ...]]) -> Callable[[RegionMap], RegionMap]:
+def with_boxes(
+    change: Callable[[tuple[Solution, ...]], tuple[Solution, ...]],
+) -> Callable[[RegionMap], RegionMap]:
     return lambda r: replace(r, cells=put(r.cells, 0, solutions=change(r.cells[0].solutions)))
 
 
@@ -155,7 +175,9 @@ FALSE = {
     "a count": one_less,
     "a box twice": with_boxes(lambda s: (s[0], s[0])),
     "a box less": with_boxes(lambda s: s[:1]),
-    "a box elsewhere": with_boxes(lambda s: (s[0], replace(s[1], center=(s[1].center[0] + 1, s[1].center[1])))),
+    "a box elsewhere": with_boxes(
+        lambda s: (s[0], replace(s[1], center=(s[1].center[0] + 1, s[1].center[1])))
+    ),
     "signs": with_boxes(lambda s: (s[0], replace(s[1], signs="+-"))),
 }
 
@@ -167,7 +189,9 @@ def test_a_false_map_is_rejected(kind: str, flat: RegionMap) -> None:
 
 @pytest.mark.slow
 def test_a_slice_that_is_flat_everywhere_is_not_decided() -> None:
-    true = map_of({"F": ["15", "19"], "l0": ["11/50", "6/25"]}, L2="1", rho="2", k="100", F3="F", F4="-F")
+    true = map_of(
+        {"F": ["15", "19"], "l0": ["11/50", "6/25"]}, L2="1", rho="2", k="100", F3="F", F4="-F"
+    )
     assert counted(true) is None
 
 
@@ -186,4 +210,6 @@ def test_a_sample_too_near_to_a_rectangle_is_not_decided(flat: RegionMap) -> Non
 def test_a_solution_that_is_stored_twice_a_turn_apart(flat: RegionMap) -> None:
     solutions = flat.cells[0].solutions
     again = replace(solutions[0], center=(solutions[0].center[0] - 2 * PI, solutions[0].center[1]))
-    assert counted(replace(flat, cells=put(flat.cells, 0, solutions=(solutions[0], again)))) is False
+    assert (
+        counted(replace(flat, cells=put(flat.cells, 0, solutions=(solutions[0], again)))) is False
+    )

@@ -1,4 +1,6 @@
-"""Points of curves over a critical value: the engine's discs and the checker's Sturm sequences find the known ones."""
+"""Points of curves over a critical value: the engine's discs and the checker's Sturm sequences find
+the known ones.
+"""
 
 from __future__ import annotations
 
@@ -30,14 +32,18 @@ LOW, HIGH = fmpq(-7, 2), fmpq(10, 3)
 
 def engine(known: KnownCurves) -> PointsOver:
     """The engine's view of the curves."""
-    curves = tuple(curve(n, from_plane(PlanePolynomial.of(t)), 0) for n, t in enumerate(known.terms))
+    curves = tuple(
+        curve(n, from_plane(PlanePolynomial.of(t)), 0) for n, t in enumerate(known.terms)
+    )
     return PointsOver(curves, RealRoot(SQRT2, fmpq(1), fmpq(2)))
 
 
 def checker(known: KnownCurves) -> Heights:
     """The checker's view of the curves."""
     curves = [PlaneCurve.of(n, PlanePolynomial.of(t), 0) for n, t in enumerate(known.terms)]
-    return Heights(curves, CriticalValue(polynomial=(-2, 0, 1), low=Fraction(1), high=Fraction(2), origin=""))
+    return Heights(
+        curves, CriticalValue(polynomial=(-2, 0, 1), low=Fraction(1), high=Fraction(2), origin="")
+    )
 
 
 @given(known_curves())
@@ -49,7 +55,10 @@ def test_engine_encloses_each_point_once(known: KnownCurves) -> None:
     assert all(one[1] < other[0] for one, other in pairwise(found))
 
 
-@given(known_curves(), st.lists(st.fractions(-3, 3, max_denominator=9), min_size=2, max_size=2, unique=True))
+@given(
+    known_curves(),
+    st.lists(st.fractions(-3, 3, max_denominator=9), min_size=2, max_size=2, unique=True),
+)
 def test_checker_counts_points_in_open_intervals(known: KnownCurves, ends: list[Fraction]) -> None:
     low, high = sorted(ends)
     number = checker(known).between(from_fraction(low), from_fraction(high))
@@ -59,10 +68,14 @@ def test_checker_counts_points_in_open_intervals(known: KnownCurves, ends: list[
 @given(known_curves())
 def test_checker_parts_the_points(known: KnownCurves) -> None:
     heights = [to_fraction(v) for v in checker(known).separated(LOW, HIGH)]
-    assert [sum(a < h < b for h in known.heights) for a, b in pairwise(heights)] == [1] * len(known.heights)
+    assert [sum(a < h < b for h in known.heights) for a, b in pairwise(heights)] == [1] * len(
+        known.heights
+    )
 
 
-def test_a_double_point_is_one_point_without_a_polynomial_in_v(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_double_point_is_one_point_without_a_polynomial_in_v(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     # (3 v - 1)^2 (v + 1) (v^2 + 1) + (u^2 - 2) (u v + 5 u)
     known = KnownCurves(
         (((0, 5, 9), (0, 4, 3), (0, 3, 4), (0, 2, 4), (0, 1, -5), (0, 0, 1),
@@ -83,7 +96,8 @@ def test_a_double_point_is_one_point_without_a_polynomial_in_v(monkeypatch: pyte
 def test_points_that_are_very_near_to_each_other_are_two(digits: int) -> None:
     # v (10^digits v - 1) + (u^2 - 2) u
     known = KnownCurves(
-        (((0, 2, 10**digits), (0, 1, -1), (3, 0, 1), (1, 0, -2)),), (Fraction(0), Fraction(1, 10**digits))
+        (((0, 2, 10**digits), (0, 1, -1), (3, 0, 1), (1, 0, -2)),),
+        (Fraction(0), Fraction(1, 10**digits)),
     )
     assert checker(known).between(LOW, HIGH) == 2
     assert len(engine(known).between(LOW, HIGH, [])) == 2
@@ -101,7 +115,9 @@ def test_points_that_are_very_near_to_each_other_are_two(digits: int) -> None:
     st.lists(st.fractions(-2, 2, max_denominator=12), min_size=2, max_size=2, unique=True),
     st.integers(1, 3),
 )
-def test_roots_of_long_polynomials_are_counted(roots: list[Fraction], ends: list[Fraction], power: int) -> None:
+def test_roots_of_long_polynomials_are_counted(
+    roots: list[Fraction], ends: list[Fraction], power: int
+) -> None:
     """Which may be multiple, or the interval's ends, or very near to each other."""
     x = fmpz_poly([0, 1])
     p = (x**62 + 1) * (10**12 * x - 3 * 10**12 - 1) * (x - 3) ** 2

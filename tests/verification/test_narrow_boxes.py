@@ -1,4 +1,6 @@
-"""Stored boxes of equilibria that are narrower than doubles tell: true ones are confirmed, false ones refused."""
+"""Stored boxes of equilibria that are narrower than doubles tell: true ones are confirmed, false
+ones refused.
+"""
 
 from __future__ import annotations
 
@@ -30,9 +32,17 @@ CHAIN: dict[str, Any] = {
         "name": "held",
         "parameters": {"a": {"kind": "base", "default": 1}, "W": {"kind": "force"}},
         "unknowns": {"s": "angle", "t": "angle"},
-        "points": {"O": [0, 0], "A": [0, "a"], "P": ["sin(s)", "cos(s)"], "Q": ["sin(s) + sin(t)", "cos(s) + cos(t)"]},
+        "points": {
+            "O": [0, 0],
+            "A": [0, "a"],
+            "P": ["sin(s)", "cos(s)"],
+            "Q": ["sin(s) + sin(t)", "cos(s) + cos(t)"],
+        },
         "bars": [["O", "P"], ["P", "Q"]],
-        "springs": [{"between": ["A", "P"], "k": 1, "free": "1/4"}, {"between": ["A", "Q"], "k": 1, "free": "1/3"}],
+        "springs": [
+            {"between": ["A", "P"], "k": 1, "free": "1/4"},
+            {"between": ["A", "Q"], "k": 1, "free": "1/3"},
+        ],
         "loads": {"P": ["1/10", 0], "Q": [0, "W"]},
     },
     "axes": {"a": [1, 2], "W": ["1/2", 1]},
@@ -64,15 +74,21 @@ DIGITS = 100
 
 @cache
 def places(name: str, count: str) -> tuple[int, tuple[tuple[Fraction, ...], ...]]:
-    """A cell with solutions, and the middles of theirs to 100 digits, from the engine's poses at its sample."""
+    """A cell with solutions, and the middles of theirs to 100 digits, from the engine's poses at
+    its sample.
+    """
     found = map_of(name, count)
     number = next(n for n, cell in enumerate(found.cells) if cell.solutions)
     cell = found.cells[number]
-    poses = ptmcad.solve(found.slice, DIGITS, **dict(zip(found.slice.axis_names, cell.sample, strict=True)))
+    poses = ptmcad.solve(
+        found.slice, DIGITS, **dict(zip(found.slice.axis_names, cell.sample, strict=True))
+    )
     exact = []
     for s in cell.solutions:
         near = [turned(pose.angles, s.center) for pose in poses.equilibria]
-        (at,) = [p for p in near if all(abs(x - c) <= s.radius for x, c in zip(p, s.center, strict=True))]
+        (at,) = [
+            p for p in near if all(abs(x - c) <= s.radius for x, c in zip(p, s.center, strict=True))
+        ]
         exact.append(at)
     return number, tuple(exact)
 
@@ -81,7 +97,9 @@ def turned(angles: Sequence[Any], near: Sequence[Fraction]) -> tuple[Fraction, .
     """The angles' middles less the whole turns from some that are near."""
     with ctx.workprec(1000):
         turn = 2 * exactly(arb.pi().mid())
-    return tuple(a.center + round((c - a.center) / turn) * turn for a, c in zip(angles, near, strict=True))
+    return tuple(
+        a.center + round((c - a.center) / turn) * turn for a, c in zip(angles, near, strict=True)
+    )
 
 
 def forged(name: str, count: str, radius: Fraction, off: Fraction) -> CertifiedClaims:
@@ -96,17 +114,27 @@ def forged(name: str, count: str, radius: Fraction, off: Fraction) -> CertifiedC
 
 @pytest.mark.parametrize(("name", "count"), CASES)
 @pytest.mark.slow_cases(
-    "ptm-index", "chain-index", "chain-total", "loop-stable", "loop-total", "ptm-total", "ptm-stable"
+    "ptm-index",
+    "chain-index",
+    "chain-total",
+    "loop-stable",
+    "loop-total",
+    "ptm-total",
+    "ptm-stable",
 )
 def test_a_narrow_box_is_decided(name: str, count: str) -> None:
-    """Whether its middle is off by less than its half width, or by a little more, or by less than doubles tell."""
+    """Whether its middle is off by less than its half width, or by a little more, or by less than
+    doubles tell.
+    """
     radius = Fraction(1, 10**30)
     checked(forged(name, count, radius, radius * Fraction(99, 100)))
     for off in (radius * Fraction(-101, 100), Fraction(1, 10**20)):
         refused(forged(name, count, radius, off))
 
 
-@pytest.mark.parametrize(("name", "width"), [("ptm", 12), ("chain", 17), ("ptm", 90), ("chain", 90), ("loop", 90)])
+@pytest.mark.parametrize(
+    ("name", "width"), [("ptm", 12), ("chain", 17), ("ptm", 90), ("chain", 90), ("loop", 90)]
+)
 @pytest.mark.slow_cases("loop-90", "chain-17", "ptm-90")
 def test_boxes_of_any_narrowness(name: str, width: int) -> None:
     radius = Fraction(1, 10**width)
@@ -119,17 +147,26 @@ def checked(claims: CertifiedClaims) -> None:
 
 
 def refused(claims: CertifiedClaims) -> None:
-    with pytest.raises(Violation, match=r"box 0 of the solutions, around .* has 0 equilibria, not one"):
+    with pytest.raises(
+        Violation, match=r"box 0 of the solutions, around .* has 0 equilibria, not one"
+    ):
         check_points(claims)
 
 
 @pytest.mark.parametrize("power", [21, 40, 100])
 def test_a_solution_next_to_an_edge_is_told(power: int) -> None:
-    """The root of 2, which is further from the edge than its digits, but nearer than its parabola bends in the box."""
+    """The root of 2, which is further from the edge than its digits, but nearer than its parabola
+    bends in the box.
+    """
     radius, near = Fraction(1, 2**power), Fraction(1, 2 ** (2 * power + 20))
     with ctx.workprec(2000):
         root = exactly((arb(2).sqrt()).mid())
-    for off, holds in ((radius - near, True), (near - radius, True), (radius + near, False), (-radius - near, False)):
+    for off, holds in (
+        (radius - near, True),
+        (near - radius, True),
+        (radius + near, False),
+        (-radius - near, False),
+    ):
         found = judged(lambda: square, Solution((root + off,), radius, ""))
         assert found is not None
         assert found.holds is holds
@@ -184,5 +221,7 @@ def test_numbers_of_a_description_are_as_exact_as_the_precision() -> None:
     a = fmpq_mpoly_ctx.get(("a",), Ordering.lex).gen(0)
     with ctx.workprec(400):
         assert ball(0 * a + fmpq(13, 30), {}).overlaps(arb(from_fraction(Fraction(13, 30))))
-        assert ball(2 * a + fmpq(1, 10), {"a": arb(1)}).overlaps(arb(from_fraction(Fraction(21, 10))))
+        assert ball(2 * a + fmpq(1, 10), {"a": arb(1)}).overlaps(
+            arb(from_fraction(Fraction(21, 10)))
+        )
     assert evaluated(a / 3 + fmpq(1, 10), {"a": Fraction(1)}) == Fraction(13, 30)

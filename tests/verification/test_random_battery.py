@@ -1,7 +1,9 @@
-"""The conformance battery on random mechanisms and systems: a map agrees with that of exchanged axes, with that of the
-mirrored model, with counts at points and with Euler's sum; it is accepted, and every alteration of it is rejected.
+"""The conformance battery on random mechanisms and systems: a map agrees with that of exchanged
+axes, with that of the mirrored model, with counts at points and with Euler's sum; it is accepted,
+and every alteration of it is rejected.
 
-Mechanisms of three bars have varieties of degree 120, which no exact map is made of: they are held at points.
+Mechanisms of three bars have varieties of degree 120, which no exact map is made of: they are held
+at points.
 """
 
 from __future__ import annotations
@@ -33,7 +35,10 @@ def mirrored(record: dict[str, Any]) -> dict[str, Any]:
 
     def changed(value: Any) -> Any:
         if isinstance(value, dict):
-            return {key: entry if key in ("name", "parameters") else changed(entry) for key, entry in value.items()}
+            return {
+                key: entry if key in ("name", "parameters") else changed(entry)
+                for key, entry in value.items()
+            }
         if isinstance(value, list):
             return [changed(entry) for entry in value]
         return re.sub(r"\ba\b", "(-a)", value) if isinstance(value, str) else value
@@ -47,7 +52,9 @@ def exchanged(record: dict[str, Any]) -> dict[str, Any]:
     return {**record, "axes": dict(reversed(record["axes"].items()))}
 
 
-def areas(result: RegionMap) -> dict[tuple[int, tuple[int, ...] | None], list[tuple[Fraction, Fraction]]]:
+def areas(
+    result: RegionMap,
+) -> dict[tuple[int, tuple[int, ...] | None], list[tuple[Fraction, Fraction]]]:
     """Bounds of the regions' areas, by their counts, the smallest first."""
     found: dict[tuple[int, tuple[int, ...] | None], list[tuple[Fraction, Fraction]]] = {}
     for region in result.regions:
@@ -68,7 +75,9 @@ def same_regions(one: RegionMap, other: RegionMap) -> bool:
 
 def made(record: dict[str, Any]) -> RegionMap:
     """The map as a reader of its file has it, accepted."""
-    result = ptmcad.classify(ptmcad.slice_from_mapping({"name": "map", **record}), area_tolerance="1/1000")
+    result = ptmcad.classify(
+        ptmcad.slice_from_mapping({"name": "map", **record}), area_tolerance="1/1000"
+    )
     found = RegionMap.from_json(result.to_json())
     report = ptmcad.verify(found)
     assert report.ok, report.violation
@@ -76,12 +85,17 @@ def made(record: dict[str, Any]) -> RegionMap:
 
 
 def check_points(record: dict[str, Any], result: RegionMap, number: int, seed: int) -> None:
-    """The map's counts, by signatures, and with the mirrored model's at mirrored points; Euler's sum on a torus."""
+    """The map's counts, by signatures, and with the mirrored model's at mirrored points; Euler's
+    sum on a torus.
+    """
     slice, other = (ptmcad.slice_from_mapping(r) for r in (record, mirrored(record)))
     system, image = system_from(slice.model), system_from(other.model)
     source = random.Random(seed)
     for _ in range(number):
-        at = {a.name: a.low + (a.high - a.low) * Fraction(source.randint(1, 9972), 9973) for a in slice.axes}
+        at = {
+            a.name: a.low + (a.high - a.low) * Fraction(source.randint(1, 9972), 9973)
+            for a in slice.axes
+        }
         values = {name: from_fraction(v) for name, v in at.items()}
         try:
             counts = count_by_signature(system, values)
@@ -102,7 +116,9 @@ def run_battery(record: dict[str, Any], name: str) -> None:
         system, source = system_from(ptmcad.slice_from_mapping(record).model), random.Random(name)
         for _ in range(POINTS):
             with pytest.raises(HypothesisError):
-                count_by_isolation(system, {n: fmpq(source.randint(-99, 99), 50) for n in system.ring.parameters})
+                count_by_isolation(
+                    system, {n: fmpq(source.randint(-99, 99), 50) for n in system.ring.parameters}
+                )
         return
     assert same_regions(result, made(exchanged(record)))
     assert same_regions(result, made(mirrored(record)))
@@ -139,7 +155,9 @@ def test_three_bars_at_points(seed: int) -> None:
         assert sum(counts.index[::2]) == sum(counts.index[1::2])
 
 
-@pytest.mark.parametrize("record", [random_system(0), random_mechanism(0)], ids=["system 0", "mechanism 0"])
+@pytest.mark.parametrize(
+    "record", [random_system(0), random_mechanism(0)], ids=["system 0", "mechanism 0"]
+)
 def test_battery_of_two_small_models(record: dict[str, Any]) -> None:
     """All but the alterations, which tests of models try on these maps."""
     result = made(record)

@@ -30,13 +30,17 @@ def with_roots(draw: st.DrawFn) -> tuple[fmpz_poly, list[Fraction]]:
 
 @given(with_roots(), st.fractions(-4, 4, max_denominator=4), st.fractions(-4, 4, max_denominator=4))
 @settings(max_examples=examples(60))
-def test_sequences_in_balls_count_roots(found: tuple[fmpz_poly, list[Fraction]], low: Fraction, high: Fraction) -> None:
+def test_sequences_in_balls_count_roots(
+    found: tuple[fmpz_poly, list[Fraction]], low: Fraction, high: Fraction
+) -> None:
     p, roots = found
     assume(low < high)
     ends = from_fraction(low), from_fraction(high)
     count = sturm._by_ball_chain(tuple(int(c) for c in p.coeffs()), *ends)
     if len(set(roots)) < len(roots):
-        assert count is None  # of multiple roots none, so that the exact sequence of the squarefree part is used
+        assert (
+            count is None
+        )  # of multiple roots none, so that the exact sequence of the squarefree part is used
     else:
         assert count in (None, sum(low < r < high for r in roots))
     changes = sturm.changes_of(p)
@@ -51,7 +55,12 @@ def test_a_sequence_with_a_gap_is_left_to_others() -> None:
 
 
 def test_close_roots_ask_for_more_precision() -> None:
-    p = fmpz_poly([-1, 10**40]) * fmpz_poly([-1, 10**40 + 1]) * fmpz_poly([1, 0, 1]) * fmpz_poly([2, 1, 1])
+    p = (
+        fmpz_poly([-1, 10**40])
+        * fmpz_poly([-1, 10**40 + 1])
+        * fmpz_poly([1, 0, 1])
+        * fmpz_poly([2, 1, 1])
+    )
     assert sturm.roots_between(p, fmpq(0), fmpq(1)) == 2
     assert sturm.roots_between(p, fmpq(1, 10**40 + 1), fmpq(1)) == 1
 
@@ -62,7 +71,9 @@ def test_a_branch_is_found_by_its_number(root: int) -> None:
     p = fmpz_poly([1])
     for factor in ([0, 1], [-1, 1], [-2, 1], [-2001, 1000], [-3, 1], [5, 0, 1]):
         p *= fmpz_poly(factor)
-    plane = PlanePolynomial.of((i, j, int(c)) for j, c in enumerate(p.coeffs()) for i in (0, 1) if c)
+    plane = PlanePolynomial.of(
+        (i, j, int(c)) for j, c in enumerate(p.coeffs()) for i in (0, 1) if c
+    )
     branch = WallBranch.of(PlaneCurve.of(0, plane, 0), root)
     with ctx.workprec(100):
         height = branch.height(fmpq(1, 3), fmpq(-2), fmpq(4))  # the first middle is a root

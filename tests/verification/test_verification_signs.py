@@ -1,4 +1,6 @@
-"""Signs proved by `ptmcad.verification.signs` against `ptmcad.question.positivity`, which shares no code with it."""
+"""Signs proved by `ptmcad.verification.signs` against `ptmcad.question.positivity`, which shares no
+code with it.
+"""
 
 from __future__ import annotations
 
@@ -89,7 +91,9 @@ def test_known_signs(text: str, strict: bool, expected: Sign) -> None:
 def test_random_functions_have_the_sign_that_the_engine_decides(seed: int) -> None:
     rng = random.Random(seed)
     p = random_square(rng, 4)
-    q = constant(rng.randint(1, 9)) + sum((rng.randint(-2, 2) * v for v in NAMES.values()), constant(0))
+    q = constant(rng.randint(1, 9)) + sum(
+        (rng.randint(-2, 2) * v for v in NAMES.values()), constant(0)
+    )
     for e in (p, p - rng.randint(0, 3), q, p * q, (p + 1) / q, q / (p + 1)):
         for need in Need:
             agree(e, need)
@@ -101,13 +105,17 @@ def test_random_functions_have_the_sign_that_the_engine_decides(seed: int) -> No
      ("k2", "1/(rho-1)", "k2 has a pole"), ("L1", "(rho-1)^2", "L1 is not positive somewhere"),
      ("F3", "1/(3*rho-2)^2", "F3 has a pole"), ("l0_1", "rho^7*(2-L2)^3/(L2+1)", "")],
 )  # fmt: skip
-def test_a_certified_map_outside_of_the_domain_is_rejected(name: str, text: str, message: str) -> None:
+def test_a_certified_map_outside_of_the_domain_is_rejected(
+    name: str, text: str, message: str
+) -> None:
     """A stored map is read without asking for signs; random boxes do not meet a dip of width 1e-9."""
     true = certified(Cover(2**10, ()), lambda x, y: 2)
     assert not isinstance(check_domain(Claims(true)), Unchecked)
     slice = true.slice
     expression = parse(text, {"rho": axis(0), "L2": axis(1)})
-    altered = replace(slice, parameters={**slice.parameters, name: expression}, text={**slice.text, name: text})
+    altered = replace(
+        slice, parameters={**slice.parameters, name: expression}, text={**slice.text, name: text}
+    )
     if message:
         with pytest.raises(Violation, match=message):
             check_domain(Claims(replace(true, slice=altered)))
@@ -121,7 +129,11 @@ def test_a_base_below_zero_is_rejected_and_what_is_too_long_is_said_to_be_unchec
     given = {**true.slice.parameters, "rho": parse("rho-1", names)}
     with pytest.raises(Violation, match="rho is not positive"):
         check_domain(Claims(replace(true, slice=replace(true.slice, parameters=given))))
-    given = {**true.slice.parameters, "rho": constant(0), "k1": parse("rho^16*L2^16+1+rho*L2", names)}
+    given = {
+        **true.slice.parameters,
+        "rho": constant(0),
+        "k1": parse("rho^16*L2^16+1+rho*L2", names),
+    }
     found = check_domain(Claims(replace(true, slice=replace(true.slice, parameters=given))))
     assert isinstance(found, Unchecked)
     assert found.startswith("k1")
@@ -133,7 +145,9 @@ def test_a_base_below_zero_is_rejected_and_what_is_too_long_is_said_to_be_unchec
      ("l0_3", "1/10 - (rho/2)^16*(L2/2)^15")],
 )  # fmt: skip
 def test_signs_of_an_exact_map_too(name: str, text: str, shipped: Callable[..., RegionMap]) -> None:
-    """Zeros and poles of even order change no sign at a sample, and beyond the degrees values are tried."""
+    """Zeros and poles of even order change no sign at a sample, and beyond the degrees values are
+    tried.
+    """
     true = shipped("fig4")
     expression = parse(text, {"rho": axis(0), "L2": axis(1)})
     altered = replace(true.slice, parameters={**true.slice.parameters, name: expression})
@@ -162,7 +176,9 @@ def test_what_a_spring_is_given_is_checked(
     )
     true = shipped("fig4")
     axes = (Axis("a", Fraction(0), Fraction(2)), Axis("b", Fraction(0), Fraction(3)))
-    slice = Slice("s", mechanism, axes, {"a": axis(0), "b": axis(1)}, Count.STABLE, text={"a": "a", "b": "b"})
+    slice = Slice(
+        "s", mechanism, axes, {"a": axis(0), "b": axis(1)}, Count.STABLE, text={"a": "a", "b": "b"}
+    )
     claims = Claims(replace(true, slice=slice))
     if message:
         with pytest.raises(Violation, match=message):

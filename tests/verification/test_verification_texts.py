@@ -1,4 +1,6 @@
-"""Texts in a result, checked: the parameters as they were written, and the potential of a certified map."""
+"""Texts in a result, checked: the parameters as they were written, and the potential of a certified
+map.
+"""
 
 from __future__ import annotations
 
@@ -56,10 +58,14 @@ NAMED = [
 
 
 @pytest.mark.parametrize(
-    ("parameters", "alone"), NAMED, ids=lambda x: str(x) if isinstance(x, dict) else "-".join(sorted(x))
+    ("parameters", "alone"),
+    NAMED,
+    ids=lambda x: str(x) if isinstance(x, dict) else "-".join(sorted(x)),
 )
 def test_names_in_texts_have_texts(parameters: dict[str, str], alone: set[str]) -> None:
-    """Every name that a text names is explained, also where it is no parameter; the parameters are what they were."""
+    """Every name that a text names is explained, also where it is no parameter; the parameters are
+    what they were.
+    """
     try:
         slice = asked(**parameters)
     except ConfigError as error:  # l0_1 is l0 by default
@@ -83,7 +89,15 @@ def test_names_of_axes_need_no_text() -> None:
 
 FREE_LENGTHS = ptm().free_lengths
 STIFF, FREE, LOADS = ("k", "k1", "k2", "k3"), ("l0", *FREE_LENGTHS), ("F3", "F4", "F3x")
-AXES = (("rho", "L2"), ("u", "v"), ("k", "u"), ("l0", "v"), ("k1", "L1"), ("l0_2", "F4"), ("F3", "k3"))
+AXES = (
+    ("rho", "L2"),
+    ("u", "v"),
+    ("k", "u"),
+    ("l0", "v"),
+    ("k1", "L1"),
+    ("l0_2", "F4"),
+    ("F3", "k3"),
+)
 
 
 @st.composite
@@ -97,7 +111,13 @@ def records(draw: st.DrawFn) -> dict[str, object]:
         if draw(st.booleans()):
             one, two = draw(st.sampled_from(known)), draw(st.sampled_from(known))
             forms = ["{0}", "2*{0}", "{0} + {1}", "{0}/10 + 1", "({0} + 1)*{1}", "3"]
-            forms += ["0", "{0}/({1} + 1)"] if name in FREE else ["-{0}", "{0} - {1}"] if name in LOADS else []
+            forms += (
+                ["0", "{0}/({1} + 1)"]
+                if name in FREE
+                else ["-{0}", "{0} - {1}"]
+                if name in LOADS
+                else []
+            )
             parameters[name] = draw(st.sampled_from(forms)).format(one, two)
         known.append(name)
     parameters["F4x"] = f"{axes[0]} - {axes[1]}"  # so that both axes are used
@@ -118,13 +138,23 @@ def test_texts_of_any_record_are_explained(record: dict[str, object]) -> None:
     ("parameters", "changes", "message"),
     [
         ({}, {"l0": "1/5"}, "the parameter l0 is stored, but nothing depends on it"),
-        ({"F3": "l0_1"}, {"l0_1": "1/5", "F3": "l0_1 - 1/5"}, "l0_1 was written as '1/5', but is left out as if"),
+        (
+            {"F3": "l0_1"},
+            {"l0_1": "1/5", "F3": "l0_1 - 1/5"},
+            "l0_1 was written as '1/5', but is left out as if",
+        ),
         ({"F3": "l0"}, {"l0": "1"}, "F3 was written as 'l0', but is 0"),
         ({"F3": "l0"}, {"l0": "0*k", "k": "100 + l0"}, "name what is not explained"),
-        ({"k1": "1", "k2": "1", "k3": "1"}, {"k": "100"}, "the parameter k is stored, but nothing depends on it"),
+        (
+            {"k1": "1", "k2": "1", "k3": "1"},
+            {"k": "100"},
+            "the parameter k is stored, but nothing depends on it",
+        ),
     ],
 )
-def test_false_texts_are_told(parameters: dict[str, str], changes: dict[str, str], message: str) -> None:
+def test_false_texts_are_told(
+    parameters: dict[str, str], changes: dict[str, str], message: str
+) -> None:
     slice = asked(**parameters)
     with pytest.raises(Violation, match=message):
         check_text(claims(replace(slice, text={**slice.text, **changes})))
@@ -149,7 +179,9 @@ def springs(slice: Slice, name: str) -> Slice:
 @pytest.mark.parametrize("name", ["k", "l0"])
 @pytest.mark.parametrize("stored", [True, False])
 def test_the_sign_of_what_is_only_named_is_checked(name: str, stored: bool) -> None:
-    """A k of -1/5 with springs of -k, which a record is refused for; with and without k among the parameters."""
+    """A k of -1/5 with springs of -k, which a record is refused for; with and without k among the
+    parameters.
+    """
     forged = springs(asked(k1="1", k2="1", k3="1"), name)
     if stored:
         forged = replace(forged, parameters={**forged.parameters, name: constant(Fraction(-1, 5))})
@@ -183,7 +215,9 @@ def test_an_undecided_sign_of_what_is_only_named_is_refused() -> None:
     """No engine would look at it, and the verification may find it wrong."""
     window = {"rho": ["0", "2"], "L2": ["0", "2"]}
     with pytest.raises(ConfigError, match="it is not proved that k is positive"):
-        asked(window, k="(rho - 137/100)^24 + (L2 - 1/10)^24 + 1e-216", k1="1", k2="1", k3="1", F3="k")
+        asked(
+            window, k="(rho - 137/100)^24 + (L2 - 1/10)^24 + 1e-216", k1="1", k2="1", k3="1", F3="k"
+        )
 
 
 # ------------------------------------------------------------------------------------------------ the potential
@@ -220,7 +254,11 @@ FALSE = [
     (r"\bl0_1\b", "sqrt(l0_1^2)", "a root of what is no spring's length"),
     ("$", " + sqrt(rho^2) - rho", "a root of what is no spring's length"),
     ("$", " + sqrt(0 - 1)", "a root of what is no spring's length"),
-    ("$", " + 1000*F3*(262144*rho - 594256)*(262144*rho - 228345)*(262144*rho - 89146)", "differs from the mechanism"),
+    (
+        "$",
+        " + 1000*F3*(262144*rho - 594256)*(262144*rho - 228345)*(262144*rho - 89146)",
+        "differs from the mechanism",
+    ),
     ("$", f" + F3/{10**45}", "differs from the mechanism's by 1/1000"),
     ("$", " + 1", "differs from the mechanism's by 1"),
     ("$", f" + 1/{10**45}*(cos(th1) - 1)", "differs from the mechanism's by"),
@@ -239,7 +277,11 @@ FALSE = [
     ("$", " + rho**2", "not a formula in the names"),
     ("$", " + (", "cannot be read"),
     ("$", " + " + "(" * 2000 + "1" + ")" * 2000, "cannot be read"),
-    ("$", " + " + "-" * 4000 + "rho", "cannot be read|nested too deeply|too many parts within each other"),
+    (
+        "$",
+        " + " + "-" * 4000 + "rho",
+        "cannot be read|nested too deeply|too many parts within each other",
+    ),
     ("$", " + rho" * 700, "differs from the mechanism's|nested too deeply|cannot be read"),
 ]
 
@@ -254,7 +296,8 @@ def test_no_other_potential_is_accepted(energy: str, old: str, new: str, message
 
 
 @pytest.mark.parametrize(
-    "more", [" + ((L1 + L2 + rho)^9)^9", " + (k1 + k2 + k3 + F3 + F4)^6*(L1 + L2 + rho + F3x + F4x)^6"]
+    "more",
+    [" + ((L1 + L2 + rho)^9)^9", " + (k1 + k2 + k3 + F3 + F4)^6*(L1 + L2 + rho + F3x + F4x)^6"],
 )
 def test_what_is_too_large_is_not_checked(energy: str, more: str) -> None:
     found = check_potential(claims(asked(), energy + more))

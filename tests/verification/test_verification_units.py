@@ -18,7 +18,14 @@ from support.few import few
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import LimitReached
-from ptmcad.text.numerals import decimal, fraction_of, integer_of, integer_text, shortest_text, text_of
+from ptmcad.text.numerals import (
+    decimal,
+    fraction_of,
+    integer_of,
+    integer_text,
+    shortest_text,
+    text_of,
+)
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
 from ptmcad.verification.elimination import Terms, discriminant, resultant
@@ -28,7 +35,10 @@ from ptmcad.verification.solutions import check_solutions
 PLANE = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
 
 polynomials = st.dictionaries(
-    st.tuples(st.integers(0, 4), st.integers(0, 4)), st.integers(-9, 9).filter(bool), min_size=1, max_size=8
+    st.tuples(st.integers(0, 4), st.integers(0, 4)),
+    st.integers(-9, 9).filter(bool),
+    min_size=1,
+    max_size=8,
 ).map(lambda terms: tuple((i, j, c) for (i, j), c in terms.items()))
 
 
@@ -57,7 +67,9 @@ long_integers = st.builds(
     st.sampled_from([0, 3999, 4300, 9001]),
     st.integers(),
 )  # hypothesis itself cannot print longer ones
-fractions = st.fractions() | st.builds(Fraction, long_integers, st.sampled_from([1, 7, 10**12, 10**4500 + 1]))
+fractions = st.fractions() | st.builds(
+    Fraction, long_integers, st.sampled_from([1, 7, 10**12, 10**4500 + 1])
+)
 
 
 @given(fractions)
@@ -79,7 +91,9 @@ def test_decimals_bound_from_the_side_asked_for(value: Fraction, digits: int) ->
     assert high - low <= value * Fraction(1, 10 ** (digits - 1))
 
 
-@pytest.mark.parametrize("text", ["", "1/0", "0x10", "1_0", " 1", "1e", "١", "1e9999999", "1.5/2", "--1", "nan", "+1"])
+@pytest.mark.parametrize(
+    "text", ["", "1/0", "0x10", "1_0", " 1", "1e", "١", "1e9999999", "1.5/2", "--1", "nan", "+1"]
+)
 def test_other_texts_are_no_numbers(text: str) -> None:
     with pytest.raises(ValueError, match=r"not an exact number|zero denominator|too long"):
         fraction_of(text)
@@ -105,7 +119,9 @@ def test_what_a_partial_result_has_is_checked(stage: str, unchecked: int) -> Non
     assert partial.status is Status.PARTIAL
     report = ptmcad.verify(partial)
     assert report.ok, report.violation
-    assert sum(c.detail == "not complete in this partial result" for c in report.checks) == unchecked
+    assert (
+        sum(c.detail == "not complete in this partial result" for c in report.checks) == unchecked
+    )
 
 
 def test_a_false_partial_result_is_rejected() -> None:
@@ -142,7 +158,9 @@ def test_maps_near_a_cusp_are_verified(exponent: int) -> None:
 @cache
 def map_near_the_cusp(exponent: int) -> RegionMap:
     width = Fraction(1, 10**exponent)
-    axes = {n: [str(Fraction(CUSP[n]) - width), str(Fraction(CUSP[n]) + width)] for n in ("rho", "F4")}
+    axes = {
+        n: [str(Fraction(CUSP[n]) - width), str(Fraction(CUSP[n]) + width)] for n in ("rho", "F4")
+    }
     record = {"name": "cusp", "axes": axes, "count": "index",
               "parameters": {n: v for n, v in CUSP.items() if n not in axes}}  # fmt: skip
     result = ptmcad.classify(ptmcad.slice_from_mapping(record), area_tolerance="1/10")
@@ -150,7 +168,9 @@ def map_near_the_cusp(exponent: int) -> RegionMap:
     for cell in result.cells:
         assert len(cell.solutions) == cell.total
         for a, b in combinations(cell.solutions, 2):
-            assert any(abs(x - y) > a.radius + b.radius for x, y in zip(a.center, b.center, strict=True))
+            assert any(
+                abs(x - y) > a.radius + b.radius for x, y in zip(a.center, b.center, strict=True)
+            )
     return RegionMap.from_json(result.to_json())
 
 
@@ -159,17 +179,27 @@ def test_points_are_drawn_from_the_claims(shipped: Callable[..., RegionMap]) -> 
     details = []
     for name, seed in (("fig2", None), ("fig3", None), ("fig2", 5), ("fig2", None)):
         report = ptmcad.verify(shipped(name), seed=seed)
-        details.append(next(c.detail for c in report.checks if c.name == "variety complete").split(";")[0])
+        details.append(
+            next(c.detail for c in report.checks if c.name == "variety complete").split(";")[0]
+        )
     assert details[0] == details[3]
     assert len(set(details)) == 3
     assert details[2].endswith("seed 5")
 
 
 def test_enclosures_that_hold_are_not_called_false_since_others_are_found_now() -> None:
-    """One that has the finer one holds; one beside it does not; of one that meets it nothing is said."""
+    """One that has the finer one holds; one beside it does not; of one that meets it nothing is
+    said.
+    """
 
-    def line(low: str, high: str, decimal: str | None, version: str = "1", met: str = "fold") -> dict[str, Any]:
-        return {"at": {"low": low, "high": high, "decimal": decimal}, "met": [met], "versions": {"ptmcad": version}}
+    def line(
+        low: str, high: str, decimal: str | None, version: str = "1", met: str = "fold"
+    ) -> dict[str, Any]:
+        return {
+            "at": {"low": low, "high": high, "decimal": decimal},
+            "met": [met],
+            "versions": {"ptmcad": version},
+        }
 
     now, finer = line("1.41", "1.42", "1.4"), line("1.414", "1.415", "1.41")
     for stored, passed in (

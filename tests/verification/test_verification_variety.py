@@ -1,4 +1,6 @@
-"""The variety's check at random points: no true claim is rejected at any of them, and false ones are."""
+"""The variety's check at random points: no true claim is rejected at any of them, and false ones
+are.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,9 @@ from ptmcad.verification.variety import check_norm
 Shipped = Callable[..., RegionMap]
 
 OFTEN_SMOOTH = (70, 121, 244, 430, 431, 450, 454, 597, 680, 682, 688)
-"""Seeds below 700 at whose first point some line's value has small primes, or those of another line's value, only."""
+"""Seeds below 700 at whose first point some line's value has small primes, or those of another
+line's value, only.
+"""
 
 
 def test_values_without_large_primes_reject_no_true_map(shipped: Shipped) -> None:
@@ -83,7 +87,10 @@ FAMILIES = {
     "axes": lines((1, 0, 0), (0, 1, 0), (1, 0, -1), (1, 0, 1), (1, 0, -6)),
     "pencil": lines((1, 1, 0), (1, -1, 0), (1, 2, 0), (2, 1, 0), (30, 7, 0)),
     "one line": lines((1, 0, 0)),
-    "curves": [PlanePolynomial.of(((2, 0, 1), (0, 2, 1), (0, 0, -1))), *lines((1, 0, -1), (1, 0, 1))],
+    "curves": [
+        PlanePolynomial.of(((2, 0, 1), (0, 2, 1), (0, 0, -1))),
+        *lines((1, 0, -1), (1, 0, 1)),
+    ],
 }
 
 
@@ -105,7 +112,9 @@ class KnownClaims:
         values = [c.polynomial(x, y) for c in components]
         assert 0 not in values
         poles = [int(v) for v, c in zip(values, components, strict=True) if c.kind is Kind.INFINITY]
-        poles = [1 if self.hidden(p) else p for p in poles] + ([int(self.foreign(x, y))] if self.foreign else [])
+        poles = [1 if self.hidden(p) else p for p in poles] + (
+            [int(self.foreign(x, y))] if self.foreign else []
+        )
         return KnownFibre(
             self.constant * prod(v**e for v, e in zip(values, self.exponents, strict=True)),
             self.result.complex_solutions,
@@ -114,9 +123,12 @@ class KnownClaims:
         )
 
 
-def known(shipped: Shipped, name: str, exponents: Sequence[int], constant: Fraction = Fraction(1)) -> KnownClaims:
+def known(
+    shipped: Shipped, name: str, exponents: Sequence[int], constant: Fraction = Fraction(1)
+) -> KnownClaims:
     components = [
-        Component(p, Kind.CRITICAL if e > 0 else Kind.INFINITY) for p, e in zip(FAMILIES[name], exponents, strict=True)
+        Component(p, Kind.CRITICAL if e > 0 else Kind.INFINITY)
+        for p, e in zip(FAMILIES[name], exponents, strict=True)
     ]
     return KnownClaims(replace(shipped("fig2"), components=tuple(components)), exponents, constant)
 
@@ -128,7 +140,12 @@ def test_exponents_are_those_of_the_construction(name: str, shipped: Shipped) ->
     for seed in range(60):
         exponents = [dice.choice([1, 2, 3, 4, 7, 0, -1, -4]) for _ in FAMILIES[name]]
         primes = dice.choice([1, 6, 10_007 * 65_537, 2**61 - 1])
-        claims = known(shipped, name, exponents, Fraction(dice.choice([primes, -1]), dice.choice([primes, 5, 1])))
+        claims = known(
+            shipped,
+            name,
+            exponents,
+            Fraction(dice.choice([primes, -1]), dice.choice([primes, 5, 1])),
+        )
         assert check_norm(claims, str(seed)).endswith(f"multiplicities {exponents}")  # type: ignore[arg-type]
 
 
@@ -152,12 +169,18 @@ def test_false_exponents_and_missing_curves_are_rejected(name: str, shipped: Shi
             dropped = SimpleReplacement(claims, replace(claims.result, components=rest))
             with pytest.raises(Violation, match="no constant times powers"):
                 check_norm(dropped, str(seed))  # type: ignore[arg-type]
-            foreign = replace(claims, exponents=[0 if j == k else e for j, e in enumerate(claims.exponents)])
+            foreign = replace(
+                claims, exponents=[0 if j == k else e for j, e in enumerate(claims.exponents)]
+            )
             with pytest.raises(Violation, match="is no factor of the norm"):
                 check_norm(foreign, str(seed))  # type: ignore[arg-type]
-            infinite = tuple(replace(d, kind=Kind.INFINITY) if d == c else d for d in claims.result.components)
+            infinite = tuple(
+                replace(d, kind=Kind.INFINITY) if d == c else d for d in claims.result.components
+            )
             with pytest.raises(Violation, match="but det H vanishes on it"):
-                check_norm(replace(claims, result=replace(claims.result, components=infinite)), str(seed))  # type: ignore[arg-type]
+                check_norm(
+                    replace(claims, result=replace(claims.result, components=infinite)), str(seed)
+                )  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)
@@ -188,7 +211,11 @@ def test_a_pole_that_does_not_show_at_one_point_is_no_contradiction(shipped: Shi
 
 
 def test_constants_in_denominators_are_no_poles(shipped: Shipped) -> None:
-    for constant in (Fraction(1, 6**400), Fraction(1, 2**61 - 1), Fraction(1, (2**521 - 1) * (2**61 - 1) ** 3)):
+    for constant in (
+        Fraction(1, 6**400),
+        Fraction(1, 2**61 - 1),
+        Fraction(1, (2**521 - 1) * (2**61 - 1) ** 3),
+    ):
         check_norm(known(shipped, "one line", [1], constant), "1")  # type: ignore[arg-type]
 
 
@@ -200,7 +227,9 @@ def test_poles_on_no_stored_component_are_rejected(shipped: Shipped) -> None:
 
 
 def test_what_is_harmless_is_told_from_what_is_not(shipped: Shipped) -> None:
-    """The constant coefficient of the characteristic polynomial, made integral, keeps or loses the curve's primes."""
+    """The constant coefficient of the characteristic polynomial, made integral, keeps or loses the
+    curve's primes.
+    """
     claims = known(shipped, "one line", [-1])
     harmless = tuple(replace(c, left_out=HARMLESS) for c in claims.result.components)
     claims = replace(claims, result=replace(claims.result, components=harmless))
@@ -208,7 +237,9 @@ def test_what_is_harmless_is_told_from_what_is_not(shipped: Shipped) -> None:
 
     class Vanishing(KnownClaims):
         def fibre_at(self, x: Fraction, y: Fraction) -> KnownFibre:
-            return replace(super().fibre_at(x, y), coefficients=[Fraction(1), Fraction(1, int(x)), Fraction(1)])
+            return replace(
+                super().fibre_at(x, y), coefficients=[Fraction(1), Fraction(1, int(x)), Fraction(1)]
+            )
 
     with pytest.raises(Violation, match="det H may vanish at solutions near it"):
         check_norm(Vanishing(claims.result, claims.exponents, claims.constant), "1")  # type: ignore[arg-type]
@@ -232,7 +263,10 @@ class Shortened:
         return [to_fraction(p(from_fraction(x), from_fraction(y))) for p in self.polynomials]
 
     def fibre_at(self, x: Fraction, y: Fraction) -> KnownFibre:
-        norm = prod((v**e for v, e in zip(self.values(x, y), self.exponents, strict=True)), start=Fraction(1))
+        norm = prod(
+            (v**e for v, e in zip(self.values(x, y), self.exponents, strict=True)),
+            start=Fraction(1),
+        )
         return KnownFibre(norm, self.result.complex_solutions, [], [])
 
 
@@ -262,7 +296,9 @@ def test_no_seed_rejects_a_shipped_map_as_a_whole(name: str, shipped: Shipped) -
 
 
 def test_factors_with_long_coefficients() -> None:
-    """A parameter of two factors whose coefficients are no machine integers; seen as a crash of verify."""
+    """A parameter of two factors whose coefficients are no machine integers; seen as a crash of
+    verify.
+    """
     record = {
         "parameters": {"L1": "((1e30*x+z+1)*(x+1e30*z+3))*1e-60", "L2": "1", "rho": "1+z/7"},
         "axes": {"x": ["0", "1"], "z": ["0", "1"]},

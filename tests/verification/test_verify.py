@@ -1,4 +1,6 @@
-"""The verification accepts every shipped result, and rejects what has been altered so that it is false."""
+"""The verification accepts every shipped result, and rejects what has been altered so that it is
+false.
+"""
 
 from __future__ import annotations
 
@@ -45,8 +47,12 @@ def stored_shipped(shipped: Callable[..., RegionMap], name: str) -> RegionMap:
     pytest.param("stiffness", "1/10", marks=pytest.mark.slow),  # its narrow areas take longer than all else of it
 ])  # fmt: skip
 @pytest.mark.fast_cases("fig2-1e-4")
-def test_shipped_results_are_accepted(name: str, tolerance: str, shipped: Callable[..., RegionMap]) -> None:
-    report = ptmcad.verify(stored(shipped(name, area_tolerance=tolerance) if tolerance != "1e-4" else shipped(name)))
+def test_shipped_results_are_accepted(
+    name: str, tolerance: str, shipped: Callable[..., RegionMap]
+) -> None:
+    report = ptmcad.verify(
+        stored(shipped(name, area_tolerance=tolerance) if tolerance != "1e-4" else shipped(name))
+    )
     assert report.ok, report.violation
     assert report.violation is None
     assert {c.name for c in report.checks if not c.passed} == {"plan without trace", "provenance"}
@@ -55,8 +61,22 @@ def test_shipped_results_are_accepted(name: str, tolerance: str, shipped: Callab
 
 NO_CLAIMS = {"title", "name", "reference", "versions", "precision", "timings"}
 """What is no statement about the regions."""
-MAY_STAY_TRUE = {"low", "high", "segment", "below", "above", "center", "radius", "area", "sample", "reason", "text"}
-"""What can be altered a little without becoming false (k2 written as k1 instead of k); the forger makes it false."""
+MAY_STAY_TRUE = {
+    "low",
+    "high",
+    "segment",
+    "below",
+    "above",
+    "center",
+    "radius",
+    "area",
+    "sample",
+    "reason",
+    "text",
+}
+"""What can be altered a little without becoming false (k2 written as k1 instead of k); the forger
+makes it false.
+"""
 
 
 def leaves(data: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
@@ -93,7 +113,9 @@ FIRST_OF = {
 
 
 def is_accepted(altered: RegionMap, table: str) -> bool:
-    if altered.status is not Status.EXACT or altered.cover is not None:  # it is not said to be an exact map any more
+    if (
+        altered.status is not Status.EXACT or altered.cover is not None
+    ):  # it is not said to be an exact map any more
         return ptmcad.verify(altered).ok
     return violation(altered, FIRST_OF.get(table, "")) is None
 
@@ -107,7 +129,9 @@ def is_accepted(altered: RegionMap, table: str) -> bool:
         pytest.param("fig4", 300, marks=pytest.mark.slow),
     ],
 )
-def test_any_changed_entry_of_the_file_is_rejected(name: str, number: int, shipped: Callable[..., RegionMap]) -> None:
+def test_any_changed_entry_of_the_file_is_rejected(
+    name: str, number: int, shipped: Callable[..., RegionMap]
+) -> None:
     text = shipped(name).to_json()
     paths = list(leaves(json.loads(text)))
     rng = random.Random(name)
@@ -128,7 +152,10 @@ def test_any_changed_entry_of_the_file_is_rejected(name: str, number: int, shipp
     assert not accepted
 
 
-LENGTHS = {"parameters": {"L1": 1, "k": 100, "F3": -10, "F4": -10}, "axes": {"rho": [0, "1e30"], "L2": [0, "1e30"]}}
+LENGTHS = {
+    "parameters": {"L1": 1, "k": 100, "F3": -10, "F4": -10},
+    "axes": {"rho": [0, "1e30"], "L2": [0, "1e30"]},
+}
 LOADS = {
     "parameters": {"L1": 1, "L2": "3/2", "rho": "3/4", "k": 100},
     "axes": {"F3": ["-1e30", "1e30"], "F4": ["-1e30", "1e30"]},
@@ -137,9 +164,13 @@ LOADS = {
 
 @pytest.mark.parametrize("record", [pytest.param(LENGTHS, marks=pytest.mark.slow, id="lengths"),
                                     pytest.param(LOADS, id="loads")])  # fmt: skip
-def test_areas_in_large_windows_are_told(record: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_areas_in_large_windows_are_told(
+    record: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """By some panels for each doubling; from wrong ones, of a small region beside a huge one, too."""
-    true = stored(ptmcad.classify(ptmcad.slice_from_mapping({"name": "large", "mechanism": "ptm", **record})))
+    true = stored(
+        ptmcad.classify(ptmcad.slice_from_mapping({"name": "large", "mechanism": "ptm", **record}))
+    )
     tried = []
 
     def counted(*given: Any) -> Any:
@@ -162,7 +193,9 @@ def test_a_tiny_change_of_an_area_is_rejected(shipped: Callable[..., RegionMap])
     check_areas(Claims(true))
     low, high = true.regions[1].area
     shift = Fraction(2, 10**9)
-    first = replace(true.regions[0], area=(true.regions[0].area[0] - shift, true.regions[0].area[1] - shift))
+    first = replace(
+        true.regions[0], area=(true.regions[0].area[0] - shift, true.regions[0].area[1] - shift)
+    )
     second = replace(true.regions[1], area=(low + shift, high + shift))
     found = violation(replace(true, regions=(first, second, *true.regions[2:])), "areas")
     assert found is not None
@@ -192,7 +225,9 @@ def test_a_true_alteration_is_accepted(shipped: Callable[..., RegionMap]) -> Non
     """Wider bounds, and a sample elsewhere in the same cell, are as true as before."""
     true = stored(shipped("fig2"))
     low, high = true.regions[0].area
-    wide = replace(true, regions=put(true.regions, 0, area=(low * Fraction(9, 10), high + Fraction(1, 10))))
+    wide = replace(
+        true, regions=put(true.regions, 0, area=(low * Fraction(9, 10), high + Fraction(1, 10)))
+    )
     assert ptmcad.verify(wide).ok
     assert ptmcad.verify(true, seed=7).ok
     assert isinstance(true.cells[0].sample, Point)

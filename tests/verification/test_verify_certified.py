@@ -1,4 +1,6 @@
-"""The verification of certified maps accepts true ones and rejects false ones; its parts agree with other methods."""
+"""The verification of certified maps accepts true ones and rejects false ones; its parts agree with
+other methods.
+"""
 
 from __future__ import annotations
 
@@ -69,7 +71,9 @@ def test_a_map_of_stable_counts_is_accepted(stable: RegionMap) -> None:
     report = ptmcad.verify(stable, boxes=BOXES)
     assert report.ok, report.violation
     assert f"{BOXES} boxes" in report.table()
-    assert "% of the free area is proved free of critical curves" in " ".join(report.table().split())
+    assert "% of the free area is proved free of critical curves" in " ".join(
+        report.table().split()
+    )
 
 
 def test_a_map_of_all_counts_is_accepted(total: RegionMap) -> None:
@@ -244,7 +248,9 @@ def test_a_false_map_is_rejected(name: str, stable: RegionMap) -> None:
     ids=["two more", "a maximum for a minimum", "a solution removed", "stable"],
 )
 @pytest.mark.slow_cases("two more", "a solution removed")
-def test_a_false_index_is_rejected(change: Callable[[Cell], dict[str, object]], total: RegionMap) -> None:
+def test_a_false_index_is_rejected(
+    change: Callable[[Cell], dict[str, object]], total: RegionMap
+) -> None:
     changes = change(total.cells[1])
     false = with_cell(total, 1, **changes)
     counts = {k: v for k, v in changes.items() if k != "solutions"}
@@ -255,7 +261,9 @@ def test_a_false_index_is_rejected(change: Callable[[Cell], dict[str, object]], 
 
 def consistent(r: RegionMap, cover: Cover, cells: tuple[Cell, ...]) -> RegionMap:
     """A map with another cover, false but with areas and samples that agree with it."""
-    changed = replace(r, cover=cover, cells=cells, regions=tuple(r.regions[c.region] for c in cells))
+    changed = replace(
+        r, cover=cover, cells=cells, regions=tuple(r.regions[c.region] for c in cells)
+    )
     claims = CertifiedClaims(changed)
     component = {n: k for k, n in claims.cell_of.items()}
     areas = [claims.sweep.areas[component[n]] for n in range(len(cells))]
@@ -263,7 +271,10 @@ def consistent(r: RegionMap, cover: Cover, cells: tuple[Cell, ...]) -> RegionMap
     window = claims.square * cover.steps**2
     return replace(
         changed,
-        cells=tuple(replace(c, level=level, region=n) for n, (c, level) in enumerate(zip(cells, levels, strict=True))),
+        cells=tuple(
+            replace(c, level=level, region=n)
+            for n, (c, level) in enumerate(zip(cells, levels, strict=True))
+        ),
         regions=tuple(
             replace(g, area=(area * claims.square, window), cells=(n,))
             for n, (g, area) in enumerate(zip(changed.regions, areas, strict=True))
@@ -290,7 +301,10 @@ def test_random_points_find_that_a_curve_was_left_out(steps: int, stable: Region
 def test_random_points_beside_rectangles_find_a_shifted_cover(stable: RegionMap) -> None:
     assert stable.cover is not None
     steps, by = stable.cover.steps, stable.cover.steps // 64
-    shifted = [(left, right, bottom + by, min(top + by, steps)) for left, right, bottom, top in stable.cover.rectangles]
+    shifted = [
+        (left, right, bottom + by, min(top + by, steps))
+        for left, right, bottom, top in stable.cover.rectangles
+    ]
     kept = sorted(r for r in shifted if r[2] < r[3])
     # the curve's end at the window's edge has moved away from it
     kept = sorted({*kept, *((a, b, 0, by + 1) for a, b, c, _ in stable.cover.rectangles if c == 0)})
@@ -301,16 +315,26 @@ def test_random_points_beside_rectangles_find_a_shifted_cover(stable: RegionMap)
     assert report.violation.startswith("random boxes:")
 
 
-def certified(count: str, axes: dict[str, list[str]], tolerance: Fraction, **parameters: str) -> RegionMap:
+def certified(
+    count: str, axes: dict[str, list[str]], tolerance: Fraction, **parameters: str
+) -> RegionMap:
     from ptmcad.certified.engine import certified_map
 
-    record = {"name": "small", "mechanism": "ptm", "parameters": parameters, "axes": axes, "count": count}
+    record = {
+        "name": "small",
+        "mechanism": "ptm",
+        "parameters": parameters,
+        "axes": axes,
+        "count": count,
+    }
     return certified_map(slice_from_mapping(record), Options(tolerance=tolerance, jobs=1))
 
 
 @pytest.mark.slow
 def test_rectangles_that_tell_nothing_do_not_draw_places() -> None:
-    """A fifth of the window is false, and behind 1500 squares of no size; with this seed 40 places used to miss it."""
+    """A fifth of the window is false, and behind 1500 squares of no size; with this seed 40 places
+    used to miss it.
+    """
     true = certified(
         "stable", {"rho": ["6/5", "13/10"], "L2": ["9/10", "1"]}, Fraction(1, 50),
         L1="3/2", k="100", F3="-10", F4="0", l0="1/5",
@@ -318,9 +342,15 @@ def test_rectangles_that_tell_nothing_do_not_draw_places() -> None:
     assert true.cover is not None
     assert [c.stable for c in true.cells] == [2, 1]
     steps, rng = true.cover.steps, random.Random(0)
-    corners = [(rng.randrange(steps // 4, steps // 2), rng.randrange(steps // 4, steps // 2)) for _ in range(1500)]
+    corners = [
+        (rng.randrange(steps // 4, steps // 2), rng.randrange(steps // 4, steps // 2))
+        for _ in range(1500)
+    ]
     wall = steps * 4 // 5
-    cover = Cover(steps, tuple(sorted({*((u, u + 1, v, v + 1) for u, v in corners), (wall, wall + 1, 0, steps)})))
+    cover = Cover(
+        steps,
+        tuple(sorted({*((u, u + 1, v, v + 1) for u, v in corners), (wall, wall + 1, 0, steps)})),
+    )
     report = ptmcad.verify(consistent(true, cover, true.cells), seed=167, effort=0)
     assert report.violation is not None
     assert report.violation.startswith("random boxes:")
@@ -332,14 +362,20 @@ CREASED = {"L1": "3/2", "L2": "1", "rho": "1", "k1": "100", "k2": "100", "l0_1":
 
 @pytest.fixture(scope="module")
 def creased() -> RegionMap:
-    """rho = L2 in the whole window, with two minima that mirror each other across the crease th2 = 0."""
-    return certified("stable", {"k3": ["5", "15"], "F3": ["-1/100", "1/100"]}, Fraction(1, 3), **CREASED)
+    """rho = L2 in the whole window, with two minima that mirror each other across the crease
+    th2 = 0.
+    """
+    return certified(
+        "stable", {"k3": ["5", "15"], "F3": ["-1/100", "1/100"]}, Fraction(1, 3), **CREASED
+    )
 
 
 @pytest.mark.parametrize("steps", [1, 2, 16, 2**24])
 @pytest.mark.fast_cases("16")
 def test_a_map_on_a_crease(steps: int, creased: RegionMap) -> None:
-    """Neither of two minima beside a crease is lost; and a lattice of one step, with no rectangles, is one."""
+    """Neither of two minima beside a crease is lost; and a lattice of one step, with no rectangles,
+    is one.
+    """
     true = replace(creased, cover=Cover(steps, ()))
     report = ptmcad.verify(true, boxes=2)
     assert report.ok, report.violation
@@ -373,7 +409,9 @@ MIRRORED = {"L1": "1", "L2": "3/2", "l0_1": "0", "l0_2": "1/5"}
 def test_minima_on_both_sides_of_a_crease(changes: dict[str, str]) -> None:
     """Places from a root finder in mpmath, with the energy from the nodes' coordinates."""
     *_, there = counted_at(creased_values(**changes), Count.STABLE)
-    places = sorted((round(e.center[0], 4), round(e.center[1], 4)) for e in there.found if e.signs == "++")
+    places = sorted(
+        (round(e.center[0], 4), round(e.center[1], 4)) for e in there.found if e.signs == "++"
+    )
     near = (0.0189, 0.2124) if not changes else (0.2124, 0.0189)
     assert places == [(-near[0], -near[1]), near]
 
@@ -401,7 +439,9 @@ def test_no_proof_of_existence_crosses_a_crease() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("count", ["stable", "admissible"])
 def test_bars_of_one_length_on_one_point(count: str) -> None:
-    """REFERENCE (mpmath): rho = 0 and L1 = L2, where spring 3 has no length on a circle; det H is 930 and 628."""
+    """REFERENCE (mpmath): rho = 0 and L1 = L2, where spring 3 has no length on a circle; det H is
+    930 and 628.
+    """
     axes = {"F3": ["5", "6"], "F3x": ["5", "6"]}
     true = certified(count, axes, Fraction(1, 3), rho="0", L1="1", L2="1", l0="1/5", F4="-10")
     report = ptmcad.verify(true, boxes=2)
@@ -414,34 +454,53 @@ def test_bars_of_one_length_on_one_point(count: str) -> None:
 
 
 def test_rho_next_to_a_bar_of_one_length() -> None:
-    """REFERENCE (mpmath): 8 equilibria where rho - L1 is 6e-13; spring 2 of one of them is hardly longer."""
+    """REFERENCE (mpmath): 8 equilibria where rho - L1 is 6e-13; spring 2 of one of them is hardly
+    longer.
+    """
     rho = Fraction(1597743721975, 1597743721974)
-    point = {n: Fraction(1, 5) if n[0] == "l" else Fraction(100) if n[0] == "k" else Fraction(0) for n in NAMES}
+    point = {
+        n: Fraction(1, 5) if n[0] == "l" else Fraction(100) if n[0] == "k" else Fraction(0)
+        for n in NAMES
+    }
     point |= {"rho": rho, "L1": Fraction(1), "L2": Fraction(208000000004, 160000000003)}
     point |= {"F3": Fraction(-10), "F4": Fraction(-10)}
     claims, counting, there = counted_at(point, Count.TOTAL)
     assert there.counts.index == (2, 4, 2)
     (peak,) = (e for e in there.found if abs(e.center[0]) < 1e-9)
-    assert (peak.signs, round(peak.center[0] * 1e14, 2), round(peak.center[1], 6)) == ("--", -6.22, 3.032489)
-    box = Solution((Fraction(-6.219379885031517e-14), Fraction(3.03248855256242)), Fraction(1, 2**46), "--")
+    assert (peak.signs, round(peak.center[0] * 1e14, 2), round(peak.center[1], 6)) == (
+        "--",
+        -6.22,
+        3.032489,
+    )
+    box = Solution(
+        (Fraction(-6.219379885031517e-14), Fraction(3.03248855256242)), Fraction(1, 2**46), "--"
+    )
     assert counting.in_box(claims, MIDDLE, box, 0).signs == "--"
 
 
 def test_no_equilibrium_is_lost_where_doubles_are_coarse() -> None:
     """REFERENCE (mpmath): rho - L1 is 8e-15; there is a maximum at (-5.6195574e-16, 3.0322134879)."""
-    point = {n: Fraction(1, 5) if n[0] == "l" else Fraction(100) if n[0] == "k" else Fraction(0) for n in NAMES}
+    point = {
+        n: Fraction(1, 5) if n[0] == "l" else Fraction(100) if n[0] == "k" else Fraction(0)
+        for n in NAMES
+    }
     point |= {"rho": Fraction(107374182400000886471, 107374182400000000000), "L1": Fraction(1)}
     point |= {"L2": Fraction(665987249, 536870912), "F3": Fraction(-10), "F4": Fraction(-10)}
     _, _, there = counted_at(point, Count.TOTAL)
     assert there.counts.index == (2, 4, 2)
-    assert any(abs(e.center[0] + 5.6195574e-16) < e.radii[0] + 1e-22 < 1e-16 and e.signs == "--" for e in there.found)
+    assert any(
+        abs(e.center[0] + 5.6195574e-16) < e.radii[0] + 1e-22 < 1e-16 and e.signs == "--"
+        for e in there.found
+    )
 
 
 @pytest.mark.parametrize(("m", "r"), [(0.3, 1e-9), (3.0322134878826974, 2.8e-15)])
 def test_halves_cover_the_box(m: float, r: float) -> None:
     found = halves(((0.0, m), (1.0, r)), [1, 0], [0.0, 0.0])
     assert found is not None
-    (low, half), (high, other) = ((Fraction(middle[1]), Fraction(width[1])) for middle, width in found)
+    (low, half), (high, other) = (
+        (Fraction(middle[1]), Fraction(width[1])) for middle, width in found
+    )
     assert low - half <= Fraction(m) - Fraction(r) < Fraction(m) + Fraction(r) <= high + other
     assert high - other <= low + half
     assert halves(((0.0, 3.0), (0.0, 2.0**-51)), [1, 0], [1.0, 0.0]) is None
@@ -449,10 +508,18 @@ def test_halves_cover_the_box(m: float, r: float) -> None:
 
 @pytest.mark.slow
 def test_a_window_as_narrow_as_rounding_beside_a_bar() -> None:
-    """Boxes of parameters in it are proved: an angle has a unit of its own where a spring is that short."""
+    """Boxes of parameters in it are proved: an angle has a unit of its own where a spring is that
+    short.
+    """
     side = [str(1 + k * Fraction(1, 10**13)) for k in (3, 4)]
     true = certified(
-        "total", {"rho": side, "L2": ["6/5", "13/10"]}, Fraction(1, 3), L1="1", l0="1/5", F3="-10", F4="-10"
+        "total",
+        {"rho": side, "L2": ["6/5", "13/10"]},
+        Fraction(1, 3),
+        L1="1",
+        l0="1/5",
+        F3="-10",
+        F4="-10",
     )
     report = ptmcad.verify(true, boxes=2)
     assert report.ok, report.violation
@@ -460,10 +527,14 @@ def test_a_window_as_narrow_as_rounding_beside_a_bar() -> None:
 
 
 def test_places_are_spread_over_the_window(stable: RegionMap) -> None:
-    """One in each square of a grid, whatever the rectangles; and those beside rectangles are not where most are."""
+    """One in each square of a grid, whatever the rectangles; and those beside rectangles are not
+    where most are.
+    """
     assert stable.cover is not None
     steps = stable.cover.steps
-    decoys = {(u, u + 1, steps // 2, steps // 2 + 1) for u in range(steps // 2, steps // 2 + 4000, 2)}
+    decoys = {
+        (u, u + 1, steps // 2, steps // 2 + 1) for u in range(steps // 2, steps // 2 + 4000, 2)
+    }
     cover = Cover(steps, tuple(sorted({*decoys, (steps // 8, steps // 8 + 1, 0, steps)})))
     claims = CertifiedClaims(replace(stable, cover=cover, cells=stable.cells[:1]))
     by_area, without = _by_area(claims, random.Random(1), 40)
@@ -475,13 +546,19 @@ def test_places_are_spread_over_the_window(stable: RegionMap) -> None:
         assert all(columns[k] >= (13 if side else 16) for k in range(4, 16))
     beside = _beside(claims, random.Random(1), 40)
     assert len(beside) == 40
-    near = [p for p in beside if abs(p.u - steps // 2) < steps // 16 and abs(p.v - steps // 2) < steps // 16]
+    near = [
+        p
+        for p in beside
+        if abs(p.u - steps // 2) < steps // 16 and abs(p.v - steps // 2) < steps // 16
+    ]
     assert len(near) <= 8
 
 
 @st.composite
 def covers(draw: st.DrawFn) -> Cover:
-    """Rectangles on a small lattice, so that they touch, overlap and enclose; corners and the window's edges."""
+    """Rectangles on a small lattice, so that they touch, overlap and enclose; corners and the
+    window's edges.
+    """
     steps = draw(st.sampled_from([4, 8, 16]))
     side = st.integers(0, steps)
     found = set()
@@ -495,7 +572,9 @@ def covers(draw: st.DrawFn) -> Cover:
 @given(covers())
 @settings(max_examples=examples(60), deadline=None)
 def test_sweep_and_subdivision_agree(cover: Cover) -> None:
-    """Components, clusters, areas, who touches whom, and where points lie, by two methods without common code."""
+    """Components, clusters, areas, who touches whom, and where points lie, by two methods without
+    common code.
+    """
     one, two = sweep(cover), components(cover)
     assert sorted(one.areas.values()) == sorted(two.areas)
     assert sorted(one.cluster_areas.values()) == sorted(two.cluster_areas)
@@ -510,7 +589,9 @@ def test_sweep_and_subdivision_agree(cover: Cover) -> None:
 
 @pytest.mark.slow
 def test_sweep_and_subdivision_agree_where_strips_change_in_parts() -> None:
-    """Many small rectangles that touch, so that most of a strip goes on while parts of it begin and end."""
+    """Many small rectangles that touch, so that most of a strip goes on while parts of it begin and
+    end.
+    """
     rng = random.Random(11)
     for _ in range(300):
         found = set()
@@ -545,9 +626,25 @@ def test_a_free_square_meets_no_rectangle(cover: Cover, u: int, v: int, half: in
 
 
 KNOWN = {
-    "REFERENCE, reproduction: 6, 2 stable": ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10", (2, 3, 1)),
+    "REFERENCE, reproduction: 6, 2 stable": (
+        "7/10",
+        "1",
+        "3/2",
+        "1/5",
+        "-1/10",
+        "-1/10",
+        (2, 3, 1),
+    ),
     "REFERENCE: 12": ("96859/100000", "1", "100609/100000", "1/5", "-1/10", "-1/10", (2, 6, 4)),
-    "REFERENCE: 26, 8 stable": ("120609/100000", "1", "1", "101487/100000", "-1/10", "-1/10", (8, 14, 4)),
+    "REFERENCE: 26, 8 stable": (
+        "120609/100000",
+        "1",
+        "1",
+        "101487/100000",
+        "-1/10",
+        "-1/10",
+        (8, 14, 4),
+    ),
 }
 
 
@@ -580,7 +677,10 @@ def test_thirty_equilibria() -> None:
 def test_minima_where_a_spring_has_length_zero_on_a_circle(rho: str) -> None:
     """rho = L1 and rho = L2: as many as on both sides nearby."""
     given = (Fraction(rho) + Fraction(n, 500) for n in (-1, 0, 1))
-    found = [counted_at(values(str(at), "1", "3/2", "1/5", "-1/10", "-1/10"), Count.STABLE)[2] for at in given]
+    found = [
+        counted_at(values(str(at), "1", "3/2", "1/5", "-1/10", "-1/10"), Count.STABLE)[2]
+        for at in given
+    ]
     assert len({there.counts.stable for there in found}) == 1
 
 
@@ -589,7 +689,9 @@ def random_values(rng: random.Random) -> dict[str, Fraction]:
         return Fraction(rng.randint(1, 300), 100)
 
     found = {name: positive() for name in NAMES}
-    return found | {name: Fraction(rng.randint(-300, 300), 100) for name in ("F3", "F4", "F3x", "F4x")}
+    return found | {
+        name: Fraction(rng.randint(-300, 300), 100) for name in ("F3", "F4", "F3x", "F4x")
+    }
 
 
 def potential(v: dict[str, arb]) -> arb:
@@ -599,7 +701,12 @@ def potential(v: dict[str, arb]) -> arb:
         (v["L1"] * v["th1"].cos(), v["L1"] * v["th1"].sin()),
         (v["rho"] - v["L2"] * v["th2"].cos(), v["L2"] * v["th2"].sin()),
     )  # fmt: skip
-    energy = -v["F3x"] * nodes[2][0] - v["F3"] * nodes[2][1] - v["F4x"] * nodes[3][0] - v["F4"] * nodes[3][1]
+    energy = (
+        -v["F3x"] * nodes[2][0]
+        - v["F3"] * nodes[2][1]
+        - v["F4x"] * nodes[3][0]
+        - v["F4"] * nodes[3][1]
+    )
     for number, (one, two) in enumerate(((0, 3), (1, 2), (2, 3)), 1):
         across, up = nodes[two][0] - nodes[one][0], nodes[two][1] - nodes[one][1]
         stretch = (across * across + up * up).sqrt() - v[f"l0_{number}"]
@@ -609,7 +716,9 @@ def potential(v: dict[str, arb]) -> arb:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_derivatives_are_those_of_the_potential(seed: int) -> None:
-    """Divided differences of the potential from the nodes' coordinates, with 400 bits and a step of 2^-60."""
+    """Divided differences of the potential from the nodes' coordinates, with 400 bits and a step of
+    2^-60.
+    """
     rng = random.Random(seed)
     v = random_values(rng)
     th1, th2 = Fraction(rng.randint(-300, 300), 100), Fraction(rng.randint(-300, 300), 100)
@@ -654,11 +763,15 @@ def test_nothing_is_proved_over_a_fold(stable: RegionMap) -> None:
     claims = CertifiedClaims(stable)
     assert stable.cover is not None
     left, right, bottom, top = stable.cover.rectangles[40]
-    (x0, y0), (x1, y1) = (claims.off_lattice(Fraction(u), Fraction(v)) for u, v in ((left, bottom), (right, top)))
+    (x0, y0), (x1, y1) = (
+        claims.off_lattice(Fraction(u), Fraction(v)) for u, v in ((left, bottom), (right, top))
+    )
     counting = counting_of(claims)
     there = counting.at(claims, x0, y0)
     with pytest.raises(Unproved):
-        counting.over(stable.slice, ball_of(x0).union(ball_of(x1)), ball_of(y0).union(ball_of(y1)), there)
+        counting.over(
+            stable.slice, ball_of(x0).union(ball_of(x1)), ball_of(y0).union(ball_of(y1)), there
+        )
 
 
 @pytest.mark.slow
@@ -679,13 +792,17 @@ def test_solutions_of_a_cell_are_where_the_check_finds_them(total: RegionMap) ->
             )
 
 
-def test_a_count_that_the_checker_does_not_know_is_refused(stable: RegionMap, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_count_that_the_checker_does_not_know_is_refused(
+    stable: RegionMap, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A kind that records, engines and documents have, and that has no row in the checker's table."""
     monkeypatch.delitem(kinds._KINDS, Count.ADMISSIBLE)
     slice = replace(stable.slice, count=Count.ADMISSIBLE)
     report = ptmcad.verify(replace(stable, slice=slice), boxes=0)
     assert report.violation == "form: the checker does not know what admissible counts are"
-    exact = ptmcad.verify(replace(shipped("fig4"), slice=replace(shipped("fig4").slice, count=Count.ADMISSIBLE)))
+    exact = ptmcad.verify(
+        replace(shipped("fig4"), slice=replace(shipped("fig4").slice, count=Count.ADMISSIBLE))
+    )
     assert exact.violation == "shape: the checker does not know what admissible counts are"
 
 
@@ -703,6 +820,8 @@ def test_conditions_that_are_numbers_all_over_a_slice_are_none() -> None:
         "parameters": {"c": 1},
         "axes": {"a": [-1, 2], "b": [-1, 1]},
     }
-    found = ptmcad.classify(slice_from_mapping(record), engine="certified", tolerance="1/10", jobs=1)
+    found = ptmcad.classify(
+        slice_from_mapping(record), engine="certified", tolerance="1/10", jobs=1
+    )
     assert {cell.stable for cell in found.cells} == {0, 1, 2}
     assert ptmcad.verify(found).ok

@@ -1,4 +1,6 @@
-"""Certified maps of other models than the paper's mechanism: true ones are accepted, false ones are rejected."""
+"""Certified maps of other models than the paper's mechanism: true ones are accepted, false ones are
+rejected.
+"""
 
 from __future__ import annotations
 
@@ -166,13 +168,17 @@ def map_of(name: str) -> RegionMap:
     return ptmcad.RegionMap.from_json(once_per_run(f"certified model {name}", compute).to_json())
 
 
-@pytest.mark.parametrize("name", few(RECORDS, *RECORDS.keys() - {"chain", "loop", "oscillators", "well"}))
+@pytest.mark.parametrize(
+    "name", few(RECORDS, *RECORDS.keys() - {"chain", "loop", "oscillators", "well"})
+)
 @pytest.mark.fast_cases("truss", "pendulum", "cubic", "half of a well", "loop")
 def test_a_true_map_is_accepted(name: str) -> None:
     """As its file says it; nothing is left undecided, and the report says what was not tried."""
     report = ptmcad.verify(map_of(name), boxes=2)
     assert report.ok, report.violation
-    undecided = [c.name for c in report.checks if c.passed is None and c.name != "the whole free area"]
+    undecided = [
+        c.name for c in report.checks if c.passed is None and c.name != "the whole free area"
+    ]
     assert undecided == ["plan", "provenance"]
     assert "2 boxes" in report.table()
     assert len({(c.total, c.stable, c.index) for c in map_of(name).cells}) > 1
@@ -192,10 +198,14 @@ def recounted(r: RegionMap, n: int, by: int) -> RegionMap:
 
 def with_solution(r: RegionMap, change: Callable[[Solution], Solution]) -> RegionMap:
     n, cell = max(enumerate(r.cells), key=lambda item: len(item[1].solutions))
-    return replace(r, cells=put(r.cells, n, solutions=(change(cell.solutions[0]), *cell.solutions[1:])))
+    return replace(
+        r, cells=put(r.cells, n, solutions=(change(cell.solutions[0]), *cell.solutions[1:]))
+    )
 
 
-def with_solutions(r: RegionMap, change: Callable[[tuple[Solution, ...]], tuple[Solution, ...]]) -> RegionMap:
+def with_solutions(
+    r: RegionMap, change: Callable[[tuple[Solution, ...]], tuple[Solution, ...]]
+) -> RegionMap:
     n, cell = max(enumerate(r.cells), key=lambda item: len(item[1].solutions))
     return replace(r, cells=put(r.cells, n, solutions=change(cell.solutions)))
 
@@ -211,7 +221,12 @@ def shifted(r: RegionMap) -> RegionMap:
     first, *others = sorted(r.cover.rectangles, key=lambda q: (q[1] - q[0]) * (q[3] - q[2]))
     u, v = (int(c) for c in CertifiedClaims(r).on_lattice(*r.cells[0].sample))
     steps = r.cover.steps
-    moved = (u - 1, min(steps, u - 1 + first[1] - first[0]), v - 1, min(steps, v - 1 + first[3] - first[2]))
+    moved = (
+        u - 1,
+        min(steps, u - 1 + first[1] - first[0]),
+        v - 1,
+        min(steps, v - 1 + first[3] - first[2]),
+    )
     return replace(r, cover=replace(r.cover, rectangles=tuple(sorted([*others, moved]))))
 
 
@@ -241,7 +256,9 @@ def with_model(r: RegionMap, **changes: Any) -> RegionMap:
 
 def with_free_less(r: RegionMap, value: Fraction) -> RegionMap:
     """All springs with a shorter free length."""
-    springs = (s._replace(free=Chain(s.free, (Step("-", Number(value)),))) for s in r.slice.model.springs)
+    springs = (
+        s._replace(free=Chain(s.free, (Step("-", Number(value)),))) for s in r.slice.model.springs
+    )
     return with_model(r, springs=tuple(springs))
 
 
@@ -258,7 +275,10 @@ def with_soft_spring(r: RegionMap) -> RegionMap:
     """The first spring of a loop with a negative stiffness, and no free length."""
     mechanism = r.slice.model.mechanism
     first, *others = mechanism.springs
-    soft = first._replace(stiffness=Chain(first.stiffness, (Step("-", Number(Fraction(3))),)), free=Number(Fraction(0)))
+    soft = first._replace(
+        stiffness=Chain(first.stiffness, (Step("-", Number(Fraction(3))),)),
+        free=Number(Fraction(0)),
+    )
     return with_model(r, mechanism=replace(mechanism, springs=(soft, *others)))
 
 
@@ -267,7 +287,9 @@ def with_relations(r: RegionMap, *relations: str) -> RegionMap:
 
 
 def beside(s: Solution) -> Solution:
-    return replace(s, center=tuple(x + s.radius * Fraction(19, 20) for x in s.center), radius=s.radius / 10**9)
+    return replace(
+        s, center=tuple(x + s.radius * Fraction(19, 20) for x in s.center), radius=s.radius / 10**9
+    )
 
 
 def other_signs(s: Solution) -> Solution:
@@ -278,12 +300,18 @@ def one_index(r: RegionMap) -> RegionMap:
     """Two saddles for a minimum and a maximum: total and Euler's sum stay."""
     index = r.cells[0].index
     assert index is not None
-    return certified.with_counts(r, 0, index=(index[0] + 1, index[1] - 2, index[2] + 1), stable=index[0] + 1)
+    return certified.with_counts(
+        r, 0, index=(index[0] + 1, index[1] - 2, index[2] + 1), stable=index[0] + 1
+    )
 
 
 def unconditional(r: RegionMap, stability: str) -> RegionMap:
-    """Other conditions in the description and in the text alike, with the counts that the first ones give."""
-    model = replace(r.slice.model, inequalities=(), stability=r.slice.model.stability[:1] if stability else ())
+    """Other conditions in the description and in the text alike, with the counts that the first
+    ones give.
+    """
+    model = replace(
+        r.slice.model, inequalities=(), stability=r.slice.model.stability[:1] if stability else ()
+    )
     stated = replace(r.system, inequalities=(), stability=(stability,) if stability else ())
     return replace(r, slice=replace(r.slice, model=model), system=stated)
 
@@ -374,9 +402,18 @@ SOME: dict[str, tuple[str, Callable[[RegionMap], RegionMap], str]] = {
 
 
 TOO_LARGE: dict[str, tuple[str, Callable[[RegionMap], RegionMap]]] = {
-    "numbers too long to compare": ("truss", lambda r: with_potential(r, "- f*h", "- f*h + 1" + 30 * "*9^60")),
-    "a degree too high to compare": ("truss", lambda r: with_potential(r, "- f*h", "- f*h + f^60*a")),
-    "an angle in what is too large": ("chain", lambda r: with_potential(r, "sin(s)", "(1 + a)^60*(1 + a)^9*sin(s)")),
+    "numbers too long to compare": (
+        "truss",
+        lambda r: with_potential(r, "- f*h", "- f*h + 1" + 30 * "*9^60"),
+    ),
+    "a degree too high to compare": (
+        "truss",
+        lambda r: with_potential(r, "- f*h", "- f*h + f^60*a"),
+    ),
+    "an angle in what is too large": (
+        "chain",
+        lambda r: with_potential(r, "sin(s)", "(1 + a)^60*(1 + a)^9*sin(s)"),
+    ),
 }
 
 
@@ -396,7 +433,9 @@ def assert_rejected(false: RegionMap, by: str) -> None:
 FOR_SLOW = {(kind, "chain") for kind in ALL} - {("more solutions", "chain")}
 """The chain's poses take longest to prove; five other records are altered in the same ways."""
 FOR_SLOW |= {(kind, "guided loop") for kind in ALL}
-FOR_SLOW |= {(kind, "loop") for kind in ALL} - {(kind, "loop") for kind in ("more solutions", "signs", "a gradient")}
+FOR_SLOW |= {(kind, "loop") for kind in ALL} - {
+    (kind, "loop") for kind in ("more solutions", "signs", "a gradient")
+}
 
 
 @pytest.mark.parametrize(("kind", "name"), [
@@ -453,7 +492,9 @@ def test_a_map_of_something_else_is_rejected(kind: str) -> None:
 @pytest.mark.parametrize("name", RECORDS)
 @pytest.mark.slow_cases("chain", "slider-crank", "well", "oscillators")
 def test_random_points_find_that_curves_were_left_out(name: str) -> None:
-    """All else but the search of the free area agrees with a map that has one cell and no rectangles."""
+    """All else but the search of the free area agrees with a map that has one cell and no
+    rectangles.
+    """
     false = certified.covered(replace(map_of(name), cells=map_of(name).cells[:1]), ())
     assert ptmcad.verify(false, boxes=0, effort=0).ok
     report = ptmcad.verify(false, boxes=4, effort=0)
@@ -462,7 +503,9 @@ def test_random_points_find_that_curves_were_left_out(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["truss", "loop"])
-def test_boxes_that_are_not_decided_hide_no_false_count(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_boxes_that_are_not_decided_hide_no_false_count(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The counts of all cells are compared nevertheless."""
     monkeypatch.setattr(points, "HOPELESS", 1)
     only = models._only
@@ -482,18 +525,28 @@ def test_boxes_that_are_not_decided_hide_no_false_count(name: str, monkeypatch: 
 
 
 def test_a_text_too_large_to_compare_hides_no_other() -> None:
-    """One that has the true values is not checked; a false equation behind it is found nevertheless."""
+    """One that has the true values is not checked; a false equation behind it is found
+    nevertheless.
+    """
     record = {"unknowns": {"x": "real", "y": "real"}, "equations": ["x^3 - a*x + b", "y - x/2"]}
-    slice = ptmcad.slice_from_mapping({"name": "pair", "system": record, "axes": RECORDS["cubic"]["axes"]})
+    slice = ptmcad.slice_from_mapping(
+        {"name": "pair", "system": record, "axes": RECORDS["cubic"]["axes"]}
+    )
     true = ptmcad.classify(slice, engine="certified", tolerance="1/4", jobs=1)
     large = true.system.gradient[0] + " + (1 + a)^60*(1 + a)^9 - (1 + a)^60*(1 + a)^9"
     for second, passed in ((true.system.gradient[1], None), ("y - x/3", False)):
-        report = ptmcad.verify(replace(true, system=replace(true.system, gradient=(large, second))), boxes=0)
-        assert next(c.passed for c in report.checks if c.name == "equations") is passed, report.table()
+        report = ptmcad.verify(
+            replace(true, system=replace(true.system, gradient=(large, second))), boxes=0
+        )
+        assert next(c.passed for c in report.checks if c.name == "equations") is passed, (
+            report.table()
+        )
 
 
 def test_what_is_not_decided_is_not_called_true(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nor false: a search that may look at three boxes says nothing of samples and of random points."""
+    """Nor false: a search that may look at three boxes says nothing of samples and of random
+    points.
+    """
     monkeypatch.setattr("ptmcad.verification.certified.models.BUDGETS", (3, 3, 3))
     report = ptmcad.verify(map_of("oscillators"), boxes=4)
     assert report.ok
@@ -517,7 +570,9 @@ class _At:
         return self.values
 
 
-def counts_at(counting: Any, model: Model, values: Mapping[str, Fraction], count: Count) -> CellCounts:
+def counts_at(
+    counting: Any, model: Model, values: Mapping[str, Fraction], count: Count
+) -> CellCounts:
     claims: Claims = _At(model, values, count)  # type: ignore[assignment]
     found: CellCounts = counting.at(claims, Fraction(0), Fraction(0)).counts
     return found
@@ -527,18 +582,28 @@ def counts_at(counting: Any, model: Model, values: Mapping[str, Fraction], count
     ([[-1, 0], [0, 1]], True), ([[1, 2], [2, 1]], True), ([[2, 1], [1, 2]], False),
     ([[10, 9, 0], [9, 10, 9], [0, 9, 10]], True), ([[2, 1, 0], [1, 2, 1], [0, 1, 2]], False),
 ])  # fmt: skip
-def test_a_negative_eigenvalue_is_told_by_entries_minors_and_determinant(rows: list[list[int]], told: bool) -> None:
+def test_a_negative_eigenvalue_is_told_by_entries_minors_and_determinant(
+    rows: list[list[int]], told: bool
+) -> None:
     """All principal minors of two rows of the fourth matrix are positive."""
     assert is_no_minimum([[arb(entry) for entry in row] for row in rows]) is told
 
 
 @pytest.mark.parametrize("seed", few(range(3), 1))
 def test_the_paper_s_mechanism_counted_in_two_ways(seed: int) -> None:
-    """By balls, and by Newton's method from a grid, with derivatives that were written down by hand."""
+    """By balls, and by Newton's method from a grid, with derivatives that were written down by
+    hand.
+    """
     rng = random.Random(seed)
     given = {n: Fraction(rng.randint(80, 120), 100) for n in ("rho", "L1", "L2")}
-    given |= {"l0": Fraction(rng.randint(10, 30), 100)} | {n: Fraction(rng.randint(-20, 20), 100) for n in ("F3", "F4")}
-    values = given | {f"k{k}": Fraction(1) for k in (1, 2, 3)} | {f"l0_{k}": given["l0"] for k in (1, 2, 3)}
+    given |= {"l0": Fraction(rng.randint(10, 30), 100)} | {
+        n: Fraction(rng.randint(-20, 20), 100) for n in ("F3", "F4")
+    }
+    values = (
+        given
+        | {f"k{k}": Fraction(1) for k in (1, 2, 3)}
+        | {f"l0_{k}": given["l0"] for k in (1, 2, 3)}
+    )
     values = {n: values.get(n, Fraction(0)) for n in NAMES}
     *_, there = counted_at(values, Count.INDEX)
     assert there.counts.total == free_length_equilibria(*map(float, given.values()))
@@ -553,7 +618,9 @@ def test_counts_are_those_of_the_exact_engine(name: str) -> None:
         x, y = (a.low + (a.high - a.low) * Fraction(rng.randint(1, 996), 997) for a in slice.axes)
         values = {n: e.evaluate(x, y) for n, e in slice.parameters.items()}
         found = counts_at(ModelCounting(form_of(slice)), slice.model, values, Count.INDEX)
-        true = ptmcad.counts_at(slice.model, **{n: str(v) for n, v in zip(slice.axis_names, (x, y), strict=True)})
+        true = ptmcad.counts_at(
+            slice.model, **{n: str(v) for n, v in zip(slice.axis_names, (x, y), strict=True)}
+        )
         assert (found.total, found.index) == (true.total, true.index)
 
 
@@ -567,12 +634,20 @@ def test_derivatives_are_those_of_the_stored_potential(name: str) -> None:
         balls = {n: ball_of(v) for n, v in values.items()}
         at = [ball_of(Fraction(rng.randint(-300, 300), 100)) for _ in form.unknowns]
         jet, h = BallEquations(form, balls)(at), arb(2) ** -60
-        exactly = re.sub(r"\b(\d+)/", r"ball(\1)/", r.system.potential.replace("^", "**"))  # 1/10 is no double
+        exactly = re.sub(
+            r"\b(\d+)/", r"ball(\1)/", r.system.potential.replace("^", "**")
+        )  # 1/10 is no double
         code = compile(exactly, "potential", "eval")
 
         def energy(*steps: int) -> arb:
             where = {u: x + n * h for u, x, n in zip(form.unknowns, at, steps, strict=True)}
-            names = {"sqrt": arb.sqrt, "cos": arb.cos, "sin": arb.sin, "ball": arb, "__builtins__": {}}
+            names = {
+                "sqrt": arb.sqrt,
+                "cos": arb.cos,
+                "sin": arb.sin,
+                "ball": arb,
+                "__builtins__": {},
+            }
             value: arb = eval(code, names, {**balls, **where})  # text of our own engine
             return value
 
@@ -583,19 +658,26 @@ def test_derivatives_are_those_of_the_stored_potential(name: str) -> None:
             for j in range(form.size):
                 f = [int(k == j) for k in range(form.size)]
                 corners = [
-                    energy(*(s * a + t * b for a, b in zip(e, f, strict=True))) for s in (1, -1) for t in (1, -1)
+                    energy(*(s * a + t * b for a, b in zip(e, f, strict=True)))
+                    for s in (1, -1)
+                    for t in (1, -1)
                 ]
                 mixed = (corners[0] - corners[1] - corners[2] + corners[3]) / (4 * h**2)
                 assert abs(jet.jacobian[i][j] - mixed) < 1e-25
 
 
 def test_no_solution_is_beyond_the_bounds_of_real_unknowns() -> None:
-    """x^3 - a x + b has a root beyond the square root of a; an unknown that may be anywhere has no bound."""
+    """x^3 - a x + b has a root beyond the square root of a; an unknown that may be anywhere has no
+    bound.
+    """
     cubic = form_of(ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}))
     for a in (1, 100, 10**6):
         (bound,) = half_widths(cubic, {"a": arb(a), "b": arb(1, 1)})
         assert a**0.5 < bound < 4 * a**0.5
-    ramp = {"system": {"unknowns": {"x": "real"}, "equations": ["a*x + b"]}, "axes": {"a": [-1, 1], "b": [-1, 1]}}
+    ramp = {
+        "system": {"unknowns": {"x": "real"}, "equations": ["a*x + b"]},
+        "axes": {"a": [-1, 1], "b": [-1, 1]},
+    }
     form = form_of(ptmcad.slice_from_mapping({"name": "r", **ramp}))
     assert half_widths(form, {"a": arb(1), "b": arb(0, 3)}) == (4.0,)
     with pytest.raises(Unproved, match="no bound of the unknown x"):
@@ -604,8 +686,16 @@ def test_no_solution_is_beyond_the_bounds_of_real_unknowns() -> None:
 
 @pytest.mark.parametrize(("free", "half", "bends"), [("1/4", 0.01, True), ("1/100", 0.1, False)])
 def test_minima_near_a_spring_without_length(free: str, half: float, bends: bool) -> None:
-    """A box is discarded where all Hessians in it have a negative eigenvalue; a wide one around a weak peak is not."""
-    record = {**CHAIN, "mechanism": {**CHAIN["mechanism"], "springs": [{"between": ["A", "Q"], "k": 1, "free": free}]}}
+    """A box is discarded where all Hessians in it have a negative eigenvalue; a wide one around a
+    weak peak is not.
+    """
+    record = {
+        **CHAIN,
+        "mechanism": {
+            **CHAIN["mechanism"],
+            "springs": [{"between": ["A", "Q"], "k": 1, "free": free}],
+        },
+    }
     form = form_of(ptmcad.slice_from_mapping({"name": "c", **record}))
     field = BallEquations(form, {"a": arb(1), "F": arb(0)})
     at = (math.pi / 3, -math.pi / 3)  # where Q is A
@@ -619,7 +709,9 @@ def test_minima_near_a_spring_without_length(free: str, half: float, bends: bool
 
 
 def test_a_solution_on_the_edge_of_a_stored_box_is_not_decided() -> None:
-    """The irrational root of x^3 - 2 x is told from the edge, the root 1 of x^3 - x at the edge is not."""
+    """The irrational root of x^3 - 2 x is told from the edge, the root 1 of x^3 - x at the edge is
+    not.
+    """
     slice = ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]})
     counting, model = ModelCounting(form_of(slice)), slice.model
     for a, outside in ((2, "0 equilibria"), (1, "or beside it")):
@@ -649,7 +741,9 @@ def test_inertia_of_matrices_with_known_eigenvalues(seed: int) -> None:
         v = [[rng.uniform(-1, 1) + 2 * (i == j) for j in range(size)] for i in range(size)]
         h = [[sum((arb(v[k][i]) * values[k] * v[k][j] for k in range(size)), arb(0)) for j in range(size)]
              for i in range(size)]  # fmt: skip
-        assert inertia(h) == "".join(sorted(("+" if x > 0 else "-" for x in values), key="+-".index))
+        assert inertia(h) == "".join(
+            sorted(("+" if x > 0 else "-" for x in values), key="+-".index)
+        )
         assert inertia([[arb(0, 1)] * size for _ in range(size)]) is None
 
 
@@ -679,8 +773,15 @@ def test_bounds_where_an_axis_is_squared() -> None:
         ],
         "loads": {"P": ["F", "1/5"]},
     }
-    record = {"name": "squared", "mechanism": mechanism, "axes": {"a": ["1/4", 2], "F": [-2, 2]}, "count": "stable"}
-    report = ptmcad.verify(ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/50"), seed=1, boxes=2)
+    record = {
+        "name": "squared",
+        "mechanism": mechanism,
+        "axes": {"a": ["1/4", 2], "F": [-2, 2]},
+        "count": "stable",
+    }
+    report = ptmcad.verify(
+        ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/50"), seed=1, boxes=2
+    )
     assert report.ok
     (area,) = (c for c in report.checks if c.name == "the whole free area")
     assert "% of the free area is proved" in area.detail

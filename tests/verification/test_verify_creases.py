@@ -1,4 +1,6 @@
-"""`verify` of maps with springs on lines that turn, by half an angle too: true ones are proved, false ones are not."""
+"""`verify` of maps with springs on lines that turn, by half an angle too: true ones are proved,
+false ones are not.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,12 @@ def record(mechanism: dict[str, Any], count: str = "index", **axes: list[Any]) -
         "G": {"kind": "force", "default": 0},
     }
     given = {"name": "creased", **mechanism, "parameters": parameters}
-    return {"name": "creased", "mechanism": given, "axes": axes or {"F": [-2, 2], "l": [0, 2]}, "count": count}
+    return {
+        "name": "creased",
+        "mechanism": given,
+        "axes": axes or {"F": [-2, 2], "l": [0, 2]},
+        "count": count,
+    }
 
 
 CRANK: dict[str, Any] = {
@@ -51,7 +58,10 @@ BEHIND: dict[str, Any] = {**CRANK, "points": {**CRANK["points"], "A": [-1, 0]}}
 LEANING: dict[str, Any] = {
     **CRANK,
     "points": {"O": [0, 0], "A": ["6/5", "8/5"], "B": [-2, 0], "P": ["2*cos(th)", "2*sin(th)"]},
-    "springs": [{"between": ["A", "P"], "k": 1, "free": "l"}, {"between": ["B", "P"], "k": 1, "free": "1/3"}],
+    "springs": [
+        {"between": ["A", "P"], "k": 1, "free": "l"},
+        {"between": ["B", "P"], "k": 1, "free": "1/3"},
+    ],
 }
 TILTED: dict[str, Any] = {
     **CRANK,
@@ -66,7 +76,10 @@ PAIR: dict[str, Any] = {
 ARM: dict[str, Any] = {
     "unknowns": {"a": "angle", "x": "length"},
     "points": {"O": [0, 0], "A": [1, 0], "S": ["x*cos(a)", "x*sin(a)"]},
-    "springs": [{"between": ["O", "S"], "k": 1, "free": "l"}, {"between": ["A", "S"], "k": 1, "free": "1/4"}],
+    "springs": [
+        {"between": ["O", "S"], "k": 1, "free": "l"},
+        {"between": ["A", "S"], "k": 1, "free": "1/4"},
+    ],
     "loads": {"S": ["F", "G"]},
 }
 LOOP: dict[str, Any] = {
@@ -90,7 +103,9 @@ CASES = {
 
 @cache
 def made(name: str) -> RegionMap:
-    return certified_map(ptmcad.slice_from_mapping(CASES[name]), Options(tolerance=Fraction(1, 50), jobs=1))
+    return certified_map(
+        ptmcad.slice_from_mapping(CASES[name]), Options(tolerance=Fraction(1, 50), jobs=1)
+    )
 
 
 def form(mechanism: dict[str, Any]) -> Form:
@@ -115,7 +130,9 @@ def test_a_map_without_the_crease_is_not_proved(name: str, monkeypatch: pytest.M
     false = certified_map(slice, Options(tolerance=Fraction(1, 50), jobs=1))
     monkeypatch.undo()
     assert len(false.cells) < len(made(name).cells)
-    (area,) = (c for c in ptmcad.verify(false, seed=1, boxes=0).checks if c.name == "the whole free area")
+    (area,) = (
+        c for c in ptmcad.verify(false, seed=1, boxes=0).checks if c.name == "the whole free area"
+    )
     assert not area.passed
 
 
@@ -124,7 +141,12 @@ def test_a_wrong_count_is_found(name: str) -> None:
     true = made(name)
     cell = true.cells[0]
     assert cell.index is not None and cell.total is not None
-    wrong = replace(cell, total=cell.total + 1, stable=cell.index[0] + 1, index=(cell.index[0] + 1, *cell.index[1:]))
+    wrong = replace(
+        cell,
+        total=cell.total + 1,
+        stable=cell.index[0] + 1,
+        index=(cell.index[0] + 1, *cell.index[1:]),
+    )
     assert not ptmcad.verify(replace(true, cells=(wrong, *true.cells[1:])), boxes=0, effort=0).ok
 
 
@@ -154,7 +176,9 @@ def test_lines_are_told_from_the_vectors(mechanism: dict[str, Any], twice: list[
 
 @pytest.mark.parametrize("mechanism", [CRANK, TILTED, LEANING, PAIR, ARM, LOOP])
 def test_on_its_side_a_line_is_the_springs_direction(mechanism: dict[str, Any]) -> None:
-    """Equations and Jacobian are those of springs that may point anywhere, and so they are only where all are ahead."""
+    """Equations and Jacobian are those of springs that may point anywhere, and so they are only
+    where all are ahead.
+    """
     values = {"l": arb(1) / 2, "F": arb(1) / 3, "G": arb(1) / 7}
     of, generator = form(mechanism), np.random.default_rng(5)
     free = BallEquations(of, values)
@@ -186,7 +210,9 @@ def test_what_half_of_an_angle_turns_is_another_after_a_full_turn() -> None:
 
 
 def test_an_equilibrium_at_both_ends_of_the_circle_is_one() -> None:
-    """At th = pi, where the search begins and ends: it is on one side of the spring there, and on the other here."""
+    """At th = pi, where the search begins and ends: it is on one side of the spring there, and on
+    the other here.
+    """
     values = {"l": Fraction(1), "F": Fraction(1, 3), "G": Fraction(0)}
     counts = ModelCounting(form(CRANK))._at(values, Count.INDEX).counts
     assert counts.index == (2, 1)
@@ -196,9 +222,13 @@ def test_an_equilibrium_at_both_ends_of_the_circle_is_one() -> None:
     "at", [("1/4", "-131/64", "-3/32"), ("31/64", "-53/64", "-5/16"), ("43/64", "-185/64", "19/64")]
 )
 def test_what_continues_a_side_hides_no_equilibrium_a_turn_away(at: tuple[str, str, str]) -> None:
-    """Beyond the crease the energy's continuation has a zero a full turn from an equilibrium of the same side."""
+    """Beyond the crease the energy's continuation has a zero a full turn from an equilibrium of the
+    same side.
+    """
     free, force, up = map(Fraction, at)
-    assert ModelCounting(form(BEHIND))._at({"l": free, "F": force, "G": up}, Count.INDEX).counts.index == (2, 1)
+    assert ModelCounting(form(BEHIND))._at(
+        {"l": free, "F": force, "G": up}, Count.INDEX
+    ).counts.index == (2, 1)
 
 
 @pytest.mark.slow
@@ -229,11 +259,17 @@ def test_counts_agree_with_the_engines(mechanism: dict[str, Any]) -> None:
     generator = np.random.default_rng(3)
     slice = ptmcad.slice_from_mapping(record(mechanism))
     for _ in range(60):
-        force, up, free = (Fraction(int(n), 64) for n in generator.integers((-192, -64, 1), (192, 64, 256)))
+        force, up, free = (
+            Fraction(int(n), 64) for n in generator.integers((-192, -64, 1), (192, 64, 256))
+        )
         values = {"l": free, "F": force, "G": up}
-        true = plain_counter(point_slice(slice.model, values)).at(Fraction(0), Fraction(0), Count.INDEX)
+        true = plain_counter(point_slice(slice.model, values)).at(
+            Fraction(0), Fraction(0), Count.INDEX
+        )
         if true.decided:
-            assert ModelCounting(form(mechanism))._at(values, Count.INDEX).counts.index == true.index
+            assert (
+                ModelCounting(form(mechanism))._at(values, Count.INDEX).counts.index == true.index
+            )
 
 
 @pytest.mark.parametrize("count", ["total", "stable"])
@@ -242,12 +278,17 @@ def test_a_line_whose_spring_has_no_free_length_has_no_sides(count: str) -> None
     mechanism = {
         "unknowns": {"x": "length"},
         "points": {"S": ["x", -1], "B": [0, -1], "C": [1, "1/2"]},
-        "springs": [{"between": ["B", "S"], "k": 1, "free": "m"}, {"between": ["C", "S"], "k": 1, "free": "l"}],
+        "springs": [
+            {"between": ["B", "S"], "k": 1, "free": "m"},
+            {"between": ["C", "S"], "k": 1, "free": "l"},
+        ],
         "loads": {"S": ["F", "G"]},
     }
     given = record(mechanism, count, F=[1, 2], l=["1/10", 1])
     given["mechanism"]["parameters"] |= {"m": {"kind": "free length", "default": 0}}
-    true = certified_map(ptmcad.slice_from_mapping(given), Options(tolerance=Fraction(1, 50), jobs=1))
+    true = certified_map(
+        ptmcad.slice_from_mapping(given), Options(tolerance=Fraction(1, 50), jobs=1)
+    )
     assert len(form_of(true.slice).cones) == 1
     report = ptmcad.verify(true, seed=1, boxes=2, effort=0)
     assert report.ok
@@ -255,8 +296,12 @@ def test_a_line_whose_spring_has_no_free_length_has_no_sides(count: str) -> None
 
 
 def turned(**axes: Any) -> dict[str, Any]:
-    """A crank whose spring's other end is in a direction of which only the slice says that it is one."""
-    given = record(CRANK | {"points": {"A": ["c", "s"], "P": ["cos(th)", "sin(th)"]}}, "index", **axes)
+    """A crank whose spring's other end is in a direction of which only the slice says that it is
+    one.
+    """
+    given = record(
+        CRANK | {"points": {"A": ["c", "s"], "P": ["cos(th)", "sin(th)"]}}, "index", **axes
+    )
     given["mechanism"]["parameters"] |= {"c": {"default": 1}, "s": {"default": 0}}
     return given | {"parameters": {"c": "(1 - t^2)/(1 + t^2)", "s": "2*t/(1 + t^2)"}}
 
@@ -264,7 +309,9 @@ def turned(**axes: Any) -> dict[str, Any]:
 def test_directions_are_told_by_the_values_of_parameters() -> None:
     given = turned()
     given["axes"] = {"F": [1, 2], "t": ["1/4", 1]}
-    true = certified_map(ptmcad.slice_from_mapping(given), Options(tolerance=Fraction(1, 50), jobs=1))
+    true = certified_map(
+        ptmcad.slice_from_mapping(given), Options(tolerance=Fraction(1, 50), jobs=1)
+    )
     (cone,) = form_of(true.slice).cones
     assert cone.line is not None and cone.line.twice == (1,)
     report = ptmcad.verify(true, seed=1, boxes=2, effort=0)
@@ -279,7 +326,10 @@ def test_narrow_boxes_beside_solutions_are_refused_on_the_side_of_a_crease(away:
     true = made("crank")
     cell = true.cells[0]
     values = dict(zip(true.slice.axis_names, cell.sample, strict=True))
-    poses = [Fraction(p.angles[0].text(45)) for p in ptmcad.solve(true.slice, digits=45, **values).equilibria]
+    poses = [
+        Fraction(p.angles[0].text(45))
+        for p in ptmcad.solve(true.slice, digits=45, **values).equilibria
+    ]
     narrow = Fraction(1, 10**30)
 
     def moved(by: Fraction) -> RegionMap:
@@ -297,7 +347,9 @@ def test_more_admissible_equilibria_than_stable_ones_are_refused() -> None:
     true = made("crank, admissible")
     cell = true.cells[0]
     assert cell.stable is not None
-    wrong = replace(true, cells=(replace(cell, further={"admissible": cell.stable + 1}), *true.cells[1:]))
+    wrong = replace(
+        true, cells=(replace(cell, further={"admissible": cell.stable + 1}), *true.cells[1:])
+    )
     with pytest.raises(Violation, match="admissible equilibria among"):
         check_form(CertifiedClaims(wrong))
 
@@ -306,7 +358,9 @@ def test_counts_of_an_undecided_sample_are_those_beside_it(monkeypatch: pytest.M
     true = made("crank")
     sample, at = tuple(true.cells[0].sample), ModelCounting.at
 
-    def undecided(self: ModelCounting, claims: Any, x: Fraction, y: Fraction, where: Any = None) -> Any:
+    def undecided(
+        self: ModelCounting, claims: Any, x: Fraction, y: Fraction, where: Any = None
+    ) -> Any:
         if (x, y) == sample:
             raise Unproved("a test")
         return at(self, claims, x, y, where)

@@ -17,7 +17,10 @@ from ptmcad.verification import verify_design
 
 BALL: dict[str, Any] = {
     "name": "ball",
-    "system": {"unknowns": {"u": "real"}, "equations": ["u^2 - 1 + (x - b)^2 + (a - 1)^2 + (b - 1/2)^2"]},
+    "system": {
+        "unknowns": {"u": "real"},
+        "equations": ["u^2 - 1 + (x - b)^2 + (a - 1)^2 + (b - 1/2)^2"],
+    },
     "parameters": {"b": 0},
     "axes": {"x": [-2, 4], "a": [0, 2]},
 }
@@ -38,7 +41,9 @@ def test_a_true_design_passes(found: BestDesign) -> None:
 
 def test_a_true_design_with_conditions_passes() -> None:
     where = {"conditions": ["a + b <= 1"]}
-    report = verify_design(ptmcad.design(BALL, "range", OVER, where=where, tolerance="1/5", evaluations=60), seed=3)
+    report = verify_design(
+        ptmcad.design(BALL, "range", OVER, where=where, tolerance="1/5", evaluations=60), seed=3
+    )
     assert report.ok and "where the conditions hold" in report.checks[1].detail
 
 
@@ -46,19 +51,36 @@ def test_forgeries_are_found(found: BestDesign) -> None:
     assert found.span is not None and found.bound is not None
     low, high = found.span
     step = Fraction(1, 10)
-    later = (Enclosure(low.low + step, low.high + step), Enclosure(high.low + step, high.high + step))
+    later = (
+        Enclosure(low.low + step, low.high + step),
+        Enclosure(high.low + step, high.high + step),
+    )
     smaller = tuple(replace(box, bound=box.bound / 4) for box in found.boxes)
     fewer = f"by branch and bound, over {len(found.boxes) - 1} boxes of designs"
     more = f"by branch and bound, over {len(found.boxes) + 1} boxes of designs"
-    outside = replace(found.boxes[0], ranges=((Fraction(-1), Fraction(1)), (Fraction(0), Fraction(1))))
+    outside = replace(
+        found.boxes[0], ranges=((Fraction(-1), Fraction(1)), (Fraction(0), Fraction(1)))
+    )
     forged = {
-        "a box is missing": (replace(found, boxes=found.boxes[1:], reason=fewer), "boxes: no box holds"),
-        "a box twice": (replace(found, boxes=(*found.boxes, found.boxes[0]), reason=more), "overlap"),
-        "a box outside": (replace(found, boxes=(outside, *found.boxes[1:])), "is not within the bounds"),
+        "a box is missing": (
+            replace(found, boxes=found.boxes[1:], reason=fewer),
+            "boxes: no box holds",
+        ),
+        "a box twice": (
+            replace(found, boxes=(*found.boxes, found.boxes[0]), reason=more),
+            "overlap",
+        ),
+        "a box outside": (
+            replace(found, boxes=(outside, *found.boxes[1:])),
+            "is not within the bounds",
+        ),
         "moved ends": (replace(found, span=later), "values: the best design has no range"),
         "another count": (replace(found, working=0), "values: the longest range"),
         "bounds too small": (replace(found, boxes=smaller), "is listed with more than the bound"),
-        "a bound below the value": (replace(found, bound=Fraction(1)), "is listed with more than the bound"),
+        "a bound below the value": (
+            replace(found, bound=Fraction(1)),
+            "is listed with more than the bound",
+        ),
     }
     for name, (wrong, words) in forged.items():
         violation = verify_design(wrong, seed=3).violation
@@ -66,13 +88,18 @@ def test_forgeries_are_found(found: BestDesign) -> None:
 
 
 def test_the_command_takes_designs(
-    found: BestDesign, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    found: BestDesign,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("design.json").write_text(found.to_json(), encoding="utf-8")
     assert run(["verify", "design.json"]) == 0
     assert "boxes cover the bounds" in capsys.readouterr().out
-    Path("forged.json").write_text(replace(found, boxes=found.boxes[1:]).to_json(), encoding="utf-8")
+    Path("forged.json").write_text(
+        replace(found, boxes=found.boxes[1:]).to_json(), encoding="utf-8"
+    )
     assert run(["verify", "forged.json"]) == 1
     assert "violated: form: the reason names another number of boxes" in capsys.readouterr().err
     Path("damaged.json").write_text(found.to_json().replace('"seed"', '"sead"'), encoding="utf-8")

@@ -1,4 +1,6 @@
-"""What members have in common, against members alone: stored surfaces, and that false ones are rejected."""
+"""What members have in common, against members alone: stored surfaces, and that false ones are
+rejected.
+"""
 
 from __future__ import annotations
 

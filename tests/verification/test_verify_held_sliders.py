@@ -1,4 +1,6 @@
-"""`verify` of maps with lengths that springs alone hold: its own bounds, and solutions that are left out everywhere."""
+"""`verify` of maps with lengths that springs alone hold: its own bounds, and solutions that are
+left out everywhere.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,10 @@ CURVED: dict[str, Any] = {
         "parameters": {"F": {"kind": "force"}, "l": {"kind": "free length"}},
         "unknowns": {"x": "length", "y": "length"},
         "points": {"S": ["x*(1 - y/10)", 1], "T": ["y", "1/3"], "A": [0, 0]},
-        "springs": [{"between": ["A", "S"], "k": 1, "free": "l"}, {"between": ["A", "T"], "k": 1, "free": "1/2"}],
+        "springs": [
+            {"between": ["A", "S"], "k": 1, "free": "l"},
+            {"between": ["A", "T"], "k": 1, "free": "1/2"},
+        ],
         "loads": {"S": [1, 0], "T": ["F", 0]},
     },
     "axes": {"F": [-1, 1], "l": ["1/2", 1]},
@@ -122,8 +127,12 @@ def test_no_equilibrium_is_beyond_the_checkers_bounds(values: dict[str, Fraction
         assert all(abs(x) < bound for x, bound in zip(found.at, bounds, strict=True))
 
 
-def test_bounds_need_a_dominant_diagonal_in_all_of_the_balls(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As near as one likes to parallel guides an equilibrium is far away; without the test there is a false bound."""
+def test_bounds_need_a_dominant_diagonal_in_all_of_the_balls(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As near as one likes to parallel guides an equilibrium is far away; without the test there is
+    a false bound.
+    """
     values = {"a": Fraction(1, 100000), "F": Fraction(3, 2)}
     (found,) = solutions(searched("slanted"), values, 4000, seed=3)
     whole = {"a": arb("1/4", "1/2"), "F": arb(1.5, 0.5)}

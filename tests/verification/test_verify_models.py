@@ -1,4 +1,6 @@
-"""The verification of maps of other models than the paper's mechanism: accepted when true, rejected when false."""
+"""The verification of maps of other models than the paper's mechanism: accepted when true, rejected
+when false.
+"""
 
 from __future__ import annotations
 
@@ -95,7 +97,8 @@ RECORDS: dict[str, dict[str, Any]] = {
         },
         "axes": {"c": [0, 2], "M": [-3, 3]},
     },
-    # the second condition is zero at the solution x = 0, and one more sign condition has a curve of its own
+    # the second condition is zero at the solution x = 0, and one more sign condition has a curve of
+    # its own
     "stable where": {
         "system": {
             "unknowns": {"x": "real"},
@@ -106,12 +109,19 @@ RECORDS: dict[str, dict[str, Any]] = {
         "count": "stable",
     },
     "potential with an inequality": {
-        "system": {"unknowns": {"x": "real"}, "potential": "x^4 - a*x^2 + b*x", "positive": ["x + 1"]},
+        "system": {
+            "unknowns": {"x": "real"},
+            "potential": "x^4 - a*x^2 + b*x",
+            "positive": ["x + 1"],
+        },
         "axes": AB,
         "count": "index",
     },
     "pole": {
-        "system": {"unknowns": {"x": "real", "t": "angle"}, "equations": ["a*x^2 + b*x - 1", "sin(t) - x/4"]},
+        "system": {
+            "unknowns": {"x": "real", "t": "angle"},
+            "equations": ["a*x^2 + b*x - 1", "sin(t) - x/4"],
+        },
         "axes": AB,
     },
     # two roots are multiple over b = -0.88, and over its conjugate 1.41 there are others
@@ -135,7 +145,8 @@ RECORDS: dict[str, dict[str, Any]] = {
     # a moment that depends on its own angle: but for its constant part it has an energy
     "moment": turned("M*sin(2*th) + c"),
     "constant moment": turned("M + c/2"),
-    # two moments, each of which depends on the other's unknown: the matrix of derivatives is not symmetric
+    # two moments, each of which depends on the other's unknown: the matrix of derivatives is not
+    # symmetric
     "moments": {
         "mechanism": {
             "name": "moments",
@@ -152,7 +163,12 @@ RECORDS: dict[str, dict[str, Any]] = {
             "name": "moments_3",
             "parameters": {"M": {}, "F": {}},
             "unknowns": {"a": "angle", "x": "length", "y": "length"},
-            "points": {"O": [0, 0], "P": ["x", "y"], "Q": ["x + cos(a)", "y + sin(a)"], "A": [2, 1]},
+            "points": {
+                "O": [0, 0],
+                "P": ["x", "y"],
+                "Q": ["x + cos(a)", "y + sin(a)"],
+                "A": [2, 1],
+            },
             "springs": [{"between": ["O", "P"], "k": 2}, {"between": ["A", "Q"], "k": 1}],
             "moments": {"a": "M*x + F", "x": "M*y/2", "y": "F*cos(a)"},
         },
@@ -181,12 +197,16 @@ def map_of(name: str) -> RegionMap:
     """A map as a reader of its file has it."""
 
     def compute() -> RegionMap:
-        return ptmcad.classify(ptmcad.slice_from_mapping({"name": "map", **RECORDS[name]}), area_tolerance="1/100")
+        return ptmcad.classify(
+            ptmcad.slice_from_mapping({"name": "map", **RECORDS[name]}), area_tolerance="1/100"
+        )
 
     return RegionMap.from_json(once_per_run(f"model {name}", compute).to_json())
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow if n in LARGE else ()) for n in RECORDS])
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow if n in LARGE else ()) for n in RECORDS]
+)
 @pytest.mark.fast_cases(
     "pendulum",
     "torque",
@@ -205,8 +225,12 @@ def test_true_maps_are_accepted(name: str) -> None:
     assert {c.name for c in report.checks if not c.passed} <= {"plan without trace", "provenance"}
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SMALL else pytest.mark.slow) for n in RECORDS])
-@pytest.mark.slow_cases("moment", "stable where", "duffing", "potential with an inequality", "constant moment", "cusp")
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=() if n in SMALL else pytest.mark.slow) for n in RECORDS]
+)
+@pytest.mark.slow_cases(
+    "moment", "stable where", "duffing", "potential with an inequality", "constant moment", "cusp"
+)
 def test_false_alterations_are_rejected(name: str) -> None:
     """One place of each kind of the forger."""
     tally = judged(name, map_of(name), 1, 0)
@@ -219,9 +243,13 @@ def test_false_alterations_are_rejected(name: str) -> None:
 @pytest.mark.parametrize("name", ["moments", "moments of three unknowns"])
 @pytest.mark.slow_cases("moments")
 def test_what_a_moment_alters_is_rejected(name: str) -> None:
-    """Its part in the equations and their derivatives, a potential, what is stable and an index, which it has not."""
+    """Its part in the equations and their derivatives, a potential, what is stable and an index,
+    which it has not.
+    """
     true = map_of(name)
-    assert not true.system.potential and {c.stable for c in true.cells} == {None} == {c.index for c in true.cells}
+    assert not true.system.potential and {c.stable for c in true.cells} == {None} == {
+        c.index for c in true.cells
+    }
     k = next(k for k, c in enumerate(true.cells) if c.solutions)
     cell, system = true.cells[k], true.system
     signs = replace(cell, solutions=(replace(cell.solutions[0], signs="+"), *cell.solutions[1:]))
@@ -229,7 +257,10 @@ def test_what_a_moment_alters_is_rejected(name: str) -> None:
     weaker = system.gradient[0].replace("M*", "")
     for false, check in (
         (replace(true, system=replace(system, potential="0")), "equations"),
-        (replace(true, system=replace(system, gradient=(weaker, *system.gradient[1:]))), "equations"),
+        (
+            replace(true, system=replace(system, gradient=(weaker, *system.gradient[1:]))),
+            "equations",
+        ),
         (with_cell(true, k, replace(cell, stable=cell.total)), "counts"),
         (with_cell(true, k, replace(cell, total=(cell.total or 0) + 2)), "counts"),
         (with_cell(true, k, replace(cell, index=index)), "counts"),
@@ -298,7 +329,9 @@ def test_a_curve_that_is_missing_is_missed(name: str, kind: Kind, check: str) ->
 
 
 def test_a_curve_that_bounds_nothing() -> None:
-    line = Component(PlanePolynomial.of([(1, 0, 1), (0, 0, -7)]), Kind.BOUNDARY, "no point in the window")
+    line = Component(
+        PlanePolynomial.of([(1, 0, 1), (0, 0, -7)]), Kind.BOUNDARY, "no point in the window"
+    )
     true = map_of("stable where")
     found = violation(replace(true, components=(*true.components, line)), "boundary components")
     assert found is not None
@@ -332,17 +365,39 @@ def other_system(change: Callable[[dict[str, Any]], Any], name: str) -> RegionMa
 @pytest.mark.parametrize(
     ("name", "change", "what"),
     [
-        ("cusp", lambda m: m.update(equations=["x^3 - a*x + 2*b"]), "the stored equation 0 differs"),
+        (
+            "cusp",
+            lambda m: m.update(equations=["x^3 - a*x + 2*b"]),
+            "the stored equation 0 differs",
+        ),
         ("duffing", lambda m: m.update(positive=["z - 1"]), "the stored inequality 0 differs"),
         ("duffing", lambda m: m.update(positive=["z", "z + 1"]), "there are 2 inequalities, not 1"),
-        ("stable where", lambda m: m.update(stable=["x + b", "x"]), "the stored condition 1 for stability differs"),
+        (
+            "stable where",
+            lambda m: m.update(stable=["x + b", "x"]),
+            "the stored condition 1 for stability differs",
+        ),
         ("pendulum", lambda m: m.update(loads={"P": ["1/9", "W"]}), "the stored potential differs"),
-        ("torque", lambda m: m["torsion"][0].update(rest={"cos": "4/5", "sin": "3/5"}), "the stored potential differs"),
-        ("torque", lambda m: m.update(moments={"th": "-M"}), "the stored gradient's entry 0 differs"),
-        ("torque", lambda m: m.update(moments={"th": "M*cos(th)"}), "differs from the mechanism's in its slope by th"),
+        (
+            "torque",
+            lambda m: m["torsion"][0].update(rest={"cos": "4/5", "sin": "3/5"}),
+            "the stored potential differs",
+        ),
+        (
+            "torque",
+            lambda m: m.update(moments={"th": "-M"}),
+            "the stored gradient's entry 0 differs",
+        ),
+        (
+            "torque",
+            lambda m: m.update(moments={"th": "M*cos(th)"}),
+            "differs from the mechanism's in its slope by th",
+        ),
     ],
 )
-def test_claims_of_another_model(name: str, change: Callable[[dict[str, Any]], Any], what: str) -> None:
+def test_claims_of_another_model(
+    name: str, change: Callable[[dict[str, Any]], Any], what: str
+) -> None:
     found = violation(other_system(change, name), "equations")
     assert found is not None
     assert found[0] == "equations"
@@ -350,7 +405,9 @@ def test_claims_of_another_model(name: str, change: Callable[[dict[str, Any]], A
 
 
 @pytest.mark.parametrize("check", [check_counts, check_solutions, partial(check_norm, seed="")])
-def test_counts_boxes_and_the_norm_are_those_with_the_moment(check: Callable[[Claims], str]) -> None:
+def test_counts_boxes_and_the_norm_are_those_with_the_moment(
+    check: Callable[[Claims], str],
+) -> None:
     """Whatever the stored equations say: what they are checked with is derived anew."""
     check(Claims(map_of("torque")))
     with pytest.raises(Violation):

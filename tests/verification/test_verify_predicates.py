@@ -1,4 +1,5 @@
-"""Maps by a predicate are proved from the checker's own margins, whichever engine made them, and false ones refused.
+"""Maps by a predicate are proved from the checker's own margins, whichever engine made them, and
+false ones refused.
 
 The predicate: the first bar of the paper's mechanism points upwards.
 """
@@ -34,13 +35,20 @@ def true(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Reg
     kind = KINDS[Count.ADMISSIBLE]
     assert kind.predicate is not None
     predicate = replace(
-        kind.predicate, margins=lambda _: iter([Margin("", UPWARDS)]), is_symmetric=False, needs_free_lengths=False
+        kind.predicate,
+        margins=lambda _: iter([Margin("", UPWARDS)]),
+        is_symmetric=False,
+        needs_free_lengths=False,
     )
     monkeypatch.setitem(KINDS, Count.ADMISSIBLE, replace(kind, predicate=predicate))
     monkeypatch.setitem(counts.PREDICATES, "admissible", predicate)
-    row = CheckedKind(kind_of(Count.ADMISSIBLE).is_of, upwards, boundary="level", undecided="th1 may be 0")
+    row = CheckedKind(
+        kind_of(Count.ADMISSIBLE).is_of, upwards, boundary="level", undecided="th1 may be 0"
+    )
     monkeypatch.setitem(kinds._KINDS, Count.ADMISSIBLE, row)
-    found: RegionMap = ptmcad.classify(load("fig4"), count="admissible", engine=request.param, jobs=1)
+    found: RegionMap = ptmcad.classify(
+        load("fig4"), count="admissible", engine=request.param, jobs=1
+    )
     return found
 
 
@@ -49,7 +57,9 @@ def recounted(r: RegionMap, by: int) -> RegionMap:
     region = r.regions[-1]
     further = {"admissible": region.further["admissible"] + by}
     cells = [replace(c, further=further) if n in region.cells else c for n, c in enumerate(r.cells)]
-    return replace(r, regions=(*r.regions[:-1], replace(region, further=further)), cells=tuple(cells))
+    return replace(
+        r, regions=(*r.regions[:-1], replace(region, further=further)), cells=tuple(cells)
+    )
 
 
 def test_maps_by_a_predicate(true: RegionMap) -> None:
@@ -59,11 +69,15 @@ def test_maps_by_a_predicate(true: RegionMap) -> None:
     for by in (-1, 1):
         false = ptmcad.verify(recounted(true, by), boxes=0)
         assert false.violation is not None
-        assert false.violation.startswith("counts" if by > 0 or true.regions[-1].further["admissible"] else "form")
+        assert false.violation.startswith(
+            "counts" if by > 0 or true.regions[-1].further["admissible"] else "form"
+        )
 
 
 def test_no_exact_map_by_a_predicate_where_conditions_say_what_is_stable() -> None:
-    """The exact engine makes none; a forged one would be checked by the last of all conditions alone."""
+    """The exact engine makes none; a forged one would be checked by the last of all conditions
+    alone.
+    """
     row = CheckedKind(kind_of(Count.ADMISSIBLE).is_of, upwards, boundary="level")
     loop = derivation_of(load("four-bar").model)
     assert loop.stability

@@ -27,7 +27,9 @@ def sliding(guide: str, anchor: str, count: str = "index") -> dict[str, Any]:
     """A slider with a spring along its guide, and another one that is on it, or not."""
     ex, ey = guide.split(", ")
     across, up = anchor.split(", ")
-    turned = {name: {"kind": "number", "default": value} for name, value in (("c", "3/5"), ("s", "4/5"))}
+    turned = {
+        name: {"kind": "number", "default": value} for name, value in (("c", "3/5"), ("s", "4/5"))
+    }
     return {
         "name": "sliding",
         "mechanism": {
@@ -61,7 +63,8 @@ CASES = {
 
 def made(name: str) -> RegionMap:
     return certified_map(
-        ptmcad.slice_from_mapping({**CASES[name], "name": "sliding"}), Options(tolerance=Fraction(1, 20), jobs=1)
+        ptmcad.slice_from_mapping({**CASES[name], "name": "sliding"}),
+        Options(tolerance=Fraction(1, 20), jobs=1),
     )
 
 
@@ -70,7 +73,9 @@ def made(name: str) -> RegionMap:
 def test_the_whole_free_area_is_proved(name: str) -> None:
     report = ptmcad.verify(made(name), seed=1, boxes=2)
     assert report.ok
-    assert not [c for c in report.checks if c.passed is None and c.name not in {"plan", "provenance"}]
+    assert not [
+        c for c in report.checks if c.passed is None and c.name not in {"plan", "provenance"}
+    ]
 
 
 @pytest.mark.parametrize("name", ["two springs on the guide", "a slanted guide"])
@@ -79,7 +84,9 @@ def test_a_map_without_kinks_is_not_proved(name: str, monkeypatch: pytest.Monkey
     monkeypatch.setattr(plain_curves, "_boundaries", lambda *_: iter(()))
     false = made(name)
     monkeypatch.undo()
-    (area,) = (c for c in ptmcad.verify(false, seed=1, boxes=0).checks if c.name == "the whole free area")
+    (area,) = (
+        c for c in ptmcad.verify(false, seed=1, boxes=0).checks if c.name == "the whole free area"
+    )
     assert not area.passed
 
 
@@ -87,7 +94,12 @@ def test_a_wrong_count_beside_a_kink_is_found() -> None:
     true = made("two springs on the guide")
     cell = true.cells[0]
     assert cell.index is not None and cell.total is not None
-    wrong = replace(cell, total=cell.total + 1, stable=cell.index[0] + 1, index=(cell.index[0] + 1, cell.index[1]))
+    wrong = replace(
+        cell,
+        total=cell.total + 1,
+        stable=cell.index[0] + 1,
+        index=(cell.index[0] + 1, cell.index[1]),
+    )
     assert not ptmcad.verify(replace(true, cells=(wrong, *true.cells[1:])), boxes=0, effort=0).ok
 
 
@@ -106,16 +118,28 @@ def test_lines_are_told_from_the_vectors() -> None:
 
 
 @pytest.mark.slow
-def test_lists_that_contradict_themselves_are_refused_where_no_bound_is_proved(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two sliders that only springs hold: without its way to bound them the checker still sees what is listed."""
+def test_lists_that_contradict_themselves_are_refused_where_no_bound_is_proved(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two sliders that only springs hold: without its way to bound them the checker still sees what
+    is listed.
+    """
     monkeypatch.setattr(_Bounds, "held", lambda *_: None)
     record = {
         "name": "two",
         "mechanism": {
             "name": "two",
-            "parameters": {"F": {"kind": "force", "default": "0"}, "l": {"kind": "free length", "default": "1"}},
+            "parameters": {
+                "F": {"kind": "force", "default": "0"},
+                "l": {"kind": "free length", "default": "1"},
+            },
             "unknowns": {"x": "length", "y": "length"},
-            "points": {"S": ["x", "0"], "T": ["-5/13*y", "12/13*y"], "A": ["1/2", "0"], "B": ["-1/4", "3/5"]},
+            "points": {
+                "S": ["x", "0"],
+                "T": ["-5/13*y", "12/13*y"],
+                "A": ["1/2", "0"],
+                "B": ["-1/4", "3/5"],
+            },
             "springs": [
                 {"between": ["A", "S"], "k": "3/5", "free": "l"},
                 {"between": ["B", "T"], "k": "59/20", "free": "3/10"},
@@ -126,17 +150,26 @@ def test_lists_that_contradict_themselves_are_refused_where_no_bound_is_proved(m
         "axes": {"F": ["-2", "2"], "l": ["1/10", "2"]},
         "count": "index",
     }
-    document = json.loads(ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/20", jobs=1).to_json())
+    document = json.loads(
+        ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/20", jobs=1).to_json()
+    )
 
     def said(change: Callable[[dict[str, Any]], None]) -> str:
         altered = copy.deepcopy(document)
         change(altered["cells"][0])
-        checks = {check.name: check for check in ptmcad.verify(ptmcad.RegionMap.from_json(json.dumps(altered))).checks}
+        checks = {
+            check.name: check
+            for check in ptmcad.verify(ptmcad.RegionMap.from_json(json.dumps(altered))).checks
+        }
         return str(checks["counts and solutions"])
 
     assert "no bound of the unknown" in said(lambda cell: None)
     assert "1 boxes of solutions for 2" in said(lambda cell: cell["solutions"].pop())
-    assert "has 0 equilibria" in said(lambda cell: cell["solutions"][0].update(center=["100", "100"]))
-    assert "is stored twice" in said(lambda cell: cell["solutions"].__setitem__(1, cell["solutions"][0]))
+    assert "has 0 equilibria" in said(
+        lambda cell: cell["solutions"][0].update(center=["100", "100"])
+    )
+    assert "is stored twice" in said(
+        lambda cell: cell["solutions"].__setitem__(1, cell["solutions"][0])
+    )
     signs = "the signs of the listed solutions"
     assert signs in said(lambda cell: cell["solutions"][0].update(signs="--"))

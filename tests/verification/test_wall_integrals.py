@@ -1,4 +1,6 @@
-"""Integrals of branches whose antiderivatives are known, over panels beside points where a branch is not analytic."""
+"""Integrals of branches whose antiderivatives are known, over panels beside points where a branch
+is not analytic.
+"""
 
 from __future__ import annotations
 
@@ -48,14 +50,23 @@ CURVES: dict[str, tuple[list[tuple[int, int, int]], Callable[[arb], arb]]] = {
     "100 v^2 = 100 u^2 + 1": ([(0, 2, 100), (2, 0, -100), (0, 0, -1)], hyperbola),
     "v^3 = 2 u": ([(0, 3, 1), (1, 0, -2)], cubic),
 }
-PANELS = [(fmpq(1, 4), fmpq(7, 4)), (fmpq(1, 100), fmpq(9, 10)), (fmpq(1, 2), fmpq(3, 5)), (fmpq(1, 10**6), fmpq(1, 2))]
+PANELS = [
+    (fmpq(1, 4), fmpq(7, 4)),
+    (fmpq(1, 100), fmpq(9, 10)),
+    (fmpq(1, 2), fmpq(3, 5)),
+    (fmpq(1, 10**6), fmpq(1, 2)),
+]
 
 
 def parts(name: str, sign: int, ends: tuple[fmpq, fmpq]) -> list[PanelPart]:
     plane = PlanePolynomial.of(CURVES[name][0])
-    branch = WallBranch.of(PlaneCurve.of(0, plane, 0), 1 if sign > 0 and name.startswith(("v^2", "100 v^2")) else 0)
+    branch = WallBranch.of(
+        PlaneCurve.of(0, plane, 0), 1 if sign > 0 and name.startswith(("v^2", "100 v^2")) else 0
+    )
     return integrals_over(
-        branch, *ends, PanelEffort(arb(2) ** -60, fmpq(1, 10**9), fmpq(1, 10**12), HEIGHTS, (2, 10), ends)
+        branch,
+        *ends,
+        PanelEffort(arb(2) ** -60, fmpq(1, 10**9), fmpq(1, 10**12), HEIGHTS, (2, 10), ends),
     )
 
 
@@ -69,7 +80,9 @@ def parts(name: str, sign: int, ends: tuple[fmpq, fmpq]) -> list[PanelPart]:
         if not (name == "v^2 + u^2 = 1" and ends[1] > 1) and not (name == "v^3 = 2 u" and sign < 0)
     ],
 )
-def test_integrals_contain_the_differences_of_antiderivatives(name: str, sign: int, ends: tuple[fmpq, fmpq]) -> None:
+def test_integrals_contain_the_differences_of_antiderivatives(
+    name: str, sign: int, ends: tuple[fmpq, fmpq]
+) -> None:
     with ctx.workprec(128):
         found = parts(name, sign, ends)
         assert found[0].tried
@@ -128,7 +141,11 @@ POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
         lambda u: u * u / 2 + u * u * u.sqrt() * 2 / 5,
     ),
     "upright cusp: v^3 = u^2": ([(0, 3, 1), (2, 0, -1)], 0, lambda u: (u**5).root(3) * 3 / 5),
-    "upright inflection: v^3 = 2 u": ([(0, 3, 1), (1, 0, -2)], 0, lambda u: (2 * u).root(3) * u * 3 / 4),
+    "upright inflection: v^3 = 2 u": (
+        [(0, 3, 1), (1, 0, -2)],
+        0,
+        lambda u: (2 * u).root(3) * u * 3 / 4,
+    ),
     "blunt cusp beside a line: (v + u)^3 = u^4": (
         [(0, 3, 1), (1, 2, 3), (2, 1, 3), (3, 0, 1), (4, 0, -1)],
         0,
@@ -229,9 +246,13 @@ ROOM = fmpq(1, 10**12)
 def part_beside(
     terms: Terms, root: int, at: fmpq, far: fmpq, error: fmpq, heights: tuple[fmpq, fmpq]
 ) -> list[PanelPart]:
-    """What is proved from a critical value on of a branch, whose critical value is known but for an error."""
+    """What is proved from a critical value on of a branch, whose critical value is known but for an
+    error.
+    """
     near = at + ROOM * (1 if far > at else -1)
-    effort = PanelEffort(arb(2) ** -40, fmpq(1, 10**9), fmpq(1, 10**15), heights, (2,), (at + error, at + error))
+    effort = PanelEffort(
+        arb(2) ** -40, fmpq(1, 10**9), fmpq(1, 10**15), heights, (2,), (at + error, at + error)
+    )
     run = -2 if far > at else 2
     return integrals_over(branch_of(terms, root), min(near, far), max(near, far), effort, run)
 
@@ -250,11 +271,12 @@ def test_one_series_reaches_a_point_at_which_branches_meet(name: str, error: fmp
 
 
 def turned(kind: str, a: int, b: int, c: int, d: int, p: int, q: int) -> tuple[Terms, fmpq, fmpq]:
-    """A fold, node or cusp at (p/8, q/8) on a curve that goes on as a polynomial: its terms, and the point.
+    """A fold, node or cusp at (p/8, q/8) on a curve that goes on as a polynomial: its terms, and
+    the point.
 
-    In x and y, eight times the differences from the point: the fold is on x = y^2 (1 + a y/32)/8, the node on the
-    product of the lines y = c x and y = d x, plus b/8 times the cube of x. The cusps are on (y - c x)^2 =
-    x^3 (1 - b x)/8, and on y^3 (1 - a y/64) = x^2 (1 + b x/8)/8.
+    In x and y, eight times the differences from the point: the fold is on x = y^2 (1 + a y/32)/8,
+    the node on the product of the lines y = c x and y = d x, plus b/8 times the cube of x. The
+    cusps are on (y - c x)^2 = x^3 (1 - b x)/8, and on y^3 (1 - a y/64) = x^2 (1 + b x/8)/8.
     """
     ring = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
     x, y = 8 * ring.gen(0) - p, 8 * ring.gen(1) - q
@@ -275,13 +297,26 @@ def turned(kind: str, a: int, b: int, c: int, d: int, p: int, q: int) -> tuple[T
     error=st.sampled_from([0, 1, -1]), kind=st.sampled_from(["fold", "node", "cusp", "upright cusp"]),
 )  # fmt: skip
 def test_areas_beside_points_at_which_branches_meet_are_those_of_many_strips(
-    a: int, b: int, slopes: list[int], place: tuple[int, int], side: int, lower: bool, error: int, kind: str
+    a: int,
+    b: int,
+    slopes: list[int],
+    place: tuple[int, int],
+    side: int,
+    lower: bool,
+    error: int,
+    kind: str,
 ) -> None:
-    """Against sums of the branch's heights, each found by counting roots: bounds of an integral of what is monotone."""
+    """Against sums of the branch's heights, each found by counting roots: bounds of an integral of
+    what is monotone.
+    """
     terms, u, v = turned(kind, a, b, *sorted(slopes), *place)
     side = 1 if kind in ("fold", "cusp") else side
     heights = (v - fmpq(1, 4), v + fmpq(1, 4))
-    far, near, number = u + side * fmpq(1, 64), u + side * ROOM, 0 if lower or kind == "upright cusp" else 1
+    far, near, number = (
+        u + side * fmpq(1, 64),
+        u + side * ROOM,
+        0 if lower or kind == "upright cusp" else 1,
+    )
     with ctx.workprec(128):
         branch = branch_of(terms, number)
         found = part_beside(terms, number, u, far, fmpq(error, 10**30), heights)
@@ -290,10 +325,14 @@ def test_areas_beside_points_at_which_branches_meet_are_those_of_many_strips(
         strips = 64
         width = (first.right - first.left) / strips
         at = [
-            height for k in range(strips + 1) if (height := branch.height(first.left + k * width, *heights)) is not None
+            height
+            for k in range(strips + 1)
+            if (height := branch.height(first.left + k * width, *heights)) is not None
         ]
         assert len(at) == strips + 1
-        low, high = (sum((pick(*ends) for ends in pairwise(at)), arb(0)) * width for pick in (min, max))
+        low, high = (
+            sum((pick(*ends) for ends in pairwise(at)), arb(0)) * width for pick in (min, max)
+        )
         floor = heights[0] * (first.right - first.left)
         assert not first.integral + floor < low
         assert not first.integral + floor > high

@@ -1,1 +1,3 @@
-"""The best design: exact evaluations, a global search over them, and the proof of what none exceeds."""
+"""The best design: exact evaluations, a global search over them, and the proof of what none
+exceeds.
+"""

@@ -1,7 +1,8 @@
-"""A global search over exact evaluations: SciPy's differential evolution, then steps along the parameters.
+"""A global search over exact evaluations: SciPy's differential evolution, then steps along the
+parameters.
 
-Guarantee: none of what is better elsewhere. Every design that is looked at is a rational point on a grid of the bounds,
-so that its value is an exact evaluation; the same seed gives the same designs.
+Guarantee: none of what is better elsewhere. Every design that is looked at is a rational point on a
+grid of the bounds, so that its value is an exact evaluation; the same seed gives the same designs.
 
 Reference: Storn & Price, J. Global Optimization 11 (1997), Differential evolution.
 """
@@ -33,7 +34,8 @@ def best_of(evaluate: Evaluate, number: int, seed: int, evaluations: int) -> Non
 
     Parameters
     ----------
-    evaluate : of points of the cube; None for one without a value. It keeps what it found, and may raise `Enough`.
+    evaluate : of points of the cube; None for one without a value. It keeps what it found, and may
+        raise `Enough`.
     number : of parameters.
     evaluations : at most so many points, for the global search and for the climb.
     """
@@ -94,7 +96,9 @@ _NOTHING = 1e100
 
 
 def _climb(look: Evaluate, start: tuple[Fraction, Point]) -> None:
-    """Steps along each parameter and across two of them, as ridges run; longer after one that leads higher."""
+    """Steps along each parameter and across two of them, as ridges run; longer after one that leads
+    higher.
+    """
     value, point = start
     ways = _ways(len(point))
     step = Fraction(1, 64)
@@ -114,13 +118,20 @@ def _climb(look: Evaluate, start: tuple[Fraction, Point]) -> None:
 def _ways(number: int) -> list[tuple[int, ...]]:
     """The directions of steps, each with its opposite."""
     single = [{k: sign} for k in range(number) for sign in (1, -1)]
-    double = [{j: a, k: b} for j, k in combinations(range(number), 2) for a, b in product((1, -1), repeat=2)]
+    double = [
+        {j: a, k: b}
+        for j, k in combinations(range(number), 2)
+        for a, b in product((1, -1), repeat=2)
+    ]
     return [tuple(way.get(k, 0) for k in range(number)) for way in (*single, *double)]
 
 
 def _moved(point: Point, way: tuple[int, ...], step: Fraction) -> Point:
     """The point after a step, at most to the bounds."""
-    return tuple(min(max(at + sign * step, Fraction(0)), Fraction(1)) for at, sign in zip(point, way, strict=True))
+    return tuple(
+        min(max(at + sign * step, Fraction(0)), Fraction(1))
+        for at, sign in zip(point, way, strict=True)
+    )
 
 
 def within(bounds: Sequence[tuple[Fraction, Fraction]], point: Point) -> Point:

@@ -1,4 +1,5 @@
-"""What no design exceeds: by exact critical values over one parameter, or by branch and bound over one or two.
+"""What no design exceeds: by exact critical values over one parameter, or by branch and bound over
+one or two.
 
 Guarantee: that of `exact.ranges.width` and `exact.design.search`.
 """
@@ -16,7 +17,12 @@ from ptmcad.answer.design import BoundedBox
 from ptmcad.answer.intervals import lower, upper
 from ptmcad.answer.widths import Maximum
 from ptmcad.ask.members import in_space
-from ptmcad.errors import DegenerateSliceError, ExpressionError, HypothesisError, InfiniteSolutionsError
+from ptmcad.errors import (
+    DegenerateSliceError,
+    ExpressionError,
+    HypothesisError,
+    InfiniteSolutionsError,
+)
 from ptmcad.exact.design.areas import AreaBounder
 from ptmcad.exact.design.problem import Axes, space_of_family, space_of_slice
 from ptmcad.exact.design.search import Bounder, Goal, Lengths, Outcome, Place, Point, search
@@ -72,12 +78,18 @@ def exact_maximum(design: Design) -> tuple[Maximum, ...] | None:
 
 
 def most_on_lines(design: Design) -> Fraction:
-    """Of a range over one parameter what there is at most on lines in the variety, of which no box's bound speaks."""
+    """Of a range over one parameter what there is at most on lines in the variety, of which no
+    box's bound speaks.
+    """
     if design.aim is not Aim.RANGE or len(design.over) != 1:
         return Fraction(0)
     slice, name = design.slice({}), design.over[0].name
     lines = lines_of(slice, design.along, strips(slice, design.along, design.working))
-    held = (line.most for line in lines if design.may_hold({name: (lower(line.value), upper(line.value))}))
+    held = (
+        line.most
+        for line in lines
+        if design.may_hold({name: (lower(line.value), upper(line.value))})
+    )
     return max(held, default=Fraction(0))
 
 
@@ -106,19 +118,26 @@ def bounder_of(design: Design, tolerance: Fraction) -> Bounder | str:
         found = _bounder(design, from_fraction(tolerance))
     except (ExpressionError, DegenerateSliceError, InfiniteSolutionsError) as error:
         return f"there is no discriminant variety of all designs at once: {error}"
-    return found or "there is no discriminant variety of all designs at once: solutions have to be left out"
+    return (
+        found
+        or "there is no discriminant variety of all designs at once: solutions have to be left out"
+    )
 
 
 def _bounder(design: Design, tolerance: fmpq) -> Bounder | None:
     family = design.family
     if family is None:  # a range over one parameter: a slice
         slice = design.slice({})
-        space = space_of_slice(problem_of(slice), slice.axis_names.index(design.along), design.working)
+        space = space_of_slice(
+            problem_of(slice), slice.axis_names.index(design.along), design.working
+        )
         return Lengths(space, tolerance)
     axes = (*family.axes, family.free)
     ranges = tuple(interval_of(axis) for axis in axes)
     along = 1 if design.aim is Aim.AREA else 0
-    found = space_of_family(in_space(family), Axes(tuple(a.name for a in axes), ranges, along), design.working)
+    found = space_of_family(
+        in_space(family), Axes(tuple(a.name for a in axes), ranges, along), design.working
+    )
     if found is None:
         return None
     return AreaBounder(found, ranges[0]) if design.aim is Aim.AREA else Lengths(found, tolerance)
@@ -129,18 +148,25 @@ def bounded(design: Design, bounder: Bounder, look: Look, limits: ProofLimits) -
     names = [axis.name for axis in design.over]
 
     def feasible(place: Place) -> bool:
-        box = {n: (to_fraction(low), to_fraction(high)) for n, (low, high) in zip(names, place, strict=True)}
+        box = {
+            n: (to_fraction(low), to_fraction(high))
+            for n, (low, high) in zip(names, place, strict=True)
+        }
         return design.may_hold(box)
 
     def improved(point: Point | None) -> fmpq:
-        values = {} if point is None else {n: to_fraction(v) for n, v in zip(names, point, strict=True)}
+        values = (
+            {} if point is None else {n: to_fraction(v) for n, v in zip(names, point, strict=True)}
+        )
         return from_fraction(look(values))
 
     def check(boxes: int, bound: fmpq, best: fmpq) -> bool:
         return limits.go_on(boxes, float(to_fraction(bound)), float(to_fraction(best)))
 
     size = prod((axis.width for axis in design.axes), start=Fraction(1))  # of the window
-    wanted = Goal(from_fraction(limits.tolerance), from_fraction(limits.tolerance * size), limits.boxes)
+    wanted = Goal(
+        from_fraction(limits.tolerance), from_fraction(limits.tolerance * size), limits.boxes
+    )
     whole = tuple(interval_of(axis) for axis in design.over)
     try:
         outcome = search(bounder, whole, feasible, improved, wanted, check)
@@ -157,4 +183,6 @@ def _proof(outcome: Outcome) -> Proof:
     number = f"{len(boxes)} boxes of designs" if len(boxes) != 1 else "one box of designs"
     if outcome.complete:
         return Proof(to_fraction(outcome.bound), f"by branch and bound, over {number}", boxes)
-    return Proof(to_fraction(outcome.bound), f"by branch and bound, which was stopped at {number}", boxes)
+    return Proof(
+        to_fraction(outcome.bound), f"by branch and bound, which was stopped at {number}", boxes
+    )

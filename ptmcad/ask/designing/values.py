@@ -1,7 +1,8 @@
 """What a design attains: the length of a range, an area, a barrier or another number, exactly.
 
-Guarantee: values are enclosed; None stands for a design that has none, as it does not fit the question or lies where
-nothing can be counted. Which saddle is the lowest pass of a barrier is found in floating point; its height is enclosed.
+Guarantee: values are enclosed; None stands for a design that has none, as it does not fit the
+question or lies where nothing can be counted. Which saddle is the lowest pass of a barrier is found
+in floating point; its height is enclosed.
 """
 
 from __future__ import annotations
@@ -19,7 +20,13 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import region_map
 from ptmcad.ask.members import Common, member_map
 from ptmcad.ask.quantities import Quantity, named, of_pose, unknown
-from ptmcad.errors import ConfigError, DegenerateSliceError, ExpressionError, HypothesisError, InfiniteSolutionsError
+from ptmcad.errors import (
+    ConfigError,
+    DegenerateSliceError,
+    ExpressionError,
+    HypothesisError,
+    InfiniteSolutionsError,
+)
 from ptmcad.exact.design.cover import Space
 from ptmcad.options import Options
 from ptmcad.question.config.designed import Aim, Design
@@ -53,8 +60,8 @@ def evaluator(design: Design, common: Common | None = None, space: Space | None 
     Parameters
     ----------
     common : what the members of the family have in common, where all designs are of one.
-    space : the variety over all designs, where it is known: then a range's ends are found from it. Without, from the
-        variety of each design's line alone.
+    space : the variety over all designs, where it is known: then a range's ends are found from it.
+        Without, from the variety of each design's line alone.
 
     Raises
     ------
@@ -122,7 +129,9 @@ def _range_in(design: Design, space: Space) -> Evaluate:
         if found is None:
             return None
         low, high = (Enclosure(to_fraction(a), to_fraction(b)) for a, b in found)
-        return Value(Enclosure(max(high.low - low.high, Fraction(0)), high.high - low.low), (low, high))
+        return Value(
+            Enclosure(max(high.low - low.high, Fraction(0)), high.high - low.low), (low, high)
+        )
 
     return evaluate
 
@@ -136,8 +145,16 @@ def _area_of(design: Design, common: Common | None) -> Evaluate:
             found = member_map(common, values[common.family.free.name], options)
         else:
             found = region_map(design.slice(values), options)
-        wanted = [r.area for r in found.regions if (r.total if r.stable is None else r.stable) == design.working]
-        return Value(Enclosure(sum((a for a, _ in wanted), Fraction(0)), sum((b for _, b in wanted), Fraction(0))))
+        wanted = [
+            r.area
+            for r in found.regions
+            if (r.total if r.stable is None else r.stable) == design.working
+        ]
+        return Value(
+            Enclosure(
+                sum((a for a, _ in wanted), Fraction(0)), sum((b for _, b in wanted), Fraction(0))
+            )
+        )
 
     return evaluate
 
@@ -155,7 +172,9 @@ def _poses(design: Design, values: Numbers) -> Poses | None:
 
 
 def chosen(design: Design, poses: Poses) -> int | None:
-    """The number of the pose that is meant, in the order of `Poses`; None where there is no such one."""
+    """The number of the pose that is meant, in the order of `Poses`; None where there is no such
+    one.
+    """
     from ptmcad.ask.fields.field import choice_of
 
     choice = choice_of(design.pose, design.model)
@@ -229,7 +248,9 @@ def _quantity_of(design: Design, quantity: Quantity) -> Evaluate:
     def evaluate(values: Numbers) -> Value | None:
         poses = _poses(design, values)
         number = None if poses is None else chosen(design, poses)
-        found = None if poses is None or number is None else of_pose(quantity, poses.equilibria[number])
+        found = (
+            None if poses is None or number is None else of_pose(quantity, poses.equilibria[number])
+        )
         return None if found is None else Value(found)
 
     return evaluate
@@ -245,7 +266,10 @@ def _tree(design: Design) -> Tree:
     words = [aim.value for aim in Aim if aim is not Aim.EXPRESSION]
     for name in names_of(tree):
         if name not in known:
-            hint = did_you_mean(name, (*words, *known)) or f"; there are {', '.join(words)} and expressions"
+            hint = (
+                did_you_mean(name, (*words, *known))
+                or f"; there are {', '.join(words)} and expressions"
+            )
             raise ConfigError(f"{name!r} is neither an aim nor a parameter{hint}", key=KEY)
     return tree
 
@@ -286,6 +310,8 @@ class _TreesInBalls(NamedTuple):
         if whole is None or abs(whole) > _MAX_POWER:
             return base**exponent
         found = arb(1)
-        for _ in range(abs(int(whole))):  # python-flint's ball ** int is not a number when the ball's middle is zero
+        for _ in range(
+            abs(int(whole))
+        ):  # python-flint's ball ** int is not a number when the ball's middle is zero
             found = found * base
         return found if whole >= 0 else 1 / found

@@ -1,1 +1,3 @@
-"""Continuous quantities of equilibria over a map's window, in floating point, from the certified samples onwards."""
+"""Continuous quantities of equilibria over a map's window, in floating point, from the certified
+samples onwards.
+"""

@@ -1,9 +1,11 @@
-"""The energy that it takes to leave a stable pose for another: to the lowest pass on the way, over all ways.
+"""The energy that it takes to leave a stable pose for another: to the lowest pass on the way, over
+all ways.
 
-Method: from each saddle of index one a path leads down on either side to a stable pose. Each step is Newton's with the
-moduli of the curvatures (Dauphin et al., NIPS 2014), shortened until the energy falls from its start over its middle to
-its end; which poses a path joins below its saddle's energy is all that matters, not its shape. Saddles, lowest first,
-then join poses until the chosen one is joined to another.
+Method: from each saddle of index one a path leads down on either side to a stable pose. Each step
+is Newton's with the moduli of the curvatures (Dauphin et al., NIPS 2014), shortened until the
+energy falls from its start over its middle to its end; which poses a path joins below its saddle's
+energy is all that matters, not its shape. Saddles, lowest first, then join poses until the chosen
+one is joined to another.
 """
 
 from __future__ import annotations
@@ -24,11 +26,13 @@ NEAR = 0.05
 """Of a stable pose: there the descent ends, where the energy is convex."""
 
 Evaluate = Callable[[Integers, Floats], ModelState]
-"""The model at pixels, given by their numbers, and points of shape (n, pixels), or (n, pixels, k)."""
+"""The model at pixels, given by their numbers, and points of shape (n, pixels), or (n, pixels, k).
+"""
 
 
 def barriers(evaluate: Evaluate, at: Floats, chosen: Integers, angles: int) -> Floats:
-    """For each pixel the energy above the chosen pose; nan where there is no other stable pose, or no way was found.
+    """For each pixel the energy above the chosen pose; nan where there is no other stable pose, or
+    no way was found.
 
     Parameters
     ----------
@@ -63,13 +67,19 @@ def barriers(evaluate: Evaluate, at: Floats, chosen: Integers, angles: int) -> F
     return np.where(certain, found, np.nan)
 
 
-def _ends(evaluate: Evaluate, at: Floats, state: ModelState, saddle: Flags, stable: Flags, angles: int) -> Integers:
-    """The stable solutions below each saddle on its two sides, shape (2, pixels, most); -1 where none was reached."""
+def _ends(
+    evaluate: Evaluate, at: Floats, state: ModelState, saddle: Flags, stable: Flags, angles: int
+) -> Integers:
+    """The stable solutions below each saddle on its two sides, shape (2, pixels, most); -1 where
+    none was reached.
+    """
     ends = np.full((2, *saddle.shape), -1, dtype=np.int64)
     pixel, number = np.nonzero(saddle)
     if not len(pixel):
         return ends
-    directions = np.linalg.eigh(np.moveaxis(state.jacobian[:, :, pixel, number], (0, 1), (-2, -1)))[1][..., 0].T
+    directions = np.linalg.eigh(np.moveaxis(state.jacobian[:, :, pixel, number], (0, 1), (-2, -1)))[
+        1
+    ][..., 0].T
     for side, sign in enumerate((1, -1)):
         active = np.arange(len(pixel))
         point = at[:, pixel, number] + sign * ASIDE * directions
@@ -82,7 +92,9 @@ def _ends(evaluate: Evaluate, at: Floats, state: ModelState, saddle: Flags, stab
             if not len(active):
                 break
             step = _downhill(here)[:, ~reached]
-            point = point + _falling(evaluate, pixel[active], point, step, here.known_energy[~reached])
+            point = point + _falling(
+                evaluate, pixel[active], point, step, here.known_energy[~reached]
+            )
     return ends
 
 
@@ -97,7 +109,9 @@ def _downhill(state: ModelState) -> Floats:
     return found
 
 
-def _falling(evaluate: Evaluate, pixels: Integers, point: Floats, step: Floats, start: Floats) -> Floats:
+def _falling(
+    evaluate: Evaluate, pixels: Integers, point: Floats, step: Floats, start: Floats
+) -> Floats:
     """The step, halved until the energy falls over its middle to its end; zero where it never does."""
     for _ in range(12):
         middle = evaluate(pixels, point + step / 2).known_energy

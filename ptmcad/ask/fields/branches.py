@@ -1,11 +1,12 @@
 """All solutions at every pixel, followed from the map's certified samples over the window.
 
-Each pixel takes the solutions of a neighbour of the same count, and Newton's method leads them to its own. A pixel is
-done when as many different solutions are found as the exact map counts there, with as many of each index where that is
-known; then they are all, whatever way they came. Coarse pixels come first, so that most have a near neighbour.
+Each pixel takes the solutions of a neighbour of the same count, and Newton's method leads them to
+its own. A pixel is done when as many different solutions are found as the exact map counts there,
+with as many of each index where that is known; then they are all, whatever way they came. Coarse
+pixels come first, so that most have a near neighbour.
 
-Not guaranteed: the last step, that a converged iteration is near a solution, is floating point. What is not done in
-this way is left to exact poses, one by one.
+Not guaranteed: the last step, that a converged iteration is near a solution, is floating point.
+What is not done in this way is left to exact poses, one by one.
 """
 
 from __future__ import annotations
@@ -45,7 +46,8 @@ APART = 1e-7
 
 @dataclass(frozen=True, slots=True)
 class PixelCounts:
-    """How many solutions each pixel has, by the map: all of them, or the stable ones where only these are known.
+    """How many solutions each pixel has, by the map: all of them, or the stable ones where only
+    these are known.
 
     Attributes
     ----------
@@ -61,9 +63,11 @@ class PixelCounts:
 
 @dataclass(frozen=True, slots=True)
 class GridPoints:
-    """Points of the window in rows, such that neighbours lie near each other: a grid's pixels, or steps of a path.
+    """Points of the window in rows, such that neighbours lie near each other: a grid's pixels, or
+    steps of a path.
 
-    All arrays have the shape (rows, columns): coordinates, and the number of the cell, `NONE` where there is none.
+    All arrays have the shape (rows, columns): coordinates, and the number of the cell, `NONE` where
+    there is none.
     """
 
     x: Floats
@@ -79,7 +83,9 @@ def places_of(grid: Grid) -> GridPoints:
 
 @dataclass(slots=True)
 class Filling:
-    """Solutions at pixels, shape (n, rows, columns, most); nan where there are fewer. ``done`` where they are all."""
+    """Solutions at pixels, shape (n, rows, columns, most); nan where there are fewer. ``done``
+    where they are all.
+    """
 
     at: Floats
     done: Flags
@@ -113,7 +119,11 @@ class PixelSolver:
 
     def __init__(self, result: RegionMap, places: GridPoints):
         self.model = result.slice.model
-        self.names, self.places, self.wanted = result.slice.axis_names, places, wanted_of(result, places.cell)
+        self.names, self.places, self.wanted = (
+            result.slice.axis_names,
+            places,
+            wanted_of(result, places.cell),
+        )
         self.values = parameters_at(result.slice, places.x, places.y)
         self.angles = len(self.model.angles)
 
@@ -123,7 +133,9 @@ class PixelSolver:
         return state_at(self.model, values, at)
 
     def solved(self, rows: Integers, columns: Integers, start: Floats) -> tuple[Floats, Flags]:
-        """Where Newton's method leads from points of shape (n, pixels, solutions), and where these are all."""
+        """Where Newton's method leads from points of shape (n, pixels, solutions), and where these
+        are all.
+        """
         empty = np.isnan(start[0])
         at, length, converged = self._led(rows, columns, start)
         with np.errstate(all="ignore"):
@@ -133,13 +145,19 @@ class PixelSolver:
         return at, good
 
     def converged(self, rows: Integers, columns: Integers, start: Floats) -> Floats:
-        """Where Newton's method leads from points of shape (n, pixels, solutions), each alone; nan if nowhere."""
+        """Where Newton's method leads from points of shape (n, pixels, solutions), each alone; nan
+        if nowhere.
+        """
         at, _, converged = self._led(rows, columns, start)
         at[:, ~converged | np.isnan(start[0])] = np.nan
         return at
 
-    def _led(self, rows: Integers, columns: Integers, start: Floats) -> tuple[Floats, Floats, Flags]:
-        """Where Newton's method leads, the lengths of its last steps, and where it has converged or had no start."""
+    def _led(
+        self, rows: Integers, columns: Integers, start: Floats
+    ) -> tuple[Floats, Floats, Flags]:
+        """Where Newton's method leads, the lengths of its last steps, and where it has converged or
+        had no start.
+        """
         at, length = newton(lambda at: self.state(rows, columns, at), start, STEPS, SMALL / 100)
         converged = (length <= SMALL * (1 + np.sqrt((at**2).sum(axis=0)))) | np.isnan(start[0])
         return apart(at, np.zeros_like(at), self.angles), length, converged
@@ -150,7 +168,9 @@ class PixelSolver:
         for a in range(at.shape[2]):
             for b in range(a):
                 gap = apart(at[:, :, a], at[:, :, b], self.angles)
-                near = np.abs(gap).max(axis=0) <= np.maximum(APART, 1000 * (length[:, a] + length[:, b]))
+                near = np.abs(gap).max(axis=0) <= np.maximum(
+                    APART, 1000 * (length[:, a] + length[:, b])
+                )
                 good &= ~near | empty[:, a] | empty[:, b]
         return good
 
@@ -161,7 +181,10 @@ class PixelSolver:
         if self.wanted.only_stable:
             return np.asarray(good & (state.stable | empty).all(axis=1))
         good &= ((determinant(state.jacobian) != 0) | empty).all(axis=1)
-        negative, cells = (eigenvalues(state.hessian) < 0).sum(axis=0), self.wanted.cell[rows, columns]
+        negative, cells = (
+            (eigenvalues(state.hessian) < 0).sum(axis=0),
+            self.wanted.cell[rows, columns],
+        )
         for cell in np.unique(cells):
             index = self.wanted.index[cell] if cell != NONE else None
             if index is not None:
@@ -172,7 +195,9 @@ class PixelSolver:
 
 
 def parameters_at(slice: Slice, x: Floats, y: Floats) -> Mapping[str, Any]:
-    """Every parameter of the model at points, given by arrays of coordinates of one shape: a number, or that shape."""
+    """Every parameter of the model at points, given by arrays of coordinates of one shape: a
+    number, or that shape.
+    """
     found: dict[str, Any] = {}
     with within_doubles(slice):
         for name, e in slice.parameters.items():
@@ -184,7 +209,9 @@ def parameters_at(slice: Slice, x: Floats, y: Floats) -> Mapping[str, Any]:
     return found
 
 
-def filled(result: RegionMap, follower: PixelSolver, check: Callable[[], None] = lambda: None) -> Filling:
+def filled(
+    result: RegionMap, follower: PixelSolver, check: Callable[[], None] = lambda: None
+) -> Filling:
     """The solutions at every pixel, as far as neighbours lead to them.
 
     Parameters
@@ -194,7 +221,9 @@ def filled(result: RegionMap, follower: PixelSolver, check: Callable[[], None] =
     wanted = follower.wanted
     most = max(int(wanted.total.max()), 1)
     rows, columns = wanted.total.shape
-    filling = Filling(np.full((len(result.slice.model.unknowns), rows, columns, most), np.nan), wanted.total <= 0)
+    filling = Filling(
+        np.full((len(result.slice.model.unknowns), rows, columns, most), np.nan), wanted.total <= 0
+    )
     for stride in _strides(max(rows, columns)):
         seen = np.zeros((rows, columns), dtype=np.bool_)
         seen[::stride, ::stride] = True
@@ -213,8 +242,16 @@ def _strides(size: int) -> Iterator[int]:
         stride //= 2
 
 
-def _begin(result: RegionMap, filling: Filling, follower: PixelSolver, seen: Flags, check: Callable[[], None]) -> None:
-    """In each cell of which no pixel is done: from the sample's solutions to the pixels that are nearest to it."""
+def _begin(
+    result: RegionMap,
+    filling: Filling,
+    follower: PixelSolver,
+    seen: Flags,
+    check: Callable[[], None],
+) -> None:
+    """In each cell of which no pixel is done: from the sample's solutions to the pixels that are
+    nearest to it.
+    """
     cells = follower.wanted.cell
     finished = set(np.unique(cells[filling.done & (cells != NONE)]).tolist())
     for number in np.unique(cells[seen & ~filling.done & (cells != NONE)]).tolist():
@@ -238,11 +275,16 @@ def _begin(result: RegionMap, filling: Filling, follower: PixelSolver, seen: Fla
             _take(filling, follower, rows[nearest], columns[nearest], guess)
 
 
-def _spread(filling: Filling, follower: PixelSolver, seen: Flags, stride: int, check: Callable[[], None]) -> None:
-    """From pixels that are done to their neighbours of the same count, until none is left that this helps."""
+def _spread(
+    filling: Filling, follower: PixelSolver, seen: Flags, stride: int, check: Callable[[], None]
+) -> None:
+    """From pixels that are done to their neighbours of the same count, until none is left that this
+    helps.
+    """
     total = follower.wanted.total
     steps = [
-        (a * stride, b * stride) for a, b in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
+        (a * stride, b * stride)
+        for a, b in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
     ]
     tried = {step: filling.done | ~seen for step in steps}
     moved = True
@@ -261,7 +303,9 @@ def _spread(filling: Filling, follower: PixelSolver, seen: Flags, stride: int, c
                 moved |= _take(filling, follower, rows, columns, filling.at[:, s, t])
 
 
-def _take(filling: Filling, follower: PixelSolver, rows: Integers, columns: Integers, guess: Floats) -> bool:
+def _take(
+    filling: Filling, follower: PixelSolver, rows: Integers, columns: Integers, guess: Floats
+) -> bool:
     """Solutions at pixels from a guess, kept where they are all; whether some are."""
     found = False
     for first in range(0, len(rows), BATCH):

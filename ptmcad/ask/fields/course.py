@@ -1,4 +1,6 @@
-"""A path over a map's window: straight pieces between corners, that are given as values of the two axes."""
+"""A path over a map's window: straight pieces between corners, that are given as values of the two
+axes.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,8 @@ MIN_LENGTH = 1e-6
 
 
 def corners_of(slice: Slice, path: str | Mapping[str, Any]) -> tuple[Place, ...]:
-    """The corners of a path such as ``rho=1/2:6/5,L2=3/2``, where each axis has one value or one for each corner.
+    """The corners of a path such as ``rho=1/2:6/5,L2=3/2``, where each axis has one value or one
+    for each corner.
 
     Parameters
     ----------
@@ -30,14 +33,15 @@ def corners_of(slice: Slice, path: str | Mapping[str, Any]) -> tuple[Place, ...]
 
     Raises
     ------
-    ConfigError
-        When the names are not the two axes, a value is not an exact number inside the window, the numbers of values do
-        not fit together, or the path leads nowhere.
+    ConfigError When the names are not the two axes, a value is not an exact number inside the
+        window, the numbers of values do not fit together, or the path leads nowhere.
     """
     given = _of_text(path) if isinstance(path, str) else {n: _listed(v) for n, v in path.items()}
     names = slice.axis_names
     if set(given) != set(names):
-        raise ConfigError(f"give values of both axes, as in {names[0]}=FROM:TO,{names[1]}=VALUE", key=OPTION)
+        raise ConfigError(
+            f"give values of both axes, as in {names[0]}=FROM:TO,{names[1]}=VALUE", key=OPTION
+        )
     values = [[number_for(OPTION, value) for value in given[name]] for name in names]
     for axis, own in zip(slice.axes, values, strict=True):
         outside = [value for value in own if not axis.holds(value)]

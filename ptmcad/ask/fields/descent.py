@@ -1,7 +1,9 @@
-"""The way down from where a pose has vanished: steepest descent of the energy less moments' work, in floating point.
+"""The way down from where a pose has vanished: steepest descent of the energy less moments' work,
+in floating point.
 
-Method: implicit steps of the gradient's flow, which stay in narrow valleys, twice as long as the last where they are
-short, and a third where they would go up or too far; Newton's method at the end.
+Method: implicit steps of the gradient's flow, which stay in narrow valleys, twice as long as the
+last where they are short, and a third where they would go up or too far; Newton's method at the
+end.
 """
 
 from __future__ import annotations
@@ -14,8 +16,8 @@ STRIDE = 0.05
 """The longest step, in radians or units."""
 STEPS = 5000
 ASIDE = 1e-4
-"""By how much the start is moved along the softest direction, to the lower side: at a place of symmetry nothing else
-tells where to go."""
+"""By how much the start is moved along the softest direction, to the lower side: at a place of
+symmetry nothing else tells where to go."""
 
 STEPS_TO_SOLUTION, NEAR = 16, 1e-10
 """Of Newton's method at one place, and its last one against the solution's size."""
@@ -37,7 +39,11 @@ def descent(evaluate: Evaluation, start: Floats) -> Floats | None:
             step = np.linalg.solve(hessian + np.eye(len(at)) / time, slope)
         length = np.inf if step is None else float(np.linalg.norm(step))
         below = here if step is None else evaluate((at - step)[:, None])
-        if step is None or not length <= STRIDE or not _height(below) <= _height(here) + _rounding(here):
+        if (
+            step is None
+            or not length <= STRIDE
+            or not _height(below) <= _height(here) + _rounding(here)
+        ):
             time /= 3
             if time < 1e-15:
                 return None
@@ -71,8 +77,12 @@ def _rounding(state: ModelState) -> float:
 
 
 def solution(evaluate: Evaluation, start: Floats) -> tuple[Floats, ModelState] | None:
-    """The solution to which Newton's method leads, with the model there; None where it does not converge."""
-    at, length = newton(evaluate, start[:, None], STEPS_TO_SOLUTION, NEAR * (1 + float(np.linalg.norm(start))))
+    """The solution to which Newton's method leads, with the model there; None where it does not
+    converge.
+    """
+    at, length = newton(
+        evaluate, start[:, None], STEPS_TO_SOLUTION, NEAR * (1 + float(np.linalg.norm(start)))
+    )
     if not length[0] <= NEAR * (1 + float(np.linalg.norm(at))):
         return None
     return at[:, 0], evaluate(at)

@@ -1,6 +1,8 @@
-"""A model's equations at many points at once, in floating point: residuals, Jacobian, energy, stability.
+"""A model's equations at many points at once, in floating point: residuals, Jacobian, energy,
+stability.
 
-Guarantee: none but that of the compiled system, whose formulas and their derivatives are evaluated in doubles.
+Guarantee: none but that of the compiled system, whose formulas and their derivatives are evaluated
+in doubles.
 """
 
 from __future__ import annotations
@@ -33,7 +35,8 @@ class ModelState(NamedTuple):
     conditions : what is positive at solutions that count.
     stability : without a potential what is positive at stable ones.
     points : of a mechanism without closed loops, by name.
-    stretches : of its springs, in their order, length, free length and force, which is positive where the spring pulls.
+    stretches : of its springs, in their order, length, free length and force, which is positive
+        where the spring pulls.
     work : of moments, shape S; None where none works.
     hessian : the Jacobian where solutions are critical points, else without rows.
     """
@@ -61,7 +64,9 @@ class ModelState(NamedTuple):
 
     @property
     def height(self) -> Floats | None:
-        """What descends: the energy less the moments' work, of which the residuals are the slopes; None without one."""
+        """What descends: the energy less the moments' work, of which the residuals are the slopes;
+        None without one.
+        """
         return self.energy if self.energy is None or self.work is None else self.energy - self.work
 
     @property
@@ -79,7 +84,8 @@ class ModelState(NamedTuple):
 
 
 def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> ModelState:
-    """The model at values of its parameters (arrays that fit S; a free length that is not there is zero) and points.
+    """The model at values of its parameters (arrays that fit S; a free length that is not there is
+    zero) and points.
 
     Parameters
     ----------
@@ -89,12 +95,18 @@ def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> ModelState:
     known = dict.fromkeys(model.free_lengths, 0.0) | dict(values)
     given = {k: _shaped(known[name], at[0]) for k, name in enumerate(system.names) if name in known}
     given |= dict(zip(system.unknowns, at, strict=True))
-    with np.errstate(divide="ignore", invalid="ignore"):  # a spring without length has no direction: nan
+    with np.errstate(
+        divide="ignore", invalid="ignore"
+    ):  # a spring without length has no direction: nan
         # a root has no slope at zero, so that there is none where no free length is
         relaxed = tuple(k for k, free in enumerate(_free_lengths(system).at(given)) if np.any(free))
-        found = _formulas(system, relaxed).at(given, lambda value: np.broadcast_to(value, at.shape[1:]))
+        found = _formulas(system, relaxed).at(
+            given, lambda value: np.broadcast_to(value, at.shape[1:])
+        )
     jacobian = np.stack([np.stack(row) for row in found["jacobian"]])
-    if relaxed and system.tangent:  # along loops, of which the compiled conditions are without free lengths
+    if (
+        relaxed and system.tangent
+    ):  # along loops, of which the compiled conditions are without free lengths
         found["stability"] = (determinant(jacobian),)
     found |= {"residuals": np.stack(found["residuals"]), "jacobian": jacobian}
     return ModelState(**found, hessian=jacobian[: system.criterion.order])
@@ -109,7 +121,10 @@ def _free_lengths(system: CompiledSystem) -> Doubles:
 def _formulas(system: CompiledSystem, relaxed: tuple[int, ...]) -> Doubles:
     """What a state consists of, with the free lengths of some springs."""
     equations = system.balance(relaxed)
-    rows = [tuple(system.graph.derivative(equation, k) for k in system.unknowns) for equation in equations]
+    rows = [
+        tuple(system.graph.derivative(equation, k) for k in system.unknowns)
+        for equation in equations
+    ]
     places = [[system.criterion.entry(i, j) for j in range(len(rows))] for i in range(len(rows))]
     found: dict[str, Any] = {
         "residuals": equations,
@@ -128,7 +143,11 @@ def _formulas(system: CompiledSystem, relaxed: tuple[int, ...]) -> Doubles:
 def _shaped(value: Any, like: Floats) -> Any:
     """Parameters of shape (pixels,) beside points of shape (pixels, solutions)."""
     array = np.asarray(value, dtype=float)
-    return array if array.ndim in (0, like.ndim) else array.reshape(array.shape + (1,) * (like.ndim - array.ndim))
+    return (
+        array
+        if array.ndim in (0, like.ndim)
+        else array.reshape(array.shape + (1,) * (like.ndim - array.ndim))
+    )
 
 
 def determinant(matrix: Floats) -> Floats:
@@ -158,7 +177,9 @@ def newton_step(state: ModelState) -> Floats:
             return np.asarray(b / a[0])
         if len(b) == 2:
             d = a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]
-            return np.stack([(a[1, 1] * b[0] - a[0, 1] * b[1]) / d, (a[0, 0] * b[1] - a[1, 0] * b[0]) / d])
+            return np.stack(
+                [(a[1, 1] * b[0] - a[0, 1] * b[1]) / d, (a[0, 0] * b[1] - a[1, 0] * b[0]) / d]
+            )
         d = determinant(a)
         columns = []
         for k in range(len(b)):
@@ -173,7 +194,8 @@ Evaluation = Callable[[Floats], ModelState]
 
 
 def newton(evaluate: Evaluation, start: Floats, most: int, small: float) -> tuple[Floats, Floats]:
-    """Where Newton's method leads, in steps of at most 1, and the lengths of the last ones, shape S.
+    """Where Newton's method leads, in steps of at most 1, and the lengths of the last ones, shape
+    S.
 
     Parameters
     ----------
@@ -193,7 +215,9 @@ def newton(evaluate: Evaluation, start: Floats, most: int, small: float) -> tupl
 
 
 def apart(one: Floats, other: Floats, angles: int) -> Floats:
-    """One place less another, by at most half a turn in the first unknowns, which are angles; shape (n, *S)."""
+    """One place less another, by at most half a turn in the first unknowns, which are angles; shape
+    (n, *S).
+    """
     gap = one - other
     gap[:angles] = np.remainder(gap[:angles] + np.pi, 2 * np.pi) - np.pi
     return gap

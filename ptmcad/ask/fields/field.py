@@ -30,20 +30,23 @@ from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import values_at
 
 BATCH, LARGE_BATCH = 300, 20_000
-"""Pixels at a time: what they take stays in the processor's cache; of descents few are long, which go on together."""
+"""Pixels at a time: what they take stays in the processor's cache; of descents few are long, which
+go on together.
+"""
 MAX_LEFT = 3000
 """Pixels that are given to exact poses, one by one, where neighbours led nowhere."""
 EQUAL = 1e-9
-"""Energies this near are taken for equal, as those of mirrored poses are: then the larger first unknown comes first,
-or the next one."""
+"""Energies this near are taken for equal, as those of mirrored poses are: then the larger first
+unknown comes first, or the next one."""
 CHECKS = 50
 DIGITS = 12
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Which of a point's solutions: the ``rank``-th, from 1, of a kind, in the order of `Poses`: stable ones first,
-    then by energy. Kinds are ``stable``, ``unstable``, ``saddle``, ``maximum`` and ``pose``, which is any."""
+    """Which of a point's solutions: the ``rank``-th, from 1, of a kind, in the order of `Poses`:
+    stable ones first, then by energy. Kinds are ``stable``, ``unstable``, ``saddle``, ``maximum``
+    and ``pose``, which is any."""
 
     kind: str
     rank: int
@@ -53,12 +56,21 @@ class Choice:
 
     def numbers(self, poses: Poses) -> list[int]:
         """Those of the poses that are of the kind."""
-        own = [(poses.model.criterion.kind(pose.stable, pose.index), pose.stable) for pose in poses.equilibria]
+        own = [
+            (poses.model.criterion.kind(pose.stable, pose.index), pose.stable)
+            for pose in poses.equilibria
+        ]
         names = [("pose", kind, "unstable" if stable is False else kind) for kind, stable in own]
         return [k for k, each in enumerate(names) if self.kind in each]
 
 
-_NEEDED = {"pose": "total", "stable": "stable", "unstable": "stable", "saddle": "index", "maximum": "index"}
+_NEEDED = {
+    "pose": "total",
+    "stable": "stable",
+    "unstable": "stable",
+    "saddle": "index",
+    "maximum": "index",
+}
 """The kinds, to the names of counts that tell them apart."""
 
 
@@ -70,10 +82,13 @@ def choice_of(text: str, model: Model) -> Choice:
     ConfigError
         For another text, and for kinds that the model does not tell apart.
     """
-    match = re.fullmatch(r"(stable|unstable|saddle|maximum|pose)(?::([1-9]\d{0,3}))?", text.strip(), re.ASCII)
+    match = re.fullmatch(
+        r"(stable|unstable|saddle|maximum|pose)(?::([1-9]\d{0,3}))?", text.strip(), re.ASCII
+    )
     if match is None:
         raise ConfigError(
-            f"{text!r} is not a pose such as stable:1, unstable:1, saddle:2, maximum:1 or pose:3", key="--pose"
+            f"{text!r} is not a pose such as stable:1, unstable:1, saddle:2, maximum:1 or pose:3",
+            key="--pose",
         )
     if (needed := _NEEDED[match[1]]) not in model.criterion.counts:
         what = f"nothing says which solutions of {model.name} are stable"
@@ -113,7 +128,10 @@ def request_of(slice: Slice, value: str, pose: str) -> FieldRequest:
         system = compiled(slice.model)
         if system.acting:
             what = acting(slice.model, [system.names[system.unknowns[k]] for k in system.acting])
-            raise ConfigError(f"under the {what} a pose's energy is not what a barrier is counted from", key=OPTION)
+            raise ConfigError(
+                f"under the {what} a pose's energy is not what a barrier is counted from",
+                key=OPTION,
+            )
     return FieldRequest(quantity, choice)
 
 
@@ -145,21 +163,34 @@ def field_of(
     follower = PixelSolver(result, places_of(grid))
     wanted = follower.wanted
     if wanted.only_stable and choice.kind != "stable":
-        raise ConfigError("this map knows the stable equilibria only: ask for stable:1", key="--pose")
+        raise ConfigError(
+            "this map knows the stable equilibria only: ask for stable:1", key="--pose"
+        )
     if wanted.only_stable and quantity.is_barrier:
-        raise ConfigError("this map knows the stable equilibria only, and a barrier is a saddle's", key=OPTION)
+        raise ConfigError(
+            "this map knows the stable equilibria only, and a barrier is a saddle's", key=OPTION
+        )
     solutions = filled(result, follower, check)
-    missed = complete(result, lambda r, c: centre(result, grid, r, c), solutions, wanted.total, check)
-    values, chosen = np.full(grid.region.shape, np.nan), np.full(grid.region.shape, NONE, dtype=np.int64)
+    missed = complete(
+        result, lambda r, c: centre(result, grid, r, c), solutions, wanted.total, check
+    )
+    values, chosen = (
+        np.full(grid.region.shape, np.nan),
+        np.full(grid.region.shape, NONE, dtype=np.int64),
+    )
     places = np.nonzero(solutions.done & (wanted.total > 0))
     batch = LARGE_BATCH if quantity.is_barrier else BATCH
     for first in range(0, len(places[0]), batch):
         check()
         progress("pixels", first, len(places[0]))
         r, c = (p[first : first + batch] for p in places)
-        values[r, c], chosen[r, c] = _at_pixels(model, quantity, choice, follower, (r, c), solutions.at[:, r, c])
+        values[r, c], chosen[r, c] = _at_pixels(
+            model, quantity, choice, follower, (r, c), solutions.at[:, r, c]
+        )
     if quantity.is_barrier:  # there is one wherever there is another stable pose
-        missed += int((np.isnan(values) & solutions.done & (grid.stable >= max(2, choice.rank))).sum())
+        missed += int(
+            (np.isnan(values) & solutions.done & (grid.stable >= max(2, choice.rank))).sum()
+        )
     beyond = np.isinf(values)
     values[beyond] = np.nan
     other = jumps(result, follower, solutions, chosen, grid.region, check)
@@ -190,21 +221,33 @@ def expect_somewhere(result: RegionMap, choice: Choice) -> None:
     """
     most = _most_of(result, choice.kind)
     if most is not None and most < choice.rank:
-        few = f"of its kind there are at most {most} at any point" if most else "nor any other of its kind"
+        few = (
+            f"of its kind there are at most {most} at any point"
+            if most
+            else "nor any other of its kind"
+        )
         raise ConfigError(f"there is no {choice} in the window: {few}", key="--pose")
 
 
 def _most_of(result: RegionMap, kind: str) -> int | None:
-    """What no point has more solutions of, for a kind of `Choice`, by the counts of all cells; None where these are
-    unknown, or a part of the window is undetermined."""
+    """What no point has more solutions of, for a kind of `Choice`, by the counts of all cells; None
+    where these are unknown, or a part of the window is undetermined."""
     if not result.cells or result.cover is not None:
         return None
     found = []
     for cell in result.cells:
         unstable = None if cell.total is None or cell.stable is None else cell.total - cell.stable
         # where the indices are not known, there are no more of one than are unstable
-        inner, last = (unstable, unstable) if cell.index is None else (sum(cell.index[1:-1]), cell.index[-1])
-        counts = {"stable": cell.stable, "pose": cell.total, "unstable": unstable, "saddle": inner, "maximum": last}
+        inner, last = (
+            (unstable, unstable) if cell.index is None else (sum(cell.index[1:-1]), cell.index[-1])
+        )
+        counts = {
+            "stable": cell.stable,
+            "pose": cell.total,
+            "unstable": unstable,
+            "saddle": inner,
+            "maximum": last,
+        }
         found.append(counts[kind])
     known = [number for number in found if number is not None]
     return max(known) if len(known) == len(found) else None
@@ -218,8 +261,8 @@ def _at_pixels(
     places: tuple[Integers, Integers],
     at: Floats,
 ) -> tuple[Floats, Integers]:
-    """The quantity of the chosen solution at pixels, and its number there, `NONE` without one; at : shape (n, pixels,
-    most)."""
+    """The quantity of the chosen solution at pixels, and its number there, `NONE` without one; at :
+    shape (n, pixels, most)."""
     rows, columns = places
     here = np.nan_to_num(at)
     turns = here[: len(model.angles)]
@@ -243,21 +286,30 @@ def _at_pixels(
         given = {name: v[rows, columns] if np.ndim(v) else v for name, v in follower.values.items()}
         coordinates = (follower.places.x[rows, columns], follower.places.y[rows, columns])
         axes = dict(zip(follower.names, coordinates, strict=True))
-        given = {name: np.asarray(v)[:, None] if np.ndim(v) else v for name, v in {**given, **axes}.items()}
+        given = {
+            name: np.asarray(v)[:, None] if np.ndim(v) else v
+            for name, v in {**given, **axes}.items()
+        }
         values = quantity.values(state, here, given)[own, k]
     return np.where(found, values, np.nan), np.where(found, k, NONE)
 
 
-def _in_order(state: ModelState, at: Floats, there: Flags, choice: Choice) -> tuple[Integers, Flags]:
-    """The solutions in the order of `Poses`, shape (pixels, most), and which are of the chosen kind."""
+def _in_order(
+    state: ModelState, at: Floats, there: Flags, choice: Choice
+) -> tuple[Integers, Flags]:
+    """The solutions in the order of `Poses`, shape (pixels, most), and which are of the chosen
+    kind.
+    """
     stable = state.stable & there
-    energy = np.zeros(there.shape) if state.energy is None else np.where(there, state.energy, np.inf)
+    energy = (
+        np.zeros(there.shape) if state.energy is None else np.where(there, state.energy, np.inf)
+    )
     size = np.max(np.abs(np.where(there, energy, 0.0)), axis=1, keepdims=True)
     # equal up to rounding: the same multiple of a tolerance, or of the next
     ascending = np.argsort(energy, axis=1, kind="stable")
-    steps = np.diff(np.take_along_axis(np.where(there, energy, 1e300), ascending, axis=1), axis=1) > EQUAL * (
-        size + 1e-300
-    )
+    steps = np.diff(
+        np.take_along_axis(np.where(there, energy, 1e300), ascending, axis=1), axis=1
+    ) > EQUAL * (size + 1e-300)
     rank = np.zeros(there.shape, dtype=np.int64)
     np.put_along_axis(rank, ascending[:, 1:], np.cumsum(steps, axis=1), axis=1)
     # the larger unknown first
@@ -266,7 +318,10 @@ def _in_order(state: ModelState, at: Floats, there: Flags, choice: Choice) -> tu
     if choice.kind in ("saddle", "maximum"):
         negative = state.negatives
         n = len(at)
-        kinds |= {"saddle": there & (negative > 0) & (negative < n), "maximum": there & (negative == n)}
+        kinds |= {
+            "saddle": there & (negative > 0) & (negative < n),
+            "maximum": there & (negative == n),
+        }
     return order, kinds[choice.kind]
 
 
@@ -277,7 +332,8 @@ def complete(
     total: Integers,
     check: Callable[[], None],
 ) -> int:
-    """Exact poses where neighbours led nowhere; the number of places that stay without their solutions.
+    """Exact poses where neighbours led nowhere; the number of places that stay without their
+    solutions.
 
     Parameters
     ----------
@@ -296,7 +352,9 @@ def complete(
     return int((~solutions.done & (total > 0)).sum())
 
 
-def centre(result: RegionMap, grid: Grid | GridPoints, row: int, column: int) -> tuple[Fraction, Fraction]:
+def centre(
+    result: RegionMap, grid: Grid | GridPoints, row: int, column: int
+) -> tuple[Fraction, Fraction]:
     """A pixel's centre, exactly."""
     (x, y), (rows, columns) = result.slice.axes, grid.cell.shape
     return x.middle(column, columns), y.middle(row, rows)
@@ -312,7 +370,12 @@ def unknowns_of(pose: Pose) -> Floats:
 
 
 def _checked(
-    result: RegionMap, quantity: Valued, choice: Choice, values: Floats, follower: PixelSolver, checks: int
+    result: RegionMap,
+    quantity: Valued,
+    choice: Choice,
+    values: Floats,
+    follower: PixelSolver,
+    checks: int,
 ) -> tuple[int, float]:
     """How many random pixels were compared with exact poses, and the largest difference as a share.
 

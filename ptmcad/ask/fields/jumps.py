@@ -1,11 +1,13 @@
-"""Where a chosen solution is of another branch than at the neighbouring pixel, found by following it.
+"""Where a chosen solution is of another branch than at the neighbouring pixel, found by following
+it.
 
-From a pixel's centre the chosen solution is followed by Newton's method to the centre of the pixel at the right and of
-the one above, in so many parts of the way as it takes. What it has become there is the nearest of that pixel's
-solutions, of which all are known; it is another branch where this is not the one that is chosen there. No threshold
-decides it: neither values nor energies are compared.
+From a pixel's centre the chosen solution is followed by Newton's method to the centre of the pixel
+at the right and of the one above, in so many parts of the way as it takes. What it has become there
+is the nearest of that pixel's solutions, of which all are known; it is another branch where this is
+not the one that is chosen there. No threshold decides it: neither values nor energies are compared.
 
-Not guaranteed: more than that. Newton's method in floating point may step from one solution's way to another's.
+Not guaranteed: more than that. Newton's method in floating point may step from one solution's way
+to another's.
 """
 
 from __future__ import annotations
@@ -44,7 +46,8 @@ def jumps(
 
     Returns
     -------
-    For a pixel and its neighbour at the right, shape (rows, columns - 1), and above, shape (rows - 1, columns).
+    For a pixel and its neighbour at the right, shape (rows, columns - 1), and above, shape
+    (rows - 1, columns).
     """
     rows, columns = chosen.shape
     found = []
@@ -58,15 +61,24 @@ def jumps(
             check()
             part = slice(first, first + 100 * BATCH)
             own = (r[part], c[part])
-            jump[own] = _differ(result, follower, solutions, chosen, own, (own[0] + up, own[1] + 1 - up))
+            jump[own] = _differ(
+                result, follower, solutions, chosen, own, (own[0] + up, own[1] + 1 - up)
+            )
         found.append(jump)
     return found[0], found[1]
 
 
 def _differ(
-    result: RegionMap, follower: PixelSolver, solutions: Filling, chosen: Integers, start: Pixels, end: Pixels
+    result: RegionMap,
+    follower: PixelSolver,
+    solutions: Filling,
+    chosen: Integers,
+    start: Pixels,
+    end: Pixels,
 ) -> Flags:
-    """Whether following the chosen solutions from pixels does not lead to those that are chosen at others."""
+    """Whether following the chosen solutions from pixels does not lead to those that are chosen at
+    others.
+    """
     apart = np.ones(len(start[0]), dtype=np.bool_)
     for parts in PARTS:
         (left,) = np.nonzero(apart)
@@ -78,8 +90,12 @@ def _differ(
     return apart
 
 
-def _followed(result: RegionMap, follower: PixelSolver, at: Floats, ends: tuple[Pixels, Pixels], parts: int) -> Floats:
-    """Solutions of shape (n, pixels), led along straight ways between pixels in equal parts; nan where that fails."""
+def _followed(
+    result: RegionMap, follower: PixelSolver, at: Floats, ends: tuple[Pixels, Pixels], parts: int
+) -> Floats:
+    """Solutions of shape (n, pixels), led along straight ways between pixels in equal parts; nan
+    where that fails.
+    """
     shares = np.arange(1, parts + 1) / parts
     x, y = (
         along[ends[0]][:, None] + (along[ends[1]] - along[ends[0]])[:, None] * shares
@@ -94,7 +110,9 @@ def _followed(result: RegionMap, follower: PixelSolver, at: Floats, ends: tuple[
 
 
 def _nearest(at: Floats, solutions: Floats, angles: int) -> Integers:
-    """The number of the nearest of a pixel's solutions, shape (n, pixels, most); `NONE` for no point."""
+    """The number of the nearest of a pixel's solutions, shape (n, pixels, most); `NONE` for no
+    point.
+    """
     far = np.sqrt((apart(at[:, :, None], solutions, angles) ** 2).sum(axis=0))
     nearest = np.where(np.isnan(far), np.inf, far).argmin(axis=1)
     return np.where(np.isnan(at[0]), NONE, nearest)

@@ -1,11 +1,14 @@
-"""One pose followed along a path of a map, through the folds where it vanishes, to the poses to which it falls.
+"""One pose followed along a path of a map, through the folds where it vanishes, to the poses to
+which it falls.
 
-Guarantee: the counts of a step are the map's at its point or, where a certified map leaves it open, those of an exact
-solution there; a step that has them has as many different equilibria, and the followed pose is one of them. A pose is
-said to vanish only where the map's cell changes or is not known.
+Guarantee: the counts of a step are the map's at its point or, where a certified map leaves it open,
+those of an exact solution there; a step that has them has as many different equilibria, and the
+followed pose is one of them. A pose is said to vanish only where the map's cell changes or is not
+known.
 
-Not guaranteed: the rest, which is floating point. From one step to the next the pose is followed by Newton's method in
-as many parts as keep it near itself; where it ends, the energy descends to the next one (`ptmcad.ask.fields.descent`).
+Not guaranteed: the rest, which is floating point. From one step to the next the pose is followed by
+Newton's method in as many parts as keep it near itself; where it ends, the energy descends to the
+next one (`ptmcad.ask.fields.descent`).
 """
 
 from __future__ import annotations
@@ -37,7 +40,9 @@ from ptmcad.text.numerals import equalities
 FRAMES, MAX_FRAMES = 90, 600
 MAX_FALLS = 20
 SLIP = 0.05
-"""A shorter fall is none to be seen: the pose goes on beside, as where a symmetric one gives way to two."""
+"""A shorter fall is none to be seen: the pose goes on beside, as where a symmetric one gives way to
+two.
+"""
 SAME = 1e-6
 _BESIDE = Fraction(1, 10**6)
 """Of the path, by which a step is moved that lies on a curve of the map."""
@@ -65,17 +70,21 @@ def motion_of(
 
     Raises
     ------
-    ConfigError
-        For a path or pose that has no meaning here, a number of frames that is none, or a map without cells.
+    ConfigError For a path or pose that has no meaning here, a number of frames that is none, or a
+        map without cells.
     LostError
         Where the map has the pose and it was not found.
     """
     expect(path, (str, Mapping), "path", f"corners, as '{FIRST}=3/4:6/5,{SECOND}=3/2'")
     expect(pose, str, "pose", "one of the poses as text, such as stable:1")
     if isinstance(frames, bool) or not isinstance(frames, int) or not 2 <= frames <= MAX_FRAMES:
-        raise ConfigError(f"{frames!r} is not a number of frames from 2 to {MAX_FRAMES}", key="--frames")
+        raise ConfigError(
+            f"{frames!r} is not a number of frames from 2 to {MAX_FRAMES}", key="--frames"
+        )
     if not result.cells:
-        raise ConfigError(f"the map {result.slice.name} was stopped before it had cells: there is nothing to show")
+        raise ConfigError(
+            f"the map {result.slice.name} was stopped before it had cells: there is nothing to show"
+        )
     choice = choice_of(pose, result.slice.model)
     corners = corners_of(result.slice, path)
     with within_doubles(result.slice):
@@ -87,7 +96,9 @@ def motion_of(
 
 
 _Stop = tuple[Fraction, Step, Floats | None]
-"""A share of the path, the step before the pose is known, and all solutions there; None where they are not known."""
+"""A share of the path, the step before the pose is known, and all solutions there; None where they
+are not known.
+"""
 
 
 class _Walk(Track):
@@ -104,7 +115,9 @@ class _Walk(Track):
 
 
 def _stops(walk: _Walk, frames: int) -> list[_Stop]:
-    """The steps along the path with their counts and all solutions, each beside any curve on which it would lie."""
+    """The steps along the path with their counts and all solutions, each beside any curve on which
+    it would lie.
+    """
     result, points, cells, shares = walk.result, [], [], []
     for k in range(frames):
         share = Fraction(k, frames - 1)
@@ -141,7 +154,9 @@ def _open(walk: _Walk, share: Fraction, step: Step) -> _Stop:
     poses = exact_at(walk.result, *step.at)
     if poses.status not in (Status.EXACT, Status.CERTIFIED):
         return share, step, None
-    found = np.array([unknowns_of(p) for p in poses.equilibria]).reshape(-1, len(walk.model.unknowns)).T
+    found = (
+        np.array([unknowns_of(p) for p in poses.equilibria]).reshape(-1, len(walk.model.unknowns)).T
+    )
     told = replace(step, total=len(poses.equilibria), stable=poses.known_stable)
     return share, _with_others(walk, told, found), found
 
@@ -153,7 +168,9 @@ def _with_others(walk: _Walk, step: Step, known: Floats | None) -> Step:
     state = walk.state(step.at, known)
     if state.energy is None or state.work is not None:
         return replace(step, others=tuple((np.nan, False) for _ in range(known.shape[1])))
-    return replace(step, others=tuple(zip(state.energy.tolist(), (state.negatives == 0).tolist(), strict=True)))
+    return replace(
+        step, others=tuple(zip(state.energy.tolist(), (state.negatives == 0).tolist(), strict=True))
+    )
 
 
 def _start(result: RegionMap, at: Place, choice: Choice) -> Floats:
@@ -162,7 +179,10 @@ def _start(result: RegionMap, at: Place, choice: Choice) -> Floats:
     found = choice.numbers(poses)
     if len(found) < choice.rank:
         where = equalities(dict(zip(result.slice.axis_names, at, strict=True)))
-        raise ConfigError(f"there is no {choice} at the path's start, {where}: only {len(found)} of them", key="--pose")
+        raise ConfigError(
+            f"there is no {choice} at the path's start, {where}: only {len(found)} of them",
+            key="--pose",
+        )
     return unknowns_of(poses.equilibria[found[choice.rank - 1]])
 
 
@@ -182,16 +202,30 @@ def _walked(
             if done >= until:
                 break
             if leaves:
-                return steps, falls, f"at {_where(walk, done)} the pose leaves what the inequalities allow"
+                return (
+                    steps,
+                    falls,
+                    f"at {_where(walk, done)} the pose leaves what the inequalities allow",
+                )
             beyond = min(done + MIN_STEP, until)
             before, after = (walk.cell(walk.course.at(Fraction(share))) for share in (done, beyond))
             if before == after != NONE:
-                raise LostError(f"the pose was lost at {100 * done:.6g} % of the path, in the middle of a region")
+                raise LostError(
+                    f"the pose was lost at {100 * done:.6g} % of the path, in the middle of a region"
+                )
             if end := _no_fall(walk, own, done):
                 return steps, falls, end
             way = descent(lambda point, share=beyond: walk.at(share, point), at)  # type: ignore[misc]
-            if way is None or len(falls) == MAX_FALLS or not walk.at(beyond, way[-1][:, None]).counts.all():
-                return steps, falls, f"at {_where(walk, done)} the pose vanishes, and no other was reached from there"
+            if (
+                way is None
+                or len(falls) == MAX_FALLS
+                or not walk.at(beyond, way[-1][:, None]).counts.all()
+            ):
+                return (
+                    steps,
+                    falls,
+                    f"at {_where(walk, done)} the pose vanishes, and no other was reached from there",
+                )
             if _length(way) > SLIP:
                 fallen = _fallen(walk, beyond, way, fall_frames)
                 falls.append(_fall(walk, beyond, way))
@@ -211,7 +245,9 @@ def _no_fall(walk: _Walk, own: int, done: float) -> str:
 
 def _where(walk: _Walk, share: float) -> str:
     at = walk.course.at(Fraction(share))
-    return ", ".join(f"{n} = {float(v):.6g}" for n, v in zip(walk.result.slice.axis_names, at, strict=True))
+    return ", ".join(
+        f"{n} = {float(v):.6g}" for n, v in zip(walk.result.slice.axis_names, at, strict=True)
+    )
 
 
 def _taken(walk: _Walk, stop: _Stop, at: Floats) -> Step:
@@ -220,7 +256,9 @@ def _taken(walk: _Walk, stop: _Stop, at: Floats) -> Step:
     if solutions is not None:
         gap = apart(solutions, at[:, None], len(walk.model.angles))
         if not np.abs(gap).max(axis=0).min(initial=np.inf) < SAME * (1 + np.abs(at).max()):
-            raise LostError(f"at {_where(walk, float(share))} the followed pose is none of those that are counted")
+            raise LostError(
+                f"at {_where(walk, float(share))} the followed pose is none of those that are counted"
+            )
     return _seen(walk, step, at)
 
 
@@ -247,6 +285,8 @@ def _fallen(walk: _Walk, share: float, way: Floats, number: int) -> list[Step]:
 
 def _fall(walk: _Walk, share: float, way: Floats) -> Fall:
     point = walk.course.at(Fraction(share))
-    heights = [_seen(walk, Step(share, point, (), None), at).height or 0.0 for at in (way[0], way[-1])]
+    heights = [
+        _seen(walk, Step(share, point, (), None), at).height or 0.0 for at in (way[0], way[-1])
+    ]
     before, after = (tuple(map(float, at)) for at in (way[0], way[-1]))
     return Fall(share, (float(point[0]), float(point[1])), before, after, heights[0] - heights[1])

@@ -1,4 +1,5 @@
-"""Values in floating point of what can be asked of a solution: a quantity of `ptmcad.ask.quantities`, or an expression.
+"""Values in floating point of what can be asked of a solution: a quantity of
+`ptmcad.ask.quantities`, or an expression.
 
 Guarantee: a name that the model does not have is refused before anything is computed.
 """
@@ -21,7 +22,8 @@ from ptmcad.text.tree import Call, Name, Number, Power, Step, interpret, names_o
 
 OPTION = "--value"
 Values = Callable[[ModelState, Floats, Mapping[str, Any]], Floats]
-"""From a state, its points of shape (n, *S), angles first, and the values of parameters and axes."""
+"""From a state, its points of shape (n, *S), angles first, and the values of parameters and axes.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +45,9 @@ class Valued:
 def quantity_of(text: str, slice: Slice) -> Valued:
     """The quantity of this name.
 
-    ``energy``, ``stiffness`` (the least eigenvalue of the Hessian), ``barrier``, ``force:SPRING``, ``length:SPRING``,
-    ``angle:UNKNOWN`` in degrees, ``x:POINT``, ``y:POINT``, or an expression in the unknowns (angles in radians),
-    parameters and axes.
+    ``energy``, ``stiffness`` (the least eigenvalue of the Hessian), ``barrier``, ``force:SPRING``,
+    ``length:SPRING``, ``angle:UNKNOWN`` in degrees, ``x:POINT``, ``y:POINT``, or an expression in
+    the unknowns (angles in radians), parameters and axes.
 
     Raises
     ------
@@ -53,9 +55,13 @@ def quantity_of(text: str, slice: Slice) -> Valued:
         For a name or an expression that has no meaning here.
     """
     known = named(slice.model, text, OPTION) or unknown(slice.model, text.strip())
-    if known is None or known.name in slice.model.angles:  # by itself an angle is in radians, as in any expression
+    if (
+        known is None or known.name in slice.model.angles
+    ):  # by itself an angle is in radians, as in any expression
         return _expression(text, slice)
-    return Valued(known.name, unit_of(known, slice), _values(known), known.kind is QuantityKind.BARRIER)
+    return Valued(
+        known.name, unit_of(known, slice), _values(known), known.kind is QuantityKind.BARRIER
+    )
 
 
 def _values(quantity: Quantity) -> Values:
@@ -86,25 +92,37 @@ def _expression(text: str, slice: Slice) -> Valued:
         for name in names_of(tree):
             if name not in known:
                 if name in quantities(model):
-                    raise ConfigError(f"{name!r} is a quantity of its own, and no part of an expression", key=OPTION)
+                    raise ConfigError(
+                        f"{name!r} is a quantity of its own, and no part of an expression",
+                        key=OPTION,
+                    )
                 hint = did_you_mean(name, (*known, *quantities(model)))
-                raise ConfigError(f"{name!r} is neither an unknown nor a parameter{hint}", key=OPTION)
+                raise ConfigError(
+                    f"{name!r} is neither an unknown nor a parameter{hint}", key=OPTION
+                )
         with np.errstate(all="ignore"):
             # where no quotient of names is zero by chance
-            generic = {name: np.float64(math.fmod(math.sqrt(2) * (k + 1), 1)) for k, name in enumerate(known)}
+            generic = {
+                name: np.float64(math.fmod(math.sqrt(2) * (k + 1), 1))
+                for k, name in enumerate(known)
+            }
             anywhere = interpret(tree, _Arrays(generic))
         if np.isinf(anywhere.value) and not anywhere.lost():
             raise ConfigError(f"{text[:60]!r} divides by zero", key=OPTION)
     except ExpressionError as error:
         raise ConfigError(f"{text!r}: {error.message}", key=OPTION) from error
     except (OverflowError, ValueError) as error:  # an exponent may be infinite, or no number
-        raise ConfigError(f"{text[:60]!r} has a number beyond doubles, 1.8e308", key=OPTION) from error
+        raise ConfigError(
+            f"{text[:60]!r} has a number beyond doubles, 1.8e308", key=OPTION
+        ) from error
 
     def values(_state: ModelState, at: Floats, given: Mapping[str, Any]) -> Floats:
         unknowns = dict(zip(model.sorted_unknowns, at, strict=True))
         with np.errstate(all="ignore"):
             found = interpret(tree, _Arrays({**given, **unknowns}))
-            value = np.where(np.isfinite(found.value), found.value, np.nan)  # else the expression has no value there
+            value = np.where(
+                np.isfinite(found.value), found.value, np.nan
+            )  # else the expression has no value there
             return np.broadcast_to(np.where(found.lost(), np.inf, value), at.shape[1:]) + 0.0
 
     return Valued(text.strip(), "", values)
@@ -115,8 +133,9 @@ _TINY, _EPSILON = np.finfo(np.float64).tiny, np.finfo(np.float64).eps
 
 @dataclass(frozen=True, slots=True)
 class _Doubles:
-    """Values of a part of an expression, and how far from the true ones they may be where doubles did not hold a part
-    of it, being too small or too large; rounding apart, which this error does not count."""
+    """Values of a part of an expression, and how far from the true ones they may be where doubles
+    did not hold a part of it, being too small or too large; rounding apart, which this error does
+    not count."""
 
     value: Any
     error: Any = 0.0
@@ -127,7 +146,9 @@ class _Doubles:
 
 
 class _Arrays:
-    """The interpretation of an expression in arrays; quotients and functions of any argument are allowed."""
+    """The interpretation of an expression in arrays; quotients and functions of any argument are
+    allowed.
+    """
 
     def __init__(self, values: Mapping[str, Any]):
         self.values = values
@@ -141,7 +162,9 @@ class _Arrays:
 
     def call(self, call: Call) -> _Doubles:
         argument = interpret(call.argument, self)
-        return _Doubles((np.cos if call.function == "cos" else np.sin)(argument.value), argument.error)
+        return _Doubles(
+            (np.cos if call.function == "cos" else np.sin)(argument.value), argument.error
+        )
 
     def negative(self, one: _Doubles) -> _Doubles:
         return _Doubles(-one.value, one.error)
@@ -155,7 +178,9 @@ class _Arrays:
             case "*":
                 value = a * b
                 error = np.abs(a) * right.error + np.abs(b) * left.error + left.error * right.error
-                return _Doubles(value, error + _overflow(value, a, b) + _underflow(value, (a != 0) & (b != 0)))
+                return _Doubles(
+                    value, error + _overflow(value, a, b) + _underflow(value, (a != 0) & (b != 0))
+                )
             case _:
                 value = a / b
                 error = (left.error + np.abs(value) * right.error) / (np.abs(b) - right.error)

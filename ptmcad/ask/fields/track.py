@@ -14,7 +14,9 @@ from ptmcad.ask.fields.equations import Floats, ModelState, state_at
 from ptmcad.question.slice import Slice
 
 ALONG = 0.08
-"""Radians, or units, that a solution may move in a part of a step, in which it is followed without looking again."""
+"""Radians, or units, that a solution may move in a part of a step, in which it is followed without
+looking again.
+"""
 MIN_STEP = 1e-7
 """Of the course: a solution that cannot be followed so far has vanished."""
 
@@ -39,9 +41,11 @@ class Track:
         return solution(lambda at: self.at(share, at), start)
 
 
-def followed(track: Track, at: Floats, done: float, to: float, own: int) -> tuple[Floats, float, bool]:
-    """The solution further along the course, and how far: to where it should go, or to where it vanishes or, as the
-    last entry says, goes on as one that does not count.
+def followed(
+    track: Track, at: Floats, done: float, to: float, own: int
+) -> tuple[Floats, float, bool]:
+    """The solution further along the course, and how far: to where it should go, or to where it
+    vanishes or, as the last entry says, goes on as one that does not count.
 
     Parameters
     ----------

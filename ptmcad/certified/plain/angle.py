@@ -1,4 +1,5 @@
-"""Angles that are sums of whole multiples of variable ones, of quarter turns, and of such whose half has a tangent.
+"""Angles that are sums of whole multiples of variable ones, of quarter turns, and of such whose
+half has a tangent.
 
 Guarantee: sums and multiples are exact, so that what cancels does, and so are cosine and sine.
 """
@@ -66,7 +67,9 @@ class Angle:
         angle = self.graph.constant(0)
         for f, n in self.smooth.items():
             angle = angle + n * f
-        function, sign = ((angle.cos, 1), (angle.sin, -1), (angle.cos, -1), (angle.sin, 1))[quarters % 4]
+        function, sign = ((angle.cos, 1), (angle.sin, -1), (angle.cos, -1), (angle.sin, 1))[
+            quarters % 4
+        ]
         if angle.value == 0:
             return self.graph.constant(sign * (1 - quarters % 2))
         return sign * function()

@@ -1,7 +1,8 @@
-"""Ranges of the unknowns that hold all solutions over a window: a full turn of each angle, proved bounds of the others.
+"""Ranges of the unknowns that hold all solutions over a window: a full turn of each angle, proved
+bounds of the others.
 
-Guarantee: over the closed window no solution at which no inequality is violated has a real unknown outside of its
-range, nor comes to infinity. (Lemma 19 of docs/soundness.md.)
+Guarantee: over the closed window no solution at which no inequality is violated has a real unknown
+outside of its range, nor comes to infinity. (Lemma 19 of docs/soundness.md.)
 """
 
 from __future__ import annotations
@@ -33,7 +34,9 @@ MAX_BOXES = 1000
 MAX_BOXES_HELD = 5_000
 """The same for lengths that springs hold together."""
 AXES_HELD = 1 / 64
-"""Of the widths along the axes in the choice what is halved then: what holds lengths is mostly free of the axes."""
+"""Of the widths along the axes in the choice what is halved then: what holds lengths is mostly free
+of the axes.
+"""
 MIN_SHARE = 1e-12
 """Of a range, or of a number's size, below which it is not halved again."""
 MAX_WEIGHT = 3
@@ -67,7 +70,11 @@ def known_ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]
 
 def refusal(problem: Problem, found: Sequence[Range]) -> ConfigError:
     """What to raise where some unknowns have no range, with their names."""
-    missing = [name for name, bounds in zip(problem.unknowns, found, strict=True) if not isfinite(sum(bounds))]
+    missing = [
+        name
+        for name, bounds in zip(problem.unknowns, found, strict=True)
+        if not isfinite(sum(bounds))
+    ]
     which = f"no bound of the unknown{'s' * (len(missing) > 1)} {', '.join(missing)} could be proved over the window"
     if problem.has_springs:  # which no other engine takes
         return ConfigError(
@@ -104,7 +111,9 @@ class _BoundSearch:
         while waiting:
             # the ranges that are known serve to bound the others
             new = next(filter(None, (self._range(alone, found, k) for k in waiting)), None)
-            new = new or next(filter(None, (self._together(found, chosen) for chosen in _subsets(waiting))), None)
+            new = new or next(
+                filter(None, (self._together(found, chosen) for chosen in _subsets(waiting))), None
+            )
             if new is None:
                 return tuple(found)
             for k, bounds in new.items():
@@ -123,21 +132,29 @@ class _BoundSearch:
         powers = tuple(int(j == k) for j in range(len(self.problem.unknowns)))
         key = (0,) * len(powers), powers
         return any(
-            c.value.terms.keys() == {key} and c.value.terms[key][0].is_constant and c.value.terms[key][0].constant() > 0
+            c.value.terms.keys() == {key}
+            and c.value.terms[key][0].is_constant
+            and c.value.terms[key][0].constant() > 0
             for c in self.problem.inequalities
         )
 
     def _alone(self) -> Tape:
-        """What vanishes at solutions, and what is not negative at those that count, for boxes that may be infinite."""
+        """What vanishes at solutions, and what is not negative at those that count, for boxes that
+        may be infinite.
+        """
         problem = self.problem
         at = chart(geometry(problem))
         graph = at.equations[0].graph
         unknowns = [graph.variable(j) for j in problem.variables]
         inequalities = [c.value.formula(unknowns) for c in problem.inequalities]
-        return record([[*at.equations, *(f.formula(unknowns) for f in self.vanishing)], inequalities])
+        return record(
+            [[*at.equations, *(f.formula(unknowns) for f in self.vanishing)], inequalities]
+        )
 
     def _range(self, tape: Tape, found: Sequence[Range], k: int) -> _Found | None:
-        """The range of one unknown, whatever those without a range are; each end is a power of two, or it is known."""
+        """The range of one unknown, whatever those without a range are; each end is a power of two,
+        or it is known.
+        """
         box = np.array([*self.window, *found])
 
         def least(sign: int) -> int | None:
@@ -154,13 +171,16 @@ class _BoundSearch:
         return None if above is None or low == -inf else {k: (low, 2.0**above)}
 
     def _together(self, found: Sequence[Range], chosen: tuple[int, ...]) -> _Found | None:
-        """Ranges of unknowns of which one is always the largest: x_j = t_j u^-w_j, |t_j| at most 1, and one 1 or -1.
+        """Ranges of unknowns of which one is always the largest: x_j = t_j u^-w_j, |t_j| at most 1,
+        and one 1 or -1.
 
         Several weights w are tried, equal ones first.
         """
         if not self.vanishing and not self.problem.has_springs:
             return None
-        for weights in sorted(product(range(1, MAX_WEIGHT + 1), repeat=len(chosen)), key=lambda w: (max(w), sum(w))):
+        for weights in sorted(
+            product(range(1, MAX_WEIGHT + 1), repeat=len(chosen)), key=lambda w: (max(w), sum(w))
+        ):
             if gcd(*weights) == 1:
                 shares = dict(zip(chosen, weights, strict=True))
                 power = self._common_bound(found, shares)
@@ -172,13 +192,17 @@ class _BoundSearch:
     def _common_bound(self, found: Sequence[Range], weights: Mapping[int, int]) -> int | None:
         """The least power p such that no solution has |x_j|^(1/w_j) at least 2^p for some j."""
         graph = Graph()
-        unknowns = [graph.variable(j) for j in (*self.problem.variables, FIRST + len(self.problem.unknowns))]
+        unknowns = [
+            graph.variable(j) for j in (*self.problem.variables, FIRST + len(self.problem.unknowns))
+        ]
 
         def formulas(polynomials: Iterable[TrigonometricPolynomial]) -> list[Formula]:
             return [scaled_together([f], weights)[0].formula(unknowns) for f in polynomials]
 
         inequalities = formulas(c.value for c in self.problem.inequalities)
-        tape = record([formulas(self.vanishing), [*inequalities, *self._balances(weights, unknowns)]])
+        tape = record(
+            [formulas(self.vanishing), [*inequalities, *self._balances(weights, unknowns)]]
+        )
         lowest = {k: 0.0 if found[k][0] == 0 else -1.0 for k in weights}
         faces = [(k, side) for k, low in lowest.items() for side in {1.0, low} if side]
         most, axes = (MAX_BOXES_HELD, AXES_HELD) if self.problem.has_springs else (MAX_BOXES, 1.0)
@@ -191,8 +215,11 @@ class _BoundSearch:
 
         return _least(holds)
 
-    def _balances(self, weights: Mapping[int, int], unknowns: Sequence[Formula]) -> Iterator[Formula]:
-        """Of each equation what its springs reach at most, plus the rest, and less it: not negative at solutions.
+    def _balances(
+        self, weights: Mapping[int, int], unknowns: Sequence[Formula]
+    ) -> Iterator[Formula]:
+        """Of each equation what its springs reach at most, plus the rest, and less it: not negative
+        at solutions.
 
         Whatever the direction u of a spring is, K u.w is at most K |w|.
         """
@@ -215,9 +242,11 @@ _Found = dict[int, Range]
 
 
 def eliminated(equations: Sequence[TrigonometricPolynomial]) -> list[TrigonometricPolynomial]:
-    """Sums of two equations, one times a factor, without one of their common terms, if that leaves no more terms.
+    """Sums of two equations, one times a factor, without one of their common terms, if that leaves
+    no more terms.
 
-    What a reaction takes from one substance it often gives to another: the sum bounds unknowns that neither does.
+    What a reaction takes from one substance it often gives to another: the sum bounds unknowns that
+    neither does.
     """
     found: list[TrigonometricPolynomial] = []
     for f, g in combinations(equations, 2):
@@ -225,7 +254,10 @@ def eliminated(equations: Sequence[TrigonometricPolynomial]) -> list[Trigonometr
             (a, b), (c, d) = f.terms[key], g.terms[key]
             if a.numerator and c.numerator and not (b * c - a * d).numerator:
                 combined = f.scaled(c) - g.scaled(a)
-                if 0 < len(combined.terms) <= max(len(f.terms), len(g.terms)) and combined not in found:
+                if (
+                    0 < len(combined.terms) <= max(len(f.terms), len(g.terms))
+                    and combined not in found
+                ):
                     found.append(combined)
     return found
 
@@ -233,9 +265,11 @@ def eliminated(equations: Sequence[TrigonometricPolynomial]) -> list[Trigonometr
 def scaled_together(
     polynomials: Sequence[TrigonometricPolynomial], weights: Mapping[int, int]
 ) -> list[TrigonometricPolynomial]:
-    """Some with t_j u^-w_j in the place of real unknowns, times u^d: polynomials in one more unknown, u, the last.
+    """Some with t_j u^-w_j in the place of real unknowns, times u^d: polynomials in one more
+    unknown, u, the last.
 
-    d is the least number that leaves no pole in any of them, so that at u = 0 they are what dominates far away.
+    d is the least number that leaves no pole in any of them, so that at u = 0 they are what
+    dominates far away.
     """
 
     def degree(powers: Multi) -> int:
@@ -243,7 +277,9 @@ def scaled_together(
 
     most = max((degree(e) for f in polynomials for _, e in f.terms), default=0)
     return [
-        TrigonometricPolynomial({((*m, 0), (*e, most - degree(e))): pair for (m, e), pair in f.terms.items()})
+        TrigonometricPolynomial(
+            {((*m, 0), (*e, most - degree(e))): pair for (m, e), pair in f.terms.items()}
+        )
         for f in polynomials
     ]
 
@@ -259,7 +295,9 @@ def _subsets(waiting: Sequence[int]) -> Iterator[tuple[int, ...]]:
 
 
 def _least(holds: Callable[[int], bool]) -> int | None:
-    """The least power of two for which something holds that holds for all larger ones; None when for none."""
+    """The least power of two for which something holds that holds for all larger ones; None when
+    for none.
+    """
     if not holds(MAX_POWER):
         return None
     low, high = MIN_POWER - 1, MAX_POWER
@@ -270,7 +308,9 @@ def _least(holds: Callable[[int], bool]) -> int | None:
 
 
 def is_empty(tape: Tape, box: Floats, most: int = MAX_BOXES, axes: float = 1.0) -> bool:
-    """Whether it is proved that a box has no solution that counts; shape (variables, 2), infinite ends included."""
+    """Whether it is proved that a box has no solution that counts; shape (variables, 2), infinite
+    ends included.
+    """
     low, high = np.empty((2, len(tape)))
     finite = np.isfinite(box).all(axis=1)
     used = np.isin(np.arange(len(box)), tape.first[tape.operations == Operation.VARIABLE])
@@ -285,8 +325,12 @@ def is_empty(tape: Tape, box: Floats, most: int = MAX_BOXES, axes: float = 1.0) 
         part = waiting.pop()
         treated += 1
         # a run that finds two enclosures of one number apart has proved that there is no such point
-        if not run(program(tape), part[:, 0].copy(), part[:, 1].copy(), low, high, 0, len(tape)) or (
-            (low[vanishing] > 0).any() or (high[vanishing] < 0).any() or (high[nonnegative] < 0).any()
+        if not run(
+            program(tape), part[:, 0].copy(), part[:, 1].copy(), low, high, 0, len(tape)
+        ) or (
+            (low[vanishing] > 0).any()
+            or (high[vanishing] < 0).any()
+            or (high[nonnegative] < 0).any()
         ):
             continue
         with np.errstate(invalid="ignore"):

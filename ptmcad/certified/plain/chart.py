@@ -1,15 +1,19 @@
-"""The formulas of a problem: equations, Hessian and determinant, with the direction of one spring as a variable or not.
+"""The formulas of a problem: equations, Hessian and determinant, with the direction of one spring
+as a variable or not.
 
-Guarantee: the formulas are those of the potential wherever every spring with a free length has a length. Where a spring
-has none, its direction stands for every unit vector, so that an equilibrium that comes from nearby is not lost.
+Guarantee: the formulas are those of the potential wherever every spring with a free length has a
+length. Where a spring has none, its direction stands for every unit vector, so that an equilibrium
+that comes from nearby is not lost.
 
-With u_s = d_s/|d_s| the equations are dV/dq_i - sum of K_s u_s . dd_s/dq_i, and the Hessian has poles |d_s| = 0. In the
-chart of spring s its direction is (cos phi, sin phi) with phi an unknown, and d_s x u = 0 an equation more. Then all is
-smooth at |d_s| = 0, and by Schur's complement the Jacobian of the larger system has the determinant -+ |d_s| det H.
+With u_s = d_s/|d_s| the equations are dV/dq_i - sum of K_s u_s . dd_s/dq_i, and the Hessian has
+poles |d_s| = 0. In the chart of spring s its direction is (cos phi, sin phi) with phi an unknown,
+and d_s x u = 0 an equation more. Then all is smooth at |d_s| = 0, and by Schur's complement the
+Jacobian of the larger system has the determinant -+ |d_s| det H.
 
-The i-th equation is taken over a factor g_i > 0 in the axes, so that the matrix is H with rows over these factors: M -
-sum of K_s/|d_s| v_s (g v_s)^T, v_s being the sines u_s x a_i of spring s, and M without a pole. So each spring enters
-the determinant to the first power (`ptmcad.certified.plain.minors`; Lemmas S1 to S3 of docs/soundness.md).
+The i-th equation is taken over a factor g_i > 0 in the axes, so that the matrix is H with rows over
+these factors: M - sum of K_s/|d_s| v_s (g v_s)^T, v_s being the sines u_s x a_i of spring s, and M
+without a pole. So each spring enters the determinant to the first power
+(`ptmcad.certified.plain.minors`; Lemmas S1 to S3 of docs/soundness.md).
 """
 
 from __future__ import annotations
@@ -31,7 +35,9 @@ from ptmcad.model.determinants import determinant
 
 
 class Turned(NamedTuple):
-    """The moment on bodies that turn together, and its derivative along the direction w of the unknowns."""
+    """The moment on bodies that turn together, and its derivative along the direction w of the
+    unknowns.
+    """
 
     weights: tuple[int, ...]
     moment: Formula
@@ -48,13 +54,14 @@ class SpringChart:
     equations : one for each unknown, over its factor.
     hessian : their derivatives by the unknowns.
     lengths : |d_s| of each cone.
-    dependent : formulas that vanish at every equilibrium, linear in the direction of a spring: the equations solved for
-        its unit vector u_s, each coordinate.
-    balances : the same, smooth where one spring has no length, unlike the equations: that u_s has the length 1.
+    dependent : formulas that vanish at every equilibrium, linear in the direction of a spring: the
+        equations solved for its unit vector u_s, each coordinate.
+    balances : the same, smooth where one spring has no length, unlike the equations: that u_s has
+        the length 1.
     cones : with what their springs are in the equations by.
     smooth : the derivatives of the equations without springs.
-    anywhere, there : the sines' products of each spring, everywhere and where the equations vanish; the latter never to
-        be differentiated.
+    anywhere, there : the sines' products of each spring, everywhere and where the equations vanish;
+        the latter never to be differentiated.
     scales : the factors g_i.
     short : number of the cone whose direction is a variable.
     turned : bodies turned by one angle.
@@ -115,12 +122,16 @@ class SpringChart:
         return chosen.extent * whole - chosen.pull * bent(rigid, others, self.scales, by=unit)
 
     def levelled(self) -> Formula:
-        """The determinant times the lengths of all springs, where the equations vanish: finite everywhere."""
+        """The determinant times the lengths of all springs, where the equations vanish: finite
+        everywhere.
+        """
         bends = [Bent(at.pull, there, at) for at, there in zip(self.cones, self.there, strict=True)]
         return bent(self.rigid(), bends, self.scales, extents=[at.extent for at in self.cones])
 
     def determinants_by_turning(self) -> Iterator[Formula]:
-        """Of two unknowns: the determinant by one of them and both turned, where the equations vanish."""
+        """Of two unknowns: the determinant by one of them and both turned, where the equations
+        vanish.
+        """
         if len(self.equations) == 2 and self.symmetric:
             there = self.matrix_at_equilibrium()
             for weights, _, stiffness, factor in self.turned:
@@ -130,7 +141,8 @@ class SpringChart:
                 yield there[0][0] * (factor * stiffness) - self.scales[0] * slip.squared()
 
     def diagonal_times_length(self, s: int) -> tuple[Formula, ...]:
-        """|d_s| times the Hessian's diagonal where the equations vanish, as far as spring s is in it.
+        """|d_s| times the Hessian's diagonal where the equations vanish, as far as spring s is in
+        it.
 
         What that spring is in it by is without its direction: |d_s| u_s is d_s.
         """
@@ -138,13 +150,17 @@ class SpringChart:
         others = _rigid(self.smooth, [*self.cones[:s], *self.cones[s + 1 :]])
         rest = _less(others, bends[:s] + bends[s + 1 :], self.scales)
         return tuple(
-            self.lengths[s] * rest[i][i] - chosen.pull * (chosen.levers[i] + self.scales[i] * self.there[s][i][i])
+            self.lengths[s] * rest[i][i]
+            - chosen.pull * (chosen.levers[i] + self.scales[i] * self.there[s][i][i])
             for i in chosen.active
         )
 
 
-def chart(exact: FactoredProblem, short: int | None = None, unknowns: Sequence[Unknown] = ()) -> SpringChart:
-    """The formulas of a problem, in a graph of their own or in that of what stands for the unknowns.
+def chart(
+    exact: FactoredProblem, short: int | None = None, unknowns: Sequence[Unknown] = ()
+) -> SpringChart:
+    """The formulas of a problem, in a graph of their own or in that of what stands for the
+    unknowns.
 
     Parameters
     ----------
@@ -157,14 +173,19 @@ def chart(exact: FactoredProblem, short: int | None = None, unknowns: Sequence[U
     smooth = [f.formula(unknowns) for f in exact.equations]
     scales = tuple(expression_formula(graph, g) for g in exact.factors)
     phi = None if short is None else graph.variable(FIRST + len(size))
-    springs = tuple(s.spring(graph, unknowns, phi if k == short else None) for k, s in enumerate(exact.shapes))
+    springs = tuple(
+        s.spring(graph, unknowns, phi if k == short else None) for k, s in enumerate(exact.shapes)
+    )
     slopes = [[f.formula(unknowns) for f in row] for row in exact.slopes]
     for push in exact.pushes:
         strength = push.strength(graph)
         for i, w in enumerate(push.weights):
             smooth[i] = smooth[i] - strength * w.formula(unknowns)
-            slopes[i] = [f - strength * w.derivative(j).formula(unknowns) for j, f in enumerate(slopes[i])]
-    # a rest is put together without its spring: taken off again, its part would leave an interval's width behind
+            slopes[i] = [
+                f - strength * w.derivative(j).formula(unknowns) for j, f in enumerate(slopes[i])
+            ]
+    # a rest is put together without its spring: taken off again, its part would leave an interval's
+    # width behind
     rests = [_without(smooth, [t for t in springs if t is not at]) for at in springs]
     anywhere = tuple(at.products() for at in springs)
     bends = [Bent(at.pull * at.inverse, p, at) for at, p in zip(springs, anywhere, strict=True)]
@@ -188,7 +209,12 @@ def chart(exact: FactoredProblem, short: int | None = None, unknowns: Sequence[U
 
 def _turned(turn: Turn, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown]) -> Turned:
     factor = expression_formula(unknowns[0].graph, turn.factor)
-    return Turned(turn.weights, turn.moment(springs, unknowns), turn.stiffness(springs, unknowns, factor), factor)
+    return Turned(
+        turn.weights,
+        turn.moment(springs, unknowns),
+        turn.stiffness(springs, unknowns, factor),
+        factor,
+    )
 
 
 def _rigid(smooth: Sequence[Sequence[Formula]], springs: Sequence[ConeFormulas]) -> Matrix:
@@ -201,7 +227,9 @@ def _rigid(smooth: Sequence[Sequence[Formula]], springs: Sequence[ConeFormulas])
     return tuple(map(tuple, entries))
 
 
-def _less(rigid: Sequence[Sequence[Formula]], bends: Sequence[Bent], scales: Sequence[Formula]) -> Matrix:
+def _less(
+    rigid: Sequence[Sequence[Formula]], bends: Sequence[Bent], scales: Sequence[Formula]
+) -> Matrix:
     """The matrix M less the springs' parts."""
     entries = [list(row) for row in rigid]
     for bend in bends:
@@ -222,7 +250,9 @@ def _without(smooth: Sequence[Formula], springs: Sequence[ConeFormulas]) -> list
 def _directed(at: ConeFormulas, rest: Sequence[Formula]) -> list[Formula]:
     """With r = K (u.a_i, u.a_j): |a_i|^2 r_j - a_i.a_j r_i = K (a_i x a_j)(a_i x u)."""
     return [
-        at.squares[i][i] * rest[j] - at.squares[i][j] * rest[i] + at.pull * (at.crosses[i][j] * at.sines[i])
+        at.squares[i][i] * rest[j]
+        - at.squares[i][j] * rest[i]
+        + at.pull * (at.crosses[i][j] * at.sines[i])
         for pair in combinations(at.active, 2)
         for i, j in (pair, pair[::-1])
     ]
@@ -240,7 +270,9 @@ def _balances(at: ConeFormulas, rest: Sequence[Formula]) -> list[Formula]:
 
 
 def principal_minors(hessian: Matrix, *, whole: bool = False) -> list[Formula]:
-    """All, with or without the determinant itself; none is negative where the Hessian is positive semidefinite."""
+    """All, with or without the determinant itself; none is negative where the Hessian is positive
+    semidefinite.
+    """
     size = len(hessian)
     return [
         determinant(tuple(tuple(hessian[i][j] for j in chosen) for i in chosen))

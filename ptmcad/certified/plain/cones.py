@@ -1,12 +1,14 @@
-"""Springs with a free length in the formulas of a problem, and what an equilibrium says of their directions.
+"""Springs with a free length in the formulas of a problem, and what an equilibrium says of their
+directions.
 
-Guarantee: every formula is read off the differences of the springs' ends. Products of their slopes are in Fourier's
-normal form, so that what is constant for rigid bodies is a constant.
+Guarantee: every formula is read off the differences of the springs' ends. Products of their slopes
+are in Fourier's normal form, so that what is constant for rigid bodies is a constant.
 
-With u = d/|d| the slope of |d| by q_i is u.a_i, a_i = dd/dq_i, and its second derivative u.d^2d/dq_i dq_j +
-(u x a_i)(u x a_j)/|d|. An equilibrium balances each spring: K u.a_i is the rest of the i-th equation, whatever the
-direction u is. So the squared sines are known there, too, by (u x a_i)(u x a_j) = a_i.a_j - (u.a_i)(u.a_j), also where
-the spring is short and its direction is not.
+With u = d/|d| the slope of |d| by q_i is u.a_i, a_i = dd/dq_i, and its second derivative
+u.d^2d/dq_i dq_j + (u x a_i)(u x a_j)/|d|. An equilibrium balances each spring: K u.a_i is the rest
+of the i-th equation, whatever the direction u is. So the squared sines are known there, too, by
+(u x a_i)(u x a_j) = a_i.a_j - (u.a_i)(u.a_j), also where the spring is short and its direction is
+not.
 """
 
 from __future__ import annotations
@@ -29,14 +31,17 @@ Pair = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
 
 
 class ConeFormulas(NamedTuple):
-    """A spring in one configuration, with the vectors w_i by which it is in the equations, over these's factors.
+    """A spring in one configuration, with the vectors w_i by which it is in the equations, over
+    these's factors.
 
-    Of open chains w_i is the slope a_i of d by the i-th unknown over the factor of that one's equation.
+    Of open chains w_i is the slope a_i of d by the i-th unknown over the factor of that one's
+    equation.
 
     Attributes
     ----------
     pull : stiffness times free length.
-    vector, unit, extent : d, its direction u and |d|, which is d.u where the direction is a variable.
+    vector, unit, extent : d, its direction u and |d|, which is d.u where the direction is a
+        variable.
     inverse : 1/|d|.
     active : the equations that the spring is in.
     cosines, sines : u.w_i and u x w_i.
@@ -65,14 +70,17 @@ class ConeFormulas(NamedTuple):
         return tuple(tuple(p * q for q in self.turns) for p in self.sines)
 
     def products_at_equilibrium(self, rest: Sequence[Formula]) -> Matrix:
-        """The same where K u.w_i is ``rest``; never to be differentiated. Of closed loops no more is known.
+        """The same where K u.w_i is ``rest``; never to be differentiated. Of closed loops no more
+        is known.
 
         A rest that is the constant zero says nothing where K may be zero, too: 0/0 is no interval.
         """
         if self.turns != self.sines:
             return self.products()
         known = [
-            meet(c, r / self.pull) if i in self.active and (r.value is None or self.pull.value is not None) else c
+            meet(c, r / self.pull)
+            if i in self.active and (r.value is None or self.pull.value is not None)
+            else c
             for i, (c, r) in enumerate(zip(self.cosines, rest, strict=True))
         ]
         return tuple(
@@ -88,13 +96,15 @@ class ConeFormulas(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ConeShape:
-    """What formulas of a spring are written of, exactly; by each unknown, over the factor of its equation.
+    """What formulas of a spring are written of, exactly; by each unknown, over the factor of its
+    equation.
 
     Attributes
     ----------
     pull : stiffness times free length.
     difference : d.
-    weights, bends : what the spring is in the equations by, and the derivatives of that by each unknown.
+    weights, bends : what the spring is in the equations by, and the derivatives of that by each
+        unknown.
     slopes : of d by each unknown.
     levers : scalar products of d and the derivatives of the weights, each by its own unknown.
     squares, crosses : scalar products of the weights, and their cross products.
@@ -109,7 +119,9 @@ class ConeShape:
     squares: tuple[tuple[TrigonometricPolynomial, ...], ...]
     crosses: tuple[tuple[TrigonometricPolynomial, ...], ...]
 
-    def spring(self, graph: Graph, unknowns: Sequence[Unknown], phi: Formula | None) -> ConeFormulas:
+    def spring(
+        self, graph: Graph, unknowns: Sequence[Unknown], phi: Formula | None
+    ) -> ConeFormulas:
         """The formulas in a graph.
 
         Parameters
@@ -141,13 +153,18 @@ class ConeShape:
 def shape(cone: SpringCone, factors: Sequence[Expression]) -> ConeShape:
     """Of a spring, with the positive factors of the equations."""
     x, y = cone.difference
-    weights = tuple((over(a, g), over(b, g)) for (a, b), g in zip(cone.weights, factors, strict=True))
+    weights = tuple(
+        (over(a, g), over(b, g)) for (a, b), g in zip(cone.weights, factors, strict=True)
+    )
     return ConeShape(
         cone.pull,
         cone.difference,
         weights,
         tuple((over(x.derivative(i), g), over(y.derivative(i), g)) for i, g in enumerate(factors)),
-        tuple(tuple((a.derivative(j), b.derivative(j)) for j in range(len(factors))) for a, b in weights),
+        tuple(
+            tuple((a.derivative(j), b.derivative(j)) for j in range(len(factors)))
+            for a, b in weights
+        ),
         tuple(x * a.derivative(i) + y * b.derivative(i) for i, (a, b) in enumerate(weights)),
         tuple(tuple(a * c + b * d for c, d in weights) for a, b in weights),
         tuple(tuple(a * d - b * c for c, d in weights) for a, b in weights),

@@ -1,8 +1,8 @@
-"""The curves of a slice at which counts change, for any problem: folds, equilibria that a spring's cone swallows,
-and solutions at which a condition stops to hold.
+"""The curves of a slice at which counts change, for any problem: folds, equilibria that a spring's
+cone swallows, and solutions at which a condition stops to hold.
 
-Guarantee: each point of the window at which the chosen count changes lies on the projection of one of the curves
-(docs/soundness.md, "Plain formulas").
+Guarantee: each point of the window at which the chosen count changes lies on the projection of one
+of the curves (docs/soundness.md, "Plain formulas").
 """
 
 from __future__ import annotations
@@ -30,11 +30,14 @@ from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 
 SHORT_RATIO = 4
-"""Near an involution's fixed points a spring is short where its length is at most so many times what is short
-elsewhere, times the distance of a configuration from its image: nearly all springs are long on them."""
+"""Near an involution's fixed points a spring is short where its length is at most so many times
+what is short elsewhere, times the distance of a configuration from its image: nearly all springs
+are long on them."""
 
 
-def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[CriticalCurve, ...]:
+def curves(
+    slice: Slice, count: Count, without: frozenset[str] = frozenset()
+) -> tuple[CriticalCurve, ...]:
     """The curves at which ``count`` may change.
 
     Parameters
@@ -50,7 +53,9 @@ def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) ->
     return tuple(curve for branch in found for curve in _of_branch(slice, count, without, branch))
 
 
-def _of_branch(slice: Slice, count: Count, without: frozenset[str], problem: Problem) -> Iterator[CriticalCurve]:
+def _of_branch(
+    slice: Slice, count: Count, without: frozenset[str], problem: Problem
+) -> Iterator[CriticalCurve]:
     bounds = ranges(problem, slice.axes)
     exact = geometry(problem, slice.axes)
     at = chart(exact)
@@ -80,12 +85,15 @@ def _smooth(search: CurveSearch, at: SpringChart) -> tuple[CriticalCurve, ...]:
     return (_fold(search, at), *_short_folds(search, at), *cones(search, at))
 
 
-def _quotient(search: CurveSearch, changes: Sequence[Involution], whole: SpringChart) -> Iterator[CriticalCurve]:
+def _quotient(
+    search: CurveSearch, changes: Sequence[Involution], whole: SpringChart
+) -> Iterator[CriticalCurve]:
     """The folds where involutions keep the problem, and limits without a spring's length.
 
-    Minima are searched all about one involution's fixed points if one unknown is odd; else what is far from all fixed
-    points is searched as without an involution. So is, where all equilibria are, what is near them with a short spring:
-    such a spring's direction is as good as any there, and no equilibrium parts with its image.
+    Minima are searched all about one involution's fixed points if one unknown is odd; else what is
+    far from all fixed points is searched as without an involution. So is, where all equilibria are,
+    what is near them with a short spring: such a spring's direction is as good as any there, and no
+    equilibrium parts with its image.
     """
     near = not search.stable or len(changes) > 1 or changes[0].odd > 1
     for change in changes:
@@ -102,10 +110,16 @@ def _quotient(search: CurveSearch, changes: Sequence[Involution], whole: SpringC
     yield from cones(search, whole)
 
 
-def _fold_about(search: CurveSearch, fold: SymmetricFold, charted: MirrorFrame | None) -> CriticalCurve:
-    """A fold in coordinates about an involution's fixed points, every spring long where these are ``charted``."""
+def _fold_about(
+    search: CurveSearch, fold: SymmetricFold, charted: MirrorFrame | None
+) -> CriticalCurve:
+    """A fold in coordinates about an involution's fixed points, every spring long where these are
+    ``charted``.
+    """
     at = fold.at
-    long = () if charted is None else [_excess(search, at, s, charted) for s in _charted(search, at)]
+    long = (
+        () if charted is None else [_excess(search, at, s, charted) for s in _charted(search, at)]
+    )
     cheap, costly = (
         [*own, *more] if search.dependent else []
         for own, more in zip(fold.vanishing, _dependent(search, at), strict=True)
@@ -119,11 +133,15 @@ def _fold_about(search: CurveSearch, fold: SymmetricFold, charted: MirrorFrame |
     ]
     solving = [*fold.equations, *at.equations, *cheap]
     pruning = Pruning([f for f in cheap if f.value is None], costly, nonnegative, solving)
-    return search.curve(fold.name + search.problem.where, fold.reason, fold.equations, pruning, fold.ranges)
+    return search.curve(
+        fold.name + search.problem.where, fold.reason, fold.equations, pruning, fold.ranges
+    )
 
 
 def _charted(search: CurveSearch, at: SpringChart) -> list[int]:
-    """The cones that have a chart: those of springs that several unknowns move, and all in closed loops."""
+    """The cones that have a chart: those of springs that several unknowns move, and all in closed
+    loops.
+    """
     return [s for s, cone in enumerate(at.cones) if len(cone.active) > 1 or search.problem.closing]
 
 
@@ -142,7 +160,9 @@ def _fold(search: CurveSearch, at: SpringChart) -> CriticalCurve:
 
 
 def _far(search: CurveSearch, at: SpringChart) -> list[Formula]:
-    """What is not negative where configurations are not searched about an involution's fixed points."""
+    """What is not negative where configurations are not searched about an involution's fixed
+    points.
+    """
     return [_distance(search, at, mirror) - NEAR for mirror in search.mirrors]
 
 
@@ -155,7 +175,9 @@ def _distance(search: CurveSearch, at: SpringChart, mirror: MirrorFrame) -> Form
     return mirror.distance(unknowns)
 
 
-def _excess(search: CurveSearch, at: SpringChart, s: int, near: MirrorFrame | None = None) -> Formula:
+def _excess(
+    search: CurveSearch, at: SpringChart, s: int, near: MirrorFrame | None = None
+) -> Formula:
     """What is not negative where a spring is long, near an involution's fixed points or elsewhere."""
     if near is None:
         return at.lengths[s] - search.short[s]
@@ -187,7 +209,9 @@ def _dependent(search: CurveSearch, at: SpringChart) -> tuple[Sequence[Formula],
 
 
 def _boundaries(search: CurveSearch, at: SpringChart) -> Iterator[CriticalCurve]:
-    """Solutions at which a condition is zero and no other one is violated; there one stops or begins to count."""
+    """Solutions at which a condition is zero and no other one is violated; there one stops or
+    begins to count.
+    """
     semidefinite = [*principal_minors(at.hessian), determinant(at.hessian)] if search.stable else []
     semidefinite += [at.determinant()] if search.rising else []
     values = search.values(at)
@@ -197,28 +221,41 @@ def _boundaries(search: CurveSearch, at: SpringChart) -> Iterator[CriticalCurve]
 
 
 def _of_predicate(search: CurveSearch, at: SpringChart) -> Iterator[CriticalCurve]:
-    """Stable equilibria at which one of a predicate's margins is zero, and no other one is negative."""
-    minima = [*_semidefinite(at), at.determinant(at_equilibrium=True)] if search.problem.is_gradient else []
+    """Stable equilibria at which one of a predicate's margins is zero, and no other one is
+    negative.
+    """
+    minima = (
+        [*_semidefinite(at), at.determinant(at_equilibrium=True)]
+        if search.problem.is_gradient
+        else []
+    )
     minima += [at.determinant()] if search.rising else []
     cheap = [*(turned.moment for turned in at.turned), *at.dependent]
     values = [condition.value.formula(at.unknowns) for condition in search.problem.further]
     for k, condition in enumerate(search.problem.further):
         nonnegative = [*values[:k], *values[k + 1 :], *minima, *search.values(at)]
-        yield _boundary(search, at, condition, Pruning(cheap, at.balances, nonnegative, [*at.equations, *cheap]))
+        yield _boundary(
+            search, at, condition, Pruning(cheap, at.balances, nonnegative, [*at.equations, *cheap])
+        )
 
 
-def _boundary(search: CurveSearch, at: SpringChart, condition: Condition, pruning: Pruning) -> CriticalCurve:
+def _boundary(
+    search: CurveSearch, at: SpringChart, condition: Condition, pruning: Pruning
+) -> CriticalCurve:
     """The solutions at which a condition is zero."""
     zero, *others = (f.formula(at.unknowns) for f in condition.squares or (condition.value,))
     return search.curve(
         (condition.curve or f"point where {condition.text} is 0") + search.problem.where,
-        condition.reason or f"solutions count where {condition.text} > 0, and at one of them it is zero",
+        condition.reason
+        or f"solutions count where {condition.text} > 0, and at one of them it is zero",
         [*at.equations, zero],
         pruning._replace(cheap=[*others, *pruning.cheap]),
     )
 
 
-def _short_folds(search: CurveSearch, at: SpringChart, near: MirrorFrame | None = None) -> Iterator[CriticalCurve]:
+def _short_folds(
+    search: CurveSearch, at: SpringChart, near: MirrorFrame | None = None
+) -> Iterator[CriticalCurve]:
     """The same where one spring is short, in its chart; the other ones may have any length.
 
     Parameters
@@ -227,7 +264,11 @@ def _short_folds(search: CurveSearch, at: SpringChart, near: MirrorFrame | None 
     """
     for s in _charted(search, at):
         cone, at = search.problem.cones[s], chart(search.exact, s)
-        minima = [*at.diagonal_times_length(s), *(turned.stiffness for turned in at.turned)] if search.stable else []
+        minima = (
+            [*at.diagonal_times_length(s), *(turned.stiffness for turned in at.turned)]
+            if search.stable
+            else []
+        )
         equations = [at.aligned, *at.equations, at.determinant()]
         cheap, costly = _dependent(search, at)
         nonnegative = [
@@ -256,4 +297,8 @@ def _reason(search: CurveSearch) -> str:
         return "equilibria meet, or a loop folds flat: the Jacobian is singular"
     if search.stable:
         return "a minimum meets a saddle: det H = 0 with no negative principal minor"
-    return "equilibria meet: det H = 0" if search.problem.is_gradient else "solutions meet: the Jacobian is singular"
+    return (
+        "equilibria meet: det H = 0"
+        if search.problem.is_gradient
+        else "solutions meet: the Jacobian is singular"
+    )

@@ -50,8 +50,10 @@ class CurveSearch:
     swallowed : whether solutions that springs without length swallow have curves of their own.
     dependent : whether formulas that vanish at all solutions are used besides the equations.
     conditions : positive at solutions that count.
-    rising : whether only solutions are asked for at which the Jacobian's determinant is not negative.
-    mirrors : a frame of each involution, configurations near whose fixed points are searched about these.
+    rising : whether only solutions are asked for at which the Jacobian's determinant is not
+        negative.
+    mirrors : a frame of each involution, configurations near whose fixed points are searched about
+        these.
     """
 
     exact: FactoredProblem
@@ -85,19 +87,28 @@ class CurveSearch:
 
         Parameters
         ----------
-        ranges : of the coordinates, which are the problem's unknowns where nothing is said; where there is one more
-            than these have, it is the direction of a short spring.
+        ranges : of the coordinates, which are the problem's unknowns where nothing is said; where
+            there is one more than these have, it is the direction of a short spring.
         """
         ranges = self.ranges if ranges is None else ranges
-        ends = [c for cone in self.problem.cones for d in cone.difference for pair in d.terms.values() for c in pair]
+        ends = [
+            c
+            for cone in self.problem.cones
+            for d in cone.difference
+            for pair in d.terms.values()
+            for c in pair
+        ]
         solving = pruning.solving if self.dependent and ends and len(self.ranges) > 1 else ()
-        # none that springs' directions depend on; with one unknown that costs more boxes than it saves
+        # none that springs' directions depend on; with one unknown that costs more boxes than it
+        # saves
         solved = quotients(solving, [k for k in (0, 1) if not any(c.uses(k) for c in ends)])
         vanishing = pruning.cheap, pruning.costly
         return CriticalCurve(
             name,
             reason,
-            system(equations, range(FIRST + len(ranges)), vanishing, pruning.nonnegative, solved=solved),
+            system(
+                equations, range(FIRST + len(ranges)), vanishing, pruning.nonnegative, solved=solved
+            ),
             ranges,
             np.array([*self.weights, TURNING_WEIGHT][: FIRST + len(ranges)]),
         )

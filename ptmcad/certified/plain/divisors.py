@@ -1,7 +1,7 @@
 """Common divisors of polynomials in the two axes, as `expressions` has them.
 
-Guarantee: exact, in Q[x, y]. They are FLINT's, whose types stay in here: the certified engine uses nothing of
-`algebra`, which has more of them.
+Guarantee: exact, in Q[x, y]. They are FLINT's, whose types stay in here: the certified engine uses
+nothing of `algebra`, which has more of them.
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ _PLANE = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
 
 
 def common_divisor(polynomials: Iterable[tuple[Term, ...]]) -> tuple[Term, ...]:
-    """The greatest one, unique but for a constant; none, the zero polynomial, of polynomials that are all zero."""
+    """The greatest one, unique but for a constant; none, the zero polynomial, of polynomials that
+    are all zero.
+    """
     return _terms(reduce(lambda f, g: f.gcd(g), map(_polynomial, polynomials), _PLANE.constant(0)))
 
 
@@ -31,7 +33,9 @@ def quotient(polynomial: tuple[Term, ...], divisor: tuple[Term, ...]) -> tuple[T
 def lowest_terms(value: Expression) -> Expression:
     """The same function, whose numerator and denominator have no common divisor."""
     divisor = common_divisor([value.numerator, value.denominator])
-    above, below = (Expression(quotient(terms, divisor)) for terms in (value.numerator, value.denominator))
+    above, below = (
+        Expression(quotient(terms, divisor)) for terms in (value.numerator, value.denominator)
+    )
     return above / below
 
 

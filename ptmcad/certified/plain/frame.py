@@ -1,4 +1,5 @@
-"""Coordinates that an involution keeps, or takes to their negatives, about a component of its fixed points.
+"""Coordinates that an involution keeps, or takes to their negatives, about a component of its fixed
+points.
 
 Guarantee: together the frames of an involution reach all configurations, or the image of each.
 """
@@ -22,7 +23,8 @@ from ptmcad.model.involutions import Involution
 
 
 class SignedSum(NamedTuple):
-    """An unknown as a sum: a sign times an even coordinate, one times an odd one, and quarter turns.
+    """An unknown as a sum: a sign times an even coordinate, one times an odd one, and quarter
+    turns.
 
     A coordinate that is not in it is -1.
     """
@@ -45,8 +47,8 @@ class MirrorFrame:
     places : of the unknowns.
     squares : of the lengths of its springs.
     ranges : of the even coordinates.
-    reaches : of the odd coordinates that are no angles the largest absolute values; 0 for an angle, of which a quarter
-        turn to each side is taken.
+    reaches : of the odd coordinates that are no angles the largest absolute values; 0 for an angle,
+        of which a quarter turn to each side is taken.
     """
 
     problem: Problem
@@ -67,7 +69,9 @@ class MirrorFrame:
         return _members([(p.odd, p.odd_sign) for p in self.places], len(self.reaches))
 
     def distance(self, unknowns: Sequence[Unknown]) -> Formula:
-        """Of a configuration from its image: of odd coordinates the squares of the sines, or shares of the reach."""
+        """Of a configuration from its image: of odd coordinates the squares of the sines, or shares
+        of the reach.
+        """
         graph = unknowns[0].graph
         total = graph.constant(0)
         for odd, reach in zip(self.odds, self.reaches, strict=True):
@@ -80,7 +84,9 @@ class MirrorFrame:
                 total = total + (1 - apart.cos()) * Fraction(1, 2)
         return total
 
-    def unknowns(self, evens: Sequence[Formula], odds: Sequence[Formula | Angle], graph: Graph) -> list[Unknown]:
+    def unknowns(
+        self, evens: Sequence[Formula], odds: Sequence[Formula | Angle], graph: Graph
+    ) -> list[Unknown]:
         """What stands for the unknowns.
 
         Parameters
@@ -110,7 +116,12 @@ class MirrorFrame:
         return found
 
     def block(
-        self, hessian: Matrix, columns: Sequence[Sequence[tuple[int, int]]], scales: Sequence[Formula], *, over: bool
+        self,
+        hessian: Matrix,
+        columns: Sequence[Sequence[tuple[int, int]]],
+        scales: Sequence[Formula],
+        *,
+        over: bool,
     ) -> Matrix:
         """The Hessian by some coordinates, from that by the unknowns with rows over ``scales``.
 
@@ -123,7 +134,9 @@ class MirrorFrame:
             total = scales[0].graph.constant(0)
             common = over and all(scales[i] is scales[a[0][0]] for i, _ in a)
             for i, s in a:
-                row = sum(((s * t) * hessian[i][j] for j, t in b), start=scales[0].graph.constant(0))
+                row = sum(
+                    ((s * t) * hessian[i][j] for j, t in b), start=scales[0].graph.constant(0)
+                )
                 total = total + (row if common else scales[i] * row)
             return total
 
@@ -135,14 +148,18 @@ def _members(signed: Sequence[tuple[int, int]], count: int) -> list[list[tuple[i
 
 
 def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Iterator[MirrorFrame]:
-    """One for each component of the fixed points; together their odd coordinates reach all configurations."""
+    """One for each component of the fixed points; together their odd coordinates reach all
+    configurations.
+    """
     angles = problem.is_angle
     alone = [k for k, j in enumerate(change.images) if j == k and change.signs[k] < 0 and angles[k]]
     squares = tuple(square_of(cone.difference) for cone in problem.cones)
     for sides in product((0, 2), repeat=len(alone)):
         turned = dict(zip(alone, sides, strict=True))
         places, evens, reaches = dict[int, SignedSum](), list[Range](), list[Fraction]()
-        for k, (j, sign, half) in enumerate(zip(change.images, change.signs, change.halves, strict=True)):
+        for k, (j, sign, half) in enumerate(
+            zip(change.images, change.signs, change.halves, strict=True)
+        ):
             if j < k:
                 continue
             low, high = ranges[k]
@@ -151,7 +168,9 @@ def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Ite
                 places[k] = SignedSum(len(evens), 1, len(reaches), 1, 0)
                 places[j] = SignedSum(len(evens), sign, len(reaches), -sign, 2 * half)
                 evens.append(TURN if angles[k] else ((low + least) / 2, (high + most) / 2))
-                reaches.append(Fraction(0) if angles[k] else Fraction(max(most - low, high - least)) / 2)
+                reaches.append(
+                    Fraction(0) if angles[k] else Fraction(max(most - low, high - least)) / 2
+                )
             elif sign > 0:
                 places[k] = SignedSum(len(evens), 1, -1, 0, 0)
                 evens.append(ranges[k])
@@ -159,5 +178,10 @@ def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Ite
                 places[k] = SignedSum(-1, 0, len(reaches), 1, half + turned.get(k, 0))
                 reaches.append(Fraction(0) if angles[k] else Fraction(max(-low, high)))
         yield MirrorFrame(
-            problem, change, tuple(places[k] for k in range(len(places))), squares, tuple(evens), tuple(reaches)
+            problem,
+            change,
+            tuple(places[k] for k in range(len(places))),
+            squares,
+            tuple(evens),
+            tuple(reaches),
         )

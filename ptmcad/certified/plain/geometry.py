@@ -1,4 +1,5 @@
-"""What all formulas of a problem are written of, exactly and once: factors, derivatives, springs, bodies that turn.
+"""What all formulas of a problem are written of, exactly and once: factors, derivatives, springs,
+bodies that turn.
 
 Guarantee: everything is over the positive common factor of its equation.
 """
@@ -25,7 +26,8 @@ class FactoredProblem:
     factors : of the equations, positive in the open window.
     equations, slopes : the smooth parts over their factors, and their derivatives by the unknowns.
     shapes : of the springs with a free length.
-    turns : directions in which bodies turn together; none are used of closed loops, and where springs are pushes.
+    turns : directions in which bodies turn together; none are used of closed loops, and where
+        springs are pushes.
     pushes : of the problem, with their weights over the factors.
     """
 
@@ -43,13 +45,16 @@ def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Factore
 
     Parameters
     ----------
-    axes : of the window in which factors are to be positive; without them, and of closed loops, all factors are 1, and
-        nothing turns.
+    axes : of the window in which factors are to be positive; without them, and of closed loops, all
+        factors are 1, and nothing turns.
     """
     factors: tuple[Expression, ...] = (constant(1),) * len(problem.equations)
     found: tuple[Turn, ...] = ()
     if axes is not None and not problem.closing:
-        factors, found = common_factors(problem, axes), () if problem.pushes else turns(problem, axes)
+        factors, found = (
+            common_factors(problem, axes),
+            () if problem.pushes else turns(problem, axes),
+        )
     equations = tuple(over(f, g) for f, g in zip(problem.equations, factors, strict=True))
     return FactoredProblem(
         problem,
@@ -59,14 +64,18 @@ def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Factore
         tuple(shape(cone, factors) for cone in problem.cones),
         found,
         tuple(
-            replace(push, weights=tuple(over(w, g) for w, g in zip(push.weights, factors, strict=True)))
+            replace(
+                push, weights=tuple(over(w, g) for w, g in zip(push.weights, factors, strict=True))
+            )
             for push in problem.pushes
         ),
     )
 
 
 def common_factors(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Expression, ...]:
-    """Of each equation and the slopes of its springs' ends: a positive common factor, 1 where none is proved to be."""
+    """Of each equation and the slopes of its springs' ends: a positive common factor, 1 where none
+    is proved to be.
+    """
     return tuple(
         common_factor(
             [

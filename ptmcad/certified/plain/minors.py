@@ -1,7 +1,8 @@
 """Determinants of a matrix that springs bend by a matrix of rank one each.
 
-Guarantee: exact identities. A spring's inverse length enters to the first power only, as by the matrix determinant
-lemma; written out, a determinant would have products of the same inverse length that cancel.
+Guarantee: exact identities. A spring's inverse length enters to the first power only, as by the
+matrix determinant lemma; written out, a determinant would have products of the same inverse length
+that cancel.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from ptmcad.model.determinants import determinant
 
 
 class Bent(NamedTuple):
-    """What is taken off a matrix M: factor v (g v)^T, with the products v_i v_j and v, the sines of a spring.
+    """What is taken off a matrix M: factor v (g v)^T, with the products v_i v_j and v, the sines of
+    a spring.
 
     Of closed loops v stands in one row only, and another vector in the place of the second v.
     """
@@ -35,9 +37,10 @@ def bent(
 ) -> Formula:
     """det(M - sum of factor_s v_s (g v_s)^T), g being the scales.
 
-    Springs that are in one equation are in M's row. For the others it is the sum over sets S of springs of
-    (-1)^|S| times their factors times the sum over sets I, K of as many rows and columns of det(v_S in I) times
-    det(g v_S in K) times the complementary minor of M with its sign (Cauchy and Binet; Lemma S2 of docs/soundness.md).
+    Springs that are in one equation are in M's row. For the others it is the sum over sets S of
+    springs of (-1)^|S| times their factors times the sum over sets I, K of as many rows and columns
+    of det(v_S in I) times det(g v_S in K) times the complementary minor of M with its sign (Cauchy
+    and Binet; Lemma S2 of docs/soundness.md).
 
     Parameters
     ----------
@@ -70,12 +73,16 @@ def bent(
 
 
 def _complement(matrix: Matrix, among: Sequence[Bent], scales: Sequence[Formula]) -> Formula:
-    """The sum over rows I and columns K of the springs' minors times the complementary minor of the matrix."""
+    """The sum over rows I and columns K of the springs' minors times the complementary minor of the
+    matrix.
+    """
     size, graph = range(len(matrix)), matrix[0][0].graph
     total = graph.constant(0)
     for rows in combinations(size, len(among)):
         for columns in combinations(size, len(among)):
-            rest = tuple(tuple(matrix[i][k] for k in size if k not in columns) for i in size if i not in rows)
+            rest = tuple(
+                tuple(matrix[i][k] for k in size if k not in columns) for i in size if i not in rows
+            )
             minor = _springs_minor(among, rows, columns, graph.constant(1))
             for k in columns:
                 minor = minor * scales[k]
@@ -84,7 +91,9 @@ def _complement(matrix: Matrix, among: Sequence[Bent], scales: Sequence[Formula]
     return total
 
 
-def _springs_minor(among: Sequence[Bent], rows: Sequence[int], columns: Sequence[int], one: Formula) -> Formula:
+def _springs_minor(
+    among: Sequence[Bent], rows: Sequence[int], columns: Sequence[int], one: Formula
+) -> Formula:
     """det(v_S in I) det(v_S in K)."""
     if not among:
         return one
@@ -94,6 +103,7 @@ def _springs_minor(among: Sequence[Bent], rows: Sequence[int], columns: Sequence
         (a, b), (i, j) = (bend.products for bend in among), rows
         return a[i][i] * b[j][j] + a[j][j] * b[i][i] - 2 * (a[i][j] * b[i][j])
     first, second = (
-        determinant(tuple(tuple(bend.spring.sines[i] for bend in among) for i in some)) for some in (rows, columns)
+        determinant(tuple(tuple(bend.spring.sines[i] for bend in among) for i in some))
+        for some in (rows, columns)
     )
     return first * second

@@ -1,11 +1,13 @@
-"""The energy of a problem that an involution keeps, as a smooth function u(e, c, w) next to its fixed points.
+"""The energy of a problem that an involution keeps, as a smooth function u(e, c, w) next to its
+fixed points.
 
 Guarantee: the formulas of an `UnfoldedEnergy` are derivatives of u, exactly, all over its frame.
 
-Everything is written of polynomials in an odd r, as a part that is even plus r times another one, both functions of
-v = r^2. Of a spring's squared length N + r M, with that of its image N - r M, the two lengths have a product that is
-the root of Z = N^2 - v M^2, and half a sum that is the root of (N + the product)/2. Such roots are variables until all
-is differentiated; then their ordinary formulas take their places.
+Everything is written of polynomials in an odd r, as a part that is even plus r times another one,
+both functions of v = r^2. Of a spring's squared length N + r M, with that of its image N - r M, the
+two lengths have a product that is the root of Z = N^2 - v M^2, and half a sum that is the root of
+(N + the product)/2. Such roots are variables until all is differentiated; then their ordinary
+formulas take their places.
 """
 
 from __future__ import annotations
@@ -41,15 +43,17 @@ class EvenOdd(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Coordinates:
-    """A frame's coordinates where the odd one of number ``lead`` is the largest, as variables of a graph.
+    """A frame's coordinates where the odd one of number ``lead`` is the largest, as variables of a
+    graph.
 
     Attributes
     ----------
     evens : variables.
-    r : the variable of the lead: the tangent of half an angle, or that angle itself where nothing else is odd; of what
-        is no angle a share of its reach.
+    r : the variable of the lead: the tangent of half an angle, or that angle itself where nothing
+        else is odd; of what is no angle a share of its reach.
     w : what the odd coordinates, or these tangents, are multiples of r by.
-    coordinate : a variable that stands for v = r^2, or for the cosine of r where that is an angle, and r for its sine.
+    coordinate : a variable that stands for v = r^2, or for the cosine of r where that is an angle,
+        and r for its sine.
     """
 
     frame: MirrorFrame
@@ -99,7 +103,9 @@ class Coordinates:
 
     def nears(self) -> dict[int, Formula]:
         """What takes the places of these variables."""
-        return {self._near(j).variable: 1 / (1 + (self.r * w).squared()) for j, w in enumerate(self.w)}
+        return {
+            self._near(j).variable: 1 / (1 + (self.r * w).squared()) for j, w in enumerate(self.w)
+        }
 
     def derivative(self, f: Formula, by: Formula) -> Formula:
         """The derivative by a coordinate of what has no roots in it."""
@@ -121,7 +127,12 @@ class Coordinates:
             before = EvenOdd(self.coordinate, self.graph.constant(-1))
             wave = EvenOdd(self.graph.constant(1), self.graph.constant(0))
             for _ in range(multiples[0]):  # Chebyshev's polynomials
-                before, wave = wave, EvenOdd(*(2 * self.coordinate * f - g for f, g in zip(wave, before, strict=True)))
+                before, wave = (
+                    wave,
+                    EvenOdd(
+                        *(2 * self.coordinate * f - g for f, g in zip(wave, before, strict=True))
+                    ),
+                )
             return wave
         run, rise, near = self.graph.constant(1), self.graph.constant(0), self.graph.constant(1)
         for j, n in enumerate(multiples):
@@ -138,7 +149,11 @@ class Coordinates:
                 continue
             zero = self.graph.constant(0)
             even = place.even_sign * self.evens[place.even] if place.even >= 0 else zero
-            odd = (place.odd_sign * self.frame.reaches[place.odd]) * self.w[place.odd] if place.odd >= 0 else zero
+            odd = (
+                (place.odd_sign * self.frame.reaches[place.odd]) * self.w[place.odd]
+                if place.odd >= 0
+                else zero
+            )
             some = [zero, zero]
             for k in range(power + 1):
                 term = comb(power, k) * (_to(even, power - k) * _to(odd, k) * _to(self.v, k // 2))
@@ -149,13 +164,15 @@ class Coordinates:
     def times(self, one: EvenOdd, other: EvenOdd) -> EvenOdd:
         """A product."""
         return EvenOdd(
-            one.even * other.even + self.v * (one.odd * other.odd), one.even * other.odd + one.odd * other.even
+            one.even * other.even + self.v * (one.odd * other.odd),
+            one.even * other.odd + one.odd * other.even,
         )
 
     def parts(self, terms: Iterable[tuple[int, TrigonometricPolynomial]]) -> EvenOdd:
         """Of a sum of multiples of polynomials."""
         size = len(self.w)
-        # by odd multiples and powers, and by even multiples: of cos cos, sin cos, cos sin and sin sin
+        # by odd multiples and powers, and by even multiples: of cos cos, sin cos, cos sin and sin
+        # sin
         known: dict[tuple[Multi, Multi], dict[Multi, list[Expression]]] = {}
         for factor, f in terms:
             for (m, powers), (a, b) in f.terms.items():
@@ -176,10 +193,18 @@ class Coordinates:
         for (odds_, powers), by_even in known.items():
             even = odd = self.graph.constant(0)
             for multiples, (cc, sc, cs, ss) in by_even.items():
-                angle = Angle(self.graph, {e: n for e, n in zip(self.evens, multiples, strict=True) if n})
+                angle = Angle(
+                    self.graph, {e: n for e, n in zip(self.evens, multiples, strict=True) if n}
+                )
                 cosine, sine = angle.cos(), angle.sin()
-                even = even + (expression_formula(self.graph, cc) * cosine + expression_formula(self.graph, sc) * sine)
-                odd = odd + (expression_formula(self.graph, cs) * cosine + expression_formula(self.graph, ss) * sine)
+                even = even + (
+                    expression_formula(self.graph, cc) * cosine
+                    + expression_formula(self.graph, sc) * sine
+                )
+                odd = odd + (
+                    expression_formula(self.graph, cs) * cosine
+                    + expression_formula(self.graph, ss) * sine
+                )
             wave = self._wave(odds_)
             added = self.times(EvenOdd(even * wave.even, odd * wave.odd), self._power(powers))
             total = EvenOdd(total.even + added.even, total.odd + added.odd)
@@ -247,11 +272,14 @@ def coordinates(frame: MirrorFrame, lead: int) -> Coordinates:
     variables = [graph.variable(FIRST + k) for k in range(count + 1)]
     others = variables[size + 1 : count]
     w = (*others[:lead], graph.constant(1), *others[lead:])
-    return Coordinates(frame, lead, graph, tuple(variables[:size]), variables[size], w, variables[count])
+    return Coordinates(
+        frame, lead, graph, tuple(variables[:size]), variables[size], w, variables[count]
+    )
 
 
 def stiffness(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> Formula:
-    """Where one coordinate alone is odd the second derivative by it on the fixed points, times a positive number.
+    """Where one coordinate alone is odd the second derivative by it on the fixed points, times a
+    positive number.
 
     Parameters
     ----------
@@ -262,7 +290,9 @@ def stiffness(at: Coordinates, vectors: Sequence[tuple[Formula, Formula]]) -> Fo
     here = at.graph.constant(int(at.is_turning))
     return substituted(
         -slope if at.is_turning else slope,
-        {at.coordinate.variable: here} | dict.fromkeys(at.nears(), at.graph.constant(1)) | _lengths(springs, vectors),
+        {at.coordinate.variable: here}
+        | dict.fromkeys(at.nears(), at.graph.constant(1))
+        | _lengths(springs, vectors),
     )
 
 
@@ -270,13 +300,17 @@ def _slopes(at: Coordinates, springs: Sequence[_Spring]) -> tuple[Formula, list[
     """u_c, and the derivatives by shares or tangents over r; that of the lead is without springs."""
     odds = at.frame.odds
     ratios = [
-        at.parts([(s, at.frame.problem.equations[k]) for k, s in odd]).odd * (1 if at.is_turning else at.pace(j))
+        at.parts([(s, at.frame.problem.equations[k]) for k, s in odd]).odd
+        * (1 if at.is_turning else at.pace(j))
         for j, odd in enumerate(odds)
     ]
     if at.is_turning:
         slope = -ratios[0]
     else:
-        slope = sum((w * g for w, g in zip(at.w, ratios, strict=True)), start=at.graph.constant(0)) * _HALF
+        slope = (
+            sum((w * g for w, g in zip(at.w, ratios, strict=True)), start=at.graph.constant(0))
+            * _HALF
+        )
     for spring in springs:
         slope = slope - spring.pull * _stretch(at, spring, at.coordinate)
         for j, odd in enumerate(odds):
@@ -285,13 +319,17 @@ def _slopes(at: Coordinates, springs: Sequence[_Spring]) -> tuple[Formula, list[
     return slope, ratios
 
 
-def _lengths(springs: Sequence[_Spring], vectors: Sequence[tuple[Formula, Formula]]) -> dict[int, Formula]:
+def _lengths(
+    springs: Sequence[_Spring], vectors: Sequence[tuple[Formula, Formula]]
+) -> dict[int, Formula]:
     """What takes the places of the roots."""
     values = {}
     for spring in springs:
         one, other = vectors[spring.number], vectors[spring.image]
         inverse = inverse_length(*one)
-        values[spring.inverse.variable] = inverse if one is other else inverse * inverse_length(*other)
+        values[spring.inverse.variable] = (
+            inverse if one is other else inverse * inverse_length(*other)
+        )
         values[spring.share.variable] = 1 / (length(*one) + length(*other))
     return values
 
@@ -352,7 +390,9 @@ def _springs(at: Coordinates) -> Iterator[_Spring]:
 
 
 def _stretch(at: Coordinates, spring: _Spring, by: Formula) -> Formula:
-    """The derivative of the length, or of the sum of both, whose square is twice the even part and their product."""
+    """The derivative of the length, or of the sum of both, whose square is twice the even part and
+    their product.
+    """
     slope = spring.inverse * at.derivative(spring.product, by) * _HALF
     if spring.image == spring.number:
         return slope

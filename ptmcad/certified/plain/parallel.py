@@ -1,6 +1,8 @@
-"""Springs side by side: vectors of which one is a function of the axes, other than zero, times the other.
+"""Springs side by side: vectors of which one is a function of the axes, other than zero, times the
+other.
 
-Guarantee: the functions are exact, and proved to be positive in the whole open window; what is not proved is none.
+Guarantee: the functions are exact, and proved to be positive in the whole open window; what is not
+proved is none.
 """
 
 from __future__ import annotations
@@ -17,12 +19,15 @@ Vector = Sequence[TrigonometricPolynomial]
 """Its coordinates."""
 
 
-def shares(d: Vector, other: Vector, axes: tuple[Axis, Axis]) -> tuple[Expression, Expression] | None:
-    """Positive f and g for which d/f and other/g are one vector, or each is the other's negative; None without a proof.
+def shares(
+    d: Vector, other: Vector, axes: tuple[Axis, Axis]
+) -> tuple[Expression, Expression] | None:
+    """Positive f and g for which d/f and other/g are one vector, or each is the other's negative;
+    None without a proof.
 
-    So |d| = f |e| and |other| = g |e| with one e, which is among d, the other and what both are polynomials times the
-    one whose coefficients have the least degree: where a coefficient loses a factor, springs have a length next to
-    where that is zero, too.
+    So |d| = f |e| and |other| = g |e| with one e, which is among d, the other and what both are
+    polynomials times the one whose coefficients have the least degree: where a coefficient loses a
+    factor, springs have a length next to where that is zero, too.
     """
     c = _ratio(other, d)
     if c is None:
@@ -36,13 +41,19 @@ def shares(d: Vector, other: Vector, axes: tuple[Axis, Axis]) -> tuple[Expressio
 
 
 def _ratio(d: Vector, other: Vector) -> Expression | None:
-    """The c, in lowest terms, for which d is c times another vector, other than zero: then so are all derivatives."""
+    """The c, in lowest terms, for which d is c times another vector, other than zero: then so are
+    all derivatives.
+    """
     key, k = next((key, k) for k, x in enumerate(other) for key in x.terms)
     pairs = zip(d[k].terms.get(key, ()), other[k].terms[key], strict=False)
     c = next((a / b for a, b in pairs if b.numerator), None)
     if c is None or not c.numerator:
         return None
-    return None if any((f - g.scaled(c)).terms for f, g in zip(d, other, strict=True)) else lowest_terms(c)
+    return (
+        None
+        if any((f - g.scaled(c)).terms for f, g in zip(d, other, strict=True))
+        else lowest_terms(c)
+    )
 
 
 def _degree(d: Vector) -> int:

@@ -1,8 +1,9 @@
 """The solutions of a problem at one rational point of a slice, counted with proof.
 
-Guarantee: when a `PointCount` is decided, each solution that the count needs has its own box, proved to hold exactly
-one, and it is proved that there are no others; signs of eigenvalues and of conditions are those of intervals. What is
-not proved is undecided. Springs without length are no solutions: total counts do not have them.
+Guarantee: when a `PointCount` is decided, each solution that the count needs has its own box,
+proved to hold exactly one, and it is proved that there are no others; signs of eigenvalues and of
+conditions are those of intervals. What is not proved is undecided. Springs without length are no
+solutions: total counts do not have them.
 """
 
 from __future__ import annotations
@@ -40,7 +41,10 @@ from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
 
-WITNESSES = tuple((Fraction(u), Fraction(v)) for u, v in (("10/21", "19/35"), ("2/13", "11/17"), ("15/19", "4/23")))
+WITNESSES = tuple(
+    (Fraction(u), Fraction(v))
+    for u, v in (("10/21", "19/35"), ("2/13", "11/17"), ("15/19", "4/23"))
+)
 """Shares of the window: points that are rarely on a curve that a person has in mind."""
 
 HALVINGS = 60
@@ -53,10 +57,12 @@ class PlainCounter:
 
     Attributes
     ----------
-    all, stable : the systems that a search prunes with, for all solutions that count and for the stable ones.
+    all, stable : the systems that a search prunes with, for all solutions that count and for the
+        stable ones.
     hessian : a tape of one stage with the Hessian's entries row by row.
-    conditions : a tape with the inequalities, then the conditions for stability, with closed loops the Jacobian's
-        determinant; and in a second stage what has to be positive where the count's predicate holds.
+    conditions : a tape with the inequalities, then the conditions for stability, with closed loops
+        the Jacobian's determinant; and in a second stage what has to be positive where the count's
+        predicate holds.
     """
 
     slice: Slice
@@ -78,12 +84,13 @@ class PlainCounter:
     def at(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> PointCount:
         """What ``count`` needs at the point (x, y) of the two axes.
 
-        ``thorough`` is False where it is better not to decide a hard point than to take long for it.
+        ``thorough`` is False where it is better not to decide a hard point than to take long for
+        it.
 
         Raises
         ------
-        ArithmeticError
-            When the counts contradict Euler's sum on the torus, which would be a fault of this program.
+        ArithmeticError When the counts contradict Euler's sum on the torus, which would be a fault
+            of this program.
         """
         zeros = self.search.at(x, y, self.stable if count.is_of_stable else self.all, thorough)
         counted, unclear = self._counted(x, y, zeros, count)
@@ -105,16 +112,21 @@ class PlainCounter:
         return self._of_potential(x, y, found) if self.problem.is_gradient else found
 
     def _signs(self, x: Fraction, y: Fraction, wide: Boxes, narrow: Boxes, count: Count) -> str:
-        """Those of the Hessian's eigenvalues, or of conditions for stability, at a proved zero; empty where one is
-        open, or there are none."""
+        """Those of the Hessian's eigenvalues, or of conditions for stability, at a proved zero;
+        empty where one is open, or there are none."""
         if self.problem.is_gradient:
             negative = self._index_in_floats(narrow)
             negative = self._index(x, y, wide) if negative is None else negative
-            return "" if negative is None else "+" * (len(self.problem.unknowns) - negative) + "-" * negative
+            return (
+                ""
+                if negative is None
+                else "+" * (len(self.problem.unknowns) - negative) + "-" * negative
+            )
         asked = self.conditions.outputs[0][len(self.problem.inequalities) :]
         if count.is_of_stable:  # only where all of them are positive is a zero counted
             return "+" * len(asked)
-        # where all are counted, which of them are stable is known here only: it may change within the cell
+        # where all are counted, which of them are stable is known here only: it may change within
+        # the cell
         holds = [self._holds(x, y, wide, asked[k : k + 1]) for k in range(len(asked))]
         return "" if None in holds else "".join("+" if h else "-" for h in holds)
 
@@ -126,23 +138,33 @@ class PlainCounter:
         ArithmeticError
             As `at` does.
         """
-        counts = counts_of_signs([s.signs for s in found.solutions], by_hessian(len(self.problem.unknowns)))
+        counts = counts_of_signs(
+            [s.signs for s in found.solutions], by_hessian(len(self.problem.unknowns))
+        )
         index = counts.index or ()
-        smooth = all(self.problem.is_angle) and not (self.problem.has_springs or self.problem.inequalities)
+        smooth = all(self.problem.is_angle) and not (
+            self.problem.has_springs or self.problem.inequalities
+        )
         if smooth and euler_sum(index):
-            raise ArithmeticError(f"critical points of a function on the torus by index {[*index]} at ({x}, {y})")
+            raise ArithmeticError(
+                f"critical points of a function on the torus by index {[*index]} at ({x}, {y})"
+            )
         cones = 0 if smooth else None
         if self.slice.model == ptm() and self.problem.has_springs:
             there = peaks(values_at(self.slice, x, y))
             cones = there.count
             if there.regular and index[0] - index[1] + index[2] + cones:
-                raise ArithmeticError(f"minima, saddles and maxima {[*index]} with {cones} cones at ({x}, {y})")
+                raise ArithmeticError(
+                    f"minima, saddles and maxima {[*index]} with {cones} cones at ({x}, {y})"
+                )
         return replace(found, stable=counts.stable, index=index, cones=cones)
 
     def _of_stable(
         self, x: Fraction, y: Fraction, found: PointCount, boxes: Sequence[Boxes], count: Count
     ) -> PointCount:
-        """The number of stable solutions, and of those among them at which a predicate holds, where it is asked for."""
+        """The number of stable solutions, and of those among them at which a predicate holds, where
+        it is asked for.
+        """
         further = {}
         if count.kind.predicate is not None:
             holds = [self._holds(x, y, box, self.conditions.outputs[1]) for box in boxes]
@@ -151,8 +173,12 @@ class PlainCounter:
             further[count.value] = holds.count(True)
         return replace(found, stable=len(boxes), decided=True, further=further)
 
-    def _counted(self, x: Fraction, y: Fraction, zeros: Zeros, count: Count) -> tuple[list[tuple[Boxes, Boxes]], int]:
-        """The proved zeros at which all conditions are positive, and of how many that is not decided."""
+    def _counted(
+        self, x: Fraction, y: Fraction, zeros: Zeros, count: Count
+    ) -> tuple[list[tuple[Boxes, Boxes]], int]:
+        """The proved zeros at which all conditions are positive, and of how many that is not
+        decided.
+        """
         asked = self.conditions.outputs[0][: self._asked(count)]
         found, unclear = list[tuple[Boxes, Boxes]](), 0
         for unique, narrow in zip(zeros.unique, zeros.narrow, strict=True):
@@ -167,14 +193,18 @@ class PlainCounter:
         return found, unclear
 
     def _apart(self, x: Fraction, y: Fraction, unique: Boxes, narrow: Boxes) -> Boxes | None:
-        """A box between two around a zero of a branch in which its conditions hold: no other branch has a zero there.
+        """A box between two around a zero of a branch in which its conditions hold: no other branch
+        has a zero there.
 
         None where they are not proved to hold in the narrower one.
         """
         for k in range(HALVINGS):
             box = np.clip(narrow + (unique - narrow) / 2.0**k, *_ends(unique))
             values = run_arb(self.conditions, self.search.box(x, y, box), PRECISIONS[0])
-            if all(values[int(place)] > 0 for place in self.conditions.outputs[0][: len(self.problem.inequalities)]):
+            if all(
+                values[int(place)] > 0
+                for place in self.conditions.outputs[0][: len(self.problem.inequalities)]
+            ):
                 return box
         return None
 
@@ -204,10 +234,16 @@ class PlainCounter:
             yield [values[int(place)] for place in places], precision
 
     def zero_condition(self, x: Fraction, y: Fraction, count: Count) -> str:
-        """What is not decided of the signs of conditions at a proved zero, to as many digits as there are, in words."""
+        """What is not decided of the signs of conditions at a proved zero, to as many digits as
+        there are, in words.
+        """
         conditions = [c.text for c in self.problem.conditions(count)]
         further = [c.text for c in self.problem.further]
-        found = self.search.at(x, y, self.stable if further else self.all, False) if conditions or further else None
+        found = (
+            self.search.at(x, y, self.stable if further else self.all, False)
+            if conditions or further
+            else None
+        )
         for unique in () if found is None or found.open else found.unique:
             if further and self.problem.is_gradient and self._index(x, y, unique) != 0:
                 continue
@@ -223,7 +259,15 @@ class PlainCounter:
         """The number of negative eigenvalues all over a box; None where doubles do not tell."""
         size, variables = len(self.problem.unknowns), len(narrow) // 2
         low, high = np.empty((2, len(self.hessian)))
-        run(program(self.hessian), narrow[:variables], narrow[variables:], low, high, 0, len(self.hessian))
+        run(
+            program(self.hessian),
+            narrow[:variables],
+            narrow[variables:],
+            low,
+            high,
+            0,
+            len(self.hessian),
+        )
         places = self.hessian.outputs[0]
         if not np.isfinite(low[places]).all() or not np.isfinite(high[places]).all():
             return None
@@ -234,7 +278,9 @@ class PlainCounter:
     def _index(self, x: Fraction, y: Fraction, unique: Boxes) -> int | None:
         """The number of negative eigenvalues at a proved zero."""
         size = len(self.problem.unknowns)
-        for entries, precision in self._at_zero(x, y, unique, self.hessian, self.hessian.outputs[0]):
+        for entries, precision in self._at_zero(
+            x, y, unique, self.hessian, self.hessian.outputs[0]
+        ):
             with ctx.workprec(precision):
                 found = inertia(arb_mat(size, size, entries))
             if found is not None:
@@ -244,7 +290,9 @@ class PlainCounter:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BranchCounter:
-    """Counts at points of one slice, of whose problem each branch has a counter, in unknowns of its own."""
+    """Counts at points of one slice, of whose problem each branch has a counter, in unknowns of its
+    own.
+    """
 
     branches: tuple[PlainCounter, ...]
 
@@ -285,7 +333,9 @@ def _sum(parts: Sequence[PointCount]) -> PointCount:
     )
 
 
-def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], None] | None = None) -> BranchCounter:
+def plain_counter(
+    slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], None] | None = None
+) -> BranchCounter:
     """Write the solutions of a slice out, to count them at its points.
 
     Parameters
@@ -297,18 +347,22 @@ def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], No
     ------
     ConfigError
         As `problem_of` and `ranges` do.
-    DegenerateSliceError
-        When a condition is zero at a solution wherever one looks, so that nothing would ever be decided.
+    DegenerateSliceError When a condition is zero at a solution wherever one looks, so that nothing
+        would ever be decided.
     """
     problem = problem_of(slice, most)
-    return BranchCounter(tuple(_counter(slice, branch, pause) for branch in branches(problem, slice.axes)))
+    return BranchCounter(
+        tuple(_counter(slice, branch, pause) for branch in branches(problem, slice.axes))
+    )
 
 
 def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -> PlainCounter:
     at = chart(geometry(problem))
     vanishing = (at.dependent, at.balances)
     asked = problem.inequalities, problem.stability, problem.further
-    inequalities, stability, further = ([c.value.formula(at.unknowns) for c in some] for some in asked)
+    inequalities, stability, further = (
+        [c.value.formula(at.unknowns) for c in some] for some in asked
+    )
     if problem.closing:
         stability = [at.determinant()]
     minima = _semidefinite(at) if problem.is_gradient else stability
@@ -335,11 +389,18 @@ def _semidefinite(at: SpringChart) -> list[Formula]:
 def _check_conditions(counter: PlainCounter) -> None:
     slice = counter.slice
     across, up = slice.axes
-    points = [(across.low + (across.high - across.low) * u, up.low + (up.high - up.low) * v) for u, v in WITNESSES]
+    points = [
+        (across.low + (across.high - across.low) * u, up.low + (up.high - up.low) * v)
+        for u, v in WITNESSES
+    ]
     idle = {counter.zero_condition(x, y, slice.count) for x, y in points}
     if len(idle) == 1 and (text := idle.pop()):
         (x, y), names = points[0], slice.axis_names
-        advice = "ask for another count" if counter.problem.further else "choose exact, or ask for another condition"
+        advice = (
+            "ask for another count"
+            if counter.problem.further
+            else "choose exact, or ask for another condition"
+        )
         raise DegenerateSliceError(
             f"{text} is zero, to 90 digits and more, at a solution at {names[0]} = {text_of(x)}, {names[1]} = "
             f"{text_of(y)}, and so it is at the other points that were tried: the certified engine decides nothing of "

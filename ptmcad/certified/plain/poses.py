@@ -1,10 +1,12 @@
-"""The equilibria at a point of any mechanism with springs of free lengths, with everything asked of a pose.
+"""The equilibria at a point of any mechanism with springs of free lengths, with everything asked of
+a pose.
 
-Closed loops leave one degree of freedom: there is no index, and a pose is stable where the energy's second derivative
-along the loops is positive.
+Closed loops leave one degree of freedom: there is no index, and a pose is stable where the energy's
+second derivative along the loops is positive.
 
-Guarantee: each equilibrium is proved, and all are there unless the answer is UNDECIDED, which then says in how many
-boxes there may be more. Every number settles the digits asked for or, where it may be zero, is enclosed.
+Guarantee: each equilibrium is proved, and all are there unless the answer is UNDECIDED, which then
+says in how many boxes there may be more. Every number settles the digits asked for or, where it may
+be zero, is enclosed.
 """
 
 from __future__ import annotations
@@ -64,8 +66,8 @@ def plain_poses(model: Model, parameters: Mapping[str, Fraction], digits: int) -
 
     Raises
     ------
-    ConfigError, GeometryError
-        As `ptmcad.certified.plain.points.plain_counter` does, or where a parameter is not what its kind asks for.
+    ConfigError, GeometryError As `ptmcad.certified.plain.points.plain_counter` does, or where a
+        parameter is not what its kind asks for.
     """
     slice = proved(point_slice(model, parameters))
     at = numbers_at(model, parameters)
@@ -78,13 +80,19 @@ def plain_poses(model: Model, parameters: Mapping[str, Fraction], digits: int) -
     bits = max((bits for _, bits in poses), default=0)
     found = tuple(_ordered([pose for pose, _ in poses]))
     if unclear:
-        return Poses(model, parameters, found, Status.UNDECIDED, digits, bits, reason, undecided=unclear)
+        return Poses(
+            model, parameters, found, Status.UNDECIDED, digits, bits, reason, undecided=unclear
+        )
     remark = _PEAKS.get(peaks(parameters).count, "") if model == ptm() else ""
     return Poses(model, parameters, found, Status.CERTIFIED, digits, bits, remark)
 
 
-def solutions_at(counter: BranchCounter, count: Count) -> tuple[list[tuple[PlainCounter, Solution]], int]:
-    """The solutions, each with the counter of its branch, and the number of boxes in which there may be more."""
+def solutions_at(
+    counter: BranchCounter, count: Count
+) -> tuple[list[tuple[PlainCounter, Solution]], int]:
+    """The solutions, each with the counter of its branch, and the number of boxes in which there
+    may be more.
+    """
     found, unclear = [], 0
     for branch in counter.branches:
         counts = branch.at(Fraction(0), Fraction(0), count)
@@ -94,8 +102,12 @@ def solutions_at(counter: BranchCounter, count: Count) -> tuple[list[tuple[Plain
 
 
 def boxes_of(counter: PlainCounter, solution: Solution, precision: int) -> tuple[Box, Box]:
-    """A box of the mechanism's unknowns that holds a solution of a branch and no other one, and a narrow one."""
-    cube, box = located(counter.problem, counter.equations, (Fraction(0), Fraction(0)), solution, precision)
+    """A box of the mechanism's unknowns that holds a solution of a branch and no other one, and a
+    narrow one.
+    """
+    cube, box = located(
+        counter.problem, counter.equations, (Fraction(0), Fraction(0)), solution, precision
+    )
     with ctx.workprec(precision):
         return (*box[:FIRST], *(ball(c - cube.radius, c + cube.radius) for c in cube.center)), box
 
@@ -116,7 +128,9 @@ def _ordered(poses: Sequence[Pose]) -> Iterator[Pose]:
         else:
             groups.append([pose])
     for group in groups:
-        yield from sorted(group, key=lambda pose: [angle.center for angle in pose.angles], reverse=True)
+        yield from sorted(
+            group, key=lambda pose: [angle.center for angle in pose.angles], reverse=True
+        )
 
 
 def _order(pose: Pose) -> tuple[Fraction, ...]:
@@ -139,8 +153,9 @@ class Numbers:
     Attributes
     ----------
     system : compiled with these values.
-    tape : the numbers by ``names``; the Hessian's entries row by row; the energy's slopes. Without a potential there
-        is none of the latter two, nor with closed loops, where slopes of the energy are not zero.
+    tape : the numbers by ``names``; the Hessian's entries row by row; the energy's slopes. Without
+        a potential there is none of the latter two, nor with closed loops, where slopes of the
+        energy are not zero.
     """
 
     mechanism: Mechanism
@@ -160,8 +175,12 @@ def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> Numbers:
     mechanism = model.whole
     assert mechanism is not None
     graph = Graph()
-    unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, FIRST)}
-    system = compiled_with(model, {name: graph.constant(value) for name, value in parameters.items()} | unknowns)
+    unknowns = {
+        name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, FIRST)
+    }
+    system = compiled_with(
+        model, {name: graph.constant(value) for name, value in parameters.items()} | unknowns
+    )
     found = {f"{angle}.cos": unknowns[angle].cos() for angle in mechanism.angles}
     found |= {f"{angle}.sin": unknowns[angle].sin() for angle in mechanism.angles}
     found |= {f"{name}.real": unknowns[name] for name in mechanism.reals} | system.quantities
@@ -176,15 +195,24 @@ def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> Numbers:
     return Numbers(mechanism, parameters, system, tuple(found), tape)
 
 
-def pose_at(at: Numbers, counter: PlainCounter, solution: Solution, digits: int) -> tuple[Pose, int]:
-    """The pose with all numbers settled or, where they may be zero, enclosed; and the bits that this took."""
+def pose_at(
+    at: Numbers, counter: PlainCounter, solution: Solution, digits: int
+) -> tuple[Pose, int]:
+    """The pose with all numbers settled or, where they may be zero, enclosed; and the bits that
+    this took.
+    """
     numbers, bits = measured(at, lambda bits: boxes_of(counter, solution, bits), digits)
     criterion, signs = at.system.criterion, solution.signs
-    return with_further(assembled(at, numbers, criterion.index(signs), criterion.is_stable(signs))), bits
+    return with_further(
+        assembled(at, numbers, criterion.index(signs), criterion.is_stable(signs))
+    ), bits
 
 
-def measured(at: Numbers, boxes: Callable[[int], tuple[Box, Box]], digits: int) -> tuple[dict[str, Enclosure], int]:
-    """The numbers of a pose by name, settled or, where they may be zero, enclosed; and the bits that this took.
+def measured(
+    at: Numbers, boxes: Callable[[int], tuple[Box, Box]], digits: int
+) -> tuple[dict[str, Enclosure], int]:
+    """The numbers of a pose by name, settled or, where they may be zero, enclosed; and the bits
+    that this took.
 
     Parameters
     ----------
@@ -199,11 +227,15 @@ def measured(at: Numbers, boxes: Callable[[int], tuple[Box, Box]], digits: int) 
         with ctx.workprec(bits):
             if attempt > 0 and not at.is_closed and len(point) < len(unknowns):
                 # some number is not settled: it may be a short one, or a longer one with more bits
-                held, around = (dict(zip(unknowns, some[FIRST:], strict=True)) for some in (box, whole))
+                held, around = (
+                    dict(zip(unknowns, some[FIRST:], strict=True)) for some in (box, whole)
+                )
                 point = rational_point(at.mechanism, at.parameters, at.tape, held, around) or point
                 found |= _exact_numbers(at, point)
             numbers = _numbers_of(at, run_arb(at.tape, box, bits), found)
-            waiting = [name for name, number in numbers.items() if name not in found or number.is_exact()]
+            waiting = [
+                name for name, number in numbers.items() if name not in found or number.is_exact()
+            ]
             settled = {name: _proved_digits(numbers[name], digits, attempt) for name in waiting}
         found |= {name: number for name, number in settled.items() if number is not None}
         if found.keys() >= numbers.keys():
@@ -222,15 +254,20 @@ def _exact_numbers(at: Numbers, point: Point) -> dict[str, Enclosure]:
     return {name: Enclosure(value, value) for name, value in found.items()}
 
 
-def _numbers_of(at: Numbers, values: Sequence[arb], found: Mapping[str, Enclosure]) -> dict[str, arb]:
-    """The numbers of a pose by name, with its angles and deflections in radians and degrees, and eigenvalues.
+def _numbers_of(
+    at: Numbers, values: Sequence[arb], found: Mapping[str, Enclosure]
+) -> dict[str, arb]:
+    """The numbers of a pose by name, with its angles and deflections in radians and degrees, and
+    eigenvalues.
 
     Parameters
     ----------
     values : on the tape.
     found : has an angle's cosine or sine, where it is known to be zero.
     """
-    numbers = {name: values[int(place)] for name, place in zip(at.names, at.tape.outputs[0], strict=True)}
+    numbers = {
+        name: values[int(place)] for name, place in zip(at.names, at.tape.outputs[0], strict=True)
+    }
     size = isqrt(len(at.tape.outputs[1]))
     hessian = arb_mat(size, size, [values[int(place)] for place in at.tape.outputs[1]])
     for name in [name.removesuffix(".cos") for name in at.names if name.endswith(".cos")]:
@@ -239,11 +276,17 @@ def _numbers_of(at: Numbers, values: Sequence[arb], found: Mapping[str, Enclosur
         numbers[f"{name}.radians"], numbers[f"{name}.degrees"] = turned
         if name not in at.mechanism.angles:  # of a deflection they are not asked for
             del numbers[cosine], numbers[sine]
-    return numbers | {f"eigenvalue {n}": value for n, value in enumerate(ordered_eigenvalues(hessian))}
+    return numbers | {
+        f"eigenvalue {n}": value for n, value in enumerate(ordered_eigenvalues(hessian))
+    }
 
 
-def _angle(cosine: arb, sine: arb, known_cosine: Enclosure | None, known_sine: Enclosure | None) -> tuple[arb, arb]:
-    """An angle in (-pi, pi], in radians and degrees; next to half a turn, where the sine may be zero, around pi."""
+def _angle(
+    cosine: arb, sine: arb, known_cosine: Enclosure | None, known_sine: Enclosure | None
+) -> tuple[arb, arb]:
+    """An angle in (-pi, pi], in radians and degrees; next to half a turn, where the sine may be
+    zero, around pi.
+    """
     for known, other, turns in ((known_sine, cosine, (0, 2)), (known_cosine, sine, (1, -1))):
         if known is not None and known.exact == 0 and not other.contains(0):
             quarters = turns[0 if other > 0 else 1]
@@ -253,13 +296,15 @@ def _angle(cosine: arb, sine: arb, known_cosine: Enclosure | None, known_sine: E
     return radians, radians * 180 / arb.pi()
 
 
-def _all_bounded(found: Mapping[str, Enclosure], numbers: Mapping[str, arb]) -> dict[str, Enclosure]:
+def _all_bounded(
+    found: Mapping[str, Enclosure], numbers: Mapping[str, arb]
+) -> dict[str, Enclosure]:
     """The numbers that are found, and of those that no digits settle all of their balls.
 
     Raises
     ------
-    ArithmeticError
-        When one has no bounds, which would be a fault of this program: all are of smooth functions in a proved box.
+    ArithmeticError When one has no bounds, which would be a fault of this program: all are of
+        smooth functions in a proved box.
     """
     held = dict(found)
     for name in numbers.keys() - found.keys():
@@ -271,18 +316,23 @@ def _all_bounded(found: Mapping[str, Enclosure], numbers: Mapping[str, arb]) -> 
 
 
 def _proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
-    """An enclosure that settles the digits asked for, or, of a number that is still not told from one halfway between
-    two texts of so many after all that may explain it was tried, of one digit more; None of a wider one.
+    """An enclosure that settles the digits asked for, or, of a number that is still not told from
+    one halfway between two texts of so many after all that may explain it was tried, of one digit
+    more; None of a wider one.
     """
     found = enclosed(number, digits)
     return enclosed(number, digits + 1) if found is None and attempt > 1 else found
 
 
 def with_further(pose: Pose) -> Pose:
-    """The pose with the predicates that hold or not; without a potential nothing says what is stable."""
+    """The pose with the predicates that hold or not; without a potential nothing says what is
+    stable.
+    """
     told = POSE_COLUMNS if pose.energy is not None else {}
     found = {name: _holds(pose.stable, column.margins(pose)) for name, column in told.items()}
-    return replace(pose, further={name: holds for name, holds in found.items() if holds is not None})
+    return replace(
+        pose, further={name: holds for name, holds in found.items() if holds is not None}
+    )
 
 
 def _holds(stable: bool | None, margins: Sequence[Enclosure]) -> bool | None:
@@ -292,8 +342,11 @@ def _holds(stable: bool | None, margins: Sequence[Enclosure]) -> bool | None:
     return True if stable and all(margin.low > 0 for margin in margins) else None
 
 
-def assembled(at: Numbers, numbers: Mapping[str, Enclosure], index: int | None, stable: bool | None) -> Pose:
-    """The pose of these numbers by name, whose Hessian was proved to have so many negative eigenvalues.
+def assembled(
+    at: Numbers, numbers: Mapping[str, Enclosure], index: int | None, stable: bool | None
+) -> Pose:
+    """The pose of these numbers by name, whose Hessian was proved to have so many negative
+    eigenvalues.
 
     Parameters
     ----------
@@ -306,15 +359,21 @@ def assembled(at: Numbers, numbers: Mapping[str, Enclosure], index: int | None, 
         return lambda spring: tuple(numbers[f"{spring.name}.{what}"] for what in whats)
 
     eigenvalues = tuple(
-        numbers[f"eigenvalue {n}"] for n in range(len(mechanism.unknowns)) if f"eigenvalue {n}" in numbers
+        numbers[f"eigenvalue {n}"]
+        for n in range(len(mechanism.unknowns))
+        if f"eigenvalue {n}" in numbers
     )
-    if index is not None and not all((v.low < 0) if n < index else (v.high > 0) for n, v in enumerate(eigenvalues)):
+    if index is not None and not all(
+        (v.low < 0) if n < index else (v.high > 0) for n, v in enumerate(eigenvalues)
+    ):
         raise ArithmeticError("the Hessian's eigenvalues contradict the index that was proved")
     nodes = {name: (numbers[f"{name}.x"], numbers[f"{name}.y"]) for name in mechanism.points}
     return Pose(
         angles=tuple(numbers[f"{angle}.radians"] for angle in mechanism.angles),
         degrees=tuple(numbers[f"{angle}.degrees"] for angle in mechanism.angles),
-        cosines_sines=tuple(numbers[f"{angle}.{part}"] for angle in mechanism.angles for part in ("cos", "sin")),
+        cosines_sines=tuple(
+            numbers[f"{angle}.{part}"] for angle in mechanism.angles for part in ("cos", "sin")
+        ),
         nodes=nodes,
         energy=numbers.get("energy"),
         eigenvalues=eigenvalues,

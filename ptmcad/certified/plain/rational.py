@@ -1,8 +1,9 @@
 """Numbers of an equilibrium that are exact because it is a rational point, or its own mirror image.
 
-Guarantee: exact. The point is a guess, by balls. It is taken where it lies in a box that holds no other equilibrium and
-the energy's slopes, run in fractions, are zero there. Unknowns at multiples of a quarter turn, or zero, are taken also
-where a reflection is proved to leave the energy as it is, and the equilibrium's image lies in that box.
+Guarantee: exact. The point is a guess, by balls. It is taken where it lies in a box that holds no
+other equilibrium and the energy's slopes, run in fractions, are zero there. Unknowns at multiples
+of a quarter turn, or zero, are taken also where a reflection is proved to leave the energy as it
+is, and the equilibrium's image lies in that box.
 """
 
 from __future__ import annotations
@@ -63,16 +64,27 @@ def rational_point(
 
 
 def exact_values(tape: Tape, at: Point) -> list[Fraction | None]:
-    """The tape run in fractions; None of what depends on other unknowns, or is not proved to be rational."""
+    """The tape run in fractions; None of what depends on other unknowns, or is not proved to be
+    rational.
+    """
     values: list[Fraction | None] = []
-    rows = zip(map(Operation, tape.operations.tolist()), tape.first.tolist(), tape.second.tolist(), strict=True)
+    rows = zip(
+        map(Operation, tape.operations.tolist()),
+        tape.first.tolist(),
+        tape.second.tolist(),
+        strict=True,
+    )
     for place, (operation, first, second) in enumerate(rows):
         if operation is Operation.CONSTANT:
             values.append(tape.constants[place])
         elif operation is Operation.VARIABLE:
             values.append(at[first][0] if len(at.get(first, ())) == 1 else None)
         elif operation in (Operation.COSINE, Operation.SINE):
-            direction = at.get(int(tape.first[first]), ()) if tape.operations[first] == Operation.VARIABLE else ()
+            direction = (
+                at.get(int(tape.first[first]), ())
+                if tape.operations[first] == Operation.VARIABLE
+                else ()
+            )
             values.append(direction[operation is Operation.SINE] if len(direction) == 2 else None)
         else:
             values.append(_result(operation, [values[k] for k in (first, second) if k >= 0]))
@@ -99,7 +111,9 @@ def _result(operation: Operation, operands: Sequence[Fraction | None]) -> Fracti
 
 
 def exact_eigenvalues(hessian: list[list[Fraction | None]]) -> list[Fraction]:
-    """The eigenvalues, the smallest first, of a diagonal matrix or one of two rows where they are rational; or none."""
+    """The eigenvalues, the smallest first, of a diagonal matrix or one of two rows where they are
+    rational; or none.
+    """
     known = [[entry for entry in row if entry is not None] for row in hessian]
     if any(len(row) != len(hessian) for row in known):
         return []
@@ -108,17 +122,25 @@ def exact_eigenvalues(hessian: list[list[Fraction | None]]) -> list[Fraction]:
         root = _root((a - d) ** 2 + 4 * b * b)
         return [] if root is None else [(a + d - root) / 2, (a + d + root) / 2]
     diagonal = [row[i] for i, row in enumerate(known)]
-    return sorted(diagonal) if sum(map(bool, diagonal)) == sum(bool(c) for row in known for c in row) else []
+    return (
+        sorted(diagonal)
+        if sum(map(bool, diagonal)) == sum(bool(c) for row in known for c in row)
+        else []
+    )
 
 
 def _real(ball: arb) -> tuple[tuple[Fraction, ...], arb]:
-    """The fraction near a ball's middle that it seems to be: nearly no other number has one so near."""
+    """The fraction near a ball's middle that it seems to be: nearly no other number has one so
+    near.
+    """
     value = exact(ball.mid()).limit_denominator(2 ** (ctx.prec // 4))
     return (value,), ball_of(value)
 
 
 def _direction(ball: arb) -> tuple[tuple[Fraction, ...], arb]:
-    """Cosine and sine, by a rational tangent or cotangent of half the angle, and the angle near the ball."""
+    """Cosine and sine, by a rational tangent or cotangent of half the angle, and the angle near the
+    ball.
+    """
     half = ball.mid() / 2
     steep = bool(abs(half.sin()) > abs(half.cos()))
     (t,), _ = _real(half.cot() if steep else half.tan())

@@ -1,8 +1,9 @@
-"""The eigenvalues of symmetric matrices of balls, in order, equal ones too; and how many of them are negative.
+"""The eigenvalues of symmetric matrices of balls, in order, equal ones too; and how many of them
+are negative.
 
-Guarantee: the k-th ball contains the k-th eigenvalue, counted with multiplicity from the smallest one on, of every
-symmetric matrix in the balls; balls may overlap. Where the matrix is narrow they are narrow, however near eigenvalues
-are to each other: no proof here separates them.
+Guarantee: the k-th ball contains the k-th eigenvalue, counted with multiplicity from the smallest
+one on, of every symmetric matrix in the balls; balls may overlap. Where the matrix is narrow they
+are narrow, however near eigenvalues are to each other: no proof here separates them.
 """
 
 from __future__ import annotations
@@ -14,12 +15,14 @@ _MAX_SWEEPS = 40
 
 
 def ordered_eigenvalues(matrix: arb_mat) -> list[arb]:
-    """The eigenvalues, the smallest first, at the context's precision; balls that are not finite where entries are not.
+    """The eigenvalues, the smallest first, at the context's precision; balls that are not finite
+    where entries are not.
 
-    With any regular V, the k-th eigenvalue of V' A V is that of A times a number between the least and the greatest
-    eigenvalue of V' V (Ostrowski; Horn & Johnson, Matrix Analysis, theorem 4.5.9). V' A V differs from a diagonal
-    matrix, whose entries in order are its eigenvalues, by a matrix whose norm bounds how much each of them, in order,
-    is moved (Weyl; corollary 4.3.15). Norms are row sums. V comes from rotations by Jacobi and need not be exact.
+    With any regular V, the k-th eigenvalue of V' A V is that of A times a number between the least
+    and the greatest eigenvalue of V' V (Ostrowski; Horn & Johnson, Matrix Analysis, theorem 4.5.9).
+    V' A V differs from a diagonal matrix, whose entries in order are its eigenvalues, by a matrix
+    whose norm bounds how much each of them, in order, is moved (Weyl; corollary 4.3.15). Norms are
+    row sums. V comes from rotations by Jacobi and need not be exact.
     """
     size = matrix.nrows()
     if size < 2:
@@ -35,14 +38,20 @@ def ordered_eigenvalues(matrix: arb_mat) -> list[arb]:
 
 
 def _row_sum(matrix: arb_mat, i: int, diagonal: arb) -> arb:
-    """An upper bound of a row's sum of moduli, exact as a ball, after a number is subtracted on the diagonal."""
+    """An upper bound of a row's sum of moduli, exact as a ball, after a number is subtracted on the
+    diagonal.
+    """
     size = matrix.nrows()
-    total: arb = sum((abs(matrix[i, j]) for j in range(size) if j != i), abs(matrix[i, i] - diagonal))
+    total: arb = sum(
+        (abs(matrix[i, j]) for j in range(size) if j != i), abs(matrix[i, i] - diagonal)
+    )
     return total.upper()
 
 
 def _near_eigenvectors(matrix: arb_mat) -> arb_mat:
-    """Columns near eigenvectors of the matrix of middles, orthonormal but for rounding; of this nothing is proved."""
+    """Columns near eigenvectors of the matrix of middles, orthonormal but for rounding; of this
+    nothing is proved.
+    """
     size = matrix.nrows()
     a = [[matrix[i, j].mid() for j in range(size)] for i in range(size)]
     v = [[arb(int(i == j)) for j in range(size)] for i in range(size)]
@@ -57,7 +66,9 @@ def _near_eigenvectors(matrix: arb_mat) -> arb_mat:
 
 
 def _rotate(a: list[list[arb]], v: list[list[arb]], p: int, q: int) -> None:
-    """Turn rows and columns p and q of ``a``, and columns of ``v``, such that a[p][q] is zero but for rounding."""
+    """Turn rows and columns p and q of ``a``, and columns of ``v``, such that a[p][q] is zero but
+    for rounding.
+    """
     if a[p][q] == 0:
         return
     ratio = ((a[q][q] - a[p][p]) / (2 * a[p][q])).mid()
@@ -66,13 +77,21 @@ def _rotate(a: list[list[arb]], v: list[list[arb]], p: int, q: int) -> None:
     sine = (tangent * cosine).mid()
     for rows in (a, v):
         for row in rows:
-            row[p], row[q] = (cosine * row[p] - sine * row[q]).mid(), (sine * row[p] + cosine * row[q]).mid()
+            row[p], row[q] = (
+                (cosine * row[p] - sine * row[q]).mid(),
+                (sine * row[p] + cosine * row[q]).mid(),
+            )
     for k in range(len(a)):
-        a[p][k], a[q][k] = (cosine * a[p][k] - sine * a[q][k]).mid(), (sine * a[p][k] + cosine * a[q][k]).mid()
+        a[p][k], a[q][k] = (
+            (cosine * a[p][k] - sine * a[q][k]).mid(),
+            (sine * a[p][k] + cosine * a[q][k]).mid(),
+        )
 
 
 def inertia(matrix: arb_mat) -> int | None:
-    """The number of negative eigenvalues of every symmetric matrix in a matrix of balls; None when undecided."""
+    """The number of negative eigenvalues of every symmetric matrix in a matrix of balls; None when
+    undecided.
+    """
     eigenvalues = ordered_eigenvalues(matrix)
     decided = all(value < 0 or value > 0 for value in eigenvalues)
     return sum(bool(value < 0) for value in eigenvalues) if decided else None

@@ -1,15 +1,17 @@
-"""Springs whose ends can only move along one line relative to each other, which may turn with angles.
+"""Springs whose ends can only move along one line relative to each other, which may turn with
+angles.
 
-As that of a slider along its own guide, along one on a crank, or between two points of a crank's circle: half the sum
-of their angles turns the line of the latter.
+As that of a slider along its own guide, along one on a crank, or between two points of a crank's
+circle: half the sum of their angles turns the line of the latter.
 
-Guarantee: a problem's solutions are, without one left out or twice, those of its branches at which all inequalities of
-their branch are positive (Lemmas S6 and S10 of docs/soundness.md).
+Guarantee: a problem's solutions are, without one left out or twice, those of its branches at which
+all inequalities of their branch are positive (Lemmas S6 and S10 of docs/soundness.md).
 
-With d = s e, e a fixed vector or one that turns, K |d| is K |e| |s|: no cone, but a kink along s = 0. On either side of
-it the potential continues smoothly across s = 0, with u = e/|e| or u = -e/|e| everywhere. So there is one branch for
-each choice of sides, a problem without that spring's cone and with the inequality s > 0, or -s > 0, instead. Where the
-line turns by half a turn with a whole turn of an angle, both sides are one, over two turns of the angle.
+With d = s e, e a fixed vector or one that turns, K |d| is K |e| |s|: no cone, but a kink along
+s = 0. On either side of it the potential continues smoothly across s = 0, with u = e/|e| or
+u = -e/|e| everywhere. So there is one branch for each choice of sides, a problem without that
+spring's cone and with the inequality s > 0, or -s > 0, instead. Where the line turns by half a turn
+with a whole turn of an angle, both sides are one, over two turns of the angle.
 """
 
 from __future__ import annotations
@@ -33,7 +35,8 @@ Pair = tuple[Expression, Expression]
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """A cone whose vector is s e, e turned by a sum of angles, and the parts of its weights along e, over e.
+    """A cone whose vector is s e, e turned by a sum of angles, and the parts of its weights along
+    e, over e.
 
     Attributes
     ----------
@@ -59,14 +62,16 @@ def branches(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Problem, ...]:
     if not lines:
         return (problem,)
     straight = {line.cone.name for line in lines}
-    bare = replace(problem, cones=tuple(cone for cone in problem.cones if cone.name not in straight))
+    bare = replace(
+        problem, cones=tuple(cone for cone in problem.cones if cone.name not in straight)
+    )
     choices = [(1,) if line.cone.name in one_sided else (1, -1) for line in lines]
     return tuple(_branch(bare, lines, sides, axes) for sides in product(*choices))
 
 
 def _in_half_angles(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Problem, set[str]]:
-    """The problem in unknowns by whose sums all lines turn, and the springs that change their side between two places
-    of one configuration: of these one side has every configuration once."""
+    """The problem in unknowns by whose sums all lines turn, and the springs that change their side
+    between two places of one configuration: of these one side has every configuration once."""
     one_sided = set[str]()
     for k in range(len(problem.cones)):
         first, last = _ends(problem.cones[k].difference)
@@ -78,22 +83,32 @@ def _in_half_angles(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Problem,
     return problem, one_sided
 
 
-def _branch(problem: Problem, lines: list[_Line], sides: tuple[int, ...], axes: tuple[Axis, Axis]) -> Problem:
+def _branch(
+    problem: Problem, lines: list[_Line], sides: tuple[int, ...], axes: tuple[Axis, Axis]
+) -> Problem:
     for line, side in zip(lines, sides, strict=True):
         ex, ey = line.direction
         pull, norm = line.cone.pull * side, _rational_norm(line.direction, axes)
         ahead = f"along ({', '.join((side * e).to_text() for e in (ex, ey))})"
         if any(line.turn):  # the directions of such lines are those of no part of the mechanism
             ahead = f"{'forwards' if side > 0 else 'backwards'} along its line"
-        longer = Condition(f"the length of spring {line.cone.name}", line.way.scaled(Fraction(side)))
+        longer = Condition(
+            f"the length of spring {line.cone.name}", line.way.scaled(Fraction(side))
+        )
         inequalities = (*problem.inequalities, longer)
-        where = f"{problem.where} {'and' if problem.where else 'with'} spring {line.cone.name} {ahead}"
+        where = (
+            f"{problem.where} {'and' if problem.where else 'with'} spring {line.cone.name} {ahead}"
+        )
         problem = replace(problem, inequalities=inequalities, where=where)
         if norm is None:
-            problem = replace(problem, pushes=(*problem.pushes, Push(pull, line.direction, line.weights)))
+            problem = replace(
+                problem, pushes=(*problem.pushes, Push(pull, line.direction, line.weights))
+            )
             continue
         parts = (w.scaled(pull * norm) for w in line.weights)
-        problem = replace(problem, equations=tuple(f - g for f, g in zip(problem.equations, parts, strict=True)))
+        problem = replace(
+            problem, equations=tuple(f - g for f, g in zip(problem.equations, parts, strict=True))
+        )
     return problem
 
 
@@ -109,7 +124,8 @@ def _rational_norm(direction: Pair, axes: tuple[Axis, Axis]) -> Expression | Non
 
 
 def _line(cone: SpringCone, axes: tuple[Axis, Axis]) -> _Line | None:
-    """The line along which a cone's vector stays, if there is one and it is proved to have a direction everywhere.
+    """The line along which a cone's vector stays, if there is one and it is proved to have a
+    direction everywhere.
 
     A line that turns by an odd half of an angle is none of these.
     """
@@ -117,7 +133,9 @@ def _line(cone: SpringCone, axes: tuple[Axis, Axis]) -> _Line | None:
     if any(n % 2 for n in twice):
         return None
     turn = tuple(n // 2 for n in twice)
-    (across, up), *weights = (_turned_back(vector, turn) for vector in (cone.difference, *cone.weights))
+    (across, up), *weights = (
+        _turned_back(vector, turn) for vector in (cone.difference, *cone.weights)
+    )
     first = next(pair for pair in _coefficients(across, up) if any(c.numerator for c in pair))
     ex, ey = direction = _primitive(first)
     if any(_crossed(pair, direction) for pair in _coefficients(across, up)):
@@ -133,7 +151,8 @@ def _line(cone: SpringCone, axes: tuple[Axis, Axis]) -> _Line | None:
 
 
 def _ends(vector: Vector) -> tuple[Multi, Multi]:
-    """Of the multiples by which a vector's parts turn, d_x + i d_y a sum of c e^(i m.q): the first and the last one.
+    """Of the multiples by which a vector's parts turn, d_x + i d_y a sum of c e^(i m.q): the first
+    and the last one.
 
     Of s e turned by n.q they are on both sides of n, equally far from it, as s is real.
     """
@@ -165,9 +184,14 @@ _NOTHING = constant(0), constant(0)
 
 
 def _primitive(pair: Pair) -> Pair:
-    """A vector of polynomials without a common divisor in the direction of one of rational functions."""
+    """A vector of polynomials without a common divisor in the direction of one of rational
+    functions.
+    """
     a, b = pair
-    x, y = Expression(a.numerator) * Expression(b.denominator), Expression(b.numerator) * Expression(a.denominator)
+    x, y = (
+        Expression(a.numerator) * Expression(b.denominator),
+        Expression(b.numerator) * Expression(a.denominator),
+    )
     divisor = common_divisor([x.numerator, y.numerator])
     x, y = (Expression(quotient(c.numerator, divisor)) if c.numerator else c for c in (x, y))
     if not (x.is_constant and y.is_constant):
@@ -175,7 +199,11 @@ def _primitive(pair: Pair) -> Pair:
     # the smallest whole numbers, which are told to the user
     p, q = x.constant(), y.constant()
     ratio = q / p if p else Fraction(0)
-    return (constant(ratio.denominator), constant(ratio.numerator)) if p else (constant(0), constant(1))
+    return (
+        (constant(ratio.denominator), constant(ratio.numerator))
+        if p
+        else (constant(0), constant(1))
+    )
 
 
 def _crossed(pair: Pair, direction: Pair) -> bool:

@@ -1,7 +1,8 @@
-"""Curves at which a spring with a free length has no length, where solutions that have one there are swallowed.
+"""Curves at which a spring with a free length has no length, where solutions that have one there
+are swallowed.
 
-Guarantee: each point of the window at which a solution is swallowed by a spring's cone lies on the projection of one of
-the curves (docs/soundness.md, "Plain formulas").
+Guarantee: each point of the window at which a solution is swallowed by a spring's cone lies on the
+projection of one of the curves (docs/soundness.md, "Plain formulas").
 """
 
 from __future__ import annotations
@@ -28,7 +29,10 @@ def cones(search: CurveSearch, whole: SpringChart) -> Iterator[CriticalCurve]:
         reason = f"an equilibrium is swallowed where spring {cone.name} has no length"
         if len(search.problem.unknowns) - closing == 1:
             # of one degree of freedom two equations d = 0 leave curves and need no direction
-            equations = [*whole.equations[:closing], *_without_length(cone.difference, whole.unknowns)]
+            equations = [
+                *whole.equations[:closing],
+                *_without_length(cone.difference, whole.unknowns),
+            ]
             pruning = Pruning(costly=whole.equations[closing:], nonnegative=search.values(whole))
             yield search.curve(name, reason, equations, pruning)
         elif len(moving) == 1 and search.problem.is_gradient and not search.stable:
@@ -41,16 +45,20 @@ def cones(search: CurveSearch, whole: SpringChart) -> Iterator[CriticalCurve]:
             yield search.curve(name, reason, equations, pruning, (*search.ranges, TURN))
 
 
-def _without_length(parts: Sequence[TrigonometricPolynomial], unknowns: Sequence[Unknown]) -> list[Formula]:
+def _without_length(
+    parts: Sequence[TrigonometricPolynomial], unknowns: Sequence[Unknown]
+) -> list[Formula]:
     """What is zero where some polynomials are; one that is zero everywhere says nothing."""
     return [f for f in (part.formula(unknowns) for part in parts) if f.value != 0]
 
 
 def _crease(search: CurveSearch, cone: SpringCone, moving: int) -> CriticalCurve:
-    """All configurations in which a spring that one unknown alone moves has no length, whether it is balanced or not.
+    """All configurations in which a spring that one unknown alone moves has no length, whether it
+    is balanced or not.
 
-    That is a curve by itself: other springs without length there do not matter. Where the unknown turns a vector that
-    is always as long, this is as long as the rest on it, and the unknown drops out.
+    That is a curve by itself: other springs without length there do not matter. Where the unknown
+    turns a vector that is always as long, this is as long as the rest on it, and the unknown drops
+    out.
     """
     x, y = cone.difference
     gap = square_of((x.still, y.still)) - square_of((x - x.still, y - y.still))

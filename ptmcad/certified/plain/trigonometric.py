@@ -1,8 +1,9 @@
 """Polynomials in real unknowns and in the cosines and sines of unknown angles, over Q(x, y).
 
-Guarantee: exact, and in the normal form of Fourier: a sum of terms coefficient * cos(m.t) * h^e and coefficient *
-sin(m.t) * h^e with different (m, e), in which cos(t)^2 + sin(t)^2 is 1. Written out as formulas, each harmonic stands
-once, so that intervals lose little where a product of cosines and sines would have lost much.
+Guarantee: exact, and in the normal form of Fourier: a sum of terms coefficient * cos(m.t) * h^e and
+coefficient * sin(m.t) * h^e with different (m, e), in which cos(t)^2 + sin(t)^2 is 1. Written out
+as formulas, each harmonic stands once, so that intervals lose little where a product of cosines and
+sines would have lost much.
 
 >>> ring = Harmonics(("t",), ())
 >>> ring.cos("t") * ring.cos("t") + ring.sin("t") * ring.sin("t") == ring.constant(Fraction(1))
@@ -35,8 +36,8 @@ class TrigonometricPolynomial:
 
     Attributes
     ----------
-    terms : (m, e) to the coefficients of cos(m.t) h^e and of sin(m.t) h^e; the first entry of m that is not zero is
-        positive, and no term is zero.
+    terms : (m, e) to the coefficients of cos(m.t) h^e and of sin(m.t) h^e; the first entry of m
+        that is not zero is positive, and no term is zero.
     """
 
     terms: Mapping[tuple[Multi, Multi], tuple[Expression, Expression]]
@@ -59,13 +60,18 @@ class TrigonometricPolynomial:
                 above = tuple(p + q for p, q in zip(m, n, strict=True))
                 below = tuple(p - q for p, q in zip(m, n, strict=True))
                 ac, bd, ad, bc = a * c, b * d, a * d, b * c
-                found += [((above, power), (ac - bd, ad + bc)), ((below, power), (ac + bd, bc - ad))]
+                found += [
+                    ((above, power), (ac - bd, ad + bc)),
+                    ((below, power), (ac + bd, bc - ad)),
+                ]
         return _collected(found)
 
     @property
     def still(self) -> TrigonometricPolynomial:
         """The part that has no unknown in it."""
-        return TrigonometricPolynomial({k: pair for k, pair in self.terms.items() if not any(map(any, k))})
+        return TrigonometricPolynomial(
+            {k: pair for k, pair in self.terms.items() if not any(map(any, k))}
+        )
 
     def scaled(self, factor: Expression | Fraction) -> TrigonometricPolynomial:
         """Times a number or a function of the axes."""
@@ -83,7 +89,8 @@ class TrigonometricPolynomial:
         return _collected(found)
 
     def substituted(self, rows: Sequence[Multi]) -> TrigonometricPolynomial:
-        """With sums of whole multiples of other angles for the angles; real unknowns, whose multiples are 0, stay.
+        """With sums of whole multiples of other angles for the angles; real unknowns, whose
+        multiples are 0, stay.
 
         Parameters
         ----------
@@ -92,7 +99,15 @@ class TrigonometricPolynomial:
         columns = list(zip(*rows, strict=True))
         return _collected(
             [
-                ((tuple(sum(a * b for a, b in zip(m, column, strict=True)) for column in columns), e), pair)
+                (
+                    (
+                        tuple(
+                            sum(a * b for a, b in zip(m, column, strict=True)) for column in columns
+                        ),
+                        e,
+                    ),
+                    pair,
+                )
                 for (m, e), pair in self.terms.items()
             ]
         )
@@ -111,7 +126,8 @@ class TrigonometricPolynomial:
         return _collected(terms)
 
     def formula(self, unknowns: Sequence[Unknown]) -> Formula:
-        """The polynomial as a formula: by Horner's rule in each real unknown, over sums of harmonics.
+        """The polynomial as a formula: by Horner's rule in each real unknown, over sums of
+        harmonics.
 
         Parameters
         ----------
@@ -129,7 +145,9 @@ def _horner(unknowns: Sequence[Unknown], terms: _Terms, unknown: int) -> Formula
     if unknown == len(unknowns):
         total = graph.constant(0)
         for (m, _), (a, b) in sorted(terms.items(), key=lambda term: term[0]):
-            parts: list[Any] = [multiple * angle for multiple, angle in zip(m, unknowns, strict=True) if multiple]
+            parts: list[Any] = [
+                multiple * angle for multiple, angle in zip(m, unknowns, strict=True) if multiple
+            ]
             if not parts:  # no angle: the cosine is 1
                 total = total + expression_formula(graph, a)
                 continue
@@ -160,7 +178,9 @@ def _collected(
         sine = _NOTHING if lead == 0 else -b if lead < 0 else b
         known = total.get((multiples, e), (_NOTHING, _NOTHING))
         total[multiples, e] = (known[0] + a, known[1] + sine)
-    return TrigonometricPolynomial({key: (a, b) for key, (a, b) in total.items() if a.numerator or b.numerator})
+    return TrigonometricPolynomial(
+        {key: (a, b) for key, (a, b) in total.items() if a.numerator or b.numerator}
+    )
 
 
 def waves(multiples: Multi) -> tuple[TrigonometricPolynomial, TrigonometricPolynomial]:
@@ -200,7 +220,9 @@ class Harmonics:
     def sin(self, angle: str) -> TrigonometricPolynomial:
         return self._term(_NOTHING, constant(1), angle=angle)
 
-    def _term(self, a: Expression, b: Expression, angle: str = "", power: str = "") -> TrigonometricPolynomial:
+    def _term(
+        self, a: Expression, b: Expression, angle: str = "", power: str = ""
+    ) -> TrigonometricPolynomial:
         multiples = tuple(int(name == angle) for name in self.unknowns)
         powers = tuple(int(name == power) for name in self.unknowns)
         return _collected([((multiples, powers), (a, b))])

@@ -1,13 +1,15 @@
-"""Several bodies turned by one angle: the moment on them all, which springs between them have no part in.
+"""Several bodies turned by one angle: the moment on them all, which springs between them have no
+part in.
 
-Guarantee: the moment of a `Turn` vanishes at every equilibrium, and its stiffness is its derivative along w: the second
-derivative of the energy, up to a positive factor. (Lemma S4 of docs/soundness.md.)
+Guarantee: the moment of a `Turn` vanishes at every equilibrium, and its stiffness is its derivative
+along w: the second derivative of the energy, up to a positive factor. (Lemma S4 of
+docs/soundness.md.)
 
-With d' = c J d + e along w, J being the turn by a right angle and c = -1, 0 or 1, a spring's length l has l' = u.e and
-l'' = c u x e + (u x e)^2/l + u.e'. Of a spring that turns as a whole e is zero, and of one from a body that turns to a
-fixed point it is as long as the way from there to the axis, however long the spring is. That way is often the same for
-all springs: times this arm stands what all of them do together, which intervals enclose more narrowly than the sum of
-its products.
+With d' = c J d + e along w, J being the turn by a right angle and c = -1, 0 or 1, a spring's length
+l has l' = u.e and l'' = c u x e + (u x e)^2/l + u.e'. Of a spring that turns as a whole e is zero,
+and of one from a body that turns to a fixed point it is as long as the way from there to the axis,
+however long the spring is. That way is often the same for all springs: times this arm stands what
+all of them do together, which intervals enclose more narrowly than the sum of its products.
 """
 
 from __future__ import annotations
@@ -28,7 +30,9 @@ from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression
 
 MAX_DIRECTIONS = 1
-"""Directions w that are used: those in which most terms drop out. More of them cost more than they discard."""
+"""Directions w that are used: those in which most terms drop out. More of them cost more than they
+discard.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +42,8 @@ class Turn:
     Attributes
     ----------
     weights : w.
-    slope : of the smooth part of the energy along w, over the factor: what is a multiple of the arm, over it, and the
-        rest.
+    slope : of the smooth part of the energy along w, over the factor: what is a multiple of the
+        arm, over it, and the rest.
     bend : the slope's own.
     levers : for each cone c, e and e', the latter two over the factor and the arm.
     factor : positive in the open window.
@@ -61,7 +65,9 @@ class Turn:
             total = total - at.pull * (ux * x + uy * y)
         return expression_formula(rest.graph, self.arm) * total + rest
 
-    def stiffness(self, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown], factor: Formula) -> Formula:
+    def stiffness(
+        self, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown], factor: Formula
+    ) -> Formula:
         """The second derivative along w."""
         total, rest = _written(self.bend, unknowns)
         arm = expression_formula(rest.graph, self.arm)
@@ -97,12 +103,16 @@ def _gain(problem: Problem, weights: Sequence[int]) -> int:
     before = sum(len(f.terms) for w, f in zip(weights, problem.equations, strict=True) if w)
     after = len(_along(problem.equations, weights).terms)
     for cone in problem.cones:
-        before += sum(len(d.derivative(i).terms) for i, w in enumerate(weights) if w for d in cone.difference)
+        before += sum(
+            len(d.derivative(i).terms) for i, w in enumerate(weights) if w for d in cone.difference
+        )
         after += sum(len(f.terms) for f in _lever(cone, weights)[1])
     return before - after
 
 
-def _along(slopes: Sequence[TrigonometricPolynomial], weights: Sequence[int]) -> TrigonometricPolynomial:
+def _along(
+    slopes: Sequence[TrigonometricPolynomial], weights: Sequence[int]
+) -> TrigonometricPolynomial:
     total = TrigonometricPolynomial({})
     for w, f in zip(weights, slopes, strict=True):
         total = total + f if w > 0 else total - f if w < 0 else total

@@ -1,6 +1,8 @@
-"""The zeros of a problem's equations at one rational point of a slice: a search in floats, and then in balls.
+"""The zeros of a problem's equations at one rational point of a slice: a search in floats, and then
+in balls.
 
-Guarantee: each box holds exactly one zero, each zero has one, and there are no others but in what is left open.
+Guarantee: each box holds exactly one zero, each zero has one, and there are no others but in what
+is left open.
 """
 
 from __future__ import annotations
@@ -24,17 +26,25 @@ from ptmcad.formulas.balls import ball, lower, upper
 from ptmcad.formulas.tape import enclosing_floats
 
 MANY_BOXES = 6_000_000
-"""Boxes in floating point for one point where there are more than `MAX_UNKNOWNS` unknowns: about half a minute."""
+"""Boxes in floating point for one point where there are more than `MAX_UNKNOWNS` unknowns: about
+half a minute.
+"""
 
 MAX_OPEN_BOXES = 40
-"""Boxes as narrow as is looked at that stay open, before a search ends: with one of them nothing is decided."""
+"""Boxes as narrow as is looked at that stay open, before a search ends: with one of them nothing is
+decided.
+"""
 
 ARB_BUDGETS = (6_000, 800)
-"""Boxes by precision. What takes many is nearly a curve of equilibria, and of that more digits make no fewer."""
+"""Boxes by precision. What takes many is nearly a curve of equilibria, and of that more digits make
+no fewer.
+"""
 
 
 class Zeros(NamedTuple):
-    """Boxes with exactly one zero each, narrower ones around it, each zero once; and how many boxes may hold more."""
+    """Boxes with exactly one zero each, narrower ones around it, each zero once; and how many boxes
+    may hold more.
+    """
 
     unique: Boxes
     narrow: Boxes
@@ -76,28 +86,45 @@ class ZeroSearch:
                 break
         if thorough and 0 < len(found.small) <= MAX_OPEN_BOXES and not len(found.waiting):
             found = self._with_more_digits(x, y, system, found)
-        periods = np.array([0.0] * FIRST + [FULL_TURN * is_angle for is_angle in self.problem.is_angle])
+        periods = np.array(
+            [0.0] * FIRST + [FULL_TURN * is_angle for is_angle in self.problem.is_angle]
+        )
         kept = distinct(found.unique, found.narrow, FIRST, periods)
         if kept is None:
             return Zeros(none, none, len(found.left()) + len(found.unique))
         return Zeros(found.unique[kept], found.narrow[kept], len(found.left()))
 
-    def _isolated(self, arguments: Arguments, start: Boxes, finest: float, thorough: bool) -> SearchResult:
+    def _isolated(
+        self, arguments: Arguments, start: Boxes, finest: float, thorough: bool
+    ) -> SearchResult:
         """The search in boxes no finer than that; of more than three unknowns one of many parts."""
         equations, weights = self.equations.arguments(), np.ones(start.shape[1] // 2)
         most = MANY_BOXES if len(self.problem.unknowns) > MAX_UNKNOWNS else BUDGET
         part = BUDGET if thorough else QUICK_BUDGET
         found = isolate(arguments, equations, start, (finest, part, MAX_OPEN_BOXES), weights)
-        while thorough and len(found.waiting) and len(found.small) <= MAX_OPEN_BOXES and found.used < most:
+        while (
+            thorough
+            and len(found.waiting)
+            and len(found.small) <= MAX_OPEN_BOXES
+            and found.used < most
+        ):
             if self.pause is not None:
                 self.pause()
-            more = isolate(arguments, equations, found.waiting, (finest, part, MAX_OPEN_BOXES), weights)
-            unique, narrow, small = (np.concatenate(pair) for pair in zip(found[:3], more[:3], strict=True))
+            more = isolate(
+                arguments, equations, found.waiting, (finest, part, MAX_OPEN_BOXES), weights
+            )
+            unique, narrow, small = (
+                np.concatenate(pair) for pair in zip(found[:3], more[:3], strict=True)
+            )
             found = SearchResult(unique, narrow, small, more.waiting, found.used + more.used)
         return found
 
-    def _with_more_digits(self, x: Fraction, y: Fraction, system: EquationSystem, found: SearchResult) -> SearchResult:
-        """The same with the zeros, if any, in the boxes that floating point left open, where more digits tell them."""
+    def _with_more_digits(
+        self, x: Fraction, y: Fraction, system: EquationSystem, found: SearchResult
+    ) -> SearchResult:
+        """The same with the zeros, if any, in the boxes that floating point left open, where more
+        digits tell them.
+        """
         for precision, budget in zip(PRECISIONS, ARB_BUDGETS, strict=True):
             with ctx.workprec(precision):
                 start = [self.box(x, y, box) for box in found.small]
@@ -114,7 +141,10 @@ class ZeroSearch:
 
     def box(self, x: Fraction, y: Fraction, box: Boxes) -> Box:
         """A box over the point in balls of the precision that is set."""
-        ends = [(Fraction(float(box[k])), Fraction(float(box[k + len(box) // 2]))) for k in self.problem.variables]
+        ends = [
+            (Fraction(float(box[k])), Fraction(float(box[k + len(box) // 2])))
+            for k in self.problem.variables
+        ]
         return (ball(x, x), ball(y, y), *(ball(low, high) for low, high in ends))
 
 
@@ -123,8 +153,14 @@ def _in_floats(zero: Isolated, around: Boxes) -> tuple[list[float], list[float]]
     wide = low, high = [list(map(float, some)) for some in np.split(around, 2)]
     least, most = list(low), list(high)
     for k in range(FIRST, len(low)):
-        low[k], high[k] = enclosing_floats(lower(zero.unique[k]))[1], enclosing_floats(upper(zero.unique[k]))[0]
-        least[k], most[k] = enclosing_floats(lower(zero.narrow[k]))[0], enclosing_floats(upper(zero.narrow[k]))[1]
+        low[k], high[k] = (
+            enclosing_floats(lower(zero.unique[k]))[1],
+            enclosing_floats(upper(zero.unique[k]))[0],
+        )
+        least[k], most[k] = (
+            enclosing_floats(lower(zero.narrow[k]))[0],
+            enclosing_floats(upper(zero.narrow[k]))[1],
+        )
         if not low[k] < least[k] <= most[k] < high[k]:
             return None
     return [end for ends in wide for end in ends], [*least, *most]

@@ -1,18 +1,22 @@
 """Adjacency of cells of neighbouring stacks, with the open segment that proves each pair.
 
-Guarantee: the pairs found are adjacent, and no pair is missing. Two cells on both sides of a critical abscissa a are
-adjacent exactly when an open segment of the line u = a, free of the curves, belongs to the closure of both.
+Guarantee: the pairs found are adjacent, and no pair is missing. Two cells on both sides of a
+critical abscissa a are adjacent exactly when an open segment of the line u = a, free of the curves,
+belongs to the closure of both.
 
-A *separator* is a rational height e such that no curve meets the horizontal segment [l, r] x {e}, where l < a < r lie
-in the two stacks; it proves that the cells at (l, e) and (r, e) are adjacent. Between consecutive separators lies a
-*gap* that some branches enter from the left and some from the right. All pairs are found once every gap contains at
-most one point of the line u = a that branches run into, because then separators stand on both sides of each such point.
+A *separator* is a rational height e such that no curve meets the horizontal segment [l, r] x {e},
+where l < a < r lie in the two stacks; it proves that the cells at (l, e) and (r, e) are adjacent.
+Between consecutive separators lies a *gap* that some branches enter from the left and some from the
+right. All pairs are found once every gap contains at most one point of the line u = a that branches
+run into, because then separators stand on both sides of each such point.
 
-* A gap with at most two branches does: through every point of a real algebraic curve (no vertical line among
-  them) runs an even number of half-branches, so two branches in a gap end at the same point. Only the point on the
-  window's edge, if a curve passes there, may take an odd number: so a gap at the edge with one branch does.
-* A gap with more branches is split, if it can be, by bracketing a more closely; if that fails, the points of the curves
-  over a are enclosed (`points`): heights between them are separators once the bracket is narrow enough.
+* A gap with at most two branches does: through every point of a real algebraic curve (no vertical
+  line among them) runs an even number of half-branches, so two branches in a gap end at the same
+  point. Only the point on the window's edge, if a curve passes there, may take an odd number: so a
+  gap at the edge with one branch does.
+* A gap with more branches is split, if it can be, by bracketing a more closely; if that fails, the
+  points of the curves over a are enclosed (`points`): heights between them are separators once the
+  bracket is narrow enough.
 """
 
 from collections.abc import Sequence
@@ -30,14 +34,19 @@ from ptmcad.exact.cad.stacks import BaseEnd, StackData, roots_over
 from ptmcad.text.flint_numbers import simplest_between
 
 ROUNDS = 4
-"""Bracketings that are tried before the exact separation; each has twice as many bits as the one before."""
+"""Bracketings that are tried before the exact separation; each has twice as many bits as the one
+before.
+"""
 _LONG_COEFFICIENT_BITS = 64
-"""Long coefficients may bring branches very near to each other: one bracketing more is tried for each doubling of their
-bits beyond ``_LONG_COEFFICIENT_BITS`` 2^ROUNDS, as the cost of the exact separation grows with them far faster."""
+"""Long coefficients may bring branches very near to each other: one bracketing more is tried for
+each doubling of their bits beyond ``_LONG_COEFFICIENT_BITS`` 2^ROUNDS, as the cost of the exact
+separation grows with them far faster."""
 
 
 class Separator(NamedTuple):
-    """Cells ``left`` and ``right`` (levels in their stacks) joined by the open segment [low, high] x {height}."""
+    """Cells ``left`` and ``right`` (levels in their stacks) joined by the open segment [low, high]
+    x {height}.
+    """
 
     left: int
     right: int
@@ -47,11 +56,13 @@ class Separator(NamedTuple):
 
 
 class StackGap(NamedTuple):
-    """Heights between two separators (None at the window's edge) which branches enter, and why no other separator fits.
+    """Heights between two separators (None at the window's edge) which branches enter, and why no
+    other separator fits.
 
     Attributes
     ----------
-    left, right : the lowest and the highest level, in either stack, of the cells that reach into the gap.
+    left, right : the lowest and the highest level, in either stack, of the cells that reach into
+        the gap.
     """
 
     left: tuple[int, int]
@@ -62,14 +73,20 @@ class StackGap(NamedTuple):
 
 
 class Crossing(NamedTuple):
-    """What happens between two neighbouring stacks: one separator for each adjacent pair, and the gaps between them."""
+    """What happens between two neighbouring stacks: one separator for each adjacent pair, and the
+    gaps between them.
+    """
 
     separators: tuple[Separator, ...]
     gaps: tuple[StackGap, ...]
 
 
 def cross(
-    curves: Sequence[FibredCurve], left: StackData, right: StackData, fibre: Interval, check: Check = nothing
+    curves: Sequence[FibredCurve],
+    left: StackData,
+    right: StackData,
+    fibre: Interval,
+    check: Check = nothing,
 ) -> Crossing:
     """All adjacent pairs of cells across the abscissa between two neighbouring stacks, with proof."""
     end = left.right
@@ -84,7 +101,9 @@ def cross(
         check()
         width, resolution = width / 2**step, resolution / 2 ** (step - 2)
         bracket = _bracket(end, width, left.sample, right.sample)
-        sides = [[refine(root, resolution) for _, root in roots_over(curves, u, fibre)] for u in bracket]
+        sides = [
+            [refine(root, resolution) for _, root in roots_over(curves, u, fibre)] for u in bracket
+        ]
         found = _separators(curves, bracket, sides, fibre, extra)
         gaps = _open_gaps(found, len(sides[0]), len(sides[1]), fibre)
         # without any separator nothing is proved, even if no branch runs up to the line
@@ -92,14 +111,22 @@ def cross(
         if not unresolved:
             unique = {(p.left, p.right): p for p in reversed(found)}
             closed = (_gap(g, curves, end, points) for g in gaps if g.branches)
-            return Crossing(tuple(sorted(unique.values(), key=lambda p: (p.left, p.right))), tuple(closed))
+            return Crossing(
+                tuple(sorted(unique.values(), key=lambda p: (p.left, p.right))), tuple(closed)
+            )
         attempt += 1
         step = 2 * step
         if attempt >= rounds:
             if points is None:
                 points = PointsOver(tuple(curves), end.root, check)
-                width, resolution, step = reach, extent, 8  # with the heights now known, wide brackets may do
-            separating = (h for gap in unresolved for h in _between_points(points, gap, curves, end))
+                width, resolution, step = (
+                    reach,
+                    extent,
+                    8,
+                )  # with the heights now known, wide brackets may do
+            separating = (
+                h for gap in unresolved for h in _between_points(points, gap, curves, end)
+            )
             extra = tuple(sorted({*extra, *separating}))
 
 
@@ -161,10 +188,16 @@ class _OpenGap(NamedTuple):
     @property
     def edges(self) -> list[fmpq]:
         """The window's edges among the ends."""
-        return [height for height, end in ((self.bottom, self.below), (self.top, self.above)) if end is None]
+        return [
+            height
+            for height, end in ((self.bottom, self.below), (self.top, self.above))
+            if end is None
+        ]
 
 
-def _open_gaps(found: Sequence[Separator], count_left: int, count_right: int, fibre: Interval) -> list[_OpenGap]:
+def _open_gaps(
+    found: Sequence[Separator], count_left: int, count_right: int, fibre: Interval
+) -> list[_OpenGap]:
     """The gaps between consecutive separators, from below, the window's edges included."""
     ends: list[tuple[fmpq, int, int, Separator | None]] = [(fibre[0], 0, 0, None)]
     ends += [(p.height, p.left, p.right, p) for p in found]
@@ -172,7 +205,9 @@ def _open_gaps(found: Sequence[Separator], count_left: int, count_right: int, fi
     return [_OpenGap(a[0], b[0], a[3], b[3], (a[1], b[1]), (a[2], b[2])) for a, b in pairwise(ends)]
 
 
-def _reason(gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd, points: PointsOver | None) -> Reason | None:
+def _reason(
+    gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd, points: PointsOver | None
+) -> Reason | None:
     """Why branches run into at most one point of the gap; None when that is not known.
 
     ``points`` is None while the points on the line are not looked for. A gap without branches may
@@ -181,7 +216,11 @@ def _reason(gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd, points: 
     branches, edges = gap.branches, gap.edges
     if branches == 0:
         return Reason.POINT
-    if len(edges) == 2 or (not edges and branches % 2 == 1) or (edges and not _meets(curves, end, edges[0])):
+    if (
+        len(edges) == 2
+        or (not edges and branches % 2 == 1)
+        or (edges and not _meets(curves, end, edges[0]))
+    ):
         return None
     if branches <= 2 - len(edges):
         return Reason.EDGE if edges else Reason.PAIR
@@ -190,7 +229,9 @@ def _reason(gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd, points: 
     return Reason.POINT
 
 
-def _gap(gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd, points: PointsOver | None) -> StackGap:
+def _gap(
+    gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd, points: PointsOver | None
+) -> StackGap:
     reason = _reason(gap, curves, end, points)
     assert reason is not None
     return StackGap(gap.left, gap.right, gap.below, gap.above, reason)
@@ -202,7 +243,9 @@ def _meets(curves: Sequence[FibredCurve], end: BaseEnd, edge: fmpq) -> bool:
     return any(vanishes_at(c.trace(edge), end.root) for c in curves)
 
 
-def _between_points(points: PointsOver, gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd) -> list[fmpq]:
+def _between_points(
+    points: PointsOver, gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd
+) -> list[fmpq]:
     """Heights between all possible points in the gap."""
     met = [edge for edge in gap.edges if _meets(curves, end, edge)]
     inner = points.between(gap.bottom, gap.top, met)

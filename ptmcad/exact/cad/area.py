@@ -1,10 +1,12 @@
-"""Certified areas of regions: every branch that separates two regions is integrated with a proved error.
+"""Certified areas of regions: every branch that separates two regions is integrated with a proved
+error.
 
-Guarantee: each area is an interval that contains the true value; its relative width is at most the tolerance asked for.
+Guarantee: each area is an interval that contains the true value; its relative width is at most the
+tolerance asked for.
 
-Walls are integrated on panels (`panels`), as long as their Taylor series are good for, and by a Puiseux series beside a
-turning point or cusp. Panels where that fails are halved, and there the branch is shut in between two horizontals that
-the curve does not meet.
+Walls are integrated on panels (`panels`), as long as their Taylor series are good for, and by a
+Puiseux series beside a turning point or cusp. Panels where that fails are halved, and there the
+branch is shut in between two horizontals that the curve does not meet.
 """
 
 from collections import Counter
@@ -38,13 +40,19 @@ _ROUGH_BITS = 8
 _PANELS = 16
 """Twice the number of panels that a border may take, about."""
 _HOPELESS_RATIO = 2**8
-"""So much larger than allowed are strips against rough areas, when it is pointless to find out about the exact ones."""
+"""So much larger than allowed are strips against rough areas, when it is pointless to find out
+about the exact ones.
+"""
 _MIN_ORDER = 6
 """Of series, besides the tolerance's digits."""
 _LONG_FIBRE, _FIBRE_PER_ORDER = 16, 3
-"""Of higher degrees in v fibres and local coefficients cost more than series, so longer ones on fewer panels pay."""
+"""Of higher degrees in v fibres and local coefficients cost more than series, so longer ones on
+fewer panels pay.
+"""
 _SPARE_BITS = 16
-"""Beyond the tolerance's digits: where walls that nearly cancel leave fewer, panels would be cut without end."""
+"""Beyond the tolerance's digits: where walls that nearly cancel leave fewer, panels would be cut
+without end.
+"""
 _CACHED_FIBRES = 1024
 """Fibres whose roots are remembered."""
 
@@ -58,7 +66,8 @@ class RegionStacks(NamedTuple):
     curves : whose branches are the walls.
     base, fibre : of the whole window.
     images : of a half, the regions of which each one's other part is the mirror image.
-    ceiling : the line, over the base, up to which the last cells reach if that is not the window's edge.
+    ceiling : the line, over the base, up to which the last cells reach if that is not the window's
+        edge.
     """
 
     stacks: Sequence[StackData]
@@ -81,7 +90,11 @@ class RegionStacks(NamedTuple):
 
     def whole(self, parts: Sequence[_Sum]) -> list[_Sum]:
         """What belongs to each region, from what belongs to it in the half."""
-        return [a + parts[j] for a, j in zip(parts, self.images, strict=True)] if self.images else list(parts)
+        return (
+            [a + parts[j] for a, j in zip(parts, self.images, strict=True)]
+            if self.images
+            else list(parts)
+        )
 
     def beside(self, border: Border) -> set[int]:
         """The regions that a wall, or its image, is a wall of."""
@@ -106,7 +119,8 @@ class RegionStacks(NamedTuple):
 
 
 class _Frame(NamedTuple):
-    """What the areas are without walls: the exact contributions of the window's edges, and the area in the strips.
+    """What the areas are without walls: the exact contributions of the window's edges, and the area
+    in the strips.
 
     Attributes
     ----------
@@ -137,7 +151,9 @@ class _Unreachable(ArithmeticError):
         self.strips = strips
 
 
-def region_areas(parts: RegionStacks, tolerance: Fraction, check: Check = nothing) -> tuple[Bounds, int]:
+def region_areas(
+    parts: RegionStacks, tolerance: Fraction, check: Check = nothing
+) -> tuple[Bounds, int]:
     """Bounds for the area of each region, and the bits of precision they needed.
 
     Parameters
@@ -150,29 +166,40 @@ def region_areas(parts: RegionStacks, tolerance: Fraction, check: Check = nothin
     if parts.number == 1:
         return ((whole, whole),), 0
     digits = len(str(tolerance.denominator // tolerance.numerator))
-    # at first not much more for long coefficients: where they cancel, `branch_integral` says so, and arcs may do
+    # at first not much more for long coefficients: where they cancel, `branch_integral` says so,
+    # and arcs may do
     bits = 64 + 6 * digits + min(max_height_bits(parts.curves) // 2, _LONG_COEFFICIENT_BITS)
     bits += _bits_lost(parts.base) + _bits_lost(parts.fibre)
     broad, narrowest = width * fmpq(1, 2 ** (3 * digits // 2)), min(map(_isolated, parts.stacks))
-    more = _MIN_ORDER + max(0, max((len(c.in_v) for c in parts.curves), default=0) - _LONG_FIBRE) // _FIBRE_PER_ORDER
+    more = (
+        _MIN_ORDER
+        + max(0, max((len(c.in_v) for c in parts.curves), default=0) - _LONG_FIBRE)
+        // _FIBRE_PER_ORDER
+    )
     share, own, finer = fmpq(1, 10 ** (digits + 3) * 4), True, 20
     curve_of = by_component(parts.curves)
 
     @lru_cache(maxsize=_CACHED_FIBRES)
     def roots(component: int, u: fmpq) -> tuple[RealRoot, ...]:
-        # walls over the same stack are cut at the same places, and again when an attempt is repeated
+        # walls over the same stack are cut at the same places, and again when an attempt is
+        # repeated
         return curve_of[component].roots_over(u, parts.fibre)
 
     while True:
-        effort = PanelEffort(digits + more, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots)
+        effort = PanelEffort(
+            digits + more, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots
+        )
         try:
             with ctx.workprec(bits):
-                bounds = _areas(parts, _spans(parts.stacks, share, own=own), tolerance * 3 / 4, effort, check)
+                bounds = _areas(
+                    parts, _spans(parts.stacks, share, own=own), tolerance * 3 / 4, effort, check
+                )
                 return tuple(_with_room(b, tolerance, whole) for b in bounds), bits
         except TooFewBits:
             bits = 3 * bits // 2
         except _Unreachable as obstacle:
-            # a region is tiny, or the precision is too low for it: the effort grows fast, so this ends soon
+            # a region is tiny, or the precision is too low for it: the effort grows fast, so this
+            # ends soon
             if not obstacle.strips:
                 bits = 3 * bits // 2
             elif own:
@@ -187,10 +214,16 @@ def _bits_lost(interval: Interval) -> int:
     return max(0, int(ratio.floor()).bit_length())
 
 
-def _with_room(bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fraction) -> tuple[Fraction, Fraction]:
-    """Bounds a little wider, so that a checker who encloses the area less tightly can still confirm them."""
+def _with_room(
+    bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fraction
+) -> tuple[Fraction, Fraction]:
+    """Bounds a little wider, so that a checker who encloses the area less tightly can still confirm
+    them.
+    """
     low, high = bounds
-    known = high - low <= low * _NEGLIGIBLE  # walls on which the Taylor polynomials are exact, such as straight lines
+    known = (
+        high - low <= low * _NEGLIGIBLE
+    )  # walls on which the Taylor polynomials are exact, such as straight lines
     # bounds that are narrower than asked for would cost the checker time for nothing
     spare = max(low * tolerance / 16, (low * tolerance / 8 - (high - low)) / 2)
     room = low * _NEGLIGIBLE / 100 if known else spare
@@ -198,10 +231,18 @@ def _with_room(bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fr
 
 
 def _areas(
-    parts: RegionStacks, spans: Sequence[Interval], tolerance: Fraction, effort: PanelEffort, check: Check
+    parts: RegionStacks,
+    spans: Sequence[Interval],
+    tolerance: Fraction,
+    effort: PanelEffort,
+    check: Check,
 ) -> Bounds:
     """One attempt, at the context's precision."""
-    lost = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0)) * parts.height * (2 if parts.images else 1)
+    lost = (
+        sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0))
+        * parts.height
+        * (2 if parts.images else 1)
+    )
     borders = list(parts.borders(spans))
     rough, sizes = _rough(spans, parts, borders, effort)
     if lost * 4 > from_fraction(tolerance) * min(rough) * _HOPELESS_RATIO:
@@ -210,13 +251,21 @@ def _areas(
     if any(size > area * right for size, area in zip(sizes, rough, strict=True)):
         raise _Unreachable(strips=False)
     load = Counter(i for row in borders for b in row for i in parts.beside(b))
-    # of a panel's integral: what would do if all were about as bad, with some more panels than borders
-    allowed = [from_fraction(tolerance) * rough[i] / (_PANELS * max(load[i], 1)) for i in range(parts.number)]
+    # of a panel's integral: what would do if all were about as bad, with some more panels than
+    # borders
+    allowed = [
+        from_fraction(tolerance) * rough[i] / (_PANELS * max(load[i], 1))
+        for i in range(parts.number)
+    ]
     covered: list[WallPanel] = []
     for border in chain.from_iterable(borders):
         check()
-        covered += panels(border, border.span, effort, min(allowed[border.below], allowed[border.above]))
-    return _refine(covered, _Frame(parts, _edges(spans, parts), lost, allowed), tolerance, effort, check)
+        covered += panels(
+            border, border.span, effort, min(allowed[border.below], allowed[border.above])
+        )
+    return _refine(
+        covered, _Frame(parts, _edges(spans, parts), lost, allowed), tolerance, effort, check
+    )
 
 
 def _isolated(stack: StackData) -> fmpq:
@@ -230,8 +279,8 @@ def _spans(stacks: Sequence[StackData], share: fmpq, *, own: bool) -> list[Inter
     Parameters
     ----------
     share : of a stack's width, for a strip.
-    own : whether the stack is the strip's own one. Otherwise it is the narrower of the two stacks there: in a vast
-        window some are narrower than others by many orders of magnitude.
+    own : whether the stack is the strip's own one. Otherwise it is the narrower of the two stacks
+        there: in a vast window some are narrower than others by many orders of magnitude.
     """
     widths = [_isolated(stack) for stack in stacks]
     left = right = widths
@@ -242,7 +291,9 @@ def _spans(stacks: Sequence[StackData], share: fmpq, *, own: bool) -> list[Inter
 
 
 def _span(stack: StackData, left_strip: fmpq, right_strip: fmpq) -> Interval:
-    """The stack's base interval shortened to rational ends, of small height as all arithmetic starts from them."""
+    """The stack's base interval shortened to rational ends, of small height as all arithmetic
+    starts from them.
+    """
     left, right = stack.left.value, stack.right.value
     if stack.left.root is not None:
         root = refine(stack.left.root, left_strip / 2)
@@ -258,10 +309,13 @@ def _span(stack: StackData, left_strip: fmpq, right_strip: fmpq) -> Interval:
 
 
 def _rough(
-    spans: Sequence[Interval], parts: RegionStacks, borders: Sequence[Sequence[Border]], effort: PanelEffort
+    spans: Sequence[Interval],
+    parts: RegionStacks,
+    borders: Sequence[Sequence[Border]],
+    effort: PanelEffort,
 ) -> tuple[list[fmpq], list[fmpq]]:
-    """Each region's area as if its cells were as high everywhere as in the middle, and how large the integrals of its
-    walls are, which cancel but for that; both prove nothing."""
+    """Each region's area as if its cells were as high everywhere as in the middle, and how large
+    the integrals of its walls are, which cancel but for that; both prove nothing."""
     total, sizes = [fmpq(0)] * parts.number, [fmpq(0)] * parts.number
     for (low, high), over, row in zip(spans, borders, parts.regions, strict=True):
         walls = _told_apart([b.over((low + high) / 2, effort) for b in over], parts.height)
@@ -295,7 +349,9 @@ def _edges(spans: Sequence[Interval], parts: RegionStacks) -> list[fmpq]:
     return total
 
 
-def _refine(panels: list[WallPanel], frame: _Frame, tolerance: Fraction, effort: PanelEffort, check: Check) -> Bounds:
+def _refine(
+    panels: list[WallPanel], frame: _Frame, tolerance: Fraction, effort: PanelEffort, check: Check
+) -> Bounds:
     """Halve panels until every region is known well enough."""
     while True:
         bounds = frame.bounds(panels)
@@ -305,7 +361,9 @@ def _refine(panels: list[WallPanel], frame: _Frame, tolerance: Fraction, effort:
         if any(to_fraction(frame.lost) * 4 > tolerance * bounds[i][1] for i in poor):
             raise _Unreachable(strips=True)
         load = Counter(i for p in panels for i in frame.parts.beside(p.border))
-        target = {i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor}
+        target = {
+            i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor
+        }
         refined: list[WallPanel] = []
         for p in panels:
             allowed = min((target[i] for i in poor & frame.parts.beside(p.border)), default=p.width)

@@ -1,12 +1,14 @@
-"""Every wall of a stack as one polyline from critical value to critical value, with a proved distance.
+"""Every wall of a stack as one polyline from critical value to critical value, with a proved
+distance.
 
-Guarantee: over the whole open interval of its stack the wall stays within `WallPolyline.distance` of the polyline,
-measured along the fibre and as a share of the window.
+Guarantee: over the whole open interval of its stack the wall stays within `WallPolyline.distance`
+of the polyline, measured along the fibre and as a share of the window.
 
-Inside, chords are those of `ptmcad.exact.cad.polyline`. Towards an end, where the wall may turn upright, a last piece
-is level: two heights without a root of p(., v) from there to the end, the end included, shut the wall in, and the piece
-is so short that they are near enough. At the window's edge there is none where the curve's roots over it are simple and
-as many as over the stack, none of them a corner: then each wall runs on to its own.
+Inside, chords are those of `ptmcad.exact.cad.polyline`. Towards an end, where the wall may turn
+upright, a last piece is level: two heights without a root of p(., v) from there to the end, the end
+included, shut the wall in, and the piece is so short that they are near enough. At the window's
+edge there is none where the curve's roots over it are simple and as many as over the stack, none of
+them a corner: then each wall runs on to its own.
 """
 
 from __future__ import annotations
@@ -22,19 +24,31 @@ from ptmcad.algebra.real_roots import RealRoot, halve, isolate, order, refine, s
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.exact.cad.curves import by_component, curves_of
-from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Span, WallBranch, chords, shut_in, to_share
+from ptmcad.exact.cad.polyline import (
+    ROUNDING,
+    UNPROVED,
+    Span,
+    WallBranch,
+    chords,
+    shut_in,
+    to_share,
+)
 from ptmcad.text.flint_numbers import from_fraction, interval_of
 
 _NARROWEST = Fraction(1, 2**40)
 _END = fmpq(1, 2**60)
-"""Width to which a critical value is known, as a share of its distance from the samples beside it."""
+"""Width to which a critical value is known, as a share of its distance from the samples beside it.
+"""
 _FIRST, _QUARTERS = Fraction(1, 8), 40
-"""Share of its stack that the level piece at an end has at first, and how often it is made four times shorter."""
+"""Share of its stack that the level piece at an end has at first, and how often it is made four
+times shorter.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class WallPolyline:
-    """A wall as a polyline; coordinates are shares of the window along the base and along the fibre.
+    """A wall as a polyline; coordinates are shares of the window along the base and along the
+    fibre.
 
     Attributes
     ----------
@@ -46,16 +60,22 @@ class WallPolyline:
     distance: Fraction
 
 
-def chains(result: RegionMap, tolerance: Fraction, check: Check = nothing) -> tuple[tuple[WallPolyline, ...], ...]:
+def chains(
+    result: RegionMap, tolerance: Fraction, check: Check = nothing
+) -> tuple[tuple[WallPolyline, ...], ...]:
     """The walls of every stack, from below.
 
     Parameters
     ----------
-    tolerance : the largest distance wanted, as a share of the window. `WallPolyline.distance` says what was reached.
+    tolerance : the largest distance wanted, as a share of the window. `WallPolyline.distance` says
+        what was reached.
     check : called between pieces; may raise to stop.
     """
     axes = result.slice.axes
-    base, fibre = ((from_fraction(axes[k].low), from_fraction(axes[k].high)) for k in (result.base, 1 - result.base))
+    base, fibre = (
+        (from_fraction(axes[k].low), from_fraction(axes[k].high))
+        for k in (result.base, 1 - result.base)
+    )
     curves = by_component(curves_of(result.components, result.base))
     ends = [(Fraction(0), Fraction(0)), *critical_shares(result), (Fraction(1), Fraction(1))]
     found = []
@@ -64,18 +84,24 @@ def chains(result: RegionMap, tolerance: Fraction, check: Check = nothing) -> tu
         number = Counter(w.component for w in stack.walls)
         walls = []
         for b in branches:
-            left, right = ((*e, _goes_on(b, e, number[b.curve.component])) for e in (ends[k], ends[k + 1]))
+            left, right = (
+                (*e, _goes_on(b, e, number[b.curve.component])) for e in (ends[k], ends[k + 1])
+            )
             walls.append(_chain(b, left, right, tolerance, check))
         found.append(tuple(walls))
     return tuple(found)
 
 
 _End = tuple[Fraction, Fraction, bool]
-"""An end of a stack, between two shares of the base; and whether the wall runs on into it, as where it is regular."""
+"""An end of a stack, between two shares of the base; and whether the wall runs on into it, as where
+it is regular.
+"""
 
 
 def _goes_on(wall: WallBranch, end: Span, number: int) -> bool:
-    """Whether so many walls of a curve run to its so many roots over the window's edge, each to its own."""
+    """Whether so many walls of a curve run to its so many roots over the window's edge, each to its
+    own.
+    """
     if end[0] != end[1] or end[0] not in (0, 1):
         return False
     p = wall.curve.fibre(wall.base[int(end[0])])
@@ -85,7 +111,9 @@ def _goes_on(wall: WallBranch, end: Span, number: int) -> bool:
 
 
 def critical_shares(result: RegionMap) -> list[Span]:
-    """Every critical value between two shares of the base, near together against the stacks beside it."""
+    """Every critical value between two shares of the base, near together against the stacks beside
+    it.
+    """
     base = interval_of(result.slice.axes[result.base])
     samples = [from_fraction(s.sample) for s in result.stacks]
     ends = [_enclosed(v, samples[k], samples[k + 1]) for k, v in enumerate(result.critical_values)]
@@ -93,7 +121,8 @@ def critical_shares(result: RegionMap) -> list[Span]:
 
 
 def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:
-    """A critical value in an interval that is short against its distance from the samples beside it.
+    """A critical value in an interval that is short against its distance from the samples beside
+    it.
 
     Raises
     ------
@@ -110,11 +139,15 @@ def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:
     return refine(root, min(root.low - before, after - root.high) * _END)
 
 
-def _chain(wall: WallBranch, left: _End, right: _End, tolerance: Fraction, check: Check) -> WallPolyline:
+def _chain(
+    wall: WallBranch, left: _End, right: _End, tolerance: Fraction, check: Check
+) -> WallPolyline:
     width = right[0] - left[1]
     start, first = _level(wall, left, width, tolerance)
     end, last = _level(wall, right, -width, tolerance)
-    parts = chords(wall, (start, end), tolerance, _NARROWEST * width, check, (tolerance, Fraction(1)))
+    parts = chords(
+        wall, (start, end), tolerance, _NARROWEST * width, check, (tolerance, Fraction(1))
+    )
     points = [(start, parts[0].at_left), *((c.right, c.at_right) for c in parts)]
     if not left[2]:
         points.insert(0, ((left[0] + left[1]) / 2, parts[0].at_left))
@@ -123,7 +156,9 @@ def _chain(wall: WallBranch, left: _End, right: _End, tolerance: Fraction, check
     return WallPolyline(tuple(points), max(first, last, *(c.distance for c in parts)))
 
 
-def _level(wall: WallBranch, end: _End, width: Fraction, tolerance: Fraction) -> tuple[Fraction, Fraction]:
+def _level(
+    wall: WallBranch, end: _End, width: Fraction, tolerance: Fraction
+) -> tuple[Fraction, Fraction]:
     """Where the level piece at an end of a wall stops, and how far the wall is from it at most."""
     low, high, regular = end
     if regular:

@@ -1,4 +1,5 @@
-"""Curves of the variety seen from a base axis: fibres over rational abscissae and traces on rational horizontals.
+"""Curves of the variety seen from a base axis: fibres over rational abscissae and traces on
+rational horizontals.
 
 Guarantee: exact. ``u`` is the coordinate on the base axis, ``v`` the one on the fibre axis.
 """
@@ -11,7 +12,12 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, from_plane
+from ptmcad.algebra.polynomials import (
+    Coefficient,
+    UnivariatePolynomial,
+    coefficients_in,
+    from_plane,
+)
 from ptmcad.algebra.real_roots import Interval, RealRoot, isolate
 from ptmcad.algebra.reflected_roots import isolate_reflected
 from ptmcad.algebra.reflections import Reflection, reflection_of
@@ -20,8 +26,8 @@ from ptmcad.algebra.resultants import Check, balanced, discriminant, resultant
 from ptmcad.answer.regionmap import Component
 
 _LONG_FIBRE = 16
-"""Coefficients up to which a polynomial's roots are found as fast as those of one of half its degree, and their square
-roots."""
+"""Coefficients up to which a polynomial's roots are found as fast as those of one of half its
+degree, and their square roots."""
 
 
 class FibredCurve(NamedTuple):
@@ -68,11 +74,15 @@ class FibredCurve(NamedTuple):
 def curve(component: int, p: Coefficient, base: int) -> FibredCurve:
     """The curve of a component, for the base axis 0 or 1."""
     in_v, in_u = coefficients_in(p, 1 - base), coefficients_in(p, base)
-    return FibredCurve(component, in_v, in_u, Restrictions(in_v), Restrictions(in_u), reflection_of(in_v))
+    return FibredCurve(
+        component, in_v, in_u, Restrictions(in_v), Restrictions(in_u), reflection_of(in_v)
+    )
 
 
 def curves_of(components: Sequence[Component], base: int, reason: str = "") -> list[FibredCurve]:
-    """The components that are used, or left out for a reason, as curves over the base; lines across it are none."""
+    """The components that are used, or left out for a reason, as curves over the base; lines across
+    it are none.
+    """
     return [
         curve(n, from_plane(c.polynomial), base)
         for n, c in enumerate(components)
@@ -85,7 +95,9 @@ def by_component(curves: Iterable[FibredCurve]) -> dict[int, FibredCurve]:
     return {c.component: c for c in curves}
 
 
-def lines_of(components: Sequence[Component], base: int, reason: str = "") -> dict[int, UnivariatePolynomial]:
+def lines_of(
+    components: Sequence[Component], base: int, reason: str = ""
+) -> dict[int, UnivariatePolynomial]:
     """The other ones: lines across the base, as polynomials in u by the components' numbers."""
     return {
         n: coefficients_in(from_plane(c.polynomial), 1 - base)[0]
@@ -119,7 +131,9 @@ _LONG_COEFFICIENT_BITS = 1000
 """Bits of coefficients from which on other units for u and v are looked for."""
 
 
-def shortened(polynomials: list[Coefficients], deflate: bool = True) -> tuple[list[Coefficients], int, int]:
+def shortened(
+    polynomials: list[Coefficients], deflate: bool = True
+) -> tuple[list[Coefficients], int, int]:
     """The polynomials with u in place of unit u^inflation, unit, and inflation."""
     deflated, inflation = _deflated(polynomials, deflate)
     if max(c.height_bits() for p in deflated for c in p) < _LONG_COEFFICIENT_BITS:
@@ -128,9 +142,15 @@ def shortened(polynomials: list[Coefficients], deflate: bool = True) -> tuple[li
     return shorter, unit, inflation
 
 
-def short_discriminant(c: FibredCurve, check: Check, deflate: bool = True) -> tuple[UnivariatePolynomial, int, int]:
-    """The discriminant of p(u, v^(1/k)) in the units of `shortened`, unit, and inflation; k as large as it may be."""
-    (shorter,), unit, inflation = shortened([c.in_v[:: deflation(c.in_v) if deflate else 1]], deflate)
+def short_discriminant(
+    c: FibredCurve, check: Check, deflate: bool = True
+) -> tuple[UnivariatePolynomial, int, int]:
+    """The discriminant of p(u, v^(1/k)) in the units of `shortened`, unit, and inflation; k as
+    large as it may be.
+    """
+    (shorter,), unit, inflation = shortened(
+        [c.in_v[:: deflation(c.in_v) if deflate else 1]], deflate
+    )
     return discriminant(shorter, check), unit, inflation
 
 
@@ -144,7 +164,9 @@ def short_resultant(
 
 
 def _deflated(polynomials: list[Coefficients], deflate: bool) -> tuple[list[Coefficients], int]:
-    """The polynomials with u in place of u^k, and the largest k for which that can be done in all of them; or k = 1."""
+    """The polynomials with u in place of u^k, and the largest k for which that can be done in all
+    of them; or k = 1.
+    """
     if not deflate:
         return polynomials, 1
     varying = [base_deflation(p) for p in polynomials if any(q.degree() > 0 for q in p)]

@@ -1,7 +1,8 @@
-"""Halves of a window that a reflection maps to the other half: what lies before an abscissa, or below a line.
+"""Halves of a window that a reflection maps to the other half: what lies before an abscissa, or
+below a line.
 
-Guarantee: exact. The stacks of the half cover it, the walls over each are all that lie in it, and the last cell of a
-stack is cut off by the half's ceiling. They prove nothing about adjacency.
+Guarantee: exact. The stacks of the half cover it, the walls over each are all that lie in it, and
+the last cell of a stack is cut off by the half's ceiling. They prove nothing about adjacency.
 """
 
 from __future__ import annotations
@@ -14,7 +15,15 @@ from flint import fmpq
 
 from ptmcad.algebra.graphs import on_graph
 from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, disjoint, halve, inside, isolate, order, squarefree_part
+from ptmcad.algebra.real_roots import (
+    RealRoot,
+    disjoint,
+    halve,
+    inside,
+    isolate,
+    order,
+    squarefree_part,
+)
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.area import RegionStacks
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, level_at
@@ -36,10 +45,15 @@ def before(parts: RegionStacks, middle: fmpq) -> RegionStacks:
 
 
 def below(parts: RegionStacks, line: RationalPolynomial) -> RegionStacks:
-    """The half below a line, which is within the window: its stacks end where walls cross the line, too."""
+    """The half below a line, which is within the window: its stacks end where walls cross the line,
+    too.
+    """
     ends = [stack.right.root for stack in parts.stacks if stack.right.root]
     crossings = squarefree_part(
-        prod((q for c in parts.curves if (q := on_graph(c.in_v, line))), start=UnivariatePolynomial([1]))
+        prod(
+            (q for c in parts.curves if (q := on_graph(c.in_v, line))),
+            start=UnivariatePolynomial([1]),
+        )
     )
     for polynomial in {id(r.polynomial): r.polynomial for r in ends}.values():
         crossings //= crossings.gcd(polynomial)
@@ -68,5 +82,9 @@ def _apart(end: BaseEnd, middle: fmpq) -> BaseEnd:
     return BaseEnd(root.middle, root, None)
 
 
-def _between(left: BaseEnd, right: BaseEnd, walls: Sequence[Wall], heights: Sequence[fmpq]) -> StackData:
-    return StackData(left, right, simplest_between(left.high, right.low), tuple(walls), tuple(heights))
+def _between(
+    left: BaseEnd, right: BaseEnd, walls: Sequence[Wall], heights: Sequence[fmpq]
+) -> StackData:
+    return StackData(
+        left, right, simplest_between(left.high, right.low), tuple(walls), tuple(heights)
+    )

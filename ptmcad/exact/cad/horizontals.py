@@ -1,7 +1,7 @@
 """Horizontals between which a branch of a plane curve runs over a panel.
 
-Guarantee: over the panel the branch stays between the two heights, because the curve does not meet the horizontals
-there; the window's edge serves where none is found.
+Guarantee: over the panel the branch stays between the two heights, because the curve does not meet
+the horizontals there; the window's edge serves where none is found.
 """
 
 from __future__ import annotations
@@ -16,7 +16,9 @@ from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.text.flint_numbers import simplest_between
 
 
-def horizontals(curve: FibredCurve, at_middle: RealRoot, over: Interval, share: fmpq, fibre: Interval) -> Interval:
+def horizontals(
+    curve: FibredCurve, at_middle: RealRoot, over: Interval, share: fmpq, fibre: Interval
+) -> Interval:
     """Two heights between which the branch stays.
 
     Parameters
@@ -34,7 +36,9 @@ def horizontals(curve: FibredCurve, at_middle: RealRoot, over: Interval, share: 
         def horizontal(k: int, end: fmpq = end, direction: int = direction) -> fmpq | None:
             """A horizontal about 2^k start from the branch, unless the curve may meet it."""
             # of small height, because the test's cost grows with it
-            inner, outer = sorted(end + direction * start * 2**k * part for part in (fmpq(3, 4), fmpq(1)))
+            inner, outer = sorted(
+                end + direction * start * 2**k * part for part in (fmpq(3, 4), fmpq(1))
+            )
             candidate = simplest_between(inner, outer)
             return candidate if avoids(curve.trace(candidate), *over) else None
 
@@ -44,7 +48,9 @@ def horizontals(curve: FibredCurve, at_middle: RealRoot, over: Interval, share: 
 
 
 def _nearest(horizontal: Callable[[int], fmpq | None], room: fmpq) -> fmpq | None:
-    """The first horizontal found free at distance 2^k < room; k grows by leaps, then the leap is bisected."""
+    """The first horizontal found free at distance 2^k < room; k grows by leaps, then the leap is
+    bisected.
+    """
     most = max(0, int(room.ceil()) - 1).bit_length() - 1
     failed, k = -1, 0
     found = None

@@ -1,8 +1,10 @@
-"""Panels: parts of the walls that separate two regions, each with an enclosure of the branch's integral.
+"""Panels: parts of the walls that separate two regions, each with an enclosure of the branch's
+integral.
 
-Guarantee: the integral lies in the enclosure, whichever way it was found: exactly, where the curve is a polynomial's
-graph, by the branch's Taylor series (`algebra.branches`), by its Puiseux series beside a singular point
-(`algebra.puiseux`), between arcs (`algebra.arcs`), between horizontals, or between the window's edges.
+Guarantee: the integral lies in the enclosure, whichever way it was found: exactly, where the curve
+is a polynomial's graph, by the branch's Taylor series (`algebra.branches`), by its Puiseux series
+beside a singular point (`algebra.puiseux`), between arcs (`algebra.arcs`), between horizontals, or
+between the window's edges.
 """
 
 from collections.abc import Callable
@@ -22,7 +24,8 @@ from ptmcad.text.balls import exact
 from ptmcad.text.flint_numbers import simplest_between
 
 _REGULAR = 1.5
-"""A branch seems to be regular at the ends of an interval if its series converges so much farther."""
+"""A branch seems to be regular at the ends of an interval if its series converges so much farther.
+"""
 _MAX_PANELS = 64
 """Panels that an interval is cut into before it is known whether its rest matters."""
 _MIN_BITS = 6
@@ -30,7 +33,9 @@ _MIN_BITS = 6
 _HALVING_CUTS = 5
 """Cuts by half towards a turning point before they come faster."""
 _BITS_BY_HALVES = 12
-"""What is worse than wanted by more bits is enclosed at a higher precision: that is sooner done than halving panels."""
+"""What is worse than wanted by more bits is enclosed at a higher precision: that is sooner done
+than halving panels.
+"""
 _MAX_RAISE = 8
 """The highest precision that is tried, in units of the context's."""
 _MAX_CUTS = 10
@@ -38,7 +43,8 @@ _MAX_CUTS = 10
 
 
 class PanelEffort(NamedTuple):
-    """Degree of the polynomial on a panel, what is worth trying on panels of which width, and what is known already.
+    """Degree of the polynomial on a panel, what is worth trying on panels of which width, and what
+    is known already.
 
     Attributes
     ----------
@@ -46,7 +52,8 @@ class PanelEffort(NamedTuple):
     fibre : the window's other side.
     broad : on panels broader than this horizontals would be too coarse to be worth their time.
     narrowest : narrower panels would need a higher precision.
-    roots : of a component over an abscissa within the window; isolated once for all of a stack's walls.
+    roots : of a component over an abscissa within the window; isolated once for all of a stack's
+        walls.
     """
 
     order: int
@@ -58,7 +65,8 @@ class PanelEffort(NamedTuple):
 
 
 class Border(NamedTuple):
-    """A wall, the ``root``-th real root of a curve over a stack, that separates region ``below`` from region ``above``.
+    """A wall, the ``root``-th real root of a curve over a stack, that separates region ``below``
+    from region ``above``.
 
     Attributes
     ----------
@@ -81,9 +89,9 @@ class Border(NamedTuple):
 class WallPanel(NamedTuple):
     """The part of a border over [low, high], with the enclosure of its integral.
 
-    ``smooth`` shows whether the branch was enclosed by a series or by arcs; ``singular`` is not zero when that
-    is not even tried because the branch seems to turn at the left (negative) or right (positive) end, and counts how
-    often it seemed so. Neither affects the guarantee.
+    ``smooth`` shows whether the branch was enclosed by a series or by arcs; ``singular`` is not
+    zero when that is not even tried because the branch seems to turn at the left (negative) or
+    right (positive) end, and counts how often it seemed so. Neither affects the guarantee.
     """
 
     border: Border
@@ -99,12 +107,14 @@ class WallPanel(NamedTuple):
         return 2 * exact(self.integral.rad())
 
 
-def panels(border: Border, over: Interval, effort: PanelEffort, allowed: fmpq, singular: int = 0) -> list[WallPanel]:
-    """Panels over an interval, from the left, each with the first enclosure that works: a polynomial's antiderivative,
-    Taylor series, arcs, horizontals, the window's edges.
+def panels(
+    border: Border, over: Interval, effort: PanelEffort, allowed: fmpq, singular: int = 0
+) -> list[WallPanel]:
+    """Panels over an interval, from the left, each with the first enclosure that works: a
+    polynomial's antiderivative, Taylor series, arcs, horizontals, the window's edges.
 
-    Where the series is near enough to the branch in the middle of the interval only, what remains is covered likewise,
-    or by a series about the singular point at the stack's end.
+    Where the series is near enough to the branch in the middle of the interval only, what remains
+    is covered likewise, or by a series about the singular point at the stack's end.
 
     Parameters
     ----------
@@ -147,15 +157,21 @@ def _rough_panel(border: Border, over: Interval, effort: PanelEffort, singular: 
     return WallPanel(border, *over, arb(bottom).union(arb(top)) * arb(width), False, singular)
 
 
-def _at_end(border: Border, over: Interval, side: int, effort: PanelEffort, allowed: fmpq) -> WallPanel:
-    """A panel from an end of the stack as far as a series about that end reaches; a rough one when that fails."""
+def _at_end(
+    border: Border, over: Interval, side: int, effort: PanelEffort, allowed: fmpq
+) -> WallPanel:
+    """A panel from an end of the stack as far as a series about that end reaches; a rough one when
+    that fails.
+    """
     end, near, far = border.ends[side], over[side], over[1 - side]
     width = far - near
     critical, strip = _place_of(end, near), arb(0)
     if critical == near:
         # what is not exactly zero cannot be divided by a power of zero
         bottom, top = effort.fibre
-        left_out = min(abs(width) / 2**_MIN_BITS, allowed / (top - bottom) / 2) * (1 if width > 0 else -1)
+        left_out = min(abs(width) / 2**_MIN_BITS, allowed / (top - bottom) / 2) * (
+            1 if width > 0 else -1
+        )
         near = simplest_between(*sorted((near + left_out / 2, near + left_out)))
         strip = arb(bottom).union(arb(top)) * arb(abs(near - critical))
     bits = ctx.prec + 3 * int(abs(width / (near - critical)).ceil()).bit_length()
@@ -176,11 +192,12 @@ def _place_of(end: BaseEnd, near: fmpq) -> fmpq:
 def _about_end(
     border: Border, end: BaseEnd, ends: Interval, effort: PanelEffort, allowed: fmpq, bits: int
 ) -> tuple[arb, fmpq] | None:
-    """The integral from beside an end of the stack as far as a series about it reaches, and how far; None when that
-    fails.
+    """The integral from beside an end of the stack as far as a series about it reaches, and how
+    far; None when that fails.
 
-    It is tried with so many bits, then with twice as many where they do not suffice: a cusp's series is divided by high
-    powers of the distance from it, and panels cut nearer and nearer to it in place of a series would be many.
+    It is tried with so many bits, then with twice as many where they do not suffice: a cusp's
+    series is divided by high powers of the distance from it, and panels cut nearer and nearer to it
+    in place of a series would be many.
 
     Parameters
     ----------
@@ -195,7 +212,9 @@ def _about_end(
         fine = abs(far - near) / fmpq(2) ** ctx.prec
         abscissa = arb(end.value) if end.root is None else refine(end.root, fine).ball
         beside = Beside(abscissa, near, far)
-        return puiseux_integral(border.curve.in_v, beside, lambda u: border.over(u, effort), 2 * effort.order, allowed)
+        return puiseux_integral(
+            border.curve.in_v, beside, lambda u: border.over(u, effort), 2 * effort.order, allowed
+        )
 
     for precision in (bits, 2 * bits):
         try:
@@ -209,10 +228,12 @@ def _about_end(
 
 
 def halves(p: WallPanel, effort: PanelEffort, allowed: fmpq) -> list[WallPanel]:
-    """The parts of a panel; if only one half is smooth, the other one's far end is taken to be singular.
+    """The parts of a panel; if only one half is smooth, the other one's far end is taken to be
+    singular.
 
-    A branch that turns at an end is cut nearer and nearer to that end. When this has gone well for some times, the cuts
-    come so fast that a turn which is many orders of magnitude smaller than the panel is reached in a few steps.
+    A branch that turns at an end is cut nearer and nearer to that end. When this has gone well for
+    some times, the cuts come so fast that a turn which is many orders of magnitude smaller than the
+    panel is reached in a few steps.
     """
     share = fmpq(1, 2**2 ** max(0, abs(p.singular) - _HALVING_CUTS))
     if p.singular > 0:
@@ -228,12 +249,15 @@ def halves(p: WallPanel, effort: PanelEffort, allowed: fmpq) -> list[WallPanel]:
     elif right[0].smooth and last.smooth and not first.smooth:
         left[0] = first._replace(singular=max(min(p.singular, 0) - 1, -_MAX_CUTS))
     elif abs(p.singular) > _HALVING_CUTS:
-        left[0], right[-1] = (q._replace(singular=(q.singular > 0) - (q.singular < 0)) for q in (first, last))
+        left[0], right[-1] = (
+            q._replace(singular=(q.singular > 0) - (q.singular < 0)) for q in (first, last)
+        )
     return left + right
 
 
 def _smooth(border: Border, over: Interval, effort: PanelEffort, allowed: fmpq) -> Integral | None:
-    """The integral of a branch that does not turn, by its Taylor series or between arcs; None if neither is proved.
+    """The integral of a branch that does not turn, by its Taylor series or between arcs; None if
+    neither is proved.
 
     Raises
     ------
@@ -246,7 +270,9 @@ def _smooth(border: Border, over: Interval, effort: PanelEffort, allowed: fmpq) 
     wanted = min(allowed / (2 * radius), (effort.fibre[1] - effort.fibre[0]) / 2**_MIN_BITS)
 
     def by_series() -> Integral | None:
-        return branch_integral(in_v, at_middle, (middle, radius), effort.fibre, effort.order, wanted)
+        return branch_integral(
+            in_v, at_middle, (middle, radius), effort.fibre, effort.order, wanted
+        )
 
     def branch(u: fmpq) -> RealRoot:
         return at_middle if u == middle else border.over(u, effort)
@@ -258,7 +284,8 @@ def _smooth(border: Border, over: Interval, effort: PanelEffort, allowed: fmpq) 
         obstacle = True
     if series is not None and not series.crowded:
         return series
-    # arcs do not mind other branches; they are better, and found sooner, if they start from more digits
+    # arcs do not mind other branches; they are better, and found sooner, if they start from more
+    # digits
     fine = min(wanted, wanted * wanted / (effort.fibre[1] - effort.fibre[0])) / 2
     between = arc_integral(in_v, branch, middle, radius, effort.fibre, fine)
     if between is None:
@@ -278,12 +305,18 @@ def _or_else(arcs: Integral, enclose: Callable[[], Integral | None]) -> Integral
 
 
 def _sharper(enclose: Callable[[], Integral | None], allowed: fmpq) -> Integral | None:
-    """An enclosure, at a higher precision where it is much wider than what would do and that makes it narrower.
+    """An enclosure, at a higher precision where it is much wider than what would do and that makes
+    it narrower.
 
-    A stack may be narrower than its distance from the origin by more orders of magnitude than the precision has digits.
+    A stack may be narrower than its distance from the origin by more orders of magnitude than the
+    precision has digits.
     """
     found, bits = enclose(), 2 * ctx.prec
-    while found is not None and found.value.rad() > arb(allowed) * 2**_BITS_BY_HALVES and bits <= _MAX_RAISE * ctx.prec:
+    while (
+        found is not None
+        and found.value.rad() > arb(allowed) * 2**_BITS_BY_HALVES
+        and bits <= _MAX_RAISE * ctx.prec
+    ):
         with ctx.workprec(bits):
             finer = enclose()
         if finer is None or finer.value.rad() * 2**_BITS_BY_HALVES > found.value.rad():

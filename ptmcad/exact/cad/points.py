@@ -1,13 +1,16 @@
 """The points of the curves over a critical abscissa, each in a rational interval of its own.
 
-Guarantee: the intervals are disjoint, each contains one point at most, and all points in the window lie in them.
+Guarantee: the intervals are disjoint, each contains one point at most, and all points in the window
+lie in them.
 
-Two ways lead there. The short one encloses all complex roots of every p(a, v) in discs, a being known to many digits. A
-disc with two roots, or discs of two curves that meet, need not hold one point only. But where a is a root of the
-curve's discriminant, two of the roots are one; where it is a root of the resultant of two curves, these have one in
-common. If there is no other disc in which that can be, it is so in this one.
+Two ways lead there. The short one encloses all complex roots of every p(a, v) in discs, a being
+known to many digits. A disc with two roots, or discs of two curves that meet, need not hold one
+point only. But where a is a root of the curve's discriminant, two of the roots are one; where it is
+a root of the resultant of two curves, these have one in common. If there is no other disc in which
+that can be, it is so in this one.
 
-The other one needs nothing but time: all real roots of res_u(q, p), q being a's polynomial, are isolated.
+The other one needs nothing but time: all real roots of res_u(q, p), q being a's polynomial, are
+isolated.
 """
 
 from __future__ import annotations
@@ -31,16 +34,26 @@ from ptmcad.algebra.real_roots import (
     vanishes_at,
 )
 from ptmcad.algebra.resultants import Check, nothing, resultant
-from ptmcad.exact.cad.curves import FibredCurve, deflation, short_discriminant, short_resultant, stretched
+from ptmcad.exact.cad.curves import (
+    FibredCurve,
+    deflation,
+    short_discriminant,
+    short_resultant,
+    stretched,
+)
 
 _BITS = (128, 512)
-"""Of the critical abscissa, until all discs are told apart; with more of them the other way is the shorter one."""
+"""Of the critical abscissa, until all discs are told apart; with more of them the other way is the
+shorter one.
+"""
 
 
 class PointsOver:
     """The points of curves on the line over a root."""
 
-    def __init__(self, curves: tuple[FibredCurve, ...], root: RealRoot, check: Check = nothing) -> None:
+    def __init__(
+        self, curves: tuple[FibredCurve, ...], root: RealRoot, check: Check = nothing
+    ) -> None:
         self.curves, self.root, self.check = curves, root, check
 
     def between(self, bottom: fmpq, top: fmpq, edges: Sequence[fmpq]) -> list[Interval]:
@@ -59,15 +72,21 @@ class PointsOver:
             if found is None:
                 continue
             ends = [e for e in (bottom, top) if e not in edges]
-            at_edges = [sum(low <= e <= high for low, high in found) for e in (bottom, top) if e in edges]
-            if any(low <= e <= high for e in ends for low, high in found) or any(n != 1 for n in at_edges):
+            at_edges = [
+                sum(low <= e <= high for low, high in found) for e in (bottom, top) if e in edges
+            ]
+            if any(low <= e <= high for e in ends for low, high in found) or any(
+                n != 1 for n in at_edges
+            ):
                 continue
             return [i for i in found if bottom < i[0] and i[1] < top]
         roots = inside(disjoint(isolate(self._polynomial, bottom, top)), (bottom, top))
         return [(r.low, r.high) for r in roots]
 
     def _enclosed(self, bits: int) -> list[Interval] | None:
-        """Disjoint intervals with one point of the curves each, that hold all of them; None where that is not known."""
+        """Disjoint intervals with one point of the curves each, that hold all of them; None where
+        that is not known.
+        """
         with ctx.workprec(2 * bits + 64):
             abscissa = refine(self.root, fmpq(1, 1 << bits)).ball
             groups = []
@@ -93,7 +112,9 @@ class PointsOver:
     def _meet(self, k: int, m: int) -> bool:
         """Whether two curves have a complex point over the root in common."""
         # of polynomials in v^k it is the k-th power of that in v
-        return vanishes_at(stretched(*short_resultant(self.curves[k], self.curves[m], self.check)), self.root)
+        return vanishes_at(
+            stretched(*short_resultant(self.curves[k], self.curves[m], self.check)), self.root
+        )
 
     @cached_property
     def _known(self) -> dict[int, list[Interval] | None]:
@@ -118,15 +139,19 @@ class PointsOver:
 def _discriminant(c: FibredCurve, check: Check) -> UnivariatePolynomial:
     """A polynomial with the roots of the curve's discriminant, from that of least degree.
 
-    The discriminant of p(u, v^k) is, but for a constant, a power of that of p(u, v) times powers of p(u, 0) and of the
-    leading coefficient.
+    The discriminant of p(u, v^k) is, but for a constant, a power of that of p(u, v) times powers of
+    p(u, 0) and of the leading coefficient.
     """
     found = stretched(*short_discriminant(c, check))
     return found if deflation(c.in_v) == 1 else found * c.in_v[0] * c.in_v[-1]
 
 
-def _merged(found: Sequence[RootDisc], same: Sequence[tuple[RootDisc, RootDisc]]) -> list[Interval] | None:
-    """The discs' intervals, those of discs with the same point as one; None where others meet, by their rounding."""
+def _merged(
+    found: Sequence[RootDisc], same: Sequence[tuple[RootDisc, RootDisc]]
+) -> list[Interval] | None:
+    """The discs' intervals, those of discs with the same point as one; None where others meet, by
+    their rounding.
+    """
     merged: list[tuple[Interval, list[RootDisc]]] = []
     for cluster in sorted(found, key=lambda c: c.extent[0]):
         low, high = cluster.extent
@@ -134,7 +159,9 @@ def _merged(found: Sequence[RootDisc], same: Sequence[tuple[RootDisc, RootDisc]]
             merged.append(((low, high), [cluster]))
             continue
         (start, end), members = merged.pop()
-        if not any({id(cluster), id(member)} == {id(c), id(d)} for member in members for c, d in same):
+        if not any(
+            {id(cluster), id(member)} == {id(c), id(d)} for member in members for c, d in same
+        ):
             return None
         merged.append(((start, max(high, end)), [*members, cluster]))
     return [interval for interval, _ in merged]

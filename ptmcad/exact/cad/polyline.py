@@ -1,13 +1,15 @@
 """Walls as chains of chords, each with a proved distance that the wall keeps to it.
 
-Guarantee: over its part of the base each wall stays within `Chord.distance` of its chord, measured along the fibre;
-what lies over no chord is a part of the base of at most the width that was asked for.
+Guarantee: over its part of the base each wall stays within `Chord.distance` of its chord, measured
+along the fibre; what lies over no chord is a part of the base of at most the width that was asked
+for.
 
-On a panel that holds no critical value a wall is the graph of a function with two derivatives. If its second derivative
-is at most K in modulus there, a panel of width w has the graph within K w^2 / 8 of the chord between its ends;
-`algebra.chords.slope_over` encloses the derivative. Where that proves nothing, near singular points and where walls run
-close together, a wall that no root of p(., v) lets pass two heights v stays between them. Panels on which the distance
-is not proved, or too large, are halved.
+On a panel that holds no critical value a wall is the graph of a function with two derivatives. If
+its second derivative is at most K in modulus there, a panel of width w has the graph within K
+w^2 / 8 of the chord between its ends; `algebra.chords.slope_over` encloses the derivative. Where
+that proves nothing, near singular points and where walls run close together, a wall that no root of
+p(., v) lets pass two heights v stays between them. Panels on which the distance is not proved, or
+too large, are halved.
 """
 
 from __future__ import annotations
@@ -34,15 +36,16 @@ _GRID_STEPS = 2**60
 ROUNDING = Fraction(2, _GRID_STEPS)
 """By which distances are made larger for that."""
 SHORT, FLAT, LITTLE = Fraction(1, 2**12), Fraction(1, 2**12), Fraction(1, 2**34)
-"""Between two heights a wall is shut in on panels of at most the first width; that does when they are the second apart,
-and the third is the largest area between them."""
+"""Between two heights a wall is shut in on panels of at most the first width; that does when they
+are the second apart, and the third is the largest area between them."""
 UNPROVED = Fraction(1)
 """The distance where nothing is proved: two points of a fibre are no further apart."""
 
 
 @dataclass(frozen=True, slots=True)
 class Chord:
-    """A segment from (left, at_left) to (right, at_right); coordinates are shares of the window, from 0 to 1.
+    """A segment from (left, at_left) to (right, at_right); coordinates are shares of the window,
+    from 0 to 1.
 
     Attributes
     ----------
@@ -75,7 +78,9 @@ class WallBranch:
         """The same in shares of the window, rounded by at most a half of `ROUNDING`."""
         bottom, height = self.fibre[0], self.fibre[1] - self.fibre[0]
         at = refine(self.at(from_share(share, self.base)), height / _GRID_STEPS)
-        return Fraction(int(((at.middle - bottom) / height * _GRID_STEPS + fmpq(1, 2)).floor()), _GRID_STEPS)
+        return Fraction(
+            int(((at.middle - bottom) / height * _GRID_STEPS + fmpq(1, 2)).floor()), _GRID_STEPS
+        )
 
 
 def chords(
@@ -91,12 +96,13 @@ def chords(
     Parameters
     ----------
     span : where, as shares of the base; no critical value lies in it, its ends included.
-    max_distance : the largest distance wanted, as a share of the fibre; exceeded perhaps where the wall is enclosed
-        between two heights, see `FLAT` and `LITTLE`.
-    narrowest : panels of at most this share of the base are not halved. Where nothing is proved on one, the distance to
-        its chord is `UNPROVED`, which always holds.
+    max_distance : the largest distance wanted, as a share of the fibre; exceeded perhaps where the
+        wall is enclosed between two heights, see `FLAT` and `LITTLE`.
+    narrowest : panels of at most this share of the base are not halved. Where nothing is proved on
+        one, the distance to its chord is `UNPROVED`, which always holds.
     check : called between panels; may raise to stop.
-    flat : how far apart two heights may be between which a wall is enclosed, and the largest area between them.
+    flat : how far apart two heights may be between which a wall is enclosed, and the largest area
+        between them.
     """
     found: list[Chord] = []
     heights: dict[Fraction, Fraction] = {}
@@ -115,7 +121,11 @@ def chords(
         enough = distance is not None and distance <= max_distance
         if distance is None and right - left <= SHORT:
             distance = shut_in(wall, (left, right), (place(left), place(right)), flat[0])
-            enough = distance is not None and distance <= flat[0] and distance * (right - left) <= flat[1]
+            enough = (
+                distance is not None
+                and distance <= flat[0]
+                and distance * (right - left) <= flat[1]
+            )
         if right - left > narrowest and not enough:
             waiting += [(middle, right), (left, middle)]
         else:
@@ -125,21 +135,27 @@ def chords(
 
 
 def _distance(wall: WallBranch, panel: Span) -> Fraction | None:
-    """A bound for the distance between the wall and its chord over a panel, as a share of the fibre; None: unproved."""
+    """A bound for the distance between the wall and its chord over a panel, as a share of the
+    fibre; None: unproved.
+    """
     u, radius = _part(panel, wall.base)
     slope = slope_over(wall.curve.in_v, wall.at(u), u, radius)
     if slope is None:
         return None
-    distance = exact((abs(slope[1]) * arb(radius * radius / 2 / (wall.fibre[1] - wall.fibre[0]))).upper())
+    distance = exact(
+        (abs(slope[1]) * arb(radius * radius / 2 / (wall.fibre[1] - wall.fibre[0]))).upper()
+    )
     return -((-distance * _GRID_STEPS).__floor__()) * Fraction(1, _GRID_STEPS)
 
 
 def shut_in(wall: WallBranch, panel: Span, ends: Span, most: Fraction = FLAT) -> Fraction | None:
-    """How far apart two heights are between which a wall with these ends is shut in over a panel; None: not proved.
+    """How far apart two heights are between which a wall with these ends is shut in over a panel;
+    None: not proved.
 
     None is more than ``most`` away from an end.
 
-    The wall does not leave the window, and it cannot cross a height at which p has no zero over the panel.
+    The wall does not leave the window, and it cannot cross a height at which p has no zero over the
+    panel.
     """
     found = []
     for end, side in ((min(ends), -1), (max(ends), 1)):
@@ -159,7 +175,8 @@ def shut_in(wall: WallBranch, panel: Span, ends: Span, most: Fraction = FLAT) ->
 
 
 def _absent(curve: FibredCurve, across: Interval, height: fmpq) -> bool:
-    """Whether the curve is proved to miss a closed level segment: p in the middle outweighs the rest of its Taylor sum.
+    """Whether the curve is proved to miss a closed level segment: p in the middle outweighs the
+    rest of its Taylor sum.
 
     Parameters
     ----------

@@ -1,13 +1,15 @@
-"""Projection of the window's curves to the base axis: the abscissae over which their order can change.
+"""Projection of the window's curves to the base axis: the abscissae over which their order can
+change.
 
-Guarantee: over each interval between consecutive critical abscissae the number of real roots of every curve in the
-window, and the order of all these roots, are constant.
+Guarantee: over each interval between consecutive critical abscissae the number of real roots of
+every curve in the window, and the order of all these roots, are constant.
 
-Why these polynomials: within a bounded window the roots of p(u, .) change in number only at a multiple root (a zero of
-the discriminant) or through the window's edge (a zero of p(u, edge)); roots of two curves meet at zeros of the
-resultant. Leading coefficients are left out: where one vanishes a root leaves through infinity, not through the window.
-Powers are deflated: for p(u, v^k) the discriminant's zeros are those of disc_V p(u, V) and, if the window contains
-v = 0, of p(u, 0). References: McCallum, J. Symb. Comp. 5 (1988); Strzebonski, J. Symb. Comp. 29 (2000) for open cells.
+Why these polynomials: within a bounded window the roots of p(u, .) change in number only at a
+multiple root (a zero of the discriminant) or through the window's edge (a zero of p(u, edge));
+roots of two curves meet at zeros of the resultant. Leading coefficients are left out: where one
+vanishes a root leaves through infinity, not through the window. Powers are deflated: for p(u, v^k)
+the discriminant's zeros are those of disc_V p(u, V) and, if the window contains v = 0, of p(u, 0).
+References: McCallum, J. Symb. Comp. 5 (1988); Strzebonski, J. Symb. Comp. 29 (2000) for open cells.
 """
 
 from __future__ import annotations
@@ -40,7 +42,9 @@ class Projection(NamedTuple):
 
 
 def predicted_cost(curves: Sequence[FibredCurve]) -> int:
-    """A figure for the cost of the projection: evaluation points times the cost of one evaluation, summed."""
+    """A figure for the cost of the projection: evaluation points times the cost of one evaluation,
+    summed.
+    """
     sizes = []
     for c in curves:
         n = (len(c.in_v) - 1) // deflation(c.in_v)
@@ -61,7 +65,8 @@ def project(
     check: Check = nothing,
     without: frozenset[str] = frozenset(),
 ) -> Projection:
-    """The projection of the curves (and of vertical lines, given by their polynomials in u) and its real roots.
+    """The projection of the curves (and of vertical lines, given by their polynomials in u) and its
+    real roots.
 
     Parameters
     ----------
@@ -82,7 +87,10 @@ def project(
             adopt(factors, origin)
     for i, c in enumerate(curves):
         for d in curves[i + 1 :]:
-            adopt(_factors(*short_resultant(c, d, check, deflate)), f"components {c.component} and {d.component} meet")
+            adopt(
+                _factors(*short_resultant(c, d, check, deflate)),
+                f"components {c.component} and {d.component} meet",
+            )
     roots = [r for p, _ in found.values() for r in isolate(p, *base)]
     # intervals that are short against the window leave room for simple samples between them
     width = (base[1] - base[0]) / 2**16
@@ -90,7 +98,9 @@ def project(
     return Projection(tuple(found.values()), inside(disjoint(short), base))
 
 
-def _factors(p: UnivariatePolynomial, unit: int = 1, inflation: int = 1) -> list[UnivariatePolynomial]:
+def _factors(
+    p: UnivariatePolynomial, unit: int = 1, inflation: int = 1
+) -> list[UnivariatePolynomial]:
     """The irreducible factors of p(unit u^inflation) that are not constant."""
     if p.degree() < 1:
         return []
@@ -107,7 +117,9 @@ def _of_one(
     c: FibredCurve, fibre: Interval, check: Check, deflate: bool
 ) -> list[tuple[list[UnivariatePolynomial], str]]:
     name = f"component {c.component}"
-    result = [(_factors(*short_discriminant(c, check, deflate)), f"{name}: turning or singular point")]
+    result = [
+        (_factors(*short_discriminant(c, check, deflate)), f"{name}: turning or singular point")
+    ]
     if deflate and deflation(c.in_v) > 1 and fibre[0] < 0 < fibre[1]:
         result.append((_factors(c.in_v[0]), f"{name}: turning point on the axis"))
     for edge in fibre:

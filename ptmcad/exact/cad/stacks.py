@@ -1,7 +1,9 @@
-"""Stacks of the open decomposition: over each open interval of the base, the curves' branches in order.
+"""Stacks of the open decomposition: over each open interval of the base, the curves' branches in
+order.
 
-Guarantee: over the whole interval of a stack the walls are disjoint graphs of continuous (indeed analytic) functions,
-in the order given, and every part of a curve in the window over it is one of them.
+Guarantee: over the whole interval of a stack the walls are disjoint graphs of continuous (indeed
+analytic) functions, in the order given, and every part of a curve in the window over it is one of
+them.
 """
 
 from collections.abc import Sequence
@@ -35,7 +37,9 @@ class BaseEnd(NamedTuple):
 
 
 class StackData(NamedTuple):
-    """A stack with its rational sample abscissa and the rational sample heights of its cells, from below."""
+    """A stack with its rational sample abscissa and the rational sample heights of its cells, from
+    below.
+    """
 
     left: BaseEnd
     right: BaseEnd
@@ -44,8 +48,11 @@ class StackData(NamedTuple):
     heights: tuple[fmpq, ...]
 
 
-def roots_over(curves: Sequence[FibredCurve], u: fmpq, fibre: Interval) -> tuple[tuple[Wall, RealRoot], ...]:
-    """All roots of the curves in the open fibre interval over a rational abscissa that is not critical, in order.
+def roots_over(
+    curves: Sequence[FibredCurve], u: fmpq, fibre: Interval
+) -> tuple[tuple[Wall, RealRoot], ...]:
+    """All roots of the curves in the open fibre interval over a rational abscissa that is not
+    critical, in order.
 
     The isolating intervals are pairwise disjoint, ends included.
     """
@@ -67,7 +74,9 @@ def roots_over(curves: Sequence[FibredCurve], u: fmpq, fibre: Interval) -> tuple
 
 
 class Avoided(NamedTuple):
-    """Curves, and lines by their polynomials in u, that are no walls but on which no sample may lie."""
+    """Curves, and lines by their polynomials in u, that are no walls but on which no sample may
+    lie.
+    """
 
     curves: Sequence[FibredCurve] = ()
     lines: Sequence[UnivariatePolynomial] = ()
@@ -97,13 +106,17 @@ def lift(
 
 
 def heights_between(
-    roots: Sequence[tuple[Wall, RealRoot]], fibre: Interval, avoided: Sequence[UnivariatePolynomial] = ()
+    roots: Sequence[tuple[Wall, RealRoot]],
+    fibre: Interval,
+    avoided: Sequence[UnivariatePolynomial] = (),
 ) -> tuple[fmpq, ...]:
     """Simple rational heights below, between and above the given roots, within the fibre interval.
 
     None is a root of the polynomials to be avoided.
     """
-    return tuple(_simplest_off(*gap, avoided) for gap in gaps(inside([r for _, r in roots], fibre), fibre))
+    return tuple(
+        _simplest_off(*gap, avoided) for gap in gaps(inside([r for _, r in roots], fibre), fibre)
+    )
 
 
 def _simplest_off(low: fmpq, high: fmpq, avoided: Sequence[UnivariatePolynomial]) -> fmpq:

@@ -1,1 +1,3 @@
-"""The best design with proof: bounds of a range's length, or of an area, over boxes of design parameters."""
+"""The best design with proof: bounds of a range's length, or of an area, over boxes of design
+parameters.
+"""

@@ -1,7 +1,8 @@
 """Bounds of the area with the wanted count, over an interval of one design parameter.
 
-Guarantee: as of `search`. The window is cut into strips; over a strip and an interval of designs `cover` bounds the
-length of what may have the wanted count on any line of the strip, and so what it adds to the area.
+Guarantee: as of `search`. The window is cut into strips; over a strip and an interval of designs
+`cover` bounds the length of what may have the wanted count on any line of the strip, and so what it
+adds to the area.
 """
 
 from __future__ import annotations
@@ -35,7 +36,8 @@ class AreaBounder(NamedTuple):
 
     Attributes
     ----------
-    space : of lines in the window; the first design parameter of its boxes is the window's other axis.
+    space : of lines in the window; the first design parameter of its boxes is the window's other
+        axis.
     base : the range of that axis.
     """
 
@@ -44,10 +46,14 @@ class AreaBounder(NamedTuple):
 
     def whole(self) -> tuple[AreaStrip, ...]:
         size = self.space.window[1] - self.space.window[0]
-        return (AreaStrip(self.base, self.space.whole(), size * (self.base[1] - self.base[0]), fmpq(0)),)
+        return (
+            AreaStrip(self.base, self.space.whole(), size * (self.base[1] - self.base[0]), fmpq(0)),
+        )
 
     def over(self, place: Place, state: Sequence[AreaStrip], share: fmpq, enough: fmpq) -> Bounded:
-        """Strips are cut until they are about as narrow as the designs' interval, in shares of their ranges."""
+        """Strips are cut until they are about as narrow as the designs' interval, in shares of
+        their ranges.
+        """
         narrowest = (self.base[1] - self.base[0]) * share / _FINENESS
         done: list[AreaStrip] = []
         waiting = [self._strip(strip.base, strip.runs, place[0], share) for strip in state]
@@ -64,18 +70,25 @@ class AreaBounder(NamedTuple):
                     done.append(strip)
                     continue
                 middle = (low + high) / 2
-                cut += [self._strip(base, strip.runs, place[0], share) for base in ((low, middle), (middle, high))]
+                cut += [
+                    self._strip(base, strip.runs, place[0], share)
+                    for base in ((low, middle), (middle, high))
+                ]
             waiting = cut
         strips = sorted((*done, *waiting))
         most, least = (sum((getattr(s, end) for s in strips), fmpq(0)) for end in ("most", "least"))
         return most, least, tuple(strips)
 
-    def _strip(self, base: Interval, runs: Sequence[Run], designs: Interval, share: fmpq) -> AreaStrip:
+    def _strip(
+        self, base: Interval, runs: Sequence[Run], designs: Interval, share: fmpq
+    ) -> AreaStrip:
         space, width = self.space, base[1] - base[0]
         size = space.window[1] - space.window[0]
         fine = max(share / _FINENESS, width / (self.base[1] - self.base[0])) * size / _FINENESS
         found = refined(space, (base, designs), runs, fine)
-        least = sum((space.least(p.low, p.high) for run in found for p in run.parts if p.here), fmpq(0))
+        least = sum(
+            (space.least(p.low, p.high) for run in found for p in run.parts if p.here), fmpq(0)
+        )
         return AreaStrip(base, found, width * measure(space, found), width * least)
 
 

@@ -1,13 +1,15 @@
 """Where along a line the wanted count can occur, for all designs of a box at once.
 
-Guarantee: `Run`s hold every point of the line at which, for some design of the box off a set without interior, the
-count is the wanted one; see `refined` for the proof.
+Guarantee: `Run`s hold every point of the line at which, for some design of the box off a set
+without interior, the count is the wanted one; see `refined` for the proof.
 
-Why. The line's window is cut into parts. A part on which no polynomial of the discriminant variety has a zero, for any
-design in the interior of the box, is a connected piece of the parameter space without the variety, so that all counts
-are constant there, and one exact sample tells them. Two such parts side by side are in one piece if every polynomial
-has the same sign on both: an irreducible one that vanished on all of the common face would be the face's own equation,
-and of different signs. Parts that meet a known piece, for a box inside of the one it was known for, belong to it.
+Why. The line's window is cut into parts. A part on which no polynomial of the discriminant variety
+has a zero, for any design in the interior of the box, is a connected piece of the parameter space
+without the variety, so that all counts are constant there, and one exact sample tells them. Two
+such parts side by side are in one piece if every polynomial has the same sign on both: an
+irreducible one that vanished on all of the common face would be the face's own equation, and of
+different signs. Parts that meet a known piece, for a box inside of the one it was known for, belong
+to it.
 """
 
 from __future__ import annotations
@@ -35,10 +37,12 @@ class Space(NamedTuple):
 
     Attributes
     ----------
-    tables : the irreducible polynomials of the discriminant variety in the line's parameter to a power, and the design.
+    tables : the irreducible polynomials of the discriminant variety in the line's parameter to a
+        power, and the design.
     power : that power: of lines from 0 on the largest of whose multiples alone occur.
     window : of the line's parameter, not of its power.
-    count_at : of what there is at a value of the line's parameter and a design; None where a solution is singular.
+    count_at : of what there is at a value of the line's parameter and a design; None where a
+        solution is singular.
     working : the wanted count.
     """
 
@@ -54,7 +58,9 @@ class Space(NamedTuple):
         return (Run((LinePart(low, high, None, None),), None, None),)
 
     def length(self, low: fmpq, high: fmpq) -> fmpq:
-        """An upper bound for the length of a part, given by the powers of its ends; exact where the power is 1."""
+        """An upper bound for the length of a part, given by the powers of its ends; exact where the
+        power is 1.
+        """
         first, last = self.outside(low, high)
         return last - first
 
@@ -123,13 +129,17 @@ def longest(space: Space, runs: Sequence[Run]) -> fmpq:
 
 
 def measure(space: Space, runs: Sequence[Run]) -> fmpq:
-    """An upper bound of the length of all intervals with the wanted count together, for every design."""
+    """An upper bound of the length of all intervals with the wanted count together, for every
+    design.
+    """
     return sum((space.length(*run.ends) for run in runs), fmpq(0))
 
 
 def certain(space: Space, runs: Sequence[Run]) -> fmpq:
     """A lower bound of the length of the longest interval with the wanted count, for every design."""
-    return max((space.least(p.low, p.high) for run in runs for p in run.parts if p.here), default=fmpq(0))
+    return max(
+        (space.least(p.low, p.high) for run in runs for p in run.parts if p.here), default=fmpq(0)
+    )
 
 
 def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run]:
@@ -144,7 +154,10 @@ def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run
         parts[0] = parts[0]._replace(here=False)
     if run.right is not None and parts[-1].signs == run.right:
         parts[-1] = parts[-1]._replace(here=False)
-    parts = [_counted(space, box, part) if part.signs is not None and part.here is None else part for part in parts]
+    parts = [
+        _counted(space, box, part) if part.signs is not None and part.here is None else part
+        for part in parts
+    ]
     left, kept = run.left, list[LinePart]()
     for part in parts:
         if part.here is not False:
@@ -180,8 +193,12 @@ def _pieces(
         return
     middle = (low + high) / 2
     cut = {number: halves(table) for number, table in tables.items()}
-    yield from _pieces(space, {n: pair[0] for n, pair in cut.items()}, known, (low, middle), resolution)
-    yield from _pieces(space, {n: pair[1] for n, pair in cut.items()}, known, (middle, high), resolution)
+    yield from _pieces(
+        space, {n: pair[0] for n, pair in cut.items()}, known, (low, middle), resolution
+    )
+    yield from _pieces(
+        space, {n: pair[1] for n, pair in cut.items()}, known, (middle, high), resolution
+    )
 
 
 def _joined(parts: Sequence[LinePart]) -> list[LinePart]:
@@ -211,7 +228,9 @@ def _counted(space: Space, box: Box, part: LinePart) -> LinePart:
 
 
 def root_bound(value: fmpq, power: int, up: bool) -> fmpq:
-    """A rational bound of a root of a number that is not negative; the number itself where the power is 1."""
+    """A rational bound of a root of a number that is not negative; the number itself where the
+    power is 1.
+    """
     if power == 1:
         return value
     scaled = (value.p << (_BITS * power)) // value.q

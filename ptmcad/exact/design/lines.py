@@ -1,7 +1,8 @@
-"""The longest interval with the wanted count on the line of one design, from the variety of all designs.
+"""The longest interval with the wanted count on the line of one design, from the variety of all
+designs.
 
-Guarantee: exact, for designs off a set without interior: the ends are roots of the variety's polynomials at the design,
-and the count is that of samples between all of them.
+Guarantee: exact, for designs off a set without interior: the ends are roots of the variety's
+polynomials at the design, and the count is that of samples between all of them.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The discriminant variety over all designs, as the covers need it.
 
-Guarantee: that of `surfaces` and `variety`: off the polynomials' zeros all counts are constant, but for sets that do
-not cut the space.
+Guarantee: that of `surfaces` and `variety`: off the polynomials' zeros all counts are constant, but
+for sets that do not cut the space.
 """
 
 from __future__ import annotations
@@ -71,8 +71,15 @@ def space_of_slice(problem: SliceProblem, along: int, working: int) -> Space:
 
 def _space(on: SystemOnAxes, found: Sequence[Coefficient], axes: Axes, working: int) -> Space:
     window = axes.ranges[axes.along]
-    ordered = [[(_padded([int(powers[k]) for k in axes.order]), int(c)) for powers, c in p.terms()] for p in found]
-    power = max(1, gcd(*(powers[0] for terms in ordered for powers, _ in terms))) if window[0] >= 0 else 1
+    ordered = [
+        [(_padded([int(powers[k]) for k in axes.order]), int(c)) for powers, c in p.terms()]
+        for p in found
+    ]
+    power = (
+        max(1, gcd(*(powers[0] for terms in ordered for powers, _ in terms)))
+        if window[0] >= 0
+        else 1
+    )
 
     def count(value: fmpq, design: tuple[fmpq, fmpq]) -> int | None:
         point = [fmpq(0)] * len(axes.names)

@@ -1,7 +1,9 @@
-"""Branch and bound over boxes of designs: what no design exceeds, and how near the best known one comes to it.
+"""Branch and bound over boxes of designs: what no design exceeds, and how near the best known one
+comes to it.
 
-Guarantee: `Outcome.bound` is an upper bound for all designs within the bounds off a set without interior, for those
-that satisfy the conditions. It rests on the bounds of the boxes alone, not on the order in which they were cut.
+Guarantee: `Outcome.bound` is an upper bound for all designs within the bounds off a set without
+interior, for those that satisfy the conditions. It rests on the bounds of the boxes alone, not on
+the order in which they were cut.
 """
 
 from __future__ import annotations
@@ -21,8 +23,8 @@ Point = tuple[fmpq, ...]
 
 
 Bounded = tuple[fmpq, fmpq, Any]
-"""What is known over a box: a bound of every design's value from above, one from below, and what a box inside of it
-starts from."""
+"""What is known over a box: a bound of every design's value from above, one from below, and what a
+box inside of it starts from."""
 
 
 class Bounder(Protocol):
@@ -62,7 +64,8 @@ class Outcome(NamedTuple):
 
     Attributes
     ----------
-    boxes : a partition of the bounds, each box with its bound; but for boxes on which the conditions fail.
+    boxes : a partition of the bounds, each box with its bound; but for boxes on which the
+        conditions fail.
     complete : whether the bound is within the tolerance of the best value.
     """
 
@@ -79,13 +82,15 @@ def search(
     wanted: Goal,
     check: Callable[[int, fmpq, fmpq], bool],
 ) -> Outcome:
-    """Cut boxes, always the one with the largest bound, until the largest bound is near enough to the best value.
+    """Cut boxes, always the one with the largest bound, until the largest bound is near enough to
+    the best value.
 
     Parameters
     ----------
     whole : the bounds.
     feasible : whether some design of a box may satisfy the conditions.
-    improved : gives a lower bound of the best value that is known, after a look at a design if one is given.
+    improved : gives a lower bound of the best value that is known, after a look at a design if one
+        is given.
     check : called with the number of boxes, the bound and the best value; whether to go on.
     """
     best = improved(None)
@@ -93,13 +98,20 @@ def search(
     heap = [(-bound, 0, whole, state)]
     settled: list[tuple[Place, fmpq]] = []
     boxes = 1
-    while heap and -heap[0][0] > _enough(best, wanted) and boxes < wanted.most and check(boxes, -heap[0][0], best):
+    while (
+        heap
+        and -heap[0][0] > _enough(best, wanted)
+        and boxes < wanted.most
+        and check(boxes, -heap[0][0], best)
+    ):
         negative, _, place, state = heappop(heap)
         for half in _cut(place, whole):
             if not feasible(half):
                 continue
             boxes += 1
-            above, certainly, within = bounder.over(half, state, max(_shares(half, whole)), _enough(best, wanted))
+            above, certainly, within = bounder.over(
+                half, state, max(_shares(half, whole)), _enough(best, wanted)
+            )
             bound = min(above, -negative)
             if bound > _enough(best, wanted) and bound + certainly > 2 * best:
                 best = improved(tuple((low + high) / 2 for low, high in half))

@@ -1,8 +1,10 @@
-"""The elimination system of a slice: equilibria with a singular Hessian, as polynomials with integer coefficients.
+"""The elimination system of a slice: equilibria with a singular Hessian, as polynomials with
+integer coefficients.
 
-Guarantee: the ideal that they generate, cut with Q[x, y], vanishes on every CRITICAL component of the slice. It has no
-solution where the slice's equations lose their meaning, nor one that an inequality excludes all over the slice if the
-variety leaves these out: one more unknown is the inverse of what is not zero.
+Guarantee: the ideal that they generate, cut with Q[x, y], vanishes on every CRITICAL component of
+the slice. It has no solution where the slice's equations lose their meaning, nor one that an
+inequality excludes all over the slice if the variety leaves these out: one more unknown is the
+inverse of what is not zero.
 """
 
 from __future__ import annotations
@@ -19,8 +21,11 @@ INVERSE = "inverse"
 """The name of the unknown that is one, with a number where the name is taken."""
 
 
-def elimination_system(given: SystemOnAxes, axes: tuple[str, str], excludes: bool) -> EliminationSystem:
-    """The equations of a slice, the circles, what is not zero times its inverse less 1, and the Hessian's determinant.
+def elimination_system(
+    given: SystemOnAxes, axes: tuple[str, str], excludes: bool
+) -> EliminationSystem:
+    """The equations of a slice, the circles, what is not zero times its inverse less 1, and the
+    Hessian's determinant.
 
     Parameters
     ----------
@@ -43,5 +48,9 @@ def elimination_system(given: SystemOnAxes, axes: tuple[str, str], excludes: boo
 
 
 def _terms(p: UnknownPolynomial) -> tuple[Term, ...]:
-    terms = [((*unknowns, int(i), int(j)), int(c)) for unknowns, q in p.items() for (i, j), c in q.terms()]
+    terms = [
+        ((*unknowns, int(i), int(j)), int(c))
+        for unknowns, q in p.items()
+        for (i, j), c in q.terms()
+    ]
     return tuple(sorted(terms, reverse=True))

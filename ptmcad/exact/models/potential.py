@@ -1,7 +1,7 @@
 """The polynomial system of a model, from its compiled formulas.
 
-Guarantee: potential, equations and conditions are those of the formulas, expanded; no equation is typed in. Springs are
-of free length zero: their energy is a polynomial.
+Guarantee: potential, equations and conditions are those of the formulas, expanded; no equation is
+typed in. Springs are of free length zero: their energy is a polynomial.
 """
 
 from __future__ import annotations
@@ -63,7 +63,11 @@ def system_counted(model: Model, count: Count) -> ParametricSystem:
     if predicate is None or mechanism is None:
         return system
     if not system.criterion.order:
-        raise ConfigError(f"without a potential only the certified engine counts by {count.value}", key="engine")
+        raise ConfigError(
+            f"without a potential only the certified engine counts by {count.value}", key="engine"
+        )
     ring = system.ring
-    margins = tuple(ring.reduce(evaluate(margin.value, ring)) for margin in predicate.margins(mechanism))
+    margins = tuple(
+        ring.reduce(evaluate(margin.value, ring)) for margin in predicate.margins(mechanism)
+    )
     return with_turns(system._replace(stability=margins, turns=None))

@@ -34,7 +34,9 @@ def space_parameters(
     ExpressionError
         When the degree or a number is too large to be expanded in three variables.
     """
-    space = _Space(dict(zip(coordinates, ((g, SPACE.constant(1)) for g in SPACE.gens()), strict=True)), text)
+    space = _Space(
+        dict(zip(coordinates, ((g, SPACE.constant(1)) for g in SPACE.gens()), strict=True)), text
+    )
     return {name: space.value_of(name) for name in names}
 
 
@@ -78,7 +80,11 @@ class _Space(NamedTuple):
 
     def power(self, base: Ratio, power: Power, exponent: Ratio) -> Ratio:
         quotient = ratio(*exponent)
-        if not (quotient[0].is_constant() and quotient[1].is_constant() and abs(_integer(quotient[1])) == 1):
+        if not (
+            quotient[0].is_constant()
+            and quotient[1].is_constant()
+            and abs(_integer(quotient[1])) == 1
+        ):
             raise ExpressionError(NOT_INTEGER, power.position)
         n = _integer(quotient[0]) * _integer(quotient[1])
         _check_size(abs(n) * _degree(base), abs(n) * _bits(base), power.position)
@@ -103,5 +109,6 @@ def _bits(value: Ratio) -> int:
 def _check_size(degree: int, bits: int, position: int) -> None:
     if degree > MAX_DEGREE or bits > MAX_BITS:
         raise ExpressionError(
-            f"too large for a family (degree over {MAX_DEGREE} or numbers over {MAX_BITS} bits)", position
+            f"too large for a family (degree over {MAX_DEGREE} or numbers over {MAX_BITS} bits)",
+            position,
         )

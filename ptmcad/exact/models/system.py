@@ -1,6 +1,8 @@
-"""A parametric system: as many equations as unknowns, on circles and lines, such as the equilibria of a potential.
+"""A parametric system: as many equations as unknowns, on circles and lines, such as the equilibria
+of a potential.
 
-Guarantee: the equations of a potential, and every Jacobian, are derived by exact differentiation; nothing is typed in.
+Guarantee: the equations of a potential, and every Jacobian, are derived by exact differentiation;
+nothing is typed in.
 """
 
 from __future__ import annotations
@@ -29,7 +31,11 @@ from ptmcad.algebra.polynomials import (
     point_values,
     ratio,
 )
-from ptmcad.algebra.trigonometric import RationalPolynomial, TrigonometricPolynomial, TrigonometricRing
+from ptmcad.algebra.trigonometric import (
+    RationalPolynomial,
+    TrigonometricPolynomial,
+    TrigonometricRing,
+)
 from ptmcad.model.criterion import Criterion
 from ptmcad.text.expressions import Expression
 
@@ -45,18 +51,21 @@ class ParametricSystem(NamedTuple):
     Attributes
     ----------
     ring : Q[parameters][coordinates of the unknowns].
-    equations : each is zero at a solution; of a potential its gradient, in the order of the ring's unknowns.
+    equations : each is zero at a solution; of a potential its gradient, in the order of the ring's
+        unknowns.
     jacobian : their derivatives by the unknowns, row by row; of a potential its Hessian.
     equation_terms, jacobian_terms : the same, sorted for evaluation at many points.
-    potential : U, in units of force times length, without the work of constant moments, which are in the equations
-        alone; None where equations are given, or a moment depends on another unknown than its own.
+    potential : U, in units of force times length, without the work of constant moments, which are
+        in the equations alone; None where equations are given, or a moment depends on another
+        unknown than its own.
     criterion : what is known of solutions.
     inequalities : a solution counts where all of them are positive.
-    stability : where there is no potential a solution is stable where all of these are positive; of a potential what
-        is asked of a stable solution besides, where a count is by a predicate.
+    stability : where there is no potential a solution is stable where all of these are positive; of
+        a potential what is asked of a stable solution besides, where a count is by a predicate.
     positive : parameters that must be positive (rod lengths and stiffnesses).
     nonnegative : parameters that must not be negative (the base length).
-    turns : the equations in other angles, `ptmcad.exact.models.turns.Turns`, where these are simpler.
+    turns : the equations in other angles, `ptmcad.exact.models.turns.Turns`, where these are
+        simpler.
     """
 
     ring: TrigonometricRing
@@ -79,13 +88,17 @@ class ParametricSystem(NamedTuple):
 
     @property
     def simplest(self) -> ParametricSystem:
-        """In the angles in which it is simplest; the determinant of the Jacobian is the same but for its sign."""
+        """In the angles in which it is simplest; the determinant of the Jacobian is the same but
+        for its sign.
+        """
         simplest: ParametricSystem = self if self.turns is None else self.turns.system
         return simplest
 
     @property
     def is_on_torus(self) -> bool:
-        """Whether solutions are the zeros of a vector field on a torus, all of them counted: indices add up to zero."""
+        """Whether solutions are the zeros of a vector field on a torus, all of them counted:
+        indices add up to zero.
+        """
         return not self.ring.reals and not self.inequalities
 
 
@@ -98,7 +111,9 @@ def from_equations(
     ----------
     asked : further attributes of the system.
     """
-    jacobian = tuple(tuple(ring.reduce(ring.derivative(e, u)) for u in ring.unknowns) for e in equations)
+    jacobian = tuple(
+        tuple(ring.reduce(ring.derivative(e, u)) for u in ring.unknowns) for e in equations
+    )
     return ParametricSystem(
         ring,
         tuple(equations),
@@ -113,7 +128,12 @@ def from_equations(
 def terms_of(ring: TrigonometricRing, p: TrigonometricPolynomial) -> Terms:
     """An element of a system's ring, sorted for evaluation at many points."""
     return tuple(
-        (monomial, tuple((tuple((k, e) for k, e in enumerate(powers) if e), c) for powers, c in part.items()))
+        (
+            monomial,
+            tuple(
+                (tuple((k, e) for k, e in enumerate(powers) if e), c) for powers, c in part.items()
+            ),
+        )
         for monomial, part in ring.split(p).items()
     )
 
@@ -136,19 +156,28 @@ class SystemOnAxes(NamedTuple):
 
     @property
     def limits(self) -> list[Coefficient]:
-        """What bounds the domain: lengths and stiffnesses that vary, and the parameters' denominators."""
+        """What bounds the domain: lengths and stiffnesses that vary, and the parameters'
+        denominators.
+        """
         names = (*self.system.positive, *self.system.nonnegative)
-        limits = [*(self.parameters[name][0] for name in names), *(below for _, below in self.parameters.values())]
+        limits = [
+            *(self.parameters[name][0] for name in names),
+            *(below for _, below in self.parameters.values()),
+        ]
         return [limit for limit in limits if not limit.is_constant()]
 
     def values(self, at: Sequence[fmpq]) -> dict[str, fmpq]:
-        """The parameters at a rational point; `ZeroDivisionError` where a denominator vanishes there."""
+        """The parameters at a rational point; `ZeroDivisionError` where a denominator vanishes
+        there.
+        """
         return point_values(self.parameters, at)
 
 
 def on_axes(system: ParametricSystem, expressions: Mapping[str, Expression]) -> SystemOnAxes:
     """The system where its parameters are expressions in two axes."""
-    return SystemOnAxes(system, {name: from_expression(expressions[name]) for name in system.ring.parameters})
+    return SystemOnAxes(
+        system, {name: from_expression(expressions[name]) for name in system.ring.parameters}
+    )
 
 
 class SliceSystem(NamedTuple):
@@ -156,12 +185,15 @@ class SliceSystem(NamedTuple):
 
     Attributes
     ----------
-    equations : the system's, each divided by its content and cleared of denominators, then the circles
-        cos^2 + sin^2 - 1; exponent vector -> element of Z[x, y].
-    jacobian : the Jacobian's determinant, cleared of denominators (these vanish only on ``boundary``).
-    inequalities, stability : the system's, as far as they are decisive, cleared of denominators in the same way.
-    boundary : polynomials where the slice's equations lose their meaning: denominators of the parameters, and
-        factors common to all coefficients of an equation (there that equation vanishes identically).
+    equations : the system's, each divided by its content and cleared of denominators, then the
+        circles cos^2 + sin^2 - 1; exponent vector -> element of Z[x, y].
+    jacobian : the Jacobian's determinant, cleared of denominators (these vanish only on
+        ``boundary``).
+    inequalities, stability : the system's, as far as they are decisive, cleared of denominators in
+        the same way.
+    boundary : polynomials where the slice's equations lose their meaning: denominators of the
+        parameters, and factors common to all coefficients of an equation (there that equation
+        vanishes identically).
     vanishing : the second kind of these, one for an equation that has such factors.
     unknowns : the number of coordinates.
     unbounded : those whose poles are all there are.
@@ -186,7 +218,8 @@ def on_slice(system: ParametricSystem, parameters: Ratios) -> SliceSystem:
 
     Parameters
     ----------
-    parameters : every parameter of the ring as numerator and denominator, all in Z[x, y] or all in Z[x, y, z].
+    parameters : every parameter of the ring as numerator and denominator, all in Z[x, y] or all in
+        Z[x, y, z].
 
     Guarantee
     ---------
@@ -198,7 +231,9 @@ def on_slice(system: ParametricSystem, parameters: Ratios) -> SliceSystem:
     def on(p: TrigonometricPolynomial) -> UnknownPolynomial:
         """The element without denominators, which are noted where they may vanish."""
         substituted = _substitute(system, p, parameters)
-        boundary.extend(q for q in (lcm(d for _, d in substituted.values()),) if not q.is_constant())
+        boundary.extend(
+            q for q in (lcm(d for _, d in substituted.values()),) if not q.is_constant()
+        )
         return _without_denominators(substituted)
 
     boundary: list[Coefficient] = []
@@ -234,11 +269,17 @@ def lifted(p: UnknownPolynomial, unknowns: int) -> UnknownPolynomial:
 
 
 def saturated(equations: SliceSystem, condition: UnknownPolynomial) -> SliceSystem:
-    """The system of those solutions at which a polynomial does not vanish: its inverse is one more coordinate."""
+    """The system of those solutions at which a polynomial does not vanish: its inverse is one more
+    coordinate.
+    """
     width = equations.unknowns
     more = partial(lifted, unknowns=width + 1)
-    some = next((c for p in (condition, *equations.equations) for c in p.values()), PLANE.constant(0))
-    inverse = {(*m, 1): c for m, c in lifted(condition, width).items()} | {(0,) * (width + 1): constant_like(some, -1)}
+    some = next(
+        (c for p in (condition, *equations.equations) for c in p.values()), PLANE.constant(0)
+    )
+    inverse = {(*m, 1): c for m, c in lifted(condition, width).items()} | {
+        (0,) * (width + 1): constant_like(some, -1)
+    }
     return equations._replace(
         equations=(*map(more, equations.equations), inverse),
         jacobian=more(equations.jacobian),
@@ -263,10 +304,11 @@ ALONG, OVER = "<along>", "<over>"
 def with_root(
     system: ParametricSystem, parameters: Ratios, along: int, minimal: UnivariatePolynomial
 ) -> ParametricSystem:
-    """The system on the lines of a slice at the roots of a polynomial, which are one more unknown, the last one.
+    """The system on the lines of a slice at the roots of a polynomial, which are one more unknown,
+    the last one.
 
-    Nothing is divided out: an equation that vanishes all over such a line stays zero there. Stability is a matter of
-    conditions, those of the potential's Hessian by its leading minors.
+    Nothing is divided out: an equation that vanishes all over such a line stays zero there.
+    Stability is a matter of conditions, those of the potential's Hessian by its leading minors.
 
     Parameters
     ----------
@@ -300,15 +342,23 @@ def with_root(
 
 def _one(parameters: Ratios) -> Coefficient:
     """Of the parameters' ring."""
-    return next((constant_like(numerator, 1) for numerator, _ in parameters.values()), PLANE.constant(1))
+    return next(
+        (constant_like(numerator, 1) for numerator, _ in parameters.values()), PLANE.constant(1)
+    )
 
 
-def element_on_slice(system: ParametricSystem, p: TrigonometricPolynomial, parameters: Ratios) -> UnknownPolynomial:
-    """An element of the system's ring on a slice, up to a factor that vanishes only on its ``boundary``."""
+def element_on_slice(
+    system: ParametricSystem, p: TrigonometricPolynomial, parameters: Ratios
+) -> UnknownPolynomial:
+    """An element of the system's ring on a slice, up to a factor that vanishes only on its
+    ``boundary``.
+    """
     return _without_denominators(_substitute(system, p, parameters))
 
 
-def _substitute(system: ParametricSystem, p: TrigonometricPolynomial, parameters: Ratios) -> dict[Monomial, Ratio]:
+def _substitute(
+    system: ParametricSystem, p: TrigonometricPolynomial, parameters: Ratios
+) -> dict[Monomial, Ratio]:
     one = _one(parameters)
     values = [parameters[name] for name in system.ring.parameters]
     result: dict[Monomial, Ratio] = {}
@@ -333,14 +383,18 @@ def _without_denominators(p: dict[Monomial, Ratio]) -> UnknownPolynomial:
 def at_point(
     system: ParametricSystem, values: Values
 ) -> tuple[tuple[RationalPolynomial, ...], tuple[tuple[RationalPolynomial, ...], ...]]:
-    """Equations and Jacobian with rational numbers for the parameters, exactly and with their true signs."""
+    """Equations and Jacobian with rational numbers for the parameters, exactly and with their true
+    signs.
+    """
     return (
         tuple(_specialised(system, e, values) for e in system.equation_terms),
         tuple(tuple(_specialised(system, d, values) for d in row) for row in system.jacobian_terms),
     )
 
 
-def polynomial_at(system: ParametricSystem, p: TrigonometricPolynomial, values: Values) -> RationalPolynomial:
+def polynomial_at(
+    system: ParametricSystem, p: TrigonometricPolynomial, values: Values
+) -> RationalPolynomial:
     """Any element of the system's ring with rational numbers for the parameters, exactly."""
     return _specialised(system, terms_of(system.ring, p), values)
 

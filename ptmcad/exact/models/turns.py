@@ -1,10 +1,13 @@
-"""Other angles in which a system's equations are shorter: sums of the unknown ones, such as the directions of bars.
+"""Other angles in which a system's equations are shorter: sums of the unknown ones, such as the
+directions of bars.
 
-Guarantee: the new angles are the old ones times an integer matrix of determinant 1 or -1, so that each solution is one
-in the other angles, and the equations generate the same ideal of functions on the torus.
+Guarantee: the new angles are the old ones times an integer matrix of determinant 1 or -1, so that
+each solution is one in the other angles, and the equations generate the same ideal of functions on
+the torus.
 
-Bars whose angles are measured against the bar before have cosines of sums in their coordinates; the basis of such
-equations takes minutes for three bars, that of the same equations in the bars' directions a third of a second.
+Bars whose angles are measured against the bar before have cosines of sums in their coordinates; the
+basis of such equations takes minutes for three bars, that of the same equations in the bars'
+directions a third of a second.
 """
 
 from __future__ import annotations
@@ -20,7 +23,9 @@ from ptmcad.exact.models.system import ParametricSystem, from_equations
 MIN_ANGLES = 3
 """With two angles the gain is nothing."""
 MAX_DEGREE, MAX_TERMS = 20, 2_000
-"""Of an equation, and of all of them: with more the search alone would take many seconds. Six bars have 8 and 1170."""
+"""Of an equation, and of all of them: with more the search alone would take many seconds. Six bars
+have 8 and 1170.
+"""
 Matrix = Sequence[Sequence[int]]
 
 
@@ -38,7 +43,8 @@ class Turns(NamedTuple):
 
 
 def with_turns(system: ParametricSystem) -> ParametricSystem:
-    """The system with the angles in which its equations have the least degrees and the fewest terms, where others do.
+    """The system with the angles in which its equations have the least degrees and the fewest
+    terms, where others do.
 
     By steps, each of which measures one angle against another while that helps.
     """
@@ -53,7 +59,10 @@ def with_turns(system: ParametricSystem) -> ParametricSystem:
         improved = False
         for i, j in permutations(range(count), 2):
             for sign in (1, -1):
-                step = [[int(k == m) + sign * int((k, m) == (i, j)) for m in range(count)] for k in range(count)]
+                step = [
+                    [int(k == m) + sign * int((k, m) == (i, j)) for m in range(count)]
+                    for k in range(count)
+                ]
                 images = _images(system.ring, step)
                 reduced = [system.ring.reduce(e.compose(*images)) for e in equations]
                 found = system.criterion.turned(reduced, i, j, sign)
@@ -67,7 +76,9 @@ def with_turns(system: ParametricSystem) -> ParametricSystem:
 
 
 def in_old_angles(system: ParametricSystem, algebra: FibreAlgebra, turns: Turns) -> FibreAlgebra:
-    """The fibre of the equations in new angles, with the coordinates of the unknown ones before the new ones'."""
+    """The fibre of the equations in new angles, with the coordinates of the unknown ones before the
+    new ones'.
+    """
     return combined_angles(algebra, turns.matrix, len(system.ring.reals))
 
 

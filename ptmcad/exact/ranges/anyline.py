@@ -1,14 +1,17 @@
-"""The ranges of a count on any line of a slice: one in the discriminant variety, or at an algebraic value, too.
+"""The ranges of a count on any line of a slice: one in the discriminant variety, or at an algebraic
+value, too.
 
-Guarantee: exact. In the ranges that are certain the count is the wanted one at all but finitely many points; elsewhere,
-off those that are possible, it is another one. The two differ where a degenerate solution may be stable, or where
-there are infinitely many complex solutions of a system of several unknowns.
+Guarantee: exact. In the ranges that are certain the count is the wanted one at all but finitely
+many points; elsewhere, off those that are possible, it is another one. The two differ where a
+degenerate solution may be stable, or where there are infinitely many complex solutions of a system
+of several unknowns.
 
-The value of the other axis is one more unknown, a root of its polynomial (`with_root`). Over Q(x), x being the axis
-along the line, the solutions may be multiple. Hermite's form still tells the different ones: while the lowest
-coefficient of its characteristic polynomial that is not zero identically has no zero, its rank, the number of different
-solutions, is constant, so that none of them meet; and while that of the multiplication by a condition has none, no
-condition changes its sign at a solution at which it is not zero all along.
+The value of the other axis is one more unknown, a root of its polynomial (`with_root`). Over Q(x),
+x being the axis along the line, the solutions may be multiple. Hermite's form still tells the
+different ones: while the lowest coefficient of its characteristic polynomial that is not zero
+identically has no zero, its rank, the number of different solutions, is constant, so that none of
+them meet; and while that of the multiplication by a condition has none, no condition changes its
+sign at a solution at which it is not zero all along.
 """
 
 from __future__ import annotations
@@ -32,7 +35,13 @@ from ptmcad.algebra.polynomials import (
     coefficients_in,
     from_expression,
 )
-from ptmcad.algebra.quotient import QuotientAlgebra, matrix_of, multiples, multiplication_denominator, trace_form
+from ptmcad.algebra.quotient import (
+    QuotientAlgebra,
+    matrix_of,
+    multiples,
+    multiplication_denominator,
+    trace_form,
+)
 from ptmcad.algebra.real_roots import gaps, isolate
 from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.answer.intervals import End, Span
@@ -49,9 +58,13 @@ from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between
 
 MAX_DIMENSION = 40
-"""Complex solutions, with multiplicity and at all conjugate values, up to which they are told apart."""
+"""Complex solutions, with multiplicity and at all conjugate values, up to which they are told
+apart.
+"""
 _SAMPLES = 12
-"""Tried in a gap until one has as many solutions, with multiplicity, as points of the line have in general."""
+"""Tried in a gap until one has as many solutions, with multiplicity, as points of the line have in
+general.
+"""
 
 
 LineRanges = tuple[tuple[Span, ...], tuple[Span, ...]]
@@ -71,7 +84,9 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
     number = slice.axis_names.index(along)
     if isinstance(value, Fraction):
         try:
-            found = intervals(slice, along, {slice.axis_names[1 - number]: value}, working).operation
+            found = intervals(
+                slice, along, {slice.axis_names[1 - number]: value}, working
+            ).operation
             return found, found
         except (DegenerateSliceError, InfiniteSolutionsError):
             on_line = line_of(slice, along, {slice.axis_names[1 - number]: value}).parameters
@@ -87,7 +102,9 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
     whole = (Span(axis.low, axis.high),)
     given = on_slice(system, {ALONG: (PLANE.gen(0), ONE)})
     finite = _finite(given)
-    if finite is None:  # of one unknown infinitely many are all, on a part that conditions leave: a count of 0 or none
+    if (
+        finite is None
+    ):  # of one unknown infinitely many are all, on a part that conditions leave: a count of 0 or none
         return (), whole if known.dimension > 1 or not working else ()
     equations, algebra = finite
     if not algebra.dimension:
@@ -97,12 +114,16 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
     numbers = _critical(equations, algebra, axis)
     counting = _Counting(system, algebra.dimension, equations is not given, minimal, working)
     ends: list[End] = [axis.low, *numbers, axis.high]
-    here = [counting.between(*map(from_fraction, gap)) for gap in gaps(numbers, (axis.low, axis.high))]
+    here = [
+        counting.between(*map(from_fraction, gap)) for gap in gaps(numbers, (axis.low, axis.high))
+    ]
     return _spans(ends, [h is True for h in here]), _spans(ends, [h is not False for h in here])
 
 
 def _finite(equations: SliceSystem) -> tuple[SliceSystem, QuotientAlgebra] | None:
-    """The equations of finitely many solutions, if need be without those that an inequality excludes."""
+    """The equations of finitely many solutions, if need be without those that an inequality
+    excludes.
+    """
     for _ in range(2):
         try:
             return equations, algebra_of(equations)
@@ -112,7 +133,9 @@ def _finite(equations: SliceSystem) -> tuple[SliceSystem, QuotientAlgebra] | Non
     return None
 
 
-def _critical(equations: SliceSystem, algebra: QuotientAlgebra, axis: Axis) -> tuple[AlgebraicNumber, ...]:
+def _critical(
+    equations: SliceSystem, algebra: QuotientAlgebra, axis: Axis
+) -> tuple[AlgebraicNumber, ...]:
     """Where the solutions' number or the signs of conditions can change, in increasing order."""
     conditions = (*equations.inequalities, *equations.stability)
     found: list[UnivariatePolynomial] = [
@@ -121,12 +144,20 @@ def _critical(equations: SliceSystem, algebra: QuotientAlgebra, axis: Axis) -> t
             *equations.boundary,
             multiplication_denominator(algebra),
             *_lowest(trace_form(algebra)),
-            *(p for condition in conditions for p in _lowest(_matrix(algebra, lifted(condition, equations.unknowns)))),
+            *(
+                p
+                for condition in conditions
+                for p in _lowest(_matrix(algebra, lifted(condition, equations.unknowns)))
+            ),
         )
     ]
-    factors = {tuple(map(int, factor.coeffs())): factor for p in found for factor, _ in p.factor()[1]}
+    factors = {
+        tuple(map(int, factor.coeffs())): factor for p in found for factor, _ in p.factor()[1]
+    }
     low, high = interval_of(axis)
-    roots = [algebraic_number(root) for factor in factors.values() for root in isolate(factor, low, high)]
+    roots = [
+        algebraic_number(root) for factor in factors.values() for root in isolate(factor, low, high)
+    ]
     return in_order(roots, axis.low, axis.high, axis.width * END_WIDTH)
 
 
@@ -138,15 +169,22 @@ def _matrix(algebra: QuotientAlgebra, p: UnknownPolynomial) -> list[list[Ratio]]
 
 
 def _lowest(matrix: list[list[Ratio]]) -> Ratio:
-    """The lowest coefficient of the characteristic polynomial that is not zero, over Q(x); up to its sign."""
+    """The lowest coefficient of the characteristic polynomial that is not zero, over Q(x); up to
+    its sign.
+    """
     found = determinant(matrix)
     if not found[0].is_zero():
         return found
     unknown: Ratio = (PLANE.gen(1), ONE)
-    shifted = [[add_ratios(c, unknown) if i == j else c for j, c in enumerate(row)] for i, row in enumerate(matrix)]
+    shifted = [
+        [add_ratios(c, unknown) if i == j else c for j, c in enumerate(row)]
+        for i, row in enumerate(matrix)
+    ]
     numerator, denominator = determinant(shifted)
     lowest = min(int(powers[1]) for powers, _ in numerator.terms())
-    terms: dict[tuple[int, ...], int] = {(int(i), 0): int(c) for (i, j), c in numerator.terms() if j == lowest}
+    terms: dict[tuple[int, ...], int] = {
+        (int(i), 0): int(c) for (i, j), c in numerator.terms() if j == lowest
+    }
     return PLANE.from_dict(terms), denominator
 
 
@@ -167,7 +205,9 @@ class _Counting(NamedTuple):
     working: int
 
     def between(self, low: fmpq, high: fmpq) -> bool | None:
-        """Whether there is the wanted count between two neighbouring critical values; None where that is open."""
+        """Whether there is the wanted count between two neighbouring critical values; None where
+        that is open.
+        """
         sample = low
         for _ in range(_SAMPLES):
             sample = simplest_between(sample, high)
@@ -178,7 +218,9 @@ class _Counting(NamedTuple):
         return None
 
     def at(self, sample: fmpq) -> tuple[int, int] | None:
-        """The least and the largest count that there may be; None where a point is an exception on its line."""
+        """The least and the largest count that there may be; None where a point is an exception on
+        its line.
+        """
         try:
             point = point_system(self.system, {ALONG: sample}, self.saturated)
         except DegeneratePoint:
@@ -195,7 +237,8 @@ class _Counting(NamedTuple):
             if all(_sign(solution, p) > 0 for p in required):
                 signs = [_sign(solution, p) for p in point.stability]
                 stable += all(s > 0 for s in signs)
-                # a flat minimum, or a flat loop; of a system the conditions are what is called stable
+                # a flat minimum, or a flat loop; of a system the conditions are what is called
+                # stable
                 open_ones += self.system.criterion.stable_at_zero and min(signs) == 0
         return stable, stable + open_ones
 

@@ -1,4 +1,6 @@
-"""A model on a line of parameters: its polynomial system, and its formulas along the axis, in balls."""
+"""A model on a line of parameters: its polynomial system, and its formulas along the axis, in
+balls.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ from ptmcad.text.flint_numbers import to_fraction
 
 @dataclass(frozen=True, slots=True)
 class LineSystem:
-    """A line with its model's polynomial system, its formulas on the line, and those of its branches."""
+    """A line with its model's polynomial system, its formulas on the line, and those of its
+    branches.
+    """
 
     line: Line
     system: ParametricSystem
@@ -36,13 +40,17 @@ class LineSystem:
         """How many of the unknowns are on the circle: the first ones."""
         return self.branches.angles
 
-    def values(self, formulas: Sequence[Formula], low: Fraction, high: Fraction, point: Vector) -> list[arb]:
+    def values(
+        self, formulas: Sequence[Formula], low: Fraction, high: Fraction, point: Vector
+    ) -> list[arb]:
         """Formulas on the line for all parameters from low to high, at balls of the unknowns."""
         with ctx.workprec(BITS):
             return evaluated(formulas, (ball_over(low, high), *point))
 
     def sides(self, low: Fraction, high: Fraction, point: Vector) -> tuple[int, ...]:
-        """Of each rising point of a mechanism 1 where it is proved above the x axis, -1 where below, else 0."""
+        """Of each rising point of a mechanism 1 where it is proved above the x axis, -1 where
+        below, else 0.
+        """
         return signs_of(self.values(self.formulas.heights, low, high, point))
 
     def values_at(self, formulas: Sequence[Formula], reached: Reached) -> list[arb]:
@@ -55,8 +63,12 @@ def line_system(line: Line) -> LineSystem:
     system, formulas = system_from(line.model), compiled_on(line.model, line.parameters)
     graph = formulas.graph
     given = [expression_formula(graph, line.parameters[name]) for name in system.ring.parameters]
-    turned = (f for k in formulas.angles for f in (graph.variable(k).cos(), graph.variable(k).sin()))
-    elements = _Elements(graph, given, (*turned, *map(graph.variable, formulas.reals)), len(formulas.angles))
+    turned = (
+        f for k in formulas.angles for f in (graph.variable(k).cos(), graph.variable(k).sin())
+    )
+    elements = _Elements(
+        graph, given, (*turned, *map(graph.variable, formulas.reals)), len(formulas.angles)
+    )
     branches = branch_equations(
         list(map(elements.formula, system.equation_terms)),
         elements.angles,
@@ -67,7 +79,9 @@ def line_system(line: Line) -> LineSystem:
 
 
 class _Elements(NamedTuple):
-    """Elements of a system's ring as formulas on a line, from formulas for parameters and coordinates."""
+    """Elements of a system's ring as formulas on a line, from formulas for parameters and
+    coordinates.
+    """
 
     graph: Graph
     parameters: Sequence[Formula]
@@ -87,7 +101,8 @@ class _Elements(NamedTuple):
     def gradient(self, terms: Terms) -> list[Formula]:
         """The derivatives by the unknowns.
 
-        That by an angle is made of those by its cosine and its sine: in balls it is narrower than a sum of all terms'.
+        That by an angle is made of those by its cosine and its sine: in balls it is narrower than a
+        sum of all terms'.
         """
         at, turned = self.coordinates, 2 * self.angles
         by = [self.formula(tuple(_lowered(terms, k))) for k in range(len(at))]

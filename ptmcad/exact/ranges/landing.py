@@ -1,11 +1,13 @@
-"""What holds at the critical value at which a branch ends: the pose that is reached there, and the energies.
+"""What holds at the critical value at which a branch ends: the pose that is reached there, and the
+energies.
 
-Guarantee: every enclosure holds the number at the critical value itself, wherever that lies in its isolating interval;
-so it does not depend on where a path began. A pose that is simple there is carried to it by tubes. Poses
-that merge there are enclosed by a region that none of them leaves meanwhile (`meeting`), or by what a symmetry or an
-exact solution at a rational value says of them. An energy is that at a place beside, which differs by no more than the
-distance times the largest slope: along a branch of critical points the energy changes with the parameter alone, which
-is bounded on the torus.
+Guarantee: every enclosure holds the number at the critical value itself, wherever that lies in its
+isolating interval; so it does not depend on where a path began. A pose that is simple there is
+carried to it by tubes. Poses that merge there are enclosed by a region that none of them leaves
+meanwhile (`meeting`), or by what a symmetry or an exact solution at a rational value says of them.
+An energy is that at a place beside, which differs by no more than the distance times the largest
+slope: along a branch of critical points the energy changes with the parameter alone, which is
+bounded on the torus.
 """
 
 from __future__ import annotations
@@ -27,13 +29,16 @@ from ptmcad.text.flint_numbers import simplest_fraction
 
 DIGITS = 12
 _NEAREST = Fraction(1, 2**56)
-"""How near to a critical value branches are followed for what holds there, against the window's width."""
+"""How near to a critical value branches are followed for what holds there, against the window's
+width.
+"""
 
 
 def landing(
     family: LineSystem, number: AlgebraicNumber, met: Meeting, current: Reached, target: Reached
 ) -> Landing | None:
-    """What holds at the critical value where a branch ends; None where the pose that is reached is not proved.
+    """What holds at the critical value where a branch ends; None where the pose that is reached is
+    not proved.
 
     Its angles are not wrapped into one turn.
 
@@ -66,7 +71,9 @@ def landing(
     if unknowns is None:
         return None
     with ctx.workprec(BITS):
-        sides = family.sides(number.low, number.high, tuple(ball_over(u.low, u.high) for u in unknowns))
+        sides = family.sides(
+            number.low, number.high, tuple(ball_over(u.low, u.high) for u in unknowns)
+        )
     reached = Target(unknowns[: family.angles], unknowns[family.angles :], sides)
     return Landing(reached, energy(before), energy(before if at is None else Reached(near, at, at)))
 
@@ -105,14 +112,20 @@ def _merged(
 
 
 def _half_turned(x: Enclosure, angle: arb) -> Enclosure:
-    """An unknown that is an angle up to half turns; as it is where several of these are in its enclosure."""
+    """An unknown that is an angle up to half turns; as it is where several of these are in its
+    enclosure.
+    """
     nearest = round((float(x) - float(angle)) / pi)
-    turned = [enclosure_of(angle + n * arb.pi()) for n in range(nearest - 2, nearest + 3)]  # it is less than 6 wide
+    turned = [
+        enclosure_of(angle + n * arb.pi()) for n in range(nearest - 2, nearest + 3)
+    ]  # it is less than 6 wide
     within = [t for t in turned if _overlap((t,), (x,))]
     return within[0] if len(within) == 1 else x
 
 
-def _turned(pose: Sequence[Enclosure], region: Sequence[Enclosure], angles: int) -> tuple[Enclosure, ...]:
+def _turned(
+    pose: Sequence[Enclosure], region: Sequence[Enclosure], angles: int
+) -> tuple[Enclosure, ...]:
     """A pose with its angles whole turns further, as near to a region as they come."""
     turned = list(pose)
     with ctx.workprec(BITS):

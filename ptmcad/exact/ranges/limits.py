@@ -1,8 +1,9 @@
-"""The limits of an operation range at an end of a strip, and a neighbourhood in which it is narrower than there.
+"""The limits of an operation range at an end of a strip, and a neighbourhood in which it is
+narrower than there.
 
-Guarantee: `limit` is the branch's limit, and over `chord_length` the range stays between two parallel chords from its
-limits; over `narrowing_length` its two ends draw nearer to one another, seen from a line of some slope, all the way
-from the limits. None means that this was not proved.
+Guarantee: `limit` is the branch's limit, and over `chord_length` the range stays between two
+parallel chords from its limits; over `narrowing_length` its two ends draw nearer to one another,
+seen from a line of some slope, all the way from the limits. None means that this was not proved.
 """
 
 from __future__ import annotations
@@ -30,7 +31,9 @@ def ends_of(end: End) -> Interval:
 
 
 def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End | None:
-    """The limit of a branch at an end of its strip; None when it could not be separated from other points."""
+    """The limit of a branch at an end of its strip; None when it could not be separated from other
+    points.
+    """
     if branch.curve is None:
         return to_fraction(branch.edge)
     margin = strip.fibre[1] - strip.fibre[0]
@@ -41,7 +44,9 @@ def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End
         fibre = branch.curve.fibre(at[0])
     else:
         assert end.root is not None
-        fibre = resultant(branch.curve.in_u, [UnivariatePolynomial([c]) for c in end.root.polynomial.coeffs()])
+        fibre = resultant(
+            branch.curve.in_u, [UnivariatePolynomial([c]) for c in end.root.polynomial.coeffs()]
+        )
     for _ in range(50):
         u = at[0] + distance
         over = (min(u, at[0]), max(u, at[1]))
@@ -59,19 +64,27 @@ def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End
 def narrowing_length(strip: RangeStrip, end: BaseEnd, width: fmpq) -> fmpq | None:
     """A length from an end within which the range gets narrower away from it; None if not proved.
 
-    For some slope s, v - s u of the lower branch does not fall away from the end, that of the upper one does not rise,
-    and one of them moves: no point of either has a tangent of this slope, but over the end itself.
+    For some slope s, v - s u of the lower branch does not fall away from the end, that of the upper
+    one does not rise, and one of them moves: no point of either has a tangent of this slope, but
+    over the end itself.
     """
     at = end_interval(end, width)
     slopes = [fmpq(0)]
     for bits in (6, 20):
         run = (strip.sample - at[0]) / 2**bits
-        low, high = sorted(_growth(b, strip, (at[0] + run / 2**bits, at[0] + run), fmpq(0))[0] for b in strip.branches)
+        low, high = sorted(
+            _growth(b, strip, (at[0] + run / 2**bits, at[0] + run), fmpq(0))[0]
+            for b in strip.branches
+        )
         if low != high:
             steps = run - run / 2**bits
-            slopes.append(simplest_between(*sorted(((2 * low - high) / steps, (2 * high - low) / steps))))
+            slopes.append(
+                simplest_between(*sorted(((2 * low - high) / steps, (2 * high - low) / steps)))
+            )
     for slope in slopes:
-        (short, lower), (long, upper) = (_course(branch, strip, end, slope) for branch in strip.branches)
+        (short, lower), (long, upper) = (
+            _course(branch, strip, end, slope) for branch in strip.branches
+        )
         length = min(short, long)
         if lower is None or upper is None or (at[1] - at[0]) * 4 >= length:
             continue
@@ -80,13 +93,19 @@ def narrowing_length(strip: RangeStrip, end: BaseEnd, width: fmpq) -> fmpq | Non
     return None
 
 
-def _course(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, slope: fmpq) -> tuple[fmpq, int | None]:
-    """A length from an end within which v - s u of a branch is monotone, and the sign of its growth; None: not seen."""
+def _course(
+    branch: RangeEnd, strip: RangeStrip, end: BaseEnd, slope: fmpq
+) -> tuple[fmpq, int | None]:
+    """A length from an end within which v - s u of a branch is monotone, and the sign of its
+    growth; None: not seen.
+    """
     at = end_interval(end, fmpq(1, 2**80))
     run = strip.sample - at[0]
     if branch.curve is not None:
         rows = enumerate(branch.curve.in_v)
-        p = PLANE.from_dict({(v, u): int(c) for v, row in rows for u, c in enumerate(row.coeffs()) if c})
+        p = PLANE.from_dict(
+            {(v, u): int(c) for v, row in rows for u, c in enumerate(row.coeffs()) if c}
+        )
         try:
             turns = tangent_resultant(p, (int(slope.p), int(slope.q)))
         except ArithmeticError:  # the curve is a line of this slope
@@ -110,8 +129,12 @@ def _growth(branch: RangeEnd, strip: RangeStrip, over: Interval, slope: fmpq) ->
     return difference + far.low - near.high, difference + far.high - near.low
 
 
-def chord_length(strip: RangeStrip, end: fmpq, direction: int, limits: tuple[End, End]) -> fmpq | None:
-    """A length within which the range keeps between parallel chords from its limits at an end; None if not proved."""
+def chord_length(
+    strip: RangeStrip, end: fmpq, direction: int, limits: tuple[End, End]
+) -> fmpq | None:
+    """A length within which the range keeps between parallel chords from its limits at an end; None
+    if not proved.
+    """
     length = abs(strip.sample - end)
     branches, starts = (strip.low, strip.high), [ends_of(e) for e in limits]
     for _ in range(40):
@@ -134,10 +157,13 @@ def chord_length(strip: RangeStrip, end: fmpq, direction: int, limits: tuple[End
     return None
 
 
-def _keeps_to(side: int, branch: RangeEnd, fibre: Interval, start: tuple[fmpq, End], slope: fmpq, run: fmpq) -> bool:
+def _keeps_to(
+    side: int, branch: RangeEnd, fibre: Interval, start: tuple[fmpq, End], slope: fmpq, run: fmpq
+) -> bool:
     """Whether a branch is proved to stay above (side 1) or below (side -1) a chord.
 
-    It starts at a branch's limit at the end of a strip, and goes as far as ``run``, which is negative towards the left.
+    It starts at a branch's limit at the end of a strip, and goes as far as ``run``, which is
+    negative towards the left.
     """
     end, limit = start
     low, high = (value + slope * run for value in ends_of(limit))
@@ -145,7 +171,9 @@ def _keeps_to(side: int, branch: RangeEnd, fibre: Interval, start: tuple[fmpq, E
     if not (tip.low > high if side > 0 else tip.high < low):
         return False
     if branch.curve is None:
-        return True  # the edge is level and, as the tip shows, the chord leaves it to the right side
+        return (
+            True  # the edge is level and, as the tip shows, the chord leaves it to the right side
+        )
     if isinstance(limit, Fraction):
         return False
     return side_of_chord(branch.curve.in_v, end, root_of(limit), slope, run)

@@ -1,13 +1,14 @@
 """The intervals of constant count along a line of a slice, with exact ends.
 
-Guarantee: exact. The window's part of the line, less the critical values, is cut into open intervals; in each the
-solutions are nondegenerate, their number and indices are constant, and they were counted at a rational sample. Ends
-are real algebraic numbers. Neighbours with equal counts are joined, and the critical value between them is kept among
-the changes.
+Guarantee: exact. The window's part of the line, less the critical values, is cut into open
+intervals; in each the solutions are nondegenerate, their number and indices are constant, and they
+were counted at a rational sample. Ends are real algebraic numbers. Neighbours with equal counts are
+joined, and the critical value between them is kept among the changes.
 
-The line's own discriminant variety is computed, in one parameter: its components are the irreducible factors of the
-norm of det H over Q(x), or of the Jacobian's determinant where there is no potential. So nothing depends on how a basis
-over the plane specialises, and that the ends are those of the map's walls is a test of both.
+The line's own discriminant variety is computed, in one parameter: its components are the
+irreducible factors of the norm of det H over Q(x), or of the Jacobian's determinant where there is
+no potential. So nothing depends on how a basis over the plane specialises, and that the ends are
+those of the map's walls is a test of both.
 """
 
 from __future__ import annotations
@@ -42,21 +43,25 @@ END_WIDTH = Fraction(1, 2**100)
 """Width of the ends' isolating intervals, against the window's."""
 
 
-def intervals(slice: Slice, along: str, at: Mapping[str, Any], working: int | None = None) -> CountIntervals:
+def intervals(
+    slice: Slice, along: str, at: Mapping[str, Any], working: int | None = None
+) -> CountIntervals:
     """The intervals of constant count on a line of a slice.
 
     Parameters
     ----------
     along : the axis that varies, over its window.
-    at : the other axis with its value: text or a number, of which a float stands for its shortest decimal.
-    working : the number of stable solutions in an operation range; by `operation_number` on this line when None.
+    at : the other axis with its value: text or a number, of which a float stands for its shortest
+        decimal.
+    working : the number of stable solutions in an operation range; by `operation_number` on this
+        line when None.
 
     Raises
     ------
     ConfigError
         See `line_of`.
-    DegenerateSliceError
-        When the line lies inside the discriminant variety: every point of it has a singular equilibrium.
+    DegenerateSliceError When the line lies inside the discriminant variety: every point of it has a
+        singular equilibrium.
     InfiniteSolutionsError
         When every point of it has infinitely many equilibria.
     GeometryError
@@ -69,7 +74,8 @@ def intervals(slice: Slice, along: str, at: Mapping[str, Any], working: int | No
     samples = samples_between(line.along, numbers)
     counts = [counts_at(line, sample) for sample in samples]
     changes = tuple(
-        Change(n, parts[n].kind, counts[k], counts[k + 1], parts[n].continuum) for k, n in enumerate(numbers)
+        Change(n, parts[n].kind, counts[k], counts[k + 1], parts[n].continuum)
+        for k, n in enumerate(numbers)
     )
     return CountIntervals(
         slice.name,
@@ -89,7 +95,8 @@ def system_on(line: Line) -> SystemOnAxes:
 
 
 def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Component], ...]:
-    """The line's discriminant variety in the window, in increasing order, each number with its component.
+    """The line's discriminant variety in the window, in increasing order, each number with its
+    component.
 
     The isolating intervals are disjoint.
 
@@ -156,7 +163,10 @@ def runs(here: Sequence[bool]) -> Iterator[tuple[int, int]]:
 
 
 def _joined(
-    along: Axis, numbers: tuple[AlgebraicNumber, ...], samples: tuple[Fraction, ...], counts: list[Counts]
+    along: Axis,
+    numbers: tuple[AlgebraicNumber, ...],
+    samples: tuple[Fraction, ...],
+    counts: list[Counts],
 ) -> Iterator[CountInterval]:
     """The intervals, those with equal counts joined."""
     ends: list[End] = [along.low, *numbers, along.high]

@@ -1,12 +1,15 @@
-"""Which solutions meet where a branch ends: those in a region that no solution enters or leaves meanwhile.
+"""Which solutions meet where a branch ends: those in a region that no solution enters or leaves
+meanwhile.
 
-Guarantee: of the solutions on both sides of a critical value those that are bridged by one tube are nondegenerate and
-meet none. A region of unknowns on whose boundary the equations vanish for no value between the two sides keeps its
-solutions, so the sum of the signs of the Jacobian's determinants in it is the same on both sides, and the same is true
-around each place where solutions meet (the degree of a map). A grouping is proved where it is the only one that keeps
-this sum, and that the symmetries of the equations leave alone.
+Guarantee: of the solutions on both sides of a critical value those that are bridged by one tube are
+nondegenerate and meet none. A region of unknowns on whose boundary the equations vanish for no
+value between the two sides keeps its solutions, so the sum of the signs of the Jacobian's
+determinants in it is the same on both sides, and the same is true around each place where solutions
+meet (the degree of a map). A grouping is proved where it is the only one that keeps this sum, and
+that the symmetries of the equations leave alone.
 
-Reference: Deimling, Nonlinear Functional Analysis, 1 (the degree; that it is the same along a homotopy).
+Reference: Deimling, Nonlinear Functional Analysis, 1 (the degree; that it is the same along a
+homotopy).
 """
 
 from __future__ import annotations
@@ -32,7 +35,10 @@ Range = tuple[arb, arb]
 """The ends of what an unknown may be."""
 _MAX_GROUP = 8
 """Solutions of which all groupings are looked through: of eight there are 4140."""
-_QUARTERS = Mirror(PLANE.constant(1), PLANE.constant(0)), Mirror(PLANE.constant(0), PLANE.constant(1))
+_QUARTERS = (
+    Mirror(PLANE.constant(1), PLANE.constant(0)),
+    Mirror(PLANE.constant(0), PLANE.constant(1)),
+)
 """The lines at which an angle is reflected that becomes its negative, or half a turn less it."""
 _MAX_PIECES = 4000
 _MAX_DEPTH = 60
@@ -57,10 +63,11 @@ class Meeting(NamedTuple):
     meeting, leaving : as in `ptmcad.answer.paths.PathEnd`.
     among : whether the branch is proved to vanish with one or more of those, and not with which.
     beyond : all solutions on the far side.
-    box : where there is a region that no solution enters or leaves meanwhile, what it holds of each unknown, angles as
-        the branch has them; else None.
-    fixed : the unknowns, by number, that a symmetry reflects which takes the solutions that meet to one another: there
-        an angle is that of the line, or opposite, and an unknown on the line is zero.
+    box : where there is a region that no solution enters or leaves meanwhile, what it holds of each
+        unknown, angles as the branch has them; else None.
+    fixed : the unknowns, by number, that a symmetry reflects which takes the solutions that meet to
+        one another: there an angle is that of the line, or opposite, and an unknown on the line is
+        zero.
     """
 
     meeting: tuple[int, ...]
@@ -72,7 +79,9 @@ class Meeting(NamedTuple):
 
 
 class _Symmetry(NamedTuple):
-    """How a change of the unknowns that leaves the equations alone permutes a group, and which unknowns it reflects."""
+    """How a change of the unknowns that leaves the equations alone permutes a group, and which
+    unknowns it reflects.
+    """
 
     images: tuple[int, ...]
     fixed: Mapping[int, Mirror]
@@ -88,7 +97,9 @@ class _Member(NamedTuple):
 
 
 def what_meets(family: LineSystem, current: Reached, after: Fraction) -> Meeting | None:
-    """What a branch meets at the only critical value between its place and another value; None where not proved."""
+    """What a branch meets at the only critical value between its place and another value; None
+    where not proved.
+    """
     before, beyond = _solutions(family, current.value), _solutions(family, after)
     if before is None or beyond is None:
         return None
@@ -109,7 +120,10 @@ def what_meets(family: LineSystem, current: Reached, after: Fraction) -> Meeting
     if len(classes) > 1 and any(group[k].ahead for c in classes for k in c):
         return None
     chosen = [group[k] for k in sorted(frozenset().union(*classes))]
-    met, left = (tuple(sorted(m.solution.negative for m in chosen if m.ahead is side)) for side in (False, True))
+    met, left = (
+        tuple(sorted(m.solution.negative for m in chosen if m.ahead is side))
+        for side in (False, True)
+    )
     own = next(iter(classes)) if len(classes) == 1 else frozenset()
     kept = [s for s in symmetries if own and {s.images[k] for k in own} == own]
     fixed = {k: line for s in kept for k, line in s.fixed.items()}
@@ -124,12 +138,18 @@ def _solutions(family: LineSystem, value: Fraction) -> list[PlacedSolution] | No
         with ctx.workprec(BITS):
             center = [arb(x) for x in solution.center]
             turns = 2 * family.angles
-            angles = (arb.atan2(s, c) for c, s in zip(center[:turns:2], center[1:turns:2], strict=True))
+            angles = (
+                arb.atan2(s, c) for c, s in zip(center[:turns:2], center[1:turns:2], strict=True)
+            )
             guess = (*angles, *center[turns:])
         place = at_value(family.branches, value, guess)
         if place is None:
             return None
-        found.append(PlacedSolution(Reached(value, place, place), family.system.criterion.rank(solution.signs)))
+        found.append(
+            PlacedSolution(
+                Reached(value, place, place), family.system.criterion.rank(solution.signs)
+            )
+        )
     return found
 
 
@@ -140,7 +160,9 @@ def _unmatched(
     before: Sequence[PlacedSolution],
     beyond: Sequence[PlacedSolution],
 ) -> list[tuple[PlacedSolution, bool]] | None:
-    """The solutions that no tube leads across, the branch's own first, and whether each is on the far side."""
+    """The solutions that no tube leads across, the branch's own first, and whether each is on the
+    far side.
+    """
     own = [s for s in before if _close(family, s.place.point, current.point)]
     if len(own) != 1:
         return None
@@ -152,10 +174,14 @@ def _unmatched(
         if across is None:
             lost.append((solution, False))
             continue
-        images = [k for k, image in enumerate(left) if _close(family, across.point, image.place.point)]
+        images = [
+            k for k, image in enumerate(left) if _close(family, across.point, image.place.point)
+        ]
         if len(images) == 1:
             del left[images[0]]
-        elif images or not any(p < 0 for p in family.values_at(family.formulas.inequalities, across)):
+        elif images or not any(
+            p < 0 for p in family.values_at(family.formulas.inequalities, across)
+        ):
             return None
     return lost + [(solution, True) for solution in left]
 
@@ -169,7 +195,9 @@ def _close(family: LineSystem, first: Vector, second: Vector) -> bool:
 
 
 def _member(family: LineSystem, current: Reached, solution: PlacedSolution, ahead: bool) -> _Member:
-    """A solution with its angles less than a turn from the branch's, and the sign of the Jacobian's determinant."""
+    """A solution with its angles less than a turn from the branch's, and the sign of the Jacobian's
+    determinant.
+    """
     with ctx.workprec(BITS):
         shifted = []
         for k, (a, b) in enumerate(zip(solution.place.point, current.point, strict=True)):
@@ -183,9 +211,13 @@ def _member(family: LineSystem, current: Reached, solution: PlacedSolution, ahea
 
 
 def _without_region(
-    family: LineSystem, unmatched: Sequence[tuple[PlacedSolution, bool]], beyond: tuple[PlacedSolution, ...]
+    family: LineSystem,
+    unmatched: Sequence[tuple[PlacedSolution, bool]],
+    beyond: tuple[PlacedSolution, ...],
 ) -> Meeting | None:
-    """What can be said without a region: a branch vanishes where nothing is left that it may have become."""
+    """What can be said without a region: a branch vanishes where nothing is left that it may have
+    become.
+    """
     if family.system.inequalities or any(ahead for _, ahead in unmatched):
         return None
     if len(unmatched) > 1 and not family.system.is_on_torus:
@@ -196,7 +228,9 @@ def _without_region(
 def _region(
     family: LineSystem, current: Reached, after: Fraction, members: Sequence[_Member]
 ) -> tuple[list[_Member], Vector] | None:
-    """The fewest solutions around the branch's own, the first, in a region that none enters or leaves."""
+    """The fewest solutions around the branch's own, the first, in a region that none enters or
+    leaves.
+    """
     with ctx.workprec(BITS):
         own = members[0]
 
@@ -211,7 +245,9 @@ def _region(
             extent = distance(group[-1])
             room = (distance(ordered[k]) - extent) / 2 if k < len(ordered) else max(3 * extent, 0.1)
             for margin in (m for m in (2 * extent, extent / 2, room / 4, room) if 0 < m <= room):
-                box = [_hull([m.shifted[i] for m in group], margin) for i in range(len(own.shifted))]
+                box = [
+                    _hull([m.shifted[i] for m in group], margin) for i in range(len(own.shifted))
+                ]
                 if _isolates(family, box, current.value, after, group, ordered[k:]):
                     return group, tuple(low.union(high) for low, high in box)
     return None
@@ -232,7 +268,9 @@ def _isolates(
     group: Sequence[_Member],
     others: Sequence[_Member],
 ) -> bool:
-    """Whether a box holds the group and none of the others, and its boundary no solution from one value to another."""
+    """Whether a box holds the group and none of the others, and its boundary no solution from one
+    value to another.
+    """
     if not all(high - low < 6 for low, high in box[: family.angles]):
         return False
     held = all(low < x < high for m in group for x, (low, high) in zip(m.shifted, box, strict=True))
@@ -248,7 +286,10 @@ def _isolates(
     while stack:
         piece, depth = stack.pop()
         pieces += 1
-        if any(not f.contains(0) for f in family.branches.residuals(at, arb_mat(size, 1, piece)).entries()):
+        if any(
+            not f.contains(0)
+            for f in family.branches.residuals(at, arb_mat(size, 1, piece)).entries()
+        ):
             continue
         if depth == _MAX_DEPTH or pieces > _MAX_PIECES:
             return False
@@ -275,7 +316,9 @@ def _outside(family: LineSystem, point: Vector, box: Sequence[Range]) -> bool:
 
 
 def _symmetries(family: LineSystem, group: Sequence[_Member], after: Fraction) -> list[_Symmetry]:
-    """How the involutions that keep all points of the line, and a reflection of all angles, permute the group."""
+    """How the involutions that keep all points of the line, and a reflection of all angles, permute
+    the group.
+    """
     if len(group) <= 2:
         return []
     with ctx.workprec(BITS):
@@ -283,24 +326,41 @@ def _symmetries(family: LineSystem, group: Sequence[_Member], after: Fraction) -
         found = _reflections(family, group, places, after)
         model = family.line.model
         kinds = model.unknowns
-        ordered = [k for name in (*model.angles, *model.reals) for k, known in enumerate(kinds) if name == known]
+        ordered = [
+            k
+            for name in (*model.angles, *model.reals)
+            for k, known in enumerate(kinds)
+            if name == known
+        ]
         for change in involutions(model, family.line.parameters):
             coordinates = change.coordinates(tuple(kinds.values()))
-            images = _images(group, places, [[sign * place[k] for k, sign in coordinates] for place in places])
+            images = _images(
+                group, places, [[sign * place[k] for k, sign in coordinates] for place in places]
+            )
             if images is not None:
-                own = {n: k for n, k in enumerate(ordered) if change.images[k] == k and change.signs[k] < 0}
-                found.append(_Symmetry(images, {n: _QUARTERS[change.halves[k]] for n, k in own.items()}))
+                own = {
+                    n: k
+                    for n, k in enumerate(ordered)
+                    if change.images[k] == k and change.signs[k] < 0
+                }
+                found.append(
+                    _Symmetry(images, {n: _QUARTERS[change.halves[k]] for n, k in own.items()})
+                )
     return found
 
 
 def _reflections(
     family: LineSystem, group: Sequence[_Member], places: Sequence[Sequence[arb]], after: Fraction
 ) -> list[_Symmetry]:
-    """How the reflection of all angles at once, whose line may turn with the parameter, permutes the group."""
+    """How the reflection of all angles at once, whose line may turn with the parameter, permutes
+    the group.
+    """
     if family.system.ring.reals:
         return []
     mirror = mirror_of(on_slice(*system_on(family.line)).equations, family.angles)
-    values = [m.solution.place.value for m in group]  # the first is the branch's own, on the near side
+    values = [
+        m.solution.place.value for m in group
+    ]  # the first is the branch's own, on the near side
     if mirror is None or mirror.angle(min(values[0], after), max(values[0], after)) is None:
         return []
     moved = []
@@ -310,29 +370,40 @@ def _reflections(
             return []
         moved.append(coordinates_of(tuple(2 * turned - t for t in m.shifted), len(m.shifted)))
     images = _images(group, places, moved)
-    return [] if images is None else [_Symmetry(images, dict.fromkeys(range(family.angles), mirror))]
+    return (
+        [] if images is None else [_Symmetry(images, dict.fromkeys(range(family.angles), mirror))]
+    )
 
 
 def _images(
     group: Sequence[_Member], places: Sequence[Sequence[arb]], moved: Sequence[Sequence[arb]]
 ) -> tuple[int, ...] | None:
-    """Which of the group is where each one is moved to; None where some are moved out of it, or it is not clear."""
+    """Which of the group is where each one is moved to; None where some are moved out of it, or it
+    is not clear.
+    """
     images = [
         [
             k
             for k, (other, place) in enumerate(zip(group, places, strict=True))
-            if other.ahead is m.ahead and all(a.overlaps(b) for a, b in zip(image, place, strict=True))
+            if other.ahead is m.ahead
+            and all(a.overlaps(b) for a, b in zip(image, place, strict=True))
         ]
         for m, image in zip(group, moved, strict=True)
     ]
     return tuple(i[0] for i in images) if all(len(i) == 1 for i in images) else None
 
 
-def _own_classes(group: Sequence[_Member], symmetries: Sequence[Sequence[int]]) -> set[frozenset[int]]:
-    """With which of the group, by number, the first may be where it ends: by each grouping that is possible."""
+def _own_classes(
+    group: Sequence[_Member], symmetries: Sequence[Sequence[int]]
+) -> set[frozenset[int]]:
+    """With which of the group, by number, the first may be where it ends: by each grouping that is
+    possible.
+    """
     found = set()
     for grouping in _groupings(len(group)):
-        sums = [sum(group[k].sign * (-1 if group[k].ahead else 1) for k in part) for part in grouping]
+        sums = [
+            sum(group[k].sign * (-1 if group[k].ahead else 1) for k in part) for part in grouping
+        ]
         if any(sums):
             continue
         parts = {frozenset(part) for part in grouping}

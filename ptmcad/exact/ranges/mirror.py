@@ -1,12 +1,15 @@
-"""A reflection of all angles at once, whose line may turn with the parameter, and that a system on a line keeps.
+"""A reflection of all angles at once, whose line may turn with the parameter, and that a system on
+a line keeps.
 
-Guarantee: a `Mirror` that `mirror_of` returns leaves the equations alone, each up to its sign, for every value of the
-line at which its direction is not zero: identities of polynomials, computed exactly.
+Guarantee: a `Mirror` that `mirror_of` returns leaves the equations alone, each up to its sign, for
+every value of the line at which its direction is not zero: identities of polynomials, computed
+exactly.
 
-With z = exp(i t) for each angle t an equation is a sum of e_m z^m over integer vectors m, and e_-m is the conjugate
-of e_m. The reflection at the line of a complex number w takes z to (w / conj w) conj z. It takes the equation to
-itself where e_m w^|m| is real for every m, with |m| the sum of the entries, and to its negative where all of these
-are imaginary. So any e_m with |m| = 1 fixes the line of w, up to a right angle.
+With z = exp(i t) for each angle t an equation is a sum of e_m z^m over integer vectors m, and e_-m
+is the conjugate of e_m. The reflection at the line of a complex number w takes z to (w / conj w)
+conj z. It takes the equation to itself where e_m w^|m| is real for every m, with |m| the sum of the
+entries, and to its negative where all of these are imaginary. So any e_m with |m| = 1 fixes the
+line of w, up to a right angle.
 
 Source: elementary (the Fourier coefficients of a real function under a reflection).
 """
@@ -48,7 +51,8 @@ class Mirror(NamedTuple):
 
 
 def mirror_of(equations: Sequence[UnknownPolynomial], angles: int) -> Mirror | None:
-    """The mirror line of equations in cosine and sine of each angle; None where no reflection is found.
+    """The mirror line of equations in cosine and sine of each angle; None where no reflection is
+    found.
 
     Parameters
     ----------

@@ -1,15 +1,16 @@
 """Paths of stable poses along a line: how far each one can be followed, and where it snaps to.
 
-Guarantee: the pose at every step of a path is the same branch (`ptmcad.formulas.continuation`). What a branch is said
-to meet at a critical value, and that it vanishes there, is proved (`meeting`); that it is not bridged is not enough for
-that.
+Guarantee: the pose at every step of a path is the same branch (`ptmcad.formulas.continuation`).
+What a branch is said to meet at a critical value, and that it vanishes there, is proved
+(`meeting`); that it is not bridged is not enough for that.
 
-Where a stable pose vanishes and one is left, as always with the paper's mechanism, which never has more than two
-(theorem 1 of docs/method.md), the energy descends to it from the place where the first one was: on a torus every
-descent of a function ends at an equilibrium, and all but those that run exactly into a saddle end at a minimum. Where
-several are left, where unknowns are on the line, where there is no energy, and where a moment works, nothing is said
-about where a solution goes: a moment turns a bar for ever where nothing stops it, as the energy less its work is lower
-by each turn.
+Where a stable pose vanishes and one is left, as always with the paper's mechanism, which never has
+more than two (theorem 1 of docs/method.md), the energy descends to it from the place where the
+first one was: on a torus every descent of a function ends at an equilibrium, and all but those that
+run exactly into a saddle end at a minimum. Where several are left, where unknowns are on the line,
+where there is no energy, and where a moment works, nothing is said about where a solution goes: a
+moment turns a bar for ever where nothing stops it, as the energy less its work is lower by each
+turn.
 """
 
 from __future__ import annotations
@@ -39,7 +40,8 @@ _MIN_DISTANCE = Fraction(1, 10**5)
 """How near to a critical value a branch is followed, against the window's width."""
 
 _MIN_STEPS = 64
-"""The longest step is this part of the window, so that a polyline through the points looks smooth."""
+"""The longest step is this part of the window, so that a polyline through the points looks smooth.
+"""
 
 
 class ExactFollower(NamedTuple):
@@ -73,11 +75,15 @@ class ExactFollower(NamedTuple):
                 key="--path",
             )
         origin = Reached(start, box, box)
-        left = _one_way(family, [n for n in reversed(self.critical) if n.compare(start) < 0], origin, -1)
+        left = _one_way(
+            family, [n for n in reversed(self.critical) if n.compare(start) < 0], origin, -1
+        )
         right = _one_way(family, [n for n in self.critical if n.compare(start) > 0], origin, 1)
         reached = [*reversed(left[0]), origin, *right[0]]
         sides = [family.sides(r.over.low, r.over.high, r.over.hull()) for r in reached]
-        return PosePath.of(number, start, [_point(family, r) for r in reached], (left[1], right[1]), sides)
+        return PosePath.of(
+            number, start, [_point(family, r) for r in reached], (left[1], right[1]), sides
+        )
 
 
 def follower(slice: Slice, along: str, at: Mapping[str, Any], start: Fraction) -> ExactFollower:
@@ -119,7 +125,9 @@ def _one_way(
         for least in _distances(window, gap):
             while crossed is None and gap > least:
                 after = beside(far, side, gap)
-                steps, done = follow(family.branches, current, beside(near, -side, gap), window / _MIN_STEPS)
+                steps, done = follow(
+                    family.branches, current, beside(near, -side, gap), window / _MIN_STEPS
+                )
                 reached += steps
                 current = steps[-1] if steps else current
                 if not done:
@@ -138,17 +146,23 @@ def _one_way(
             return reached, PathEnd(fate, number, _point(family, current))
         reached.append(crossed)
         current = crossed
-    steps, done = follow(family.branches, current, beside(edge, -side, window / 10**6), window / _MIN_STEPS)
+    steps, done = follow(
+        family.branches, current, beside(edge, -side, window / 10**6), window / _MIN_STEPS
+    )
     reached += steps
     return reached, PathEnd(
-        Fate.WINDOW if done else Fate.UNDECIDED, edge, _point(family, steps[-1] if steps else current)
+        Fate.WINDOW if done else Fate.UNDECIDED,
+        edge,
+        _point(family, steps[-1] if steps else current),
     )
 
 
 def _distances(window: Fraction, gap: Fraction) -> tuple[Fraction, Fraction]:
-    """How near to a critical value a branch is followed before it is asked what it meets: at first, and at last.
+    """How near to a critical value a branch is followed before it is asked what it meets: at first,
+    and at last.
 
-    Where the next critical value is near, the distance is a part of that to it: a branch that only passes is bridged.
+    Where the next critical value is near, the distance is a part of that to it: a branch that only
+    passes is bridged.
     """
     least = window * _MIN_DISTANCE
     first = least if gap > least else gap / 2**12
@@ -156,8 +170,13 @@ def _distances(window: Fraction, gap: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def _condition(family: LineSystem, reached: Reached) -> Fate | None:
-    """What a solution loses at a critical value that it passes: an inequality, or stability that is given by signs."""
-    conditions = ((Fate.EXCLUDED, family.formulas.inequalities), (Fate.UNSTABLE, family.formulas.stability))
+    """What a solution loses at a critical value that it passes: an inequality, or stability that is
+    given by signs.
+    """
+    conditions = (
+        (Fate.EXCLUDED, family.formulas.inequalities),
+        (Fate.UNSTABLE, family.formulas.stability),
+    )
     for fate, formula in ((fate, f) for fate, some in conditions for f in some):
         (value,) = family.values_at([formula], reached)
         if not value > 0:
@@ -165,7 +184,9 @@ def _condition(family: LineSystem, reached: Reached) -> Fate | None:
     return None
 
 
-def _meeting(family: LineSystem, number: AlgebraicNumber, current: Reached, after: Fraction) -> PathEnd:
+def _meeting(
+    family: LineSystem, number: AlgebraicNumber, current: Reached, after: Fraction
+) -> PathEnd:
     """Which solutions meet at a critical value that the path does not pass."""
     stopped = PathEnd(Fate.UNDECIDED, number, _point(family, current))
     found = what_meets(family, current, after)
@@ -175,7 +196,9 @@ def _meeting(family: LineSystem, number: AlgebraicNumber, current: Reached, afte
     told = _descends(family) and len(stable) == 1
     if len(found.meeting) == len(found.leaving) == 1 and not told:
         return stopped  # it goes on, and has not been followed
-    met = replace(stopped, fate=Fate.VANISH, meeting=found.meeting, leaving=found.leaving, among=found.among)
+    met = replace(
+        stopped, fate=Fate.VANISH, meeting=found.meeting, leaving=found.leaving, among=found.among
+    )
     landed = landing(family, number, found, current, stable[0]) if told else None
     if landed is None:
         return met
@@ -183,9 +206,13 @@ def _meeting(family: LineSystem, number: AlgebraicNumber, current: Reached, afte
 
 
 def _descends(family: LineSystem) -> bool:
-    """Whether every descent ends at an equilibrium: solutions are all critical points of one function on a torus."""
+    """Whether every descent ends at an equilibrium: solutions are all critical points of one
+    function on a torus.
+    """
     system = family.system
-    return system.is_on_torus and not (system.criterion.no_descent or moved(family.line.model, family.line.parameters))
+    return system.is_on_torus and not (
+        system.criterion.no_descent or moved(family.line.model, family.line.parameters)
+    )
 
 
 def _point(family: LineSystem, reached: Reached) -> PathPoint:

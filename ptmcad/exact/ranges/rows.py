@@ -1,6 +1,8 @@
-"""A table of the operation range's width against the other axis of a slice, and where it is largest.
+"""A table of the operation range's width against the other axis of a slice, and where it is
+largest.
 
-Guarantee: widths in rows are enclosed, and a row that has none says why; the maxima are those of `width`.
+Guarantee: widths in rows are enclosed, and a row that has none says why; the maxima are those of
+`width`.
 """
 
 from __future__ import annotations
@@ -29,7 +31,10 @@ def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWid
     expect(slice, Slice, "slice", A_SLICE)
     names = slice.axis_names
     if along not in names:
-        raise ConfigError(f"{quoted(along)} is not an axis of the slice: choose {names[0]} or {names[1]}", key="along")
+        raise ConfigError(
+            f"{quoted(along)} is not an axis of the slice: choose {names[0]} or {names[1]}",
+            key="along",
+        )
     if isinstance(rows, bool) or not isinstance(rows, int) or rows < 1:
         raise ConfigError(f"{rows!r:.60} is not a number of rows", key="rows")
     over = slice.axes[1 - names.index(along)]
@@ -40,7 +45,13 @@ def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWid
         table.append(_row(slice, along, {over.name: value}, found.working))
     maxima = widest(slice, along, found)
     return OperationWidths(
-        slice.name, slice.axes[names.index(along)], over, tuple(table), maxima, slice.model, found.working
+        slice.name,
+        slice.axes[names.index(along)],
+        over,
+        tuple(table),
+        maxima,
+        slice.model,
+        found.working,
     )
 
 

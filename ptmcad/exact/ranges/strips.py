@@ -1,8 +1,9 @@
-"""Strips: where, over an open interval of the other axis, one operation range lies between two branches.
+"""Strips: where, over an open interval of the other axis, one operation range lies between two
+branches.
 
-Guarantee: over the strip's whole base interval the two ends are the branches (or the window's edges) that are named,
-and the number of stable solutions between them is that of an operation range but for points of the variety where no
-count changes.
+Guarantee: over the strip's whole base interval the two ends are the branches (or the window's
+edges) that are named, and the number of stable solutions between them is that of an operation range
+but for points of the variety where no count changes.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ from ptmcad.text.flint_numbers import simplest_between
 
 @dataclass(frozen=True, slots=True)
 class RangeEnd:
-    """The ``root``-th real root of a curve over a strip, or an edge of the window when ``curve`` is None."""
+    """The ``root``-th real root of a curve over a strip, or an edge of the window when ``curve`` is
+    None.
+    """
 
     curve: FibredCurve | None
     root: int
@@ -43,7 +46,8 @@ class RangeStrip:
     ----------
     left, right : ends of the base interval.
     sample : a rational abscissa in it.
-    low, high : the branches that bound the range; fibre is the window of the axis along which it lies.
+    low, high : the branches that bound the range; fibre is the window of the axis along which it
+        lies.
     """
 
     left: BaseEnd
@@ -81,8 +85,9 @@ class RangeStrips(NamedTuple):
     ----------
     found : from the left.
     working : the number of stable solutions in them.
-    special : the values of the axis at which a range may be another one than the limit of a strip: those at which the
-        whole line is in the variety, those at which two ranges meet at a point, and the window's edges.
+    special : the values of the axis at which a range may be another one than the limit of a strip:
+        those at which the whole line is in the variety, those at which two ranges meet at a point,
+        and the window's edges.
     """
 
     found: tuple[RangeStrip, ...]
@@ -113,13 +118,17 @@ def strips(slice: Slice, along: str, working: int | None = None) -> RangeStrips:
         working = operation_number(slice.model, counts)
     inside = cut.rows(found.working == working for found in counts)
     curves, fibre = by_component(cut.variety.curves), cut.fibre
-    found = [_over(stack, here, curves, fibre) for stack, here in zip(cut.stacks, inside, strict=True)]
+    found = [
+        _over(stack, here, curves, fibre) for stack, here in zip(cut.stacks, inside, strict=True)
+    ]
     special = [cut.stacks[0].left]
     for k, line in enumerate(cut.lines_across):
         left, right = cut.stacks[k : k + 2]
         if line is not None or (
             min(len(found[k]), len(found[k + 1])) > 1
-            and _ranges_meet(cross(cut.variety.curves, left, right, fibre), inside[k], inside[k + 1])
+            and _ranges_meet(
+                cross(cut.variety.curves, left, right, fibre), inside[k], inside[k + 1]
+            )
         ):
             special.append(left.right)
     special.append(cut.stacks[-1].right)
@@ -127,11 +136,14 @@ def strips(slice: Slice, along: str, working: int | None = None) -> RangeStrips:
 
 
 def _ranges_meet(crossing: Crossing, left: Sequence[bool], right: Sequence[bool]) -> bool:
-    """Whether over a critical abscissa two ranges of either side are parted by points of the curves alone."""
+    """Whether over a critical abscissa two ranges of either side are parted by points of the curves
+    alone.
+    """
     for here, group in groupby(crossing.separators, lambda s: left[s.left] and right[s.right]):
         joined = list(group)
         if here and not (
-            all(left[joined[0].left : joined[-1].left + 1]) or all(right[joined[0].right : joined[-1].right + 1])
+            all(left[joined[0].left : joined[-1].left + 1])
+            or all(right[joined[0].right : joined[-1].right + 1])
         ):
             return True
     return False
@@ -144,7 +156,8 @@ def _over(
     walls = [RangeEnd(curves[wall.component], wall.root, fibre[0]) for wall in stack.walls]
     ends = [RangeEnd(None, 0, fibre[0]), *walls, RangeEnd(None, 0, fibre[1])]
     return [
-        RangeStrip(stack.left, stack.right, stack.sample, ends[first], ends[end], fibre) for first, end in runs(inside)
+        RangeStrip(stack.left, stack.right, stack.sample, ends[first], ends[end], fibre)
+        for first, end in runs(inside)
     ]
 
 
@@ -156,11 +169,13 @@ def at_abscissa(branch: RangeEnd, u: fmpq, fibre: Interval, width: fmpq) -> Real
     return refine(isolate(p, *fibre)[branch.root], width)
 
 
-def bound_over(branch: RangeEnd, start: fmpq, side: int, over: Interval, fibre: Interval) -> fmpq | None:
+def bound_over(
+    branch: RangeEnd, start: fmpq, side: int, over: Interval, fibre: Interval
+) -> fmpq | None:
     """A level above (side 1) or below (side -1) the branch on a closed interval of abscissae.
 
-    Guarantee: the curve has no point on the horizontal segment at this level over the interval; so the branch, which is
-    at the start's other side somewhere in it, stays there.
+    Guarantee: the curve has no point on the horizontal segment at this level over the interval; so
+    the branch, which is at the start's other side somewhere in it, stays there.
 
     Parameters
     ----------
@@ -183,12 +198,16 @@ def bound_over(branch: RangeEnd, start: fmpq, side: int, over: Interval, fibre: 
 
 
 def base_interval(strip: RangeStrip, width: fmpq) -> tuple[Interval, Interval]:
-    """Intervals that hold the two ends of the strip's base: of length zero at rational ends, else within ``width``."""
+    """Intervals that hold the two ends of the strip's base: of length zero at rational ends, else
+    within ``width``.
+    """
     return end_interval(strip.left, width), end_interval(strip.right, width)
 
 
 def end_interval(end: BaseEnd, width: fmpq) -> Interval:
-    """An interval that holds an end of a base interval: of length zero at a rational one, else within ``width``."""
+    """An interval that holds an end of a base interval: of length zero at a rational one, else
+    within ``width``.
+    """
     if end.root is None:
         return end.value, end.value
     if end.root.polynomial.degree() == 1:
@@ -199,18 +218,28 @@ def end_interval(end: BaseEnd, width: fmpq) -> Interval:
 
 
 def constant_width(strip: RangeStrip) -> bool:
-    """Whether the range is of one width over the whole strip: its ends are level, or one curve and its translate."""
-    curves = [b.curve for b in (strip.low, strip.high) if b.curve is not None and len(b.curve.in_u) > 1]
+    """Whether the range is of one width over the whole strip: its ends are level, or one curve and
+    its translate.
+    """
+    curves = [
+        b.curve for b in (strip.low, strip.high) if b.curve is not None and len(b.curve.in_u) > 1
+    ]
     if len(curves) != 2:
         return not curves
-    low, high = (at_abscissa(b, strip.sample, strip.fibre, _NARROW) for b in (strip.low, strip.high))
-    shift = RationalPolynomial([simplest_between(high.low - low.high - _NARROW, high.high - low.low + _NARROW), 1])
+    low, high = (
+        at_abscissa(b, strip.sample, strip.fibre, _NARROW) for b in (strip.low, strip.high)
+    )
+    shift = RationalPolynomial(
+        [simplest_between(high.low - low.high - _NARROW, high.high - low.low + _NARROW), 1]
+    )
     isolated = at_abscissa(strip.high, strip.sample, strip.fibre, strip.fibre[1] - strip.fibre[0])
     if not isolated.low <= low.low + shift[0] <= low.high + shift[0] <= isolated.high:
         return False  # the translate of the lower branch is another branch of the upper one's curve
     lower, upper = (list(map(RationalPolynomial, curve.in_u)) for curve in curves)
     scale = lower[-1].coeffs()[-1] / upper[-1].coeffs()[-1]
-    return len(lower) == len(upper) and all(p == q(shift) * scale for p, q in zip(lower, upper, strict=True))
+    return len(lower) == len(upper) and all(
+        p == q(shift) * scale for p, q in zip(lower, upper, strict=True)
+    )
 
 
 _NARROW = fmpq(1, 2**100)

@@ -1,24 +1,31 @@
-"""The operation range's width against the other axis of a slice, and the proof of where it is largest.
+"""The operation range's width against the other axis of a slice, and the proof of where it is
+largest.
 
-Guarantee: `Maximum.width` encloses the supremum of the width over all values of the other axis in the window, its ends
-included, and `Maximum.at` where it is attained or approached: at all values outside of it the width is smaller. What is
-proved beyond that `Maximum.place` and `Maximum.attainment` say.
+Guarantee: `Maximum.width` encloses the supremum of the width over all values of the other axis in
+the window, its ends included, and `Maximum.at` where it is attained or approached: at all values
+outside of it the width is smaller. What is proved beyond that `Maximum.place` and
+`Maximum.attainment` say.
 
-A limit at a critical value is the width there, unless the whole line is in the variety, or two ranges meet on it at a
-point: then, and at the window's edges, what is counted on the line itself is its width (`anyline`). For an open arc of
-the line that is off the variety has the count of the cells on both sides of it, and the others are points.
+A limit at a critical value is the width there, unless the whole line is in the variety, or two
+ranges meet on it at a point: then, and at the window's edges, what is counted on the line itself is
+its width (`anyline`). For an open arc of the line that is off the variety has the count of the
+cells on both sides of it, and the others are points.
 
 Each strip (see `strips`) is cut into closed pieces, and each piece is settled in one of these ways.
 
-* Below: levels that no curve crosses bound the range from both sides, and lie closer than a width that occurs.
-* Monotone: the derivative of the width, enclosed over the piece, has one sign; the largest width is at an end of it.
-* Concave: the second derivative is negative, the first one changes its sign: one maximum, enclosed by bisection.
-* Chord: at a rational end y0 of the strip the limits a, b of the range are algebraic numbers. If for some s the lower
-  end stays above a + s (y - y0), and the upper one below b + s (y - y0), the width stays under b - a. This also
-  settles cusps, where derivatives are infinite.
+* Below: levels that no curve crosses bound the range from both sides, and lie closer than a width
+  that occurs.
+* Monotone: the derivative of the width, enclosed over the piece, has one sign; the largest width is
+  at an end of it.
+* Concave: the second derivative is negative, the first one changes its sign: one maximum, enclosed
+  by bisection.
+* Chord: at a rational end y0 of the strip the limits a, b of the range are algebraic numbers. If
+  for some s the lower end stays above a + s (y - y0), and the upper one below b + s (y - y0), the
+  width stays under b - a. This also settles cusps, where derivatives are infinite.
 * Narrowing: from an end of the strip on, the range's ends draw nearer to one another.
 
-A piece that becomes too small remains, with the bounds that it has: then the place is only enclosed.
+A piece that becomes too small remains, with the bounds that it has: then the place is only
+enclosed.
 """
 
 from __future__ import annotations
@@ -62,7 +69,9 @@ Ends = tuple[End, End]
 
 @dataclass(frozen=True, slots=True)
 class _Candidate:
-    """What may be the largest; of a plateau ``sides`` say whether it is attained at its strips' ends."""
+    """What may be the largest; of a plateau ``sides`` say whether it is attained at its strips'
+    ends.
+    """
 
     place: Place
     at: Interval
@@ -96,7 +105,10 @@ class SpecialLine(NamedTuple):
 
 def lines_of(slice: Slice, along: str, found: RangeStrips) -> list[SpecialLine]:
     """The lines at the special values of the other axis."""
-    return [SpecialLine(end, ranges_on(slice, along, _value(end), found.working)) for end in found.special]
+    return [
+        SpecialLine(end, ranges_on(slice, along, _value(end), found.working))
+        for end in found.special
+    ]
 
 
 def largest(found: Sequence[RangeStrip], lines: Sequence[SpecialLine] = ()) -> tuple[Maximum, ...]:
@@ -117,7 +129,9 @@ def largest(found: Sequence[RangeStrip], lines: Sequence[SpecialLine] = ()) -> t
 
 @dataclass(frozen=True, slots=True)
 class _WidthPiece:
-    """A part [low, high] of a strip's base; ``open_left`` and ``open_right`` when it reaches an irrational end."""
+    """A part [low, high] of a strip's base; ``open_left`` and ``open_right`` when it reaches an
+    irrational end.
+    """
 
     strip: RangeStrip
     low: fmpq
@@ -148,7 +162,9 @@ class _WidthSearch:
         if possible is not None and possible != certain:
             self.add_at(line.end, (fmpq(0), _width(possible)[1]), None, None)
 
-    def add_at(self, end: BaseEnd, width: Interval, ends: Ends | None, attained: bool | None) -> None:
+    def add_at(
+        self, end: BaseEnd, width: Interval, ends: Ends | None, attained: bool | None
+    ) -> None:
         """A candidate at an end of a strip."""
         place = Place.EDGE if end.root is None else Place.CRITICAL
         critical = None if end.root is None else algebraic_number(end.root)
@@ -156,12 +172,17 @@ class _WidthSearch:
         self.candidates.append(_Candidate(place, at, width, critical, ends, attained))
 
     def attains(self, end: BaseEnd, width: Interval, ends: Ends | None) -> bool | None:
-        """Whether on the line at an end of a strip there is a range of a width that is its limit there."""
+        """Whether on the line at an end of a strip there is a range of a width that is its limit
+        there.
+        """
         ranges = self.lines.get(_value(end))
         if ranges is None:
             return True
         certain, possible = ranges
-        if any((ends is not None and _within(ends, span)) or _width(span)[0] >= width[1] for span in certain):
+        if any(
+            (ends is not None and _within(ends, span)) or _width(span)[0] >= width[1]
+            for span in certain
+        ):
             return True
         return False if all(_width(span)[1] < width[0] for span in possible) else None
 
@@ -183,7 +204,10 @@ class _WidthSearch:
     def plateau(self, strip: RangeStrip) -> None:
         (left, _), (_, right) = base_interval(strip, _END_WIDTH)
         width = self.width_at(strip, strip.sample)
-        sides = {_value(end): self.attains(end, width, _limits(strip, end)) for end in (strip.left, strip.right)}
+        sides = {
+            _value(end): self.attains(end, width, _limits(strip, end))
+            for end in (strip.left, strip.right)
+        }
         self.candidates.append(_Candidate(Place.PLATEAU, (left, right), width, sides=sides))
 
     def ends(self, strip: RangeStrip) -> None:
@@ -210,7 +234,16 @@ class _WidthSearch:
                 low = at[0] + length
             else:
                 high = at[0] - length
-        self.add(_WidthPiece(strip, low, high, low == left[0], high == right[1], (right[1] - left[0]) * _MIN_PIECE))
+        self.add(
+            _WidthPiece(
+                strip,
+                low,
+                high,
+                low == left[0],
+                high == right[1],
+                (right[1] - left[0]) * _MIN_PIECE,
+            )
+        )
 
     # -------------------------------------------------------------------------------------------------------- pieces
 
@@ -226,10 +259,15 @@ class _WidthSearch:
         """An upper bound for the width over the piece."""
         strip = piece.strip
         u = (piece.low + piece.high) / 2
-        low, high = (at_abscissa(b, u, strip.fibre, (piece.high - piece.low) / 2**10) for b in (strip.low, strip.high))
+        low, high = (
+            at_abscissa(b, u, strip.fibre, (piece.high - piece.low) / 2**10)
+            for b in (strip.low, strip.high)
+        )
         top = bound_over(strip.high, high.high, 1, (piece.low, piece.high), strip.fibre)
         bottom = bound_over(strip.low, low.low, -1, (piece.low, piece.high), strip.fibre)
-        return (strip.fibre[1] if top is None else top) - (strip.fibre[0] if bottom is None else bottom)
+        return (strip.fibre[1] if top is None else top) - (
+            strip.fibre[0] if bottom is None else bottom
+        )
 
     def settle(self) -> None:
         count = 0
@@ -241,22 +279,35 @@ class _WidthSearch:
             if count > _MAX_PIECES or piece.high - piece.low < piece.smallest:
                 width, strip = (self.known, -negative), piece.strip
                 ends = [strip.left] * piece.open_left + [strip.right] * piece.open_right
-                critical = next((algebraic_number(end.root) for end in ends if end.root is not None), None)
-                # a continuous function on a closed interval, but for ends at which the line has another width
+                critical = next(
+                    (algebraic_number(end.root) for end in ends if end.root is not None), None
+                )
+                # a continuous function on a closed interval, but for ends at which the line has
+                # another width
                 attained = all(self.attains(end, width, None) for end in ends) or None
                 self.candidates.append(
-                    _Candidate(Place.ENCLOSED, (piece.low, piece.high), width, critical, None, attained)
+                    _Candidate(
+                        Place.ENCLOSED, (piece.low, piece.high), width, critical, None, attained
+                    )
                 )
                 continue
             middle = _cut(piece.low, piece.high)
             self.width_at(piece.strip, middle)
             if not piece.open_left and not piece.open_right and self.smooth(piece):
                 continue
-            self.add(_WidthPiece(piece.strip, piece.low, middle, piece.open_left, False, piece.smallest))
-            self.add(_WidthPiece(piece.strip, middle, piece.high, False, piece.open_right, piece.smallest))
+            self.add(
+                _WidthPiece(piece.strip, piece.low, middle, piece.open_left, False, piece.smallest)
+            )
+            self.add(
+                _WidthPiece(
+                    piece.strip, middle, piece.high, False, piece.open_right, piece.smallest
+                )
+            )
 
     def smooth(self, piece: _WidthPiece) -> bool:
-        """Whether derivatives settle the piece: monotone, or concave with one maximum, which is then a candidate."""
+        """Whether derivatives settle the piece: monotone, or concave with one maximum, which is
+        then a candidate.
+        """
         slopes = width_slopes(piece.strip, piece.low, piece.high)
         if slopes is None:
             return False
@@ -287,16 +338,27 @@ class _WidthSearch:
         return True
 
     def answer(self) -> tuple[Maximum, ...]:
-        """The candidates that may be the largest; those at the same place are one, a plateau takes in its ends."""
+        """The candidates that may be the largest; those at the same place are one, a plateau takes
+        in its ends.
+        """
         kept = [c for c in self.candidates if c.width[1] >= self.known]
         plateaus = [c for c in kept if c.place is Place.PLATEAU]
         rest = [c for c in kept if c.place is not Place.PLATEAU]
-        rest = [c for c in rest if not any(_touches(c, p) and c.width[1] <= p.width[1] for p in plateaus)]
+        rest = [
+            c
+            for c in rest
+            if not any(_touches(c, p) and c.width[1] <= p.width[1] for p in plateaus)
+        ]
         merged: list[_Candidate] = []
         for c in sorted([*plateaus, *rest], key=lambda c: c.at):
             kinds = {c.place} if not merged else {merged[-1].place, c.place}
-            # beside a critical value at which the width is known the largest one may be anywhere in an enclosure
-            if merged and _touches(merged[-1], c) and (len(kinds) == 1 or kinds == {Place.CRITICAL, Place.ENCLOSED}):
+            # beside a critical value at which the width is known the largest one may be anywhere in
+            # an enclosure
+            if (
+                merged
+                and _touches(merged[-1], c)
+                and (len(kinds) == 1 or kinds == {Place.CRITICAL, Place.ENCLOSED})
+            ):
                 last = merged.pop()
                 known = (last.attained, c.attained)
                 merged.append(
@@ -306,8 +368,11 @@ class _WidthSearch:
                         (max(last.width[0], c.width[0]), max(last.width[1], c.width[1])),
                         last.critical or c.critical,
                         last.ends if last.attained else c.ends,
-                        None if None in known or (len(kinds) > 1 and False in known) else any(known),
-                        last.sides | {v: last.sides.get(v) or known for v, known in c.sides.items()},
+                        None
+                        if None in known or (len(kinds) > 1 and False in known)
+                        else any(known),
+                        last.sides
+                        | {v: last.sides.get(v) or known for v, known in c.sides.items()},
                     )
                 )
             else:
@@ -318,10 +383,14 @@ class _WidthSearch:
 
     def maximum(self, c: _Candidate) -> Maximum:
         """A candidate as data."""
-        at, width = (Enclosure(to_fraction(low), to_fraction(high)) for low, high in (c.at, c.width))
+        at, width = (
+            Enclosure(to_fraction(low), to_fraction(high)) for low, high in (c.at, c.width)
+        )
         if c.place is not Place.PLATEAU:
             return Maximum(c.place, at, width, c.critical, c.ends, c.attained)
-        exceptions, doubtful = (tuple(v for v, known in c.sides.items() if known is kind) for kind in (False, None))
+        exceptions, doubtful = (
+            tuple(v for v, known in c.sides.items() if known is kind) for kind in (False, None)
+        )
         return Maximum(c.place, at, width, None, None, True, exceptions, doubtful)
 
 
@@ -338,7 +407,9 @@ def _limits(strip: RangeStrip, end: BaseEnd) -> Ends | None:
 
 
 def _width(span: Span) -> Interval:
-    known = Span(*(AlgebraicNumber.of(e).refined(to_fraction(_END_WIDTH)) for e in (span.low, span.high))).width
+    known = Span(
+        *(AlgebraicNumber.of(e).refined(to_fraction(_END_WIDTH)) for e in (span.low, span.high))
+    ).width
     return interval_of(known)
 
 

@@ -1,12 +1,13 @@
 """From a problem record (YAML), a mapping or command-line options to a `Slice`.
 
-Guarantee: a `Slice` that leaves here is complete and exact: every parameter of the mechanism is a rational function
-of the two axes, its window is a nonempty rectangle, and no length or stiffness is known to be out of the range that the
-geometry needs. Whatever is wrong with the input is a `ConfigError` that names file, line and key, and the remedy;
-nothing unknown is ignored.
+Guarantee: a `Slice` that leaves here is complete and exact: every parameter of the mechanism is a
+rational function of the two axes, its window is a nonempty rectangle, and no length or stiffness is
+known to be out of the range that the geometry needs. Whatever is wrong with the input is a
+`ConfigError` that names file, line and key, and the remedy; nothing unknown is ignored.
 
-Not guaranteed: that a length given by an expression is positive in the whole window, where that was not decided at
-once. The slice carries what is known, and an engine decides the rest or refuses (`ptmcad.question.domain.proved`).
+Not guaranteed: that a length given by an expression is positive in the whole window, where that was
+not decided at once. The slice carries what is known, and an engine decides the rest or refuses
+(`ptmcad.question.domain.proved`).
 """
 
 from __future__ import annotations
@@ -18,11 +19,22 @@ from typing import Any
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Faults, Place, expect
 from ptmcad.model import Kind, Parameter, ptm
 from ptmcad.question.config.binding import released_names, settled
-from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member, member_like
+from ptmcad.question.config.family import (
+    Family,
+    checked_family,
+    family_of,
+    fault_of_member,
+    member_like,
+)
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, tree_of
 from ptmcad.question.config.options import Typed, ranges_of, settings_of, with_axes
-from ptmcad.question.config.points import point_from, point_from_mapping, point_from_options, units_of
+from ptmcad.question.config.points import (
+    point_from,
+    point_from_mapping,
+    point_from_options,
+    units_of,
+)
 from ptmcad.question.config.record import COUNT, Record, record_of, with_place
 from ptmcad.question.config.resolution import checked_slice, slice_of
 from ptmcad.question.config.scalars import file_name, portable_file
@@ -80,8 +92,8 @@ def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
     """The slice of a record given as Python data: numbers as text, int, Fraction, float (its
     shortest decimal) or one of numpy's.
 
-    Expressions may be SymPy's; ``mechanism`` and ``system`` may be objects that `ptmcad.Mechanism` and `ptmcad.System`
-    have made.
+    Expressions may be SymPy's; ``mechanism`` and ``system`` may be objects that `ptmcad.Mechanism`
+    and `ptmcad.System` have made.
 
     >>> slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["0", "2"]}, "parameters": {"F3": "-0.1"}}).axis_names
     ('rho', 'L2')
@@ -120,18 +132,20 @@ def slice_from_options(
 ) -> Slice:
     """The slice of the command line's options, with or without a record under them.
 
-    Options override the record. `slice` replaces the record's axes: a parameter the record fixed becomes free when it
-    is named there, and keeps the record's range when it was an axis there. Answers and title of a record are dropped
-    when another slice than the recorded one is asked for.
+    Options override the record. `slice` replaces the record's axes: a parameter the record fixed
+    becomes free when it is named there, and keeps the record's range when it was an axis there.
+    Answers and title of a record are dropped when another slice than the recorded one is asked for.
 
     Parameters
     ----------
     config : a YAML file.
     slice : ``"X,Y"``, the two axes, the horizontal one first.
-    sets : texts ``NAME=VALUE``; one of them has the value of the parameter that is free in the record, if one is.
+    sets : texts ``NAME=VALUE``; one of them has the value of the parameter that is free in the
+        record, if one is.
     ranges : texts ``NAME=LO:HI``, for axes.
     count : which count distinguishes two regions.
-    mechanism : the name of a built-in mechanism, or a YAML file that describes one, in place of a record.
+    mechanism : the name of a built-in mechanism, or a YAML file that describes one, in place of a
+        record.
 
     Raises
     ------
@@ -158,7 +172,10 @@ def question_from_options(typed: Typed) -> Slice | Family:
     record = record_from_options(typed)
     if typed.members is not None:
         if record.free is None:
-            raise ConfigError("there are members where a parameter is free: add --free NAME=LO:HI", key="--members")
+            raise ConfigError(
+                "there are members where a parameter is free: add --free NAME=LO:HI",
+                key="--members",
+            )
         record = record._replace(members=_members(typed.members))
     return slice_of(record) if record.free is None else family_of(record)
 
@@ -179,7 +196,9 @@ def record_from_options(typed: Typed) -> Record:
     """
     config, slice, sets, ranges, count, mechanism, free, _ = typed
     if config is not None and mechanism is not None:
-        raise ConfigError("the record says which mechanism is meant: leave one out", key="--mechanism")
+        raise ConfigError(
+            "the record says which mechanism is meant: leave one out", key="--mechanism"
+        )
     record = record_of(record_tree(config)) if config is not None else Record(ptm())
     if mechanism is not None:
         record = Record(named_model(Scalar(mechanism, Place("--mechanism"))))
@@ -187,7 +206,9 @@ def record_from_options(typed: Typed) -> Record:
         ((name, window),) = ranges_of([free], "--free").items()
         check_axis_name(name, window.place)
         values = {n: value for n, value in record.values.items() if n != name}
-        record = record._replace(free=(name, window), members=None, values=values, title="", reference={})
+        record = record._replace(
+            free=(name, window), members=None, values=values, title="", reference={}
+        )
     given_sets, given_ranges = settings_of(sets, record), ranges_of(ranges)
     names = [] if slice is None else [name.strip() for name in slice.split(",")]
     if record.free is not None and record.free[0] in names and record.free[0] not in given_sets:
@@ -196,27 +217,36 @@ def record_from_options(typed: Typed) -> Record:
     if slice is not None:
         record = with_axes(record, slice, given_sets, given_ranges)
     elif config is None:
-        raise ConfigError(f"give a problem record (a YAML file), or two axes such as --slice {FIRST},{SECOND}")
+        raise ConfigError(
+            f"give a problem record (a YAML file), or two axes such as --slice {FIRST},{SECOND}"
+        )
     for name, value in given_sets.items():
         if name in record.axes:
-            raise value.place.error(f"{name} is an axis and cannot be fixed too: choose other axes with --slice")
+            raise value.place.error(
+                f"{name} is an axis and cannot be fixed too: choose other axes with --slice"
+            )
     record = settled(record, given_sets)
     for name, window in given_ranges.items():
         if name not in record.axes:
             axes = " and ".join(record.axes)
-            raise window.place.error(f"{name} is not an axis; the axes are {axes}{did_you_mean(name, record.axes)}")
+            raise window.place.error(
+                f"{name} is not an axis; the axes are {axes}{did_you_mean(name, record.axes)}"
+            )
         record = record._replace(axes={**record.axes, name: window})
     if slice is not None or sets or given_ranges:
         record = record._replace(title="", reference={})
     if count is not None:
         text = count.value if isinstance(count, Count) else count
         place = Place("--count")
-        record = record._replace(counting=COUNT.read(Node(Scalar(text, place), place, Faults())), count_place=place)
+        record = record._replace(
+            counting=COUNT.read(Node(Scalar(text, place), place, Faults())), count_place=place
+        )
     return record
 
 
 def names_in_record(config: str | Path) -> tuple[tuple[str, ...], frozenset[str]]:
-    """The names of a record's axes, and of all that a value can be given to: parameters, and what is free or swept.
+    """The names of a record's axes, and of all that a value can be given to: parameters, and what
+    is free or swept.
 
     Raises
     ------

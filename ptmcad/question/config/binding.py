@@ -1,4 +1,5 @@
-"""Numbers in place of names in a record: of a family's free parameter, or of what a sweep goes through.
+"""Numbers in place of names in a record: of a family's free parameter, or of what a sweep goes
+through.
 
 Guarantee: the record that a person would get who typed the numbers.
 """
@@ -18,8 +19,11 @@ from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Number, Tree, names_of, replaced, to_text
 
 
-def with_numbers(record: Record, numbers: Mapping[str, Fraction], places: Mapping[str, Place]) -> Record:
-    """The record with numbers as the values of parameters, and in place of other names in what it writes.
+def with_numbers(
+    record: Record, numbers: Mapping[str, Fraction], places: Mapping[str, Place]
+) -> Record:
+    """The record with numbers as the values of parameters, and in place of other names in what it
+    writes.
 
     Parameters
     ----------
@@ -27,13 +31,19 @@ def with_numbers(record: Record, numbers: Mapping[str, Fraction], places: Mappin
     """
     known = record.model.parameters
     others = {name: number for name, number in numbers.items() if name not in known}
-    values = {name: _with_numbers(scalar, others) for name, scalar in record.values.items()} if others else {}
+    values = (
+        {name: _with_numbers(scalar, others) for name, scalar in record.values.items()}
+        if others
+        else {}
+    )
     fixed = {
         name: Scalar(to_text(Number(number)), places.get(name, Place(name)))
         for name, number in numbers.items()
         if name in known
     }
-    return record._replace(values={**record.values, **values, **fixed}, unread=record.unread - numbers.keys())
+    return record._replace(
+        values={**record.values, **values, **fixed}, unread=record.unread - numbers.keys()
+    )
 
 
 def released_names(record: Record) -> set[str]:
@@ -42,7 +52,9 @@ def released_names(record: Record) -> set[str]:
 
 
 def bound(record: Record, name: str, value: Fraction) -> Record:
-    """The record with a number in place of its free parameter, and without answers, which are of another slice."""
+    """The record with a number in place of its free parameter, and without answers, which are of
+    another slice.
+    """
     assert record.free is not None
     found = with_numbers(record, {name: value}, {name: record.free[1].place})
     title = f"{record.title}, {name} = {text_of(value)}" if record.title else ""
@@ -56,7 +68,8 @@ def member_name(record: Record, name: str, value: Fraction) -> str:
 
 
 def settled(record: Record, given: Mapping[str, Scalar]) -> Record:
-    """The record with values of parameters, and with numbers in place of what is free or swept in it.
+    """The record with values of parameters, and with numbers in place of what is free or swept in
+    it.
 
     Raises
     ------
@@ -73,13 +86,19 @@ def settled(record: Record, given: Mapping[str, Scalar]) -> Record:
                 raise place.error(
                     f"{name} is swept too: add --set {name}=VALUE, or ask `ptmcad sweep` for all of its values"
                 )
-        new = {name: number_of(left.pop(name), "a value") for name in given if name not in record.model.parameters}
+        new = {
+            name: number_of(left.pop(name), "a value")
+            for name in given
+            if name not in record.model.parameters
+        }
         record = with_numbers(record, new, {})._replace(sweep=None)
     return record._replace(values={**record.values, **left})
 
 
 def _with_numbers(scalar: Scalar, numbers: Mapping[str, Fraction]) -> Scalar:
-    """A text with numbers in it; what cannot be read or has no value stays as it is, to be refused with its place."""
+    """A text with numbers in it; what cannot be read or has no value stays as it is, to be refused
+    with its place.
+    """
     try:
         tree = parse(scalar.text)
     except ExpressionError:
@@ -89,7 +108,9 @@ def _with_numbers(scalar: Scalar, numbers: Mapping[str, Fraction]) -> Scalar:
 
 
 def _simplest(tree: Tree) -> str:
-    """A number as one number, so that slices that are the same say the same; other trees as they are."""
+    """A number as one number, so that slices that are the same say the same; other trees as they
+    are.
+    """
     text = to_text(tree)
     if names_of(tree):
         return text

@@ -1,6 +1,7 @@
 """What is designed: the question of `ptmcad.design`, with the slices and points of its designs.
 
-Guarantee: the slice of a design is the one that the options ``--set`` would ask for with its parameters' values.
+Guarantee: the slice of a design is the one that the options ``--set`` would ask for with its
+parameters' values.
 """
 
 from __future__ import annotations
@@ -60,7 +61,9 @@ class Design:
     @property
     def aim(self) -> Aim:
         """The kind of what is maximised."""
-        return next((a for a in Aim if a.value == self.maximise and a is not Aim.EXPRESSION), Aim.EXPRESSION)
+        return next(
+            (a for a in Aim if a.value == self.maximise and a is not Aim.EXPRESSION), Aim.EXPRESSION
+        )
 
     @property
     def name(self) -> str:
@@ -85,11 +88,15 @@ class Design:
     @property
     def text(self) -> dict[str, str]:
         """The parameters that the record gives, as they are written, without those of the design."""
-        return {name: scalar.text for name, scalar in _without(self.record, self.over).values.items()}
+        return {
+            name: scalar.text for name, scalar in _without(self.record, self.over).values.items()
+        }
 
     @property
     def family(self) -> Family | None:
-        """The family of which all designs are lines or members; None where there are fewer or more coordinates."""
+        """The family of which all designs are lines or members; None where there are fewer or more
+        coordinates.
+        """
         if self.aim is Aim.RANGE and len(self.over) == 2:
             return family_of(self._line_record()._replace(free=_free(self.over[1])))
         if self.aim is Aim.AREA and len(self.over) == 1:
@@ -97,7 +104,8 @@ class Design:
         return None
 
     def slice(self, values: Numbers) -> Slice:
-        """The slice of a design: for a range that in which the line lies, over the first design parameter.
+        """The slice of a design: for a range that in which the line lies, over the first design
+        parameter.
 
         Parameters
         ----------
@@ -127,7 +135,9 @@ class Design:
         return self.may_hold({name: (value, value) for name, value in values.items()})
 
     def may_hold(self, box: Mapping[str, Bounds]) -> bool:
-        """Whether it is not excluded that a design with parameters in these intervals satisfies the conditions."""
+        """Whether it is not excluded that a design with parameters in these intervals satisfies the
+        conditions.
+        """
         value = named(box, self._texts())
         for condition in self.conditions:
             try:
@@ -139,12 +149,19 @@ class Design:
         return True
 
     def _texts(self) -> dict[str, str]:
-        known = {name: parameter.default for name, parameter in self.model.parameters.items() if parameter.default}
+        known = {
+            name: parameter.default
+            for name, parameter in self.model.parameters.items()
+            if parameter.default
+        }
         return known | {name: scalar.text for name, scalar in self.record.values.items()}
 
     def _line_record(self) -> Record:
         """The slice of the line's parameter and the first design parameter."""
-        windows = {self.along: self.record.axes[self.along], self.over[0].name: _window(self.over[0])}
+        windows = {
+            self.along: self.record.axes[self.along],
+            self.over[0].name: _window(self.over[0]),
+        }
         return _without(self.record, self.over)._replace(axes=windows)
 
 

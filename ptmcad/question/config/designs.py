@@ -1,4 +1,5 @@
-"""The key ``design`` of a record: what is made as large as possible, over which parameters, and under what conditions.
+"""The key ``design`` of a record: what is made as large as possible, over which parameters, and
+under what conditions.
 
 Guarantee: whatever is wrong is a `ConfigError` with file, line and key.
 """
@@ -18,7 +19,13 @@ from ptmcad.question.config.options import ranges_of
 from ptmcad.question.config.record import Record
 from ptmcad.question.config.resolution import axis_of, described_record, note_values
 from ptmcad.question.config.scalars import number_of, number_text
-from ptmcad.question.config.windows import AXIS_NAME, Window, check_axis_name, window_of, with_ranges
+from ptmcad.question.config.windows import (
+    AXIS_NAME,
+    Window,
+    check_axis_name,
+    window_of,
+    with_ranges,
+)
 from ptmcad.question.design import Inequality, condition_of, named
 from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
 from ptmcad.question.shipped import RecordSource, record_tree
@@ -62,10 +69,14 @@ _WHERE: Codec[dict[str, Any]] = record(
         2,
         shown=2,
     ),
-    tension=part(reading(_flag, type="boolean"), "Whether all springs are in tension.", False, shown=False),
+    tension=part(
+        reading(_flag, type="boolean"), "Whether all springs are in tension.", False, shown=False
+    ),
     conditions=part(
         reading(
-            lambda entry: (entry,) if isinstance(entry.value, Scalar | Tree) else tuple(entry.items()),
+            lambda entry: (
+                (entry,) if isinstance(entry.value, Scalar | Tree) else tuple(entry.items())
+            ),
             anyOf=[{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
         ),
         f"Inequalities between the design parameters, such as {FIRST} + {SECOND} <= 3.",
@@ -99,7 +110,12 @@ DESIGN: Codec[dict[str, Any]] = record(
         None,
     ),
     where=part(_WHERE, "Conditions that every design satisfies.", _NOTHING),
-    pose=part(_TEXT, "Of which pose a barrier, a quantity or an expression is.", "stable:1", shown="stable:1"),
+    pose=part(
+        _TEXT,
+        "Of which pose a barrier, a quantity or an expression is.",
+        "stable:1",
+        shown="stable:1",
+    ),
 )
 
 
@@ -118,10 +134,17 @@ def design_from(question: RecordSource | Design, **changes: Any) -> Design:
     if isinstance(question, Design):
         given = [name for name, value in changes.items() if value is not None]
         if given:
-            raise ConfigError("a design that was read is complete: give the record instead", key=given[0])
+            raise ConfigError(
+                "a design that was read is complete: give the record instead", key=given[0]
+            )
         return question
     return checked_design(
-        tree_of(question), {n: from_python(v, Place(f"design.{n}"), plain) for n, v in changes.items() if v is not None}
+        tree_of(question),
+        {
+            n: from_python(v, Place(f"design.{n}"), plain)
+            for n, v in changes.items()
+            if v is not None
+        },
     )
 
 
@@ -145,12 +168,21 @@ def design_from_options(
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
-    windows = {name: [window.low.text, window.high.text] for name, window in ranges_of(over, "--over").items()}
+    windows = {
+        name: [window.low.text, window.high.text]
+        for name, window in ranges_of(over, "--over").items()
+    }
     asked = {"maximise": maximise, "along": along, "pose": pose, "over": windows or None}
-    given = {key: from_python(value, Place(f"--{key}")) for key, value in asked.items() if value is not None}
+    given = {
+        key: from_python(value, Place(f"--{key}"))
+        for key, value in asked.items()
+        if value is not None
+    }
     conditions = {key: value for key, value in where.items() if value not in (None, (), False)}
     if conditions:
-        places = {key: Place("--condition" if key == "conditions" else f"--{key}") for key in conditions}
+        places = {
+            key: Place("--condition" if key == "conditions" else f"--{key}") for key in conditions
+        }
         parts = {key: from_python(value, places[key]) for key, value in conditions.items()}
         given["where"] = Tree(parts, next(iter(places.values())))
     return checked_design(record_tree(config), given)
@@ -182,7 +214,9 @@ def checked_design(tree: Tree, given: Mapping[str, Written] | None = None) -> De
     for other, asked in (("free", record.free), ("sweep", record.sweep)):
         with faults:
             if asked is not None:
-                raise tree.entries[other].place.error(f"a design has no {other!r}: its parameters are those of 'over'")
+                raise tree.entries[other].place.error(
+                    f"a design has no {other!r}: its parameters are those of 'over'"
+                )
     unread = record.unread | _entries(entries.get("over")).keys()
     if len(record.axes) != 2 or (faults.found and not entries):
         note_values(record, faults, unread)
@@ -216,12 +250,29 @@ def _design(record: Record, asked: Node) -> Design:
     conditions = asked.gathered(partial(_condition, record, over), where["conditions"])
     with faults:
         if where["tension"] and record.model.whole is None:
-            raise asked.at("where").at("tension").fault("a system has no springs that would be in tension")
-    found = Design(record, maximise, along, over, where["stable"], tuple(conditions), where["tension"], said["pose"])
+            raise (
+                asked.at("where")
+                .at("tension")
+                .fault("a system has no springs that would be in tension")
+            )
+    found = Design(
+        record,
+        maximise,
+        along,
+        over,
+        where["stable"],
+        tuple(conditions),
+        where["tension"],
+        said["pose"],
+    )
     if faults.found:
         note_values(record, faults, _entries(asked.at("over").value))
     # read in the middle of the bounds, so that what no design can be asked is said at once
-    _ = found.slice(found.middle) if found.aim in (Aim.RANGE, Aim.AREA) else found.point(found.middle)
+    _ = (
+        found.slice(found.middle)
+        if found.aim in (Aim.RANGE, Aim.AREA)
+        else found.point(found.middle)
+    )
     return found
 
 
@@ -239,23 +290,36 @@ def _parameters(
     entry = asked.at("over")
     windows = {name: record.axes[name] for name in needed}
     if given is not None:
-        found = dict(asked.gathered(lambda part: (part.name, _bounds(record, part, needed)), given.values()))
+        found = dict(
+            asked.gathered(lambda part: (part.name, _bounds(record, part, needed)), given.values())
+        )
         windows = {name: found[name] for name in (*needed, *found) if name in found}
         if missing := [name for name in needed if name not in given]:
             are = "is an axis" if len(missing) == 1 else "are axes"
-            asked.note(entry.fault(f"{' and '.join(missing)} {are} that a design fixes: give bounds here too"))
+            asked.note(
+                entry.fault(
+                    f"{' and '.join(missing)} {are} that a design fixes: give bounds here too"
+                )
+            )
     elif not needed and not asked.has("over"):
         asked.note(entry.fault("is missing: of an area say over which parameters it changes"))
-    return tuple(asked.gathered(lambda window: axis_of(window[0], window[1], record.model), windows.items()))
+    return tuple(
+        asked.gathered(lambda window: axis_of(window[0], window[1], record.model), windows.items())
+    )
 
 
 def _bounds(record: Record, entry: Node, needed: tuple[str, ...]) -> Window:
     name = entry.name
     check_axis_name(name, entry.place)
     if name in record.axes and name not in needed:
-        raise entry.fault(f"{name} varies over its whole window in every design: it is no design parameter")
+        raise entry.fault(
+            f"{name} varies over its whole window in every design: it is no design parameter"
+        )
     if name not in record.axes and name not in record.model.parameters and not record.uses(name):
-        hint = did_you_mean(name, record.model.parameters) or ": use it in an expression under 'parameters'"
+        hint = (
+            did_you_mean(name, record.model.parameters)
+            or ": use it in an expression under 'parameters'"
+        )
         raise entry.fault(f"no parameter is called {name[:40]}{hint}")
     return window_of(entry, "bounds", "[1/2, 2]")
 

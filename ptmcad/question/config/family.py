@@ -1,8 +1,9 @@
-"""A family of slices: a record with one more parameter that is free, and its members at values of that parameter.
+"""A family of slices: a record with one more parameter that is free, and its members at values of
+that parameter.
 
-Guarantee: a member is the slice of the record in whose texts the free parameter's name is replaced by its value, and so
-the slice that a person would get who typed that value. Every member at a stated value has been read, and is as exact
-and complete as any slice.
+Guarantee: a member is the slice of the record in whose texts the free parameter's name is replaced
+by its value, and so the slice that a person would get who typed that value. Every member at a
+stated value has been read, and is as exact and complete as any slice.
 """
 
 from __future__ import annotations
@@ -16,7 +17,13 @@ from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model import Model
 from ptmcad.question.config.binding import bound, member_name
 from ptmcad.question.config.record import Record
-from ptmcad.question.config.resolution import axis_of, described_record, note_values, slice_of, written_in
+from ptmcad.question.config.resolution import (
+    axis_of,
+    described_record,
+    note_values,
+    slice_of,
+    written_in,
+)
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.config.windows import MAX_MEMBERS, Window, check_members
 from ptmcad.question.slice import Axes, Axis, Slice
@@ -93,7 +100,9 @@ def family_of(record: Record, faults: Faults | None = None) -> Family:
         _check_name(record, name, window)
         free = axis_of(name, window, record.model)
         values = _values(free, record.members, faults)
-    if free is None or faults.found:  # of the values only what does not depend on the free parameter
+    if (
+        free is None or faults.found
+    ):  # of the values only what does not depend on the free parameter
         note_values(record, faults, {name})
     assert free is not None
     slices = [_located(record, name, value, faults) for value in values]
@@ -104,7 +113,9 @@ def family_of(record: Record, faults: Faults | None = None) -> Family:
     if name not in record.model.parameters and not record.uses(name):
         example = next((n for n in record.model.parameters if n not in record.axes), "")
         use = f": use it in an expression, such as {example}: {name}" if example else ""
-        raise window.place.error(f"the free parameter {name} is not used: no parameter depends on it{use}")
+        raise window.place.error(
+            f"the free parameter {name} is not used: no parameter depends on it{use}"
+        )
     return Family(record, free, values, first.axes, text)
 
 
@@ -121,7 +132,9 @@ def checked_family(tree: Tree) -> Family:
         with faults:
             if "free" not in tree.entries:
                 missing = tree.place.below("free")
-                raise missing.error("is missing: a family has a third parameter, such as free: {F: [-20, 0]}")
+                raise missing.error(
+                    "is missing: a family has a third parameter, such as free: {F: [-20, 0]}"
+                )
         note_values(record, faults)
     return family_of(record, faults)
 
@@ -139,11 +152,15 @@ def fault_of_member(slice: Slice, text: Mapping[str, str], free: str, value: Fra
         return error.message
     for name, found in slice.parameters.items():
         if wanted[name] != found:
-            return "{} is {}, not {}".format(name, *(e.to_text(slice.axis_names) for e in (found, wanted[name])))
+            return "{} is {}, not {}".format(
+                name, *(e.to_text(slice.axis_names) for e in (found, wanted[name]))
+            )
     return ""
 
 
-def member_like(slice: Slice, text: Mapping[str, str], free: str, value: Fraction, turned: bool = False) -> Slice:
+def member_like(
+    slice: Slice, text: Mapping[str, str], free: str, value: Fraction, turned: bool = False
+) -> Slice:
     """Another member of the family of which a slice is one.
 
     Parameters
@@ -162,7 +179,9 @@ def member_like(slice: Slice, text: Mapping[str, str], free: str, value: Fractio
     return replace(slice, axes=axes, parameters=parameters, reference={}, text={})
 
 
-def _resolved(name: str, text: Mapping[str, str], known: Expressions, chain: tuple[str, ...] = ()) -> Expression:
+def _resolved(
+    name: str, text: Mapping[str, str], known: Expressions, chain: tuple[str, ...] = ()
+) -> Expression:
     """A parameter in the axes, from the texts of those that it depends on."""
     if name in known:
         return known[name]
@@ -177,7 +196,9 @@ def _member(record: Record, name: str, value: Fraction) -> Slice:
 
 
 def _located(record: Record, name: str, value: Fraction, faults: Faults) -> Slice | None:
-    """The member at a stated value; what is wrong with it is said with the value, once for all members."""
+    """The member at a stated value; what is wrong with it is said with the value, once for all
+    members.
+    """
     known = {(fault.key, fault.line) for fault in faults.found}
     try:
         return _member(record, name, value)
@@ -185,7 +206,9 @@ def _located(record: Record, name: str, value: Fraction, faults: Faults) -> Slic
         with faults:
             for fault in error.faults:
                 if (fault.key, fault.line) not in known:
-                    raise fault.place.error(f"{fault.message} (at {name} = {text_of(value)})") from error
+                    raise fault.place.error(
+                        f"{fault.message} (at {name} = {text_of(value)})"
+                    ) from error
         return None
 
 
@@ -193,23 +216,31 @@ def _check_name(record: Record, name: str, window: Window) -> None:
     if name in record.axes:
         raise window.place.error(f"{name} is an axis too: a family has three different parameters")
     if name in record.values:
-        raise record.values[name].place.error(f"{name} is free and cannot be fixed too: remove it here or from free")
+        raise record.values[name].place.error(
+            f"{name} is free and cannot be fixed too: remove it here or from free"
+        )
 
 
 def _values(free: Axis, members: Written | None, faults: Faults) -> tuple[Fraction, ...]:
-    """Where members are wanted: at the values of a list, or at as many as a number says, evenly spaced."""
+    """Where members are wanted: at the values of a list, or at as many as a number says, evenly
+    spaced.
+    """
     if members is None:
         return _spaced(free, MEMBERS)
     check_members(members)
     if isinstance(members, Scalar):
         number = number_of(members, "the number of members")
         if number.denominator != 1 or not 2 <= number <= MAX_MEMBERS:
-            raise members.place.error(f"write how many members there are, 2 to {MAX_MEMBERS}, or a list of values")
+            raise members.place.error(
+                f"write how many members there are, 2 to {MAX_MEMBERS}, or a list of values"
+            )
         return _spaced(free, int(number))
     entry = Node.of(members, faults)
     assert isinstance(members, Sequence)
     if not 1 <= len(members.items) <= MAX_MEMBERS:
-        raise entry.fault(f"{len(members.items)} values are given: a family has 1 to {MAX_MEMBERS} members")
+        raise entry.fault(
+            f"{len(members.items)} values are given: a family has 1 to {MAX_MEMBERS} members"
+        )
     values: set[Fraction] = set()
 
     def read(item: Node) -> None:

@@ -1,6 +1,7 @@
 """A record read for all that it asks: a slice, a family or a sweep, and a design beside.
 
-Guarantee: what is wrong is one `ConfigError` that knows all faults of the record, whichever of these they are of.
+Guarantee: what is wrong is one `ConfigError` that knows all faults of the record, whichever of
+these they are of.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""The model that a record is about: built in by name, written in the record, or in a file of its own beside it.
+"""The model that a record is about: built in by name, written in the record, or in a file of its
+own beside it.
 
-Guarantee: what is wrong with a description is a `ConfigError` with file, line and key. Only regular files in the
-record's folder, or in folders below, are read.
+Guarantee: what is wrong with a description is a `ConfigError` with file, line and key. Only regular
+files in the record's folder, or in folders below, are read.
 """
 
 from __future__ import annotations
@@ -47,16 +48,24 @@ class Described(NamedTuple):
     doubtful: frozenset[str] = frozenset()
 
     def place_of(self, parameter: str) -> Place | None:
-        """Where a parameter has its default, or else where it is declared or first used; None where nothing says it."""
+        """Where a parameter has its default, or else where it is declared or first used; None where
+        nothing says it.
+        """
         if self.tree is None:
             return None
         found = self.model.parameters[parameter]
         parameters = self.tree.entries.get("parameters")
-        declared = parameters.entries.get(found.alias_of or parameter) if isinstance(parameters, Tree) else None
+        declared = (
+            parameters.entries.get(found.alias_of or parameter)
+            if isinstance(parameters, Tree)
+            else None
+        )
         if isinstance(declared, Tree):
             said = declared.entries.get("alias" if found.alias_of else "default")
             return declared.place if said is None else said.place
-        return next((s.place for s in scalars(self.tree) if parameter in NAME.findall(s.text)), None)
+        return next(
+            (s.place for s in scalars(self.tree) if parameter in NAME.findall(s.text)), None
+        )
 
     def place_of_part(self, key: str) -> Place | None:
         """Where a key of the description stands; None where nobody has written it."""
@@ -83,7 +92,8 @@ def model_of(record: Tree) -> Model:
 
 
 def described_in(record: Tree, faults: Faults) -> Described:
-    """The same with its places; what is wrong inside of a description is noted, and left out or replaced.
+    """The same with its places; what is wrong inside of a description is noted, and left out or
+    replaced.
 
     Raises
     ------
@@ -97,18 +107,25 @@ def described_in(record: Tree, faults: Faults) -> Described:
             with faults:
                 if isinstance(node, Tree):
                     _read(node, faults, used, is_system)
-        raise system.place.error("a record is about a mechanism or about another system: leave one out")
+        raise system.place.error(
+            "a record is about a mechanism or about another system: leave one out"
+        )
     if system is not None:
         if not isinstance(system, Tree):
-            raise system.place.error("expected a mapping with unknowns and equations, or a potential")
-        # what has points is meant for a mechanism; anything else that is not right is wrong with a system
+            raise system.place.error(
+                "expected a mapping with unknowns and equations, or a potential"
+            )
+        # what has points is meant for a mechanism; anything else that is not right is wrong with a
+        # system
         return _read(system, faults, used, "points" not in system.entries)
     if mechanism is None:
         return Described(ptm())
     if isinstance(mechanism, Tree):
         return _read(mechanism, faults, used)
     if not isinstance(mechanism, Scalar):
-        raise mechanism.place.error("expected a mechanism's name, a mapping that describes one, or a file that does")
+        raise mechanism.place.error(
+            "expected a mechanism's name, a mapping that describes one, or a file that does"
+        )
     if mechanism.text in built_in():
         return Described(mechanism_of(mechanism.text))
     if _is_file(mechanism):
@@ -170,7 +187,9 @@ def _description(tree: Tree) -> Tree:
     return inner
 
 
-def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool = False) -> Described:
+def _read(
+    node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool = False
+) -> Described:
     """What a mapping describes; a fault is put where it stands in the file.
 
     Parameters
@@ -181,7 +200,9 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
     data = plain_data(node)
     found = Faults()
     model: Model | None = None
-    with suppress(ConfigError):  # so many faults that no more are looked for: they still have to be put in their places
+    with suppress(
+        ConfigError
+    ):  # so many faults that no more are looked for: they still have to be put in their places
         model = _system(data, {*used}, found) if is_system else _mechanism(data, {*used}, found)
     placed = [place_at(node, fault.key or "").error(fault.message) for fault in found.found]
     if model is None:
@@ -216,7 +237,8 @@ _WITHOUT_PARAMETERS = frozenset({"name", "title", "bars", "supports", "unknowns"
 
 
 def _check_use(model: Model, used: set[str], where: str, faults: Faults) -> None:
-    """Note each parameter that nothing uses, neither the description nor the record's own expressions.
+    """Note each parameter that nothing uses, neither the description nor the record's own
+    expressions.
 
     Parameters
     ----------
@@ -231,7 +253,9 @@ def _check_use(model: Model, used: set[str], where: str, faults: Faults) -> None
                 raise ConfigError(
                     f"nothing uses {name}: leave it out, or use it in {where}, or in an expression under the record's "
                     "'parameters:'",
-                    key=f"parameters.{parameter.alias_of}.alias" if parameter.alias_of else f"parameters.{name}",
+                    key=f"parameters.{parameter.alias_of}.alias"
+                    if parameter.alias_of
+                    else f"parameters.{name}",
                 )
 
 
@@ -250,12 +274,16 @@ def _doubtful(model: Model, faults: Faults, is_system: bool) -> frozenset[str]:
     """The parameters of which nothing can be said with such faults."""
     if ["parameters"] in faults.steps:
         return frozenset(model.parameters)
-    names = faulty_entries(faults, "parameters") | (_undeclared(model, faults) if is_system else frozenset())
+    names = faulty_entries(faults, "parameters") | (
+        _undeclared(model, faults) if is_system else frozenset()
+    )
     return frozenset(names | {name for name, p in model.parameters.items() if p.alias_of in names})
 
 
 def _undeclared(model: Model, faults: Faults) -> frozenset[str]:
-    """The parameters of a system that are not listed: they may be something else, where faults hide what they are."""
+    """The parameters of a system that are not listed: they may be something else, where faults hide
+    what they are.
+    """
     undeclared = model.parameters.keys() - model.source.get("parameters", {})
     told = faults.parts <= _TOLD
     return frozenset(undeclared - {*model.variables} if told else undeclared)

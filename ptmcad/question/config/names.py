@@ -1,6 +1,7 @@
 """What the names in a record's values stand for: each parameter as a function of the axes.
 
-Guarantee: exact; what is wrong is a `ConfigError` with file, line and key, said once where it stands.
+Guarantee: exact; what is wrong is a `ConfigError` with file, line and key, said once where it
+stands.
 """
 
 from __future__ import annotations
@@ -13,13 +14,17 @@ from ptmcad.text.expressions import Expression, Expressions, constant
 from ptmcad.text.syntax import NOT_NUMBERS, did_you_mean
 
 
-def resolved(record: Record, free: Expressions, faults: Faults) -> tuple[dict[str, Expression], set[str]]:
-    """What the parameters stand for, depth first, and the names of those that are faulty or depend on such a one.
+def resolved(
+    record: Record, free: Expressions, faults: Faults
+) -> tuple[dict[str, Expression], set[str]]:
+    """What the parameters stand for, depth first, and the names of those that are faulty or depend
+    on such a one.
 
     Parameters
     ----------
     free : names to what they stand for already.
-    faults : where it is noted that a parameter cannot be resolved, which then is 1; a cycle is refused.
+    faults : where it is noted that a parameter cannot be resolved, which then is 1; a cycle is
+        refused.
     """
     parameters = record.model.parameters
     faulty = set(record.doubtful - free.keys())
@@ -40,15 +45,21 @@ def resolved(record: Record, free: Expressions, faults: Faults) -> tuple[dict[st
         if scalar is None:
             scalar = Scalar(parameters[name].default, record.place_of(name))
             if not scalar.text:
-                raise scalar.place.error(f"{name} has no value: give it one under 'parameters', or make it an axis")
+                raise scalar.place.error(
+                    f"{name} has no value: give it one under 'parameters', or make it an axis"
+                )
         if name in chain:
             cycle = " -> ".join((*chain[chain.index(name) :], name))
             raise scalar.place.error(f"the definition goes round in a circle: {cycle}")
         names = names_in_scalar(scalar)
-        misnamed = [other for other in names if other not in known and other.lower() not in NOT_NUMBERS]
+        misnamed = [
+            other for other in names if other not in known and other.lower() not in NOT_NUMBERS
+        ]
         for other in misnamed[:1]:
             with faults:
-                hint = did_you_mean(other, known, "; the names are " if known else "; no name is known here")
+                hint = did_you_mean(
+                    other, known, "; the names are " if known else "; no name is known here"
+                )
                 raise scalar.place.error(f"unknown name '{other[:40]}'{hint}")
         values = {other: value(other, (*chain, name)) for other in names if other in known}
         if misnamed or values.keys() & faulty:

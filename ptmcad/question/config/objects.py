@@ -1,7 +1,9 @@
-"""Mechanisms and systems from Python's objects: strings, numbers and SymPy expressions, in mappings as YAML has them.
+"""Mechanisms and systems from Python's objects: strings, numbers and SymPy expressions, in mappings
+as YAML has them.
 
-Guarantee: neither SymPy nor numpy is imported; an object of SymPy is taken as the text that it prints, with exact
-numbers as they are, an equation of it as its left side minus its right side, and an array as the list of its entries.
+Guarantee: neither SymPy nor numpy is imported; an object of SymPy is taken as the text that it
+prints, with exact numbers as they are, an equation of it as its left side minus its right side, and
+an array as the list of its entries.
 """
 
 from __future__ import annotations
@@ -17,8 +19,11 @@ from ptmcad.question.shipped import record_tree
 from ptmcad.text.entry import Tree, from_python
 
 
-def make_mechanism(description: Mapping[Any, Any] | None = None, /, **entries: Any) -> Mechanism | ClosedMechanism:
-    """A planar mechanism from the entries of its description, as a record has them under ``mechanism:``.
+def make_mechanism(
+    description: Mapping[Any, Any] | None = None, /, **entries: Any
+) -> Mechanism | ClosedMechanism:
+    """A planar mechanism from the entries of its description, as a record has them under
+    ``mechanism:``.
 
     >>> pendulum = make_mechanism(
     ...     parameters={"W": {"kind": "force"}, "k": {"kind": "stiffness"}},
@@ -44,7 +49,8 @@ def make_mechanism(description: Mapping[Any, Any] | None = None, /, **entries: A
 
 
 def make_system(description: Mapping[Any, Any] | None = None, /, **entries: Any) -> System:
-    """A parametric system from the entries of its description, as a record has them under ``system:``.
+    """A parametric system from the entries of its description, as a record has them under
+    ``system:``.
 
     >>> make_system(unknowns={"x": "real"}, equations=["x^3 - a*x + b"]).variables
     ('a', 'b')
@@ -76,7 +82,8 @@ def tree_of(question: object, key: str = "question", expected: str = A_RECORD) -
 
 
 def plain(value: object) -> object:
-    """A value as `ptmcad.text.entry.from_python` takes it: models as their descriptions, SymPy's objects as text.
+    """A value as `ptmcad.text.entry.from_python` takes it: models as their descriptions, SymPy's
+    objects as text.
 
     Raises
     ------
@@ -86,7 +93,9 @@ def plain(value: object) -> object:
     if isinstance(value, Model):
         return value.name if value.name in built_in() else {"name": value.name, **value.source}
     shape: Any = getattr(value, "shape", None)
-    if isinstance(shape, tuple) and shape:  # an array of numpy's; SymPy's matrices give their entries row by row
+    if (
+        isinstance(shape, tuple) and shape
+    ):  # an array of numpy's; SymPy's matrices give their entries row by row
         entries: Any = value
         return [*entries]
     return _text(value) if _is_symbolic(value) else value
@@ -106,7 +115,9 @@ def _text(value: Any) -> str:
 
 
 def _undefined_function(value: Any) -> Any:
-    """The first undefined function in an object of SymPy, such as one of its dynamicsymbols; None without any."""
+    """The first undefined function in an object of SymPy, such as one of its dynamicsymbols; None
+    without any.
+    """
     if type(value).__module__ is None:
         return value
     found = (_undefined_function(part) for part in getattr(value, "args", ()))

@@ -69,7 +69,9 @@ def ranges_of(ranges: Iterable[str], option: str = "--range") -> dict[str, Windo
     return windows
 
 
-def with_axes(record: Record, slice: str, sets: Mapping[str, Scalar], ranges: Mapping[str, Window]) -> Record:
+def with_axes(
+    record: Record, slice: str, sets: Mapping[str, Scalar], ranges: Mapping[str, Window]
+) -> Record:
     """The record with the axes of ``--slice X,Y``."""
     place = Place("--slice")
     parameters = record.model.parameters
@@ -97,6 +99,15 @@ def with_axes(record: Record, slice: str, sets: Mapping[str, Scalar], ranges: Ma
                 f"unknown axis '{name[:40]}'{hint}; to introduce a new variable add --range {name[:40]}=LO:HI"
             )
     for name in record.axes:
-        if name in parameters and name not in axes and name not in sets and name not in record.values:
-            raise place.error(f"{name} was an axis of {record.place.file} and has no value now: add --set {name}=VALUE")
-    return record._replace(axes=axes, values={name: v for name, v in record.values.items() if name not in axes})
+        if (
+            name in parameters
+            and name not in axes
+            and name not in sets
+            and name not in record.values
+        ):
+            raise place.error(
+                f"{name} was an axis of {record.place.file} and has no value now: add --set {name}=VALUE"
+            )
+    return record._replace(
+        axes=axes, values={name: v for name, v in record.values.items() if name not in axes}
+    )

@@ -1,4 +1,6 @@
-"""From a problem record or slice and values, or from values alone, to a point: a model and all its parameters."""
+"""From a problem record or slice and values, or from values alone, to a point: a model and all its
+parameters.
+"""
 
 from __future__ import annotations
 
@@ -22,8 +24,11 @@ from ptmcad.text.expressions import values_at
 _EXPECTED = f"{A_SLICE}, {A_RECORD}"
 
 
-def point_from_mapping(values: Mapping[str, object], model: Model | None = None) -> dict[str, Fraction]:
-    """Every parameter of a model, by default the paper's mechanism, at a point: the given ones, and the defaults.
+def point_from_mapping(
+    values: Mapping[str, object], model: Model | None = None
+) -> dict[str, Fraction]:
+    """Every parameter of a model, by default the paper's mechanism, at a point: the given ones, and
+    the defaults.
 
     >>> point = point_from_mapping({"rho": "0.7", "L2": "3/2", "F3": -10})
     >>> point["rho"], point["k3"], point["F4"]
@@ -31,8 +36,8 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
 
     Parameters
     ----------
-    values : text (a number, or arithmetic with other parameters), int, Fraction, Decimal, float (its shortest
-        decimal) or one of numpy's numbers.
+    values : text (a number, or arithmetic with other parameters), int, Fraction, Decimal, float
+        (its shortest decimal) or one of numpy's numbers.
 
     Raises
     ------
@@ -52,7 +57,8 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
 def point_from_options(
     config: str | Path | None = None, at: Mapping[str, str] | None = None, sets: Iterable[str] = ()
 ) -> tuple[Model, dict[str, Fraction]]:
-    """The model and its parameters at the point of the command line's options, with or without a record under them.
+    """The model and its parameters at the point of the command line's options, with or without a
+    record under them.
 
     Parameters
     ----------
@@ -70,7 +76,9 @@ def point_from_options(
     return _at_point(record, given, sets)
 
 
-def point_from(question: RecordSource | Slice, values: Mapping[str, object]) -> tuple[Model, dict[str, Fraction]]:
+def point_from(
+    question: RecordSource | Slice, values: Mapping[str, object]
+) -> tuple[Model, dict[str, Fraction]]:
     """The model of a record or slice, and its parameters at a point.
 
     >>> record = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": -10}}
@@ -79,19 +87,25 @@ def point_from(question: RecordSource | Slice, values: Mapping[str, object]) -> 
 
     Parameters
     ----------
-    values : for all axes; of a record also for what else it leaves open, and for parameters in place of its own.
+    values : for all axes; of a record also for what else it leaves open, and for parameters in
+        place of its own.
 
     Raises
     ------
     ConfigError
         For anything wrong, with the name.
     """
-    given = {name: number_text(from_python(value, Place(name), plain)) for name, value in values.items()}
+    given = {
+        name: number_text(from_python(value, Place(name), plain)) for name, value in values.items()
+    }
     if not isinstance(question, Slice):
         return _at_point(record_of(tree_of(question, expected=_EXPECTED)), given, (), None)
     names = question.axis_names
     if further := [name for name in given if name not in names]:
-        raise ConfigError("is no axis of the slice, which has values for all else: give its record", key=further[0])
+        raise ConfigError(
+            "is no axis of the slice, which has values for all else: give its record",
+            key=further[0],
+        )
     if missing := [name for name in names if name not in given]:
         raise ConfigError("is an axis of the slice and has no value", key=missing[0])
     x, y = (number_of(given[name], "the value of this axis") for name in names)
@@ -106,7 +120,11 @@ def units_of(question: RecordSource | Slice) -> Mapping[str, str]:
     ConfigError
         For anything wrong in a record, with file, line and key.
     """
-    return question.units if isinstance(question, Slice) else record_of(tree_of(question, expected=_EXPECTED)).units
+    return (
+        question.units
+        if isinstance(question, Slice)
+        else record_of(tree_of(question, expected=_EXPECTED)).units
+    )
 
 
 def _at_point(
@@ -116,7 +134,9 @@ def _at_point(
     axes: dict[str, Fraction] = {}
     where = record.place.file or "the record"
     if record.free is not None and (free := record.free[0]) not in {*at, *given}:
-        raise ConfigError(f"{free} is free in {where} and has no value: add {free}=VALUE", key=option)
+        raise ConfigError(
+            f"{free} is free in {where} and has no value: add {free}=VALUE", key=option
+        )
     for name, scalar in at.items():
         if name in given:
             raise scalar.place.error("is given with --set too: leave one out")
@@ -128,5 +148,7 @@ def _at_point(
             raise scalar.place.error(unknown_parameter(name, record.model))
     for name in record.axes:
         if name not in given and name not in axes:
-            raise ConfigError(f"{name} is an axis of {where} and has no value: add {name}=VALUE", key=option)
+            raise ConfigError(
+                f"{name} is an axis of {where} and has no value: add {name}=VALUE", key=option
+            )
     return record.model, point_of(with_numbers(settled(record, given), axes, {}))

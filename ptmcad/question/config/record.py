@@ -1,6 +1,7 @@
 """A problem record whose keys are known and whose values are still text.
 
-Guarantee: what is wrong with keys and shapes is a `ConfigError` with file, line and key; nothing unknown is ignored.
+Guarantee: what is wrong with keys and shapes is a `ConfigError` with file, line and key; nothing
+unknown is ignored.
 """
 
 from __future__ import annotations
@@ -20,7 +21,15 @@ from ptmcad.question.config.scalars import (
     names_in_scalar,
     number_text,
 )
-from ptmcad.question.config.windows import AXIS_NAME, MAX_MEMBERS, MAX_VALUES, Window, axes_in, check_members, free_in
+from ptmcad.question.config.windows import (
+    AXIS_NAME,
+    MAX_MEMBERS,
+    MAX_VALUES,
+    Window,
+    axes_in,
+    check_members,
+    free_in,
+)
 from ptmcad.question.counts import USUAL, Count, phrases
 from ptmcad.question.examples import A_DESIGN, A_SWEEP, FORCE, SECOND, THIRD
 from ptmcad.question.slice import MAX_UNIT, QUANTITIES
@@ -43,8 +52,10 @@ class Record(NamedTuple):
     counting : which count distinguishes two regions; None of the mechanism's own choice.
     values_place : where the values are given, or would be; None of what is no record.
     sweep : what is swept, as it is written; `ptmcad.question.config.sweeps` reads it.
-    design : what is designed, as it is written; `ptmcad.question.config.designs` reads it, and no other command asks.
-    unread : names that may stand in values and of which nothing can be said, because what says it is faulty.
+    design : what is designed, as it is written; `ptmcad.question.config.designs` reads it, and no
+        other command asks.
+    unread : names that may stand in values and of which nothing can be said, because what says it
+        is faulty.
     """
 
     model: Model
@@ -66,7 +77,9 @@ class Record(NamedTuple):
     unread: frozenset[str] = frozenset()
 
     def place_of(self, name: str) -> Place:
-        """Where a parameter's value is written, or what describes it, or where a value would be given."""
+        """Where a parameter's value is written, or what describes it, or where a value would be
+        given.
+        """
         if name in self.values:
             return self.values[name].place
         return self.described.place_of(name) or (self.values_place or self.place).below(name)
@@ -100,12 +113,13 @@ def record_of(tree: Tree) -> Record:
 
 
 def read_record(tree: Tree, faults: Faults) -> Record:
-    """A record as far as its keys and shapes are right; what is not is noted, and left out or replaced by 1.
+    """A record as far as its keys and shapes are right; what is not is noted, and left out or
+    replaced by 1.
 
     Raises
     ------
-    ConfigError
-        At once for a file that ptmcad wrote itself: each of its keys would be a fault of its own. And without a model.
+    ConfigError At once for a file that ptmcad wrote itself: each of its keys would be a fault of
+        its own. And without a model.
     """
     kind = tree.entries.get("format")
     if isinstance(kind, Scalar) and kind.text.startswith("ptmcad-"):
@@ -150,15 +164,26 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
     """
     told = reading(lambda node: None)
     unit = reading(_unit, type="string", minLength=1, maxLength=MAX_UNIT)
-    units = {"type": "object", "additionalProperties": False, "properties": {q: unit.schema for q in QUANTITIES}}
+    units = {
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {q: unit.schema for q in QUANTITIES},
+    }
     return record(
         dict,
         name=part(
-            reading(name_in, type="string", pattern="^[A-Za-z0-9]([A-Za-z0-9._-]*[A-Za-z0-9_-])?$", maxLength=MAX_NAME),
+            reading(
+                name_in,
+                type="string",
+                pattern="^[A-Za-z0-9]([A-Za-z0-9._-]*[A-Za-z0-9_-])?$",
+                maxLength=MAX_NAME,
+            ),
             "Start of the names of the files that are written; by default the record's own file name.",
             "",
         ),
-        title=part(reading(title_in, type="string", maxLength=MAX_TITLE), "The picture's title.", ""),
+        title=part(
+            reading(title_in, type="string", maxLength=MAX_TITLE), "The picture's title.", ""
+        ),
         notes=part(told.narrowed(type="string"), "Free text for the reader of the record.", None),
         mechanism=part(
             told,
@@ -168,7 +193,11 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
         ),
         system=part(told, "Another parametric system, in place of a mechanism.", None),
         parameters=part(
-            reading(lambda node: _values(node, model), type=["object", "null"], additionalProperties=VALUE),
+            reading(
+                lambda node: _values(node, model),
+                type=["object", "null"],
+                additionalProperties=VALUE,
+            ),
             f"Fixed values, or expressions in the axes and in other parameters ({FORCE}: F, {SECOND}: 2*{THIRD}). "
             f"Below are those of the mechanism {ptm().name}; others have their own.",
             {},
@@ -204,7 +233,10 @@ def _question() -> dict[str, Key]:
         "members": part(
             reading(
                 lambda node: check_members(node.value),
-                anyOf=[NUMBER, {"type": "array", "items": NUMBER, "minItems": 1, "maxItems": MAX_MEMBERS}],
+                anyOf=[
+                    NUMBER,
+                    {"type": "array", "items": NUMBER, "minItems": 1, "maxItems": MAX_MEMBERS},
+                ],
             ),
             "Values of the free parameter at which there are maps, or how many, evenly spaced; 9 when it is not given.",
             None,
@@ -231,7 +263,8 @@ def _question() -> dict[str, Key]:
 
 
 def with_place(error: ConfigError | HypothesisError, record: Record) -> PtmcadError:
-    """A fault that an engine finds, with file, line and key: those of a parameter, of a part, or of the whole slice.
+    """A fault that an engine finds, with file, line and key: those of a parameter, of a part, or of
+    the whole slice.
 
     As it is where its place is known already, or nothing in the record is to blame.
     """
@@ -241,7 +274,11 @@ def with_place(error: ConfigError | HypothesisError, record: Record) -> PtmcadEr
         if error.key == "count" and record.counting is not None:
             return record.count_place.error(error.message)
         key = error.key or "-"
-        return record.place_of_part(key).error(error.message) if record.described.has_part(key) else error
+        return (
+            record.place_of_part(key).error(error.message)
+            if record.described.has_part(key)
+            else error
+        )
     place = _place_of_fault(error, record)
     return error if place is None else place.error(str(error))
 
@@ -291,7 +328,12 @@ def swept_names(record: Record) -> dict[str, Place]:
     """What a record sweeps, with its places, as far as that can be read."""
     node = record.sweep
     parts = node.items if isinstance(node, Sequence) else (node,)
-    return {name: entry.place for part in parts if isinstance(part, Tree) for name, entry in part.entries.items()}
+    return {
+        name: entry.place
+        for part in parts
+        if isinstance(part, Tree)
+        for name, entry in part.entries.items()
+    }
 
 
 def _design(node: Node) -> Written:
@@ -331,5 +373,7 @@ def _reference(node: Node) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise node.fault("expected a mapping of published answers")
     if (found := unstorable(data)) is not None:
-        raise node.fault(f"it has the character U+{ord(found):04X}, which a result cannot store: remove it")
+        raise node.fault(
+            f"it has the character U+{ord(found):04X}, which a result cannot store: remove it"
+        )
     return data

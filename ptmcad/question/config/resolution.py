@@ -1,9 +1,10 @@
 """From a record's texts to exact expressions and numbers.
 
-Guarantee: what leaves here is complete and exact; no length or stiffness is known to be out of the range that the
-geometry needs. Where its sign could not be decided at once (see `ptmcad.question.positivity`) it is left to the
-engines, which decide or refuse: `ptmcad.question.domain.proved`. What is proved here the slice carries. Its texts name
-only its axes and each other.
+Guarantee: what leaves here is complete and exact; no length or stiffness is known to be out of the
+range that the geometry needs. Where its sign could not be decided at once (see
+`ptmcad.question.positivity`) it is left to the engines, which decide or refuse:
+`ptmcad.question.domain.proved`. What is proved here the slice carries. Its texts name only its axes
+and each other.
 """
 
 from __future__ import annotations
@@ -35,14 +36,15 @@ def checked_slice(tree: Tree) -> Slice:
 
     Raises
     ------
-    ConfigError
-        That knows all faults of the record, those of keys and shapes and those of what is written there.
+    ConfigError That knows all faults of the record, those of keys and shapes and those of what is
+        written there.
     """
     return slice_of(*described_record(tree))
 
 
 def described_record(tree: Tree) -> tuple[Record, Faults]:
-    """A record as `read_record` has it, with its `unread` names, and what is wrong with it, where there is a model.
+    """A record as `read_record` has it, with its `unread` names, and what is wrong with it, where
+    there is a model.
 
     Raises
     ------
@@ -55,12 +57,16 @@ def described_record(tree: Tree) -> tuple[Record, Faults]:
 
 
 def _unread(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
-    """The names in a record's values of which nothing can be said, because what would tell what they are is faulty."""
+    """The names in a record's values of which nothing can be said, because what would tell what
+    they are is faulty.
+    """
     found, hidden = set(), False
     for key in ("axes", "free", "sweep"):
         node = tree.entries.get(key)
         if isinstance(node, Tree):
-            found |= {name for name in node.entries if key != "axes" or faults.concern(f"{key}.{name}")}
+            found |= {
+                name for name in node.entries if key != "axes" or faults.concern(f"{key}.{name}")
+            }
         hidden = hidden or ([key] in faults.steps and not isinstance(node, Tree))
     if hidden:  # any name may be one of those, and any parameter without a value
         found |= record.model.parameters.keys() - record.values.keys()
@@ -71,7 +77,8 @@ def _unread(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
 
 
 def note_values(record: Record, faults: Faults, unread: Iterable[str] = ()) -> None:
-    """Note what is wrong with the axes and values of a record that asks nothing yet, and raise all that is known.
+    """Note what is wrong with the axes and values of a record that asks nothing yet, and raise all
+    that is known.
 
     Parameters
     ----------
@@ -117,7 +124,9 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
 
 
 def _note_unnamed_axes(record: Record, faults: Faults) -> None:
-    """Note axes of which no text has the name, beside faults because of which it is not known what depends on what."""
+    """Note axes of which no text has the name, beside faults because of which it is not known what
+    depends on what.
+    """
     named = set[str]()
     for scalar in record.values.values():
         try:
@@ -128,13 +137,19 @@ def _note_unnamed_axes(record: Record, faults: Faults) -> None:
         return  # an unknown name may be a slip of the axis's
     for name in _needed_axes(record)[:2]:
         place = record.axes[name].place
-        if name not in named and name not in record.model.parameters and not faults.concern(f"axes.{name}"):
+        if (
+            name not in named
+            and name not in record.model.parameters
+            and not faults.concern(f"axes.{name}")
+        ):
             with faults:
                 raise place.error(f"the axis {name} is not used: no parameter depends on it")
 
 
 def _needed_axes(record: Record) -> tuple[str, ...]:
-    """The axes on which something has to depend: none of a published system, which may have fewer parameters."""
+    """The axes on which something has to depend: none of a published system, which may have fewer
+    parameters.
+    """
     return tuple(record.axes) if isinstance(record.model, Mechanism) else ()
 
 
@@ -147,22 +162,29 @@ def refuse_free(name: str, window: Window) -> None:
 
 
 def _judged(record: Record, faults: Faults) -> tuple[Axes, dict[str, Expression], list[Finding]]:
-    """The axes, every parameter as a function of them, and the signs of these and of what springs are given.
+    """The axes, every parameter as a function of them, and the signs of these and of what springs
+    are given.
 
     Faults are noted, and none that follows from another.
     """
     with faults:
         if not record.axes and not faults.concern("axes"):
-            raise record.place.below("axes").error(f"is missing: a slice needs two axes, such as {AXES}")
+            raise record.place.below("axes").error(
+                f"is missing: a slice needs two axes, such as {AXES}"
+            )
     for name in record.axes:
         with faults:
             if name in record.values:
                 place = record.values[name].place
-                raise place.error(f"{name} is an axis and cannot be fixed too: remove it here or from the axes")
+                raise place.error(
+                    f"{name} is an axis and cannot be fixed too: remove it here or from the axes"
+                )
     axes = [_judged_axis(name, window, record, faults) for name, window in record.axes.items()]
     unread = record.unread | set(tuple(record.axes)[2:])  # of three axes the last one
     record = record._replace(unread=unread)
-    values, faulty = resolved(record, {name: axis(k) for k, name in enumerate(tuple(record.axes)[:2])}, faults)
+    values, faulty = resolved(
+        record, {name: axis(k) for k, name in enumerate(tuple(record.axes)[:2])}, faults
+    )
     assert faults.found or not faulty, "a name that stands for 1 has no value"
     known = [a for a in axes[:2] if a is not None]
     window = (known[0], known[1]) if len(known) == 2 else None
@@ -188,10 +210,14 @@ def _judged(record: Record, faults: Faults) -> tuple[Axes, dict[str, Expression]
 
 
 def _judged_axis(name: str, window: Window, record: Record, faults: Faults) -> Axis | None:
-    """An axis, of which what is wrong is noted: then where in its range values make sense, if they do anywhere."""
+    """An axis, of which what is wrong is noted: then where in its range values make sense, if they
+    do anywhere.
+    """
     with faults:
         if name in record.model.unknowns:
-            raise window.place.error(f"{name} is an unknown: an axis is a parameter, or a new name that one uses")
+            raise window.place.error(
+                f"{name} is an unknown: an axis is a parameter, or a new name that one uses"
+            )
     with faults:
         return axis_of(name, window, record.model)
     with Faults():  # noted above
@@ -203,7 +229,9 @@ def _judged_axis(name: str, window: Window, record: Record, faults: Faults) -> A
 
 
 def _inherited(name: str, record: Record) -> str:
-    """The parameter whose value another one has, since it is given none; empty for one that has its own."""
+    """The parameter whose value another one has, since it is given none; empty for one that has its
+    own.
+    """
     return "" if name in record.values else record.model.parameters[name].alias_of or ""
 
 
@@ -212,16 +240,27 @@ def _slice(record: Record, axes: Axes, resolved: Expressions, signs: Sequence[Fi
     mechanism = record.model
     given = {*record.values, *record.axes}
     without_free_lengths = not _names_free_lengths(mechanism, resolved)
-    left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)} | {*mechanism.idle}
+    left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)} | {
+        *mechanism.idle
+    }
     if without_free_lengths:
         left_out.update(mechanism.free_lengths)
     effective = {name: expression for name, expression in resolved.items() if name not in left_out}
     _check_shorthands_are_used(record, mechanism, given)
     for index, name in enumerate(_needed_axes(record)):
         if not any(expression.uses(index) for expression in effective.values()):
-            hint = did_you_mean(name, mechanism.parameters) if name not in mechanism.parameters else ""
-            other = next((parameter for parameter in mechanism.parameters if parameter not in record.axes), "")
-            example = f"use it in an expression, such as {other}: {name}" if other else "use it in an expression"
+            hint = (
+                did_you_mean(name, mechanism.parameters) if name not in mechanism.parameters else ""
+            )
+            other = next(
+                (parameter for parameter in mechanism.parameters if parameter not in record.axes),
+                "",
+            )
+            example = (
+                f"use it in an expression, such as {other}: {name}"
+                if other
+                else "use it in an expression"
+            )
             remedy = f"no parameter depends on it{hint or ';'} {example}"
             if name in mechanism.shorthands:
                 own = _listed(mechanism.shorthands[name])
@@ -249,7 +288,9 @@ def _check_count(record: Record, resolved: Expressions) -> None:
 
 
 def point_of(record: Record) -> dict[str, Fraction]:
-    """Resolve a record to a point; its axes that are no parameters have numbers in place of their names."""
+    """Resolve a record to a point; its axes that are no parameters have numbers in place of their
+    names.
+    """
     mechanism = record.model
     faults = Faults()
     expressions, faulty = resolved(record, {}, faults)
@@ -266,32 +307,46 @@ def point_of(record: Record) -> dict[str, Fraction]:
 
 
 def without_shorthands(values: Mapping[str, Fraction], mechanism: Model) -> dict[str, Fraction]:
-    """The values of what a point is told by: no shorthand, nothing idle, and free lengths only if some is not zero."""
-    left_out = {*mechanism.shorthands, *mechanism.idle}  # the parameters that they stand for are there
-    if not _names_free_lengths(mechanism, {name: constant(value) for name, value in values.items()}):
+    """The values of what a point is told by: no shorthand, nothing idle, and free lengths only if
+    some is not zero.
+    """
+    left_out = {
+        *mechanism.shorthands,
+        *mechanism.idle,
+    }  # the parameters that they stand for are there
+    if not _names_free_lengths(
+        mechanism, {name: constant(value) for name, value in values.items()}
+    ):
         left_out.update(mechanism.free_lengths)
     return {name: value for name, value in values.items() if name not in left_out}
 
 
 def _names_free_lengths(model: Model, values: Expressions) -> bool:
-    """Whether parameters that are free lengths are told: where one is not zero, or a spring has another free length."""
+    """Whether parameters that are free lengths are told: where one is not zero, or a spring has
+    another free length.
+    """
     given = (values[name] for name in model.free_lengths if name in values)
     return any(value.numerator for value in given) or have_free_lengths(model, values)
 
 
 def _is_left_out(name: str, mechanism: Model, given: set[str]) -> bool:
-    """Whether a slice does not name a shorthand: one of free lengths, or one whose parameters are all given."""
+    """Whether a slice does not name a shorthand: one of free lengths, or one whose parameters are
+    all given.
+    """
     return mechanism.kind(name) is Kind.FREE_LENGTH or given.issuperset(mechanism.shorthands[name])
 
 
 def _texts(effective: Iterable[str], record: Record, signs: Iterable[Finding]) -> dict[str, str]:
     """What the parameters were written as, and every name in those texts, but for the axes.
 
-    A k that the springs do not have by default, say, is no parameter of the mechanism, but "k/10" says nothing without
-    it. No engine looks at the sign of such a name, so it has to be proved here.
+    A k that the springs do not have by default, say, is no parameter of the mechanism, but "k/10"
+    says nothing without it. No engine looks at the sign of such a name, so it has to be proved
+    here.
     """
     written = _reached(effective, record)
-    unproved = {sign.subject.text: sign.problem for sign in signs if sign.problem and not sign.subject.part}
+    unproved = {
+        sign.subject.text: sign.problem for sign in signs if sign.problem and not sign.subject.part
+    }
     for name in written.keys() - {*effective}:
         if name in unproved:
             raise record.place_of(name).error(unproved[name])
@@ -312,7 +367,9 @@ def _reached(names: Iterable[str], record: Record) -> dict[str, str]:
 
 
 def written_in(record: Record, member: Slice) -> dict[str, str]:
-    """Each parameter of a family's members as the record writes it, and every parameter that such a text names."""
+    """Each parameter of a family's members as the record writes it, and every parameter that such a
+    text names.
+    """
     texts = {} if record.free is None else {record.free[0]: Scalar(record.free[0], Place())}
     return _reached(member.parameters, record._replace(values={**record.values, **texts}))
 
@@ -343,14 +400,18 @@ def axis_of(name: str, window: Window, model: Model) -> Axis:
     return Axis(name, low, high)
 
 
-def _signs_of_value(name: str, expression: Expression, record: Record, axes: Axes | None) -> tuple[Finding, ...]:
+def _signs_of_value(
+    name: str, expression: Expression, record: Record, axes: Axes | None
+) -> tuple[Finding, ...]:
     """The sign of a parameter, where the window is known.
 
     What the geometry excludes is refused, and so is a denominator that vanishes in the window.
     """
     place, subject = record.place_of(name), Subject(name, record.model.kind(name), expression)
     if expression.degree > MAX_DEGREE:
-        raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
+        raise place.error(
+            f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed"
+        )
     if expression.is_constant:
         check_number(name, subject.kind, expression.constant(), place)
     if axes is None:
@@ -378,7 +439,11 @@ def _check_shorthands_are_used(record: Record, mechanism: Model, given: set[str]
     for shorthand, names in mechanism.shorthands.items():
         if shorthand not in record.values or not given.issuperset(names):
             continue
-        if not any(shorthand in names_in_scalar(s) for name, s in record.values.items() if name != shorthand):
+        if not any(
+            shorthand in names_in_scalar(s)
+            for name, s in record.values.items()
+            if name != shorthand
+        ):
             raise record.values[shorthand].place.error(
                 f"has no effect, since {_listed(names)} are all given: leave it out"
             )

@@ -1,4 +1,6 @@
-"""Scalars of a record: numbers, expressions, texts, names of files; what is wrong is a `ConfigError` at its place."""
+"""Scalars of a record: numbers, expressions, texts, names of files; what is wrong is a
+`ConfigError` at its place.
+"""
 
 from __future__ import annotations
 
@@ -25,9 +27,13 @@ def number_text(entry: Node | Written) -> Scalar:
     if not isinstance(scalar, Scalar):
         raise entry.place.error("expected a number or an expression, not a list or a mapping")
     if scalar.is_null:
-        raise scalar.place.error("has no value: write a number or an expression, or leave the key out")
+        raise scalar.place.error(
+            "has no value: write a number or an expression, or leave the key out"
+        )
     if scalar.is_boolean:
-        raise scalar.place.error(f"'{scalar.text}' is a yes-or-no value: write a number or an expression")
+        raise scalar.place.error(
+            f"'{scalar.text}' is a yes-or-no value: write a number or an expression"
+        )
     return scalar
 
 
@@ -68,7 +74,12 @@ def file_name(name: str, option: str) -> str:
 def name_in(entry: Node) -> str:
     """A name that is safe as the start of a file's name."""
     name = text_in(entry, MAX_NAME)
-    if not name or not name[0].isalnum() or not all(c.isalnum() or c in "._-" for c in name) or name.endswith("."):
+    if (
+        not name
+        or not name[0].isalnum()
+        or not all(c.isalnum() or c in "._-" for c in name)
+        or name.endswith(".")
+    ):
         raise entry.fault(
             f"{name!r} cannot name a file: use letters, digits, '.', '_' and '-', starting with a letter or digit"
         )
@@ -76,7 +87,8 @@ def name_in(entry: Node) -> str:
 
 
 def portable_file(file: str, option: str) -> str:
-    """The name of a file that an option gives, with its suffix: any that no system gives another meaning.
+    """The name of a file that an option gives, with its suffix: any that no system gives another
+    meaning.
 
     Raises
     ------
@@ -84,19 +96,24 @@ def portable_file(file: str, option: str) -> str:
         When Windows keeps the name for a device, or would drop its end.
     """
     if file.endswith((".", " ")):
-        raise Place(option).error(f"{file!r} cannot name a file: Windows drops dots and spaces at the end")
+        raise Place(option).error(
+            f"{file!r} cannot name a file: Windows drops dots and spaces at the end"
+        )
     return _portable(file, Place(option))
 
 
 def _portable(name: str, place: Place) -> str:
     device = name.partition(".")[0].rstrip(" ").upper()
     if device in _DEVICES:
-        raise place.error(f"{name!r} cannot name a file: Windows keeps {device} for a device, whatever the suffix")
+        raise place.error(
+            f"{name!r} cannot name a file: Windows keeps {device} for a device, whatever the suffix"
+        )
     return name
 
 
 def name_of_file(file: str | None) -> str:
-    """The file's stem, with characters that `name_in` refuses replaced; empty when there is no file.
+    """The file's stem, with characters that `name_in` refuses replaced; empty when there is no
+    file.
 
     Raises
     ------

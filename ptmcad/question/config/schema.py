@@ -1,6 +1,8 @@
-"""The JSON Schema of a record, made of the codecs that read it; ``ptmcad/record.schema.json`` is written by it.
+"""The JSON Schema of a record, made of the codecs that read it; ``ptmcad/record.schema.json`` is
+written by it.
 
-Guarantee: it has the keys, types and limits that are read, with what they mean for people; a new key is written once.
+Guarantee: it has the keys, types and limits that are read, with what they mean for people; a new
+key is written once.
 """
 
 from __future__ import annotations
@@ -31,7 +33,10 @@ _LEAVES = {
     },
     "number": {
         "description": "An exact number: 2, 0.1, 1e-30, 3/4.",
-        "anyOf": [{"type": "number"}, {"type": "string", "pattern": "^[-+*/^() 0-9.eE]+$", "maxLength": MAX_TEXT}],
+        "anyOf": [
+            {"type": "number"},
+            {"type": "string", "pattern": "^[-+*/^() 0-9.eE]+$", "maxLength": MAX_TEXT},
+        ],
     },
     "value": {
         "anyOf": [
@@ -47,7 +52,11 @@ def record_schema() -> dict[str, Any]:
     read = record_codec(None).schema
     paper, nothing = ptm(), Context(Faults())
     parameters = {
-        name: {**VALUE, "description": MEANINGS[name], "default": plain_data(Scalar(parameter.default, Place()))}
+        name: {
+            **VALUE,
+            "description": MEANINGS[name],
+            "default": plain_data(Scalar(parameter.default, Place())),
+        }
         for name, parameter in paper.parameters.items()
     }
     whole = read["properties"]

@@ -1,7 +1,8 @@
 """The key ``sweep`` of a record: which values some parameters take, and the slice of each member.
 
-Guarantee: whatever is wrong is a `ConfigError` with file, line and key. A member is the slice that the options
-``--set`` would ask for with the member's values. Values are exact rational numbers; a range ends exactly where it says.
+Guarantee: whatever is wrong is a `ConfigError` with file, line and key. A member is the slice that
+the options ``--set`` would ask for with the member's values. Values are exact rational numbers; a
+range ends exactly where it says.
 """
 
 from __future__ import annotations
@@ -61,7 +62,9 @@ class Sweeping:
 
 
 def with_values(record: Record, values: Mapping[str, Fraction]) -> Record:
-    """The record with values for what it sweeps; its title and its published answers are those of another slice."""
+    """The record with values for what it sweeps; its title and its published answers are those of
+    another slice.
+    """
     return with_numbers(record, values, {})._replace(sweep=None, title="", reference={})
 
 
@@ -94,8 +97,8 @@ def checked_sweep(tree: Tree) -> Sweeping:
 
     Raises
     ------
-    ConfigError
-        That knows all faults of the record; of the members the first is looked at, and every value's sign.
+    ConfigError That knows all faults of the record; of the members the first is looked at, and
+        every value's sign.
     """
     record, faults = described_record(tree)
     sweep = None
@@ -103,7 +106,9 @@ def checked_sweep(tree: Tree) -> Sweeping:
         sweep = _read(Node.of(record.sweep, faults), record)
     elif "sweep" not in tree.entries:
         with faults:
-            raise tree.place.below("sweep").error(f"is missing: say what is swept, such as {A_SWEEP}")
+            raise tree.place.below("sweep").error(
+                f"is missing: say what is swept, such as {A_SWEEP}"
+            )
     if sweep is None:  # of the values only what does not depend on what is swept
         note_values(record, faults, swept_names(record))
     assert sweep is not None
@@ -124,15 +129,23 @@ def _read(sweep: Node, record: Record) -> Sweep | None:
             raise part.fault(_EXPECTED)
         first.extend(entries if not first else ())
         if {*entries} != {*first}:
-            raise part.fault(f"each mapping of the list sweeps the same parameters: {', '.join(first)}")
-        return dict(part.gathered(lambda entry: (entry.name, _swept(entry, record)), entries.values()))
+            raise part.fault(
+                f"each mapping of the list sweeps the same parameters: {', '.join(first)}"
+            )
+        return dict(
+            part.gathered(lambda entry: (entry.name, _swept(entry, record)), entries.values())
+        )
 
     products = sweep.gathered(product, parts)
     if len(products) < max(len(parts), 1) or not all(products):
         return None
     found = Sweep(tuple(products))
     if len(found) > MAX_MEMBERS:
-        sweep.note(sweep.fault(f"has {len(found)} members, more than {MAX_MEMBERS}: ask for a part of them"))
+        sweep.note(
+            sweep.fault(
+                f"has {len(found)} members, more than {MAX_MEMBERS}: ask for a part of them"
+            )
+        )
     return found
 
 
@@ -141,9 +154,13 @@ def _swept(entry: Node, record: Record) -> Values:
     name = entry.name
     check_axis_name(name, entry.place)
     if name in record.axes:
-        raise entry.fault(f"{name} is an axis and cannot be swept too: remove it here or from the axes")
+        raise entry.fault(
+            f"{name} is an axis and cannot be swept too: remove it here or from the axes"
+        )
     if name in record.values:
-        raise entry.fault(f"{name} has a value under 'parameters' and cannot be swept too: leave one out")
+        raise entry.fault(
+            f"{name} has a value under 'parameters' and cannot be swept too: leave one out"
+        )
     if name not in record.model.parameters and not record.uses(name):
         hint = did_you_mean(name, record.model.parameters) or ";"
         raise entry.fault(
@@ -186,7 +203,9 @@ def _step(entry: Node) -> Fraction:
 def _steps(entry: Node) -> int:
     steps = _number(entry)
     if steps.denominator != 1 or steps < 2:
-        raise entry.fault(f"the number of values, both ends among them, is a whole number from 2 on, not {steps}")
+        raise entry.fault(
+            f"the number of values, both ends among them, is a whole number from 2 on, not {steps}"
+        )
     return int(steps)
 
 
@@ -196,9 +215,17 @@ _READ: Codec[dict[str, Any]] = record(
     "{from: -40, to: 0, step: 5}",
     **{name: part(reading(_number, **NUMBER), help) for name, help in _ENDS.items()},
     step=part(
-        reading(_step, **NUMBER), "The distance of two values, positive; it divides that of the ends.", None, ...
+        reading(_step, **NUMBER),
+        "The distance of two values, positive; it divides that of the ends.",
+        None,
+        ...,
     ),
-    steps=part(reading(_steps, type="integer", minimum=2, maximum=MAX_MEMBERS), "The number of values.", None, ...),
+    steps=part(
+        reading(_steps, type="integer", minimum=2, maximum=MAX_MEMBERS),
+        "The number of values.",
+        None,
+        ...,
+    ),
 )
 _RANGE = _READ.narrowed(
     oneOf=[{"required": ["step"]}, {"required": ["steps"]}],
@@ -213,7 +240,9 @@ def _range(entry: Node) -> Spaced:
     if not entry.mapping().keys() <= said.keys():
         raise entry.noted()  # a key that nobody knows may be meant for one of these
     if entry.has("step") == entry.has("steps"):
-        raise entry.fault("give either step, the distance of two values, or steps, the number of values")
+        raise entry.fault(
+            "give either step, the distance of two values, or steps, the number of values"
+        )
     if low == high:
         raise entry.fault(f"the range is empty: {low} to {high}; a list gives a single value")
     if step is not None:
@@ -229,11 +258,23 @@ def _range(entry: Node) -> Spaced:
     return found
 
 
-SWEEP = {"anyOf": [{"$ref": "#/$defs/product"}, {"type": "array", "items": {"$ref": "#/$defs/product"}, "minItems": 1}]}
+SWEEP = {
+    "anyOf": [
+        {"$ref": "#/$defs/product"},
+        {"type": "array", "items": {"$ref": "#/$defs/product"}, "minItems": 1},
+    ]
+}
 """The schema of a record's ``sweep``."""
-_VALUES = {"anyOf": [{"type": "array", "items": NUMBER, "minItems": 1}, {"$ref": "#/$defs/progression"}]}
+_VALUES = {
+    "anyOf": [{"type": "array", "items": NUMBER, "minItems": 1}, {"$ref": "#/$defs/progression"}]
+}
 DEFINITIONS = {
-    "product": {"type": "object", "minProperties": 1, "propertyNames": AXIS_NAME, "additionalProperties": _VALUES},
+    "product": {
+        "type": "object",
+        "minProperties": 1,
+        "propertyNames": AXIS_NAME,
+        "additionalProperties": _VALUES,
+    },
     "progression": _RANGE.schema,
 }
 """Schemas of its parts."""

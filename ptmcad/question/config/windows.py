@@ -30,7 +30,9 @@ class Window(NamedTuple):
 def axes_in(entry: Node) -> dict[str, Window]:
     axes = with_ranges(entry, "two axes with their ranges", AXES)
     if len(axes) != 2:
-        entry.note(entry.fault(f"{len(axes)} axes are given: a slice has two, the horizontal one first"))
+        entry.note(
+            entry.fault(f"{len(axes)} axes are given: a slice has two, the horizontal one first")
+        )
     return dict(entry.gathered(lambda axis: (axis.name, _window(axis)), axes.values()))
 
 
@@ -54,7 +56,9 @@ def with_ranges(entry: Node, what: str, like: str) -> dict[str, Node]:
     texts = [part.text if isinstance(part, Scalar) and not part.is_null else "" for part in parts]
     names = [name.strip() for text in texts for name in text.split(",")]
     if names and all(map(NAME.fullmatch, names)):
-        raise entry.fault(f"expected {what}, such as {like}; no range is given for {' and '.join(names)}")
+        raise entry.fault(
+            f"expected {what}, such as {like}; no range is given for {' and '.join(names)}"
+        )
     return entry.mapping(MAX_VALUES, expected=f"expected {what}, such as {like}")
 
 
@@ -70,9 +74,13 @@ def window_of(entry: Node, what: str, like: str) -> Window:
 
 
 def check_members(node: Written) -> Written:
-    """The members of a family as written; refuses what can neither be a list of values nor a number of members."""
+    """The members of a family as written; refuses what can neither be a list of values nor a number
+    of members.
+    """
     if isinstance(node, Tree):
-        raise node.place.error("expected a list of values such as [-20, -10, 0], or how many, such as 9")
+        raise node.place.error(
+            "expected a list of values such as [-20, -10, 0], or how many, such as 9"
+        )
     if isinstance(node, Scalar) and (names := names_in_scalar(number_text(node))):
         raise node.place.error(
             f"{names[0][:40]} is neither how many members there are, 2 to {MAX_MEMBERS}, nor a list of values such as "

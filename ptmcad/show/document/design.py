@@ -65,7 +65,9 @@ def _made(**entries: Any) -> BestDesign:
     """Refuse what contradicts itself."""
     found = BestDesign(**entries)
     names = [axis.name for axis in found.over]
-    if (found.best is None) != (found.value is None) or (found.best is not None and list(found.best) != names):
+    if (found.best is None) != (found.value is None) or (
+        found.best is not None and list(found.best) != names
+    ):
         raise ValueError("the best design is not one of the parameters that it is over")
     if found.best is not None:
         if not all(axis.low <= found.best[axis.name] <= axis.high for axis in found.over):
@@ -73,10 +75,18 @@ def _made(**entries: Any) -> BestDesign:
         if tuple(found.best.values()) not in {point.at for point in found.points}:
             raise ValueError("the best design is not among those that were evaluated")
     low = Fraction(0) if found.value is None else found.value.low
-    claimed = found.bound is not None and found.value is not None and found.bound <= (1 + found.tolerance) * low
+    claimed = (
+        found.bound is not None
+        and found.value is not None
+        and found.bound <= (1 + found.tolerance) * low
+    )
     if found.proved != claimed:
         raise ValueError("what is said to be proved does not follow from the bound")
-    if found.boxes and found.bound is not None and max(box.bound for box in found.boxes) > found.bound:
+    if (
+        found.boxes
+        and found.bound is not None
+        and max(box.bound for box in found.boxes) > found.bound
+    ):
         raise ValueError("a box has a larger bound than all of them")
     if any(len(box.ranges) != len(names) for box in found.boxes):
         raise ValueError("a box has not as many ranges as there are parameters")
@@ -100,5 +110,7 @@ def _model_of(node: Node) -> Model:
 
 
 _MODEL: Codec[Model] = Codec(
-    _model, _model_of, {"anyOf": [{"type": "string"}, {"type": "object", "minProperties": 1, "maxProperties": 1}]}
+    _model,
+    _model_of,
+    {"anyOf": [{"type": "string"}, {"type": "object", "minProperties": 1, "maxProperties": 1}]},
 )

@@ -1,7 +1,8 @@
-"""A family as a JSON document: its free parameter, its surfaces, its changes, and the files of its members' maps.
+"""A family as a JSON document: its free parameter, its surfaces, its changes, and the files of its
+members' maps.
 
-Guarantee: numbers are exact; reading gives what was written, and refuses what contradicts itself. The maps themselves
-are documents of their own, in files beside this one.
+Guarantee: numbers are exact; reading gives what was written, and refuses what contradicts itself.
+The maps themselves are documents of their own, in files beside this one.
 """
 
 from __future__ import annotations
@@ -69,7 +70,15 @@ def write_family(family: FamilyMap, files: Sequence[str]) -> str:
     files : names of the members' files.
     """
     members = tuple(zip(family.values, files, strict=True))
-    stored = StoredFamily(family.name, family.title, family.free, family.text, family.surfaces, members, family.changes)
+    stored = StoredFamily(
+        family.name,
+        family.title,
+        family.free,
+        family.text,
+        family.surfaces,
+        members,
+        family.changes,
+    )
     return document_text(FORMAT, _codec(family.free).write(stored))
 
 
@@ -115,7 +124,11 @@ def _family(**entries: Any) -> StoredFamily:
         raise ValueError(f"the free parameter {free.name} is another one")
     if not 1 <= len(values) <= MAX_MEMBERS or any(a >= b for a, b in pairwise(values)):
         raise ValueError("the members' values do not increase")
-    if values[0] < free.low or values[-1] > free.high or len({*found.surfaces}) < len(found.surfaces):
+    if (
+        values[0] < free.low
+        or values[-1] > free.high
+        or len({*found.surfaces}) < len(found.surfaces)
+    ):
         raise ValueError("a member is outside of the range, or a surface is listed twice")
     return found
 
@@ -137,9 +150,14 @@ def changes_codec(free: Axis) -> Codec[Changes]:
     def made(changes: Any, between: Any, **entries: Any) -> Changes:
         if entries["complete"] and not all(change.is_exact for change in changes):
             raise ValueError("a value that is not exact stands where one has to be")
-        ends = [free.low, *(end for change in changes for end in (change.value.low, change.value.high)), free.high]
+        ends = [
+            free.low,
+            *(end for change in changes for end in (change.value.low, change.value.high)),
+            free.high,
+        ]
         if len(between) != len(changes) + 1 or any(
-            not low <= value <= high for low, (value, _), high in zip(ends[::2], between, ends[1::2], strict=True)
+            not low <= value <= high
+            for low, (value, _), high in zip(ends[::2], between, ends[1::2], strict=True)
         ):
             raise ValueError("the values between the changes do not lie between them")
         values, arrangements = zip(*between, strict=True)

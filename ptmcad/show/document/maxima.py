@@ -9,13 +9,31 @@ from typing import Any
 
 from ptmcad.answer.intervals import End
 from ptmcad.answer.widths import Attainment, Maximum, Place
-from ptmcad.show.document.numbers import ALGEBRAIC, INTERVAL, algebraic_with_decimal, itself, with_decimal
-from ptmcad.text.codec import Codec, Key, by_name, choice, converted, derived, listed, optional, record, record_of
+from ptmcad.show.document.numbers import (
+    ALGEBRAIC,
+    INTERVAL,
+    algebraic_with_decimal,
+    itself,
+    with_decimal,
+)
+from ptmcad.text.codec import (
+    Codec,
+    Key,
+    by_name,
+    choice,
+    converted,
+    derived,
+    listed,
+    optional,
+    record,
+    record_of,
+)
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
 
 def maximum(over: str, digits: int) -> Codec[Maximum]:
-    """The codec of a largest width; attainment is not decided where it is not told, as in older documents.
+    """The codec of a largest width; attainment is not decided where it is not told, as in older
+    documents.
 
     Parameters
     ----------
@@ -30,10 +48,14 @@ def maximum(over: str, digits: int) -> Codec[Maximum]:
 
     def made(attainment: Attainment, **entries: Any) -> Maximum:
         decided = attainment is not Attainment.UNDECIDED
-        return Maximum(attained=attainment is not Attainment.APPROACHED if decided else None, **entries)
+        return Maximum(
+            attained=attainment is not Attainment.APPROACHED if decided else None, **entries
+        )
 
     number: Codec[End] = converted(
-        algebraic_with_decimal(text), AlgebraicNumber.of, lambda n: n if n.exact is None else n.exact
+        algebraic_with_decimal(text),
+        AlgebraicNumber.of,
+        lambda n: n if n.exact is None else n.exact,
     )
     enclosed: Codec[Enclosure] = record(
         lambda enclosure: enclosure, decimal=derived(decimal), enclosure=Key(INTERVAL, itself)

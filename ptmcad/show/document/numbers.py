@@ -1,7 +1,7 @@
 """Algebraic numbers, enclosures and axes as parts of JSON documents.
 
-Guarantee: numbers are exact; reading what was written gives an equal value, and words and decimals that are not those
-of the numbers are refused.
+Guarantee: numbers are exact; reading what was written gives an equal value, and words and decimals
+that are not those of the numbers are refused.
 """
 
 from __future__ import annotations
@@ -61,15 +61,22 @@ INTERVAL: Codec[Enclosure] = converted(
 _POLYNOMIAL = listed(INTEGER).narrowed(minItems=2)
 ALGEBRAIC = record_of(AlgebraicNumber, {}, _algebraic, polynomial=_POLYNOMIAL)
 NUMBER: Codec[AlgebraicNumber | Enclosure] = either(
-    "polynomial", lambda value: isinstance(value, AlgebraicNumber), ALGEBRAIC, record_of(Enclosure, {}, _enclosure)
+    "polynomial",
+    lambda value: isinstance(value, AlgebraicNumber),
+    ALGEBRAIC,
+    record_of(Enclosure, {}, _enclosure),
 )
 AXIS = record_of(Axis, name=LINE)
 
 
 def with_decimal(text: Callable[[Any], str | None]) -> Codec[Any]:
     """The window's edge, or an algebraic number, beside its decimal, which a function makes."""
-    edge: Codec[Fraction] = record(lambda window: window, window=Key(RATIONAL, itself), decimal=derived(text))
-    return either("window", lambda end: isinstance(end, Fraction), edge, algebraic_with_decimal(text))
+    edge: Codec[Fraction] = record(
+        lambda window: window, window=Key(RATIONAL, itself), decimal=derived(text)
+    )
+    return either(
+        "window", lambda end: isinstance(end, Fraction), edge, algebraic_with_decimal(text)
+    )
 
 
 def algebraic_with_decimal(text: Callable[[Any], str | None]) -> Codec[AlgebraicNumber]:
@@ -88,7 +95,8 @@ def merged(one: Schema, other: Schema) -> Schema:
     both = {**one["properties"], **other["properties"]}
     shared = one["properties"].keys() & other["properties"].keys()
     properties = {
-        n: merged(one["properties"][n], other["properties"][n]) if n in shared else s for n, s in both.items()
+        n: merged(one["properties"][n], other["properties"][n]) if n in shared else s
+        for n, s in both.items()
     }
     needed = [name for name in one["required"] if name in other["required"]]
     return {**one, "properties": properties, "required": needed}

@@ -1,9 +1,9 @@
 """The equilibria at a point as a JSON document, docs/poses.schema.json, and back.
 
-Guarantee: reading what was written gives equal `Poses`. A number is written as text with all digits right, or with a
-bound of what it differs from them, and as the middle and radius of its enclosure, both exact; a document whose texts
-and enclosures disagree is refused, like one with a key or a value that does not belong there, with the place of the
-first fault.
+Guarantee: reading what was written gives equal `Poses`. A number is written as text with all digits
+right, or with a bound of what it differs from them, and as the middle and radius of its enclosure,
+both exact; a document whose texts and enclosures disagree is refused, like one with a key or a
+value that does not belong there, with the place of the first fault.
 """
 
 from __future__ import annotations
@@ -74,7 +74,9 @@ def read_poses(text: str) -> Poses:
 
 
 def _made(**entries: Any) -> Poses:
-    """Refuse poses that have not the parameters of their model, or not as many unknowns or torsion springs."""
+    """Refuse poses that have not the parameters of their model, or not as many unknowns or torsion
+    springs.
+    """
     found = Poses(**entries)
     check_names(found.model, found.parameters)
     angles, reals = len(found.model.angles), len(found.model.reals)
@@ -99,7 +101,9 @@ def poses_codec(digits: int) -> Codec[Poses]:
     )
     known: Known = {Fraction: exact, Enclosure: number}
     bare, free = (_pose(known, free) for free in (False, True))
-    pose: Codec[Pose] = either(next(iter(POSE_COLUMNS)), lambda pose: pose.has_predicates, free, bare)
+    pose: Codec[Pose] = either(
+        next(iter(POSE_COLUMNS)), lambda pose: pose.has_predicates, free, bare
+    )
     return record_of(
         Poses,
         {**known, Pose: pose._replace(schema=merged(bare.schema, free.schema))},
@@ -131,7 +135,10 @@ def _pose(known: Known, free: bool) -> Codec[Pose]:
         further=None,
         nodes=named(listed(known[Enclosure], 2), _name),
         **unless_default(Pose, "reals", "torsion", known=known),
-        **{name: Key(optional(TRUTH), entry_of="further") for name in (POSE_COLUMNS if free else ())},
+        **{
+            name: Key(optional(TRUTH), entry_of="further")
+            for name in (POSE_COLUMNS if free else ())
+        },
     )
 
 

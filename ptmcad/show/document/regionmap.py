@@ -1,9 +1,11 @@
-"""A region map as a JSON document, docs/region-map.schema.json, and back: the stored result with its certificate.
+"""A region map as a JSON document, docs/region-map.schema.json, and back: the stored result with
+its certificate.
 
-Guarantee: reading what was written gives an equal map; numbers are written exactly, areas of an exact map as decimals
-of 18 digits rounded outwards; the same map gives the same text, timings apart. A document that is not one is refused
-with the place of the first fault: every key must be known and present, every value of its type and within limits, and
-no key may occur twice. Whether what it claims is true is not asked here; `ptmcad.verify` does that.
+Guarantee: reading what was written gives an equal map; numbers are written exactly, areas of an
+exact map as decimals of 18 digits rounded outwards; the same map gives the same text, timings
+apart. A document that is not one is refused with the place of the first fault: every key must be
+known and present, every value of its type and within limits, and no key may occur twice. Whether
+what it claims is true is not asked here; `ptmcad.verify` does that.
 """
 
 from __future__ import annotations
@@ -131,14 +133,22 @@ def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) 
         ),
         PlanStep: record_of(PlanStep, **unless_default(PlanStep, "saving")),
     }  # fmt: skip
-    # an area that a checker is to confirm needs no more digits; one that is a sum of rectangles is exact as it is
+    # an area that a checker is to confirm needs no more digits; one that is a sum of rectangles is
+    # exact as it is
     area: Codec[Any] = (
-        listed(SHARE, 2) if certified else Codec(_outwards, listed(SHARE, 2).read, listed(SHARE, 2).schema)
+        listed(SHARE, 2)
+        if certified
+        else Codec(_outwards, listed(SHARE, 2).read, listed(SHARE, 2).schema)
     )
     known[Status] = _STATUS
     known[Component] = record_of(Component, known, **unless_default(Component, "continuum"))
-    predicates = {name: each for name, each in PREDICATES.items() if certified or not each.needs_free_lengths}
-    further = {name: _ALWAYS if each.is_always_stored else _WHERE_COUNTED for name, each in predicates.items()}
+    predicates = {
+        name: each for name, each in PREDICATES.items() if certified or not each.needs_free_lengths
+    }
+    further = {
+        name: _ALWAYS if each.is_always_stored else _WHERE_COUNTED
+        for name, each in predicates.items()
+    }
     known[Region] = record_of(Region, known, area=area, index=INDEX, further=None, **further)
     stack = _NO_STACK if certified else NATURAL
     known[Cell] = record_of(Cell, known, index=INDEX, stack=stack, further=None, **further)

@@ -1,7 +1,7 @@
 """A slice and its model as parts of JSON documents.
 
-Guarantee: reading what was written gives an equal slice: a built-in mechanism by its name, any other model by its whole
-description.
+Guarantee: reading what was written gives an equal slice: a built-in mechanism by its name, any
+other model by its whole description.
 """
 
 from __future__ import annotations
@@ -14,7 +14,19 @@ from ptmcad.model import Model, built_in, described, described_system, known_of,
 from ptmcad.model.closed import without_loops
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import MAX_UNIT, Axes, Axis, Slice
-from ptmcad.text.codec import DATA, RATIONAL, TEXT, Codec, Key, choice, converted, line, listed, named, record
+from ptmcad.text.codec import (
+    DATA,
+    RATIONAL,
+    TEXT,
+    Codec,
+    Key,
+    choice,
+    converted,
+    line,
+    listed,
+    named,
+    record,
+)
 from ptmcad.text.expressions import Expression
 from ptmcad.text.expressions import axis as axis_function
 from ptmcad.text.node import Node
@@ -30,19 +42,27 @@ UNITS = Key(named(line(MAX_UNIT)), default={})
 
 def stored_model(model: Model) -> Any:
     """The model's name where that says all, else its description."""
-    return {"name": model.name, **model.source} if model.source and model.name not in built_in() else model.name
+    return (
+        {"name": model.name, **model.source}
+        if model.source and model.name not in built_in()
+        else model.name
+    )
 
 
 def model_from(kind: str, data: Mapping[str, Any]) -> Model:
     """The model of a description, which is that of a mechanism or of a system."""
-    return described_system(data) if kind == "system" else without_loops(recognised(described(data)))
+    return (
+        described_system(data) if kind == "system" else without_loops(recognised(described(data)))
+    )
 
 
 def _model(node: Node) -> Model:
     values = node.mapping()
     found = [kind for kind in _DESCRIPTIONS if kind in values]
     if len(found) != 1:
-        raise node.fault("holds both a mechanism and a system" if found else "lacks the key 'mechanism'")
+        raise node.fault(
+            "holds both a mechanism and a system" if found else "lacks the key 'mechanism'"
+        )
     kind, place = found[0], values[found[0]]
     if kind == "mechanism" and isinstance(place.value, str):
         return place.made(known_of, place.line(MAX_NAME))
@@ -75,7 +95,9 @@ def _axes(found: Mapping[str, tuple[Fraction, ...]]) -> Axes:
 
 
 _AXES: Codec[Axes] = converted(
-    named(listed(RATIONAL, 2)), lambda axes: {axis.name: (axis.low, axis.high) for axis in axes}, _axes
+    named(listed(RATIONAL, 2)),
+    lambda axes: {axis.name: (axis.low, axis.high) for axis in axes},
+    _axes,
 ).narrowed(minProperties=2, maxProperties=2)
 
 
@@ -110,7 +132,9 @@ def slice_over(names: tuple[str, str], **keys: Codec[Any] | Key | None) -> Codec
     """The codec of a slice over axes of these names, with some keys in place of its own."""
     known = {name: axis_function(k) for k, name in enumerate(names)}
     expression: Codec[Expression] = Codec(
-        lambda found: found.to_text(names), lambda node: node.made(parse, node.text(), known), TEXT.schema
+        lambda found: found.to_text(names),
+        lambda node: node.made(parse, node.text(), known),
+        TEXT.schema,
     )
     own: dict[str, Any] = {
         "name": Codec(str, _file_name, line(MAX_NAME).schema), "title": line(MAX_TITLE), "model": MODEL, "axes": _AXES,

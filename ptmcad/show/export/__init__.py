@@ -1,7 +1,7 @@
 """A discriminant variety in the languages of other programs, as LaTeX, as JSON and as text.
 
-Guarantee: every format has every component of the variety (the input for QEPCAD those that have a point in the window),
-exactly; the program that a format is meant for reads the text as it is.
+Guarantee: every format has every component of the variety (the input for QEPCAD those that have a
+point in the window), exactly; the program that a format is meant for reads the text as it is.
 """
 
 from __future__ import annotations
@@ -23,7 +23,10 @@ __all__ = ["FORMAT", "FORMATS", "variety_text"]
 FORMATS: Mapping[str, Callable[[SliceVariety], str]] = {
     "text": listing,
     "json": document,
-    **{style.value: partial(code, style=style) for style in (Style.SYMPY, Style.MAPLE, Style.MATHEMATICA)},
+    **{
+        style.value: partial(code, style=style)
+        for style in (Style.SYMPY, Style.MAPLE, Style.MATHEMATICA)
+    },
     "qepcad": qepcad,
     "msolve": msolve,
     "latex": latex,
@@ -39,5 +42,7 @@ def variety_text(variety: SliceVariety, format: str) -> str:
         For an unknown format.
     """
     if format not in FORMATS:
-        raise ConfigError(f"the format {format!r} is not among {', '.join(FORMATS)}{did_you_mean(format, FORMATS)}")
+        raise ConfigError(
+            f"the format {format!r} is not among {', '.join(FORMATS)}{did_you_mean(format, FORMATS)}"
+        )
     return FORMATS[format](variety)

@@ -17,7 +17,9 @@ _LANGUAGES = {
     Style.MAPLE: ("# {}", "variety := [", "]:"),
     Style.MATHEMATICA: ("(* {} *)", "variety = {{", "}};"),
 }
-"""Of each a comment, how the list begins, after the symbols where these have to be defined, and how it ends."""
+"""Of each a comment, how the list begins, after the symbols where these have to be defined, and how
+it ends.
+"""
 
 
 def code(variety: SliceVariety, style: Style) -> str:
@@ -32,6 +34,8 @@ def code(variety: SliceVariety, style: Style) -> str:
     last = len(variety.components)
     for k, component in enumerate(variety.components, start=1):
         lines.append("    " + comment.format(f"{k}: {describe(component, names)}"))
-        lines += [f"    {line}" for line in polynomial_lines(component.polynomial, names, style, _WIDTH)]
+        lines += [
+            f"    {line}" for line in polynomial_lines(component.polynomial, names, style, _WIDTH)
+        ]
         lines[-1] += "," * (k < last)
     return "\n".join([*lines, end.format()]) + "\n"

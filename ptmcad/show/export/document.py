@@ -12,7 +12,17 @@ from ptmcad.answer.regionmap import Component
 from ptmcad.answer.slicevariety import EliminationSystem, SliceVariety
 from ptmcad.question.slice import Slice
 from ptmcad.show.document.slice import polynomial_over, slice_over
-from ptmcad.text.codec import NATURAL, POSITIVE, TEXT, Codec, derived, document_text, listed, named, record_of
+from ptmcad.text.codec import (
+    NATURAL,
+    POSITIVE,
+    TEXT,
+    Codec,
+    derived,
+    document_text,
+    listed,
+    named,
+    record_of,
+)
 from ptmcad.text.plane import PlanePolynomial
 
 FORMAT = "ptmcad-variety/1"
@@ -33,7 +43,9 @@ def variety_codec(names: tuple[str, str]) -> Codec[SliceVariety]:
         terms=derived(lambda c: len(c.polynomial.terms), POSITIVE),
     )  # fmt: skip
     whole[EliminationSystem] = record_of(
-        EliminationSystem, axes=None, polynomials=derived(lambda system: system.texts(), listed(TEXT))
+        EliminationSystem,
+        axes=None,
+        polynomials=derived(lambda system: system.texts(), listed(TEXT)),
     )
     left_out = dict.fromkeys(("title", "text", "count", "reference", "units", "model"))
     whole[Slice] = slice_over(names, **left_out, mechanism=derived(attrgetter("mechanism")))

@@ -1,4 +1,5 @@
-"""The input of two other programs: QEPCAD's for the decomposition of the window, msolve's for the elimination.
+"""The input of two other programs: QEPCAD's for the decomposition of the window, msolve's for the
+elimination.
 
 Guarantee: each program reads its text to the end without an error.
 """
@@ -18,9 +19,10 @@ _WIDTH = 90
 def qepcad(variety: SliceVariety) -> str:
     """A session of QEPCAD that decomposes the window by the components that have a point in it.
 
-    The formula says that no component vanishes, the assumption that the point lies in the window; with
-    ``measure-zero-error`` QEPCAD lifts over open cells only. At the end it prints its projection factors and all cells
-    with their samples: those whose truth value is T are the open cells of the window.
+    The formula says that no component vanishes, the assumption that the point lies in the window;
+    with ``measure-zero-error`` QEPCAD lifts over open cells only. At the end it prints its
+    projection factors and all cells with their samples: those whose truth value is T are the open
+    cells of the window.
     """
     names = variety.slice.axis_names
     used = [c.polynomial for c in variety.components if not c.left_out]
@@ -31,7 +33,15 @@ def qepcad(variety: SliceVariety) -> str:
         for end, relation in ((axis.low, "> 0"), (axis.high, "< 0"))
     ]
     about = f"ptmcad variety, slice {slice_text(variety)}; {window(variety)}"
-    commands = ("measure-zero-error", "go", "go", "go", "d-proj-factors", "d-all-cells-in-subtree ()", "quit")
+    commands = (
+        "measure-zero-error",
+        "go",
+        "go",
+        "go",
+        "d-proj-factors",
+        "d-all-cells-in-subtree ()",
+        "quit",
+    )
     return "\n".join(
         (
             f"[ {about} ]",
@@ -58,8 +68,9 @@ def _edge(axis: int, end: Fraction) -> PlanePolynomial:
 def msolve(variety: SliceVariety) -> str:
     """The elimination system with the unknowns before the axes, over Q.
 
-    With n unknowns, inverses among them, ``msolve -e n -g 2`` prints the ideal of the polynomials in the two axes alone
-    that vanish where an equilibrium is singular; the CRITICAL components are the factors of its generator.
+    With n unknowns, inverses among them, ``msolve -e n -g 2`` prints the ideal of the polynomials
+    in the two axes alone that vanish where an equilibrium is singular; the CRITICAL components are
+    the factors of its generator.
     """
     names = symbols((*variety.system.unknowns, *variety.system.axes), Style.MSOLVE)
     polynomials = (text.replace(" ", "") for text in variety.system.texts(names))

@@ -1,6 +1,7 @@
 """A discriminant variety for reading: as text for the terminal and as LaTeX.
 
-Guarantee: every component with its kind, degrees and number of terms, and whole, on as many lines as it needs.
+Guarantee: every component with its kind, degrees and number of terms, and whole, on as many lines
+as it needs.
 """
 
 from __future__ import annotations
@@ -14,11 +15,14 @@ from ptmcad.text.numerals import text_of
 _WIDTH = 96
 _MAX_VALUE = 60
 _LATEX_WIDTH = 70
-"""What fills a line of an article in two-column landscape or in one column at 10 pt, with room for the number."""
+"""What fills a line of an article in two-column landscape or in one column at 10 pt, with room for
+the number.
+"""
 
 
 def fixed_parameters(variety: SliceVariety) -> str:
-    """What the slice fixes, such as ``L1 = 1, k = 100``: one line in which a long expression is cut.
+    """What the slice fixes, such as ``L1 = 1, k = 100``: one line in which a long expression is
+    cut.
 
     Loads that are zero and parameters that are axes are not named.
     """
@@ -45,7 +49,9 @@ def window(variety: SliceVariety) -> str:
 
 
 def describe(component: Component, names: tuple[str, str]) -> str:
-    """Kind, degree, degrees in the axes and number of terms of a component, and why it is left out if it is."""
+    """Kind, degree, degrees in the axes and number of terms of a component, and why it is left out
+    if it is.
+    """
     polynomial = component.polynomial
     i, j = polynomial.degrees
     text = (
@@ -71,7 +77,10 @@ def listing(variety: SliceVariety) -> str:
     ]
     for k, component in enumerate(variety.components, start=1):
         lines += ["", f"{k:<10}{describe(component, names)}"]
-        lines += [f"{'':10}{line}" for line in polynomial_lines(component.polynomial, names, Style.TEXT, _WIDTH)]
+        lines += [
+            f"{'':10}{line}"
+            for line in polynomial_lines(component.polynomial, names, Style.TEXT, _WIDTH)
+        ]
     return "\n".join(lines) + "\n"
 
 
@@ -81,13 +90,17 @@ def latex(variety: SliceVariety) -> str:
     x, y = symbols(names, Style.LATEX)
     fixed = fixed_parameters(variety)
     lines = [
-        f"% Discriminant variety of the slice {variety.slice.name}" + (f" ({fixed})" if fixed else ""),
+        f"% Discriminant variety of the slice {variety.slice.name}"
+        + (f" ({fixed})" if fixed else ""),
         f"% over {window(variety)}: the union of the curves on which a V_k vanishes.",
         r"% Needs \usepackage{amsmath}; put \allowdisplaybreaks before it where a polynomial is longer than a page.",
     ]
     for k, component in enumerate(variety.components, start=1):
         first, *others = polynomial_lines(component.polynomial, names, Style.LATEX, _LATEX_WIDTH)
-        rows = [f"V_{{{k}}}({x}, {y}) ={{}} & {first}", *(rf"& \quad {{}} {line}" for line in others)]
+        rows = [
+            f"V_{{{k}}}({x}, {y}) ={{}} & {first}",
+            *(rf"& \quad {{}} {line}" for line in others),
+        ]
         lines += [f"% {k}: {describe(component, names)}", r"\begin{align*}"]
         lines += [f"  {row} \\\\" for row in rows[:-1]]
         lines += [f"  {rows[-1]}", r"\end{align*}"]

@@ -1,6 +1,7 @@
 """A boundary surface as a mesh for other programs: Wavefront OBJ and Stanford PLY, as text.
 
-Guarantee: the same surface gives the same text. Floats are written so that they are read back as they are.
+Guarantee: the same surface gives the same text. Floats are written so that they are read back as
+they are.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ def _obj_lines(surface: BoundarySurface) -> Iterator[str]:
 
 
 def ply_text(surface: BoundarySurface) -> str:
-    """Stanford PLY in ASCII: a vertex has its member's number, a face its sheet's and the counts on both sides.
+    """Stanford PLY in ASCII: a vertex has its member's number, a face its sheet's and the counts on
+    both sides.
 
     Where counts are by index, they are given as places in a comment's list.
     """
@@ -38,7 +40,11 @@ def ply_text(surface: BoundarySurface) -> str:
         "format ascii 1.0",
         f"comment boundary surface over {', '.join(surface.names)}",
         f"comment {surface.words()}",
-        *([] if plain else [f"comment count {n} is {'-'.join(map(str, key))}" for key, n in number.items()]),
+        *(
+            []
+            if plain
+            else [f"comment count {n} is {'-'.join(map(str, key))}" for key, n in number.items()]
+        ),
         f"element vertex {len(surface.vertices)}",
         *(f"property double {name}" for name in "xyz"),
         "property int member",

@@ -18,7 +18,9 @@ DIGITS = 6
 
 
 def kind(branch: Branch, model: Model) -> str:
-    """What the solutions of a branch are called: stable, saddle, maximum, unstable, or by the model's noun."""
+    """What the solutions of a branch are called: stable, saddle, maximum, unstable, or by the
+    model's noun.
+    """
     return model.criterion.kind(branch.stable, branch.index).replace("solution", noun(model, 1))
 
 
@@ -35,7 +37,10 @@ def table(found: Branches) -> str:
     lines = [f"branches along {where}, without the last 1/100000 before critical values", ""]
     lines += aligned(rows)
     if found.undecided:
-        lines += ["", f"not all solutions could be told apart at {len(found.undecided)} of the values tried"]
+        lines += [
+            "",
+            f"not all solutions could be told apart at {len(found.undecided)} of the values tried",
+        ]
     return "\n".join(lines)
 
 

@@ -1,4 +1,5 @@
-"""The certified engine's intervals along a line, and operation ranges over the other axis, as tables.
+"""The certified engine's intervals along a line, and operation ranges over the other axis, as
+tables.
 
 Guarantee: every digit is right; what was not decided is called undecided and has no counts.
 """
@@ -21,7 +22,9 @@ from ptmcad.text.numerals import shortest_text
 def table(found: CertifiedIntervals, digits: int) -> str:
     """One row for each interval, then what lies between them."""
     peaks = any(i.cones is not None for i in found.intervals)  # of the paper's mechanism only
-    only_totals = all(i.index is None for i in found.intervals) and any(i.total is not None for i in found.intervals)
+    only_totals = all(i.index is None for i in found.intervals) and any(
+        i.total is not None for i in found.intervals
+    )
     heads = {"total": "total", "stable": "stable"}
     if not only_totals:
         heads["index"] = "min-saddle-max" if peaks else "index"
@@ -29,7 +32,9 @@ def table(found: CertifiedIntervals, digits: int) -> str:
         del heads["stable"]
     if peaks:
         heads["cones"] = "peaks"
-    lines = interval_rows(found, heads, lambda i: (_text(i.low, digits, up=True), _text(i.high, digits)))
+    lines = interval_rows(
+        found, heads, lambda i: (_text(i.low, digits, up=True), _text(i.high, digits))
+    )
     if found.changes:
         changes = [["at", "what is met"]]
         for change in found.changes:
@@ -39,14 +44,23 @@ def table(found: CertifiedIntervals, digits: int) -> str:
             changes.append([place, met(change)])
         lines += ["", *aligned(changes)]
     if peaks:
-        lines += ["", "peaks: configurations without length of spring A3A4 in which the energy has a peak"]
+        lines += [
+            "",
+            "peaks: configurations without length of spring A3A4 in which the energy has a peak",
+        ]
     return "\n".join(lines)
 
 
 def met(change: CertifiedChange) -> str:
-    """What is met, in words, without how it was looked for: folds with and without a short spring may be the same."""
+    """What is met, in words, without how it was looked for: folds with and without a short spring
+    may be the same.
+    """
     kinds = dict.fromkeys(name.partition(" with ")[0] for name in change.names)
-    return " and ".join(kinds) if change.proved else f"undecided whether there is a {' or a '.join(kinds)}"
+    return (
+        " and ".join(kinds)
+        if change.proved
+        else f"undecided whether there is a {' or a '.join(kinds)}"
+    )
 
 
 def width_table(found: CertifiedWidths, digits: int) -> str:
@@ -61,7 +75,9 @@ def width_table(found: CertifiedWidths, digits: int) -> str:
         yield known(one.width, min(digits, 6)) + ", a part of the window undecided" * row.undecided
 
     ranges = f"operation range: where there are at least {working_text(found.model, found.working)}"
-    return "\n".join([ranges, "", *width_rows(found, "operation range", note, cells), "", widest_text(found)])
+    return "\n".join(
+        [ranges, "", *width_rows(found, "operation range", note, cells), "", widest_text(found)]
+    )
 
 
 def widest_text(found: CertifiedWidths) -> str:

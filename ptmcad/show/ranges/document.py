@@ -1,7 +1,7 @@
 """Ranges, widths, paths and branches as a JSON document, docs/range.schema.json.
 
-Guarantee: parameters, ends and samples are written exactly; every digit of a decimal is right; the same answer gives
-the same text.
+Guarantee: parameters, ends and samples are written exactly; every digit of a decimal is right; the
+same answer gives the same text.
 """
 
 from __future__ import annotations
@@ -68,7 +68,9 @@ _AXIS = record_of(
 def _places(digits: int) -> dict[Any, Codec[Any]]:
     """The codecs of ends of intervals, with as many digits as are asked for and known."""
     exact = with_decimal(partial(end_text, digits=digits))
-    enclosed = record_of(Enclosure, decimal=derived(partial(settled, digits=digits), optional(TEXT)))
+    enclosed = record_of(
+        Enclosure, decimal=derived(partial(settled, digits=digits), optional(TEXT))
+    )
     return {
         Axis: _AXIS,
         Enclosure: enclosed,
@@ -76,7 +78,9 @@ def _places(digits: int) -> dict[Any, Codec[Any]]:
         End: exact,
         End | Enclosure: Codec(
             lambda end: (enclosed if isinstance(end, Enclosure) else exact).write(end),
-            lambda node: (enclosed if node.mapping().keys() == {"low", "high", "decimal"} else exact).read(node),
+            lambda node: (
+                enclosed if node.mapping().keys() == {"low", "high", "decimal"} else exact
+            ).read(node),
             {"anyOf": [exact.schema, enclosed.schema]},
         ),
     }
@@ -94,7 +98,11 @@ def _counted(digits: int) -> dict[Any, Codec[Any]]:
 
 def _counts(counts: Counts) -> list[int] | dict[str, int | None]:
     """Numbers by index, or without an index in all and of stable ones."""
-    return {"total": counts.total, "stable": counts.stable} if counts.index is None else list(counts.index)
+    return (
+        {"total": counts.total, "stable": counts.stable}
+        if counts.index is None
+        else list(counts.index)
+    )
 
 
 _COUNTS: Codec[Any] = Codec(
@@ -126,9 +134,13 @@ def line_codec(digits: int) -> Codec[CountIntervals]:
 def enclosed_codec(digits: int) -> Codec[CertifiedIntervals]:
     """The codec of the intervals of a line on which springs have free lengths."""
     known = _places(digits)
-    interval = record_of(CertifiedInterval, known, index=INDEX, cones=None, peaks=Key(field="cones"))
+    interval = record_of(
+        CertifiedInterval, known, index=INDEX, cones=None, peaks=Key(field="cones")
+    )
     change = record_of(CertifiedChange, known, names=None, met=Key(field="names"))
-    return record_of(CertifiedIntervals, {**known, CertifiedInterval: interval, CertifiedChange: change})
+    return record_of(
+        CertifiedIntervals, {**known, CertifiedInterval: interval, CertifiedChange: change}
+    )
 
 
 def over_codec(over: str, digits: int) -> Codec[OperationWidths]:
@@ -136,7 +148,9 @@ def over_codec(over: str, digits: int) -> Codec[OperationWidths]:
     known = _counted(digits)
     parts = listed(known[CountInterval])
     row = record_of(
-        WidthRow, known, operation=Key(parts, lambda row: [i for span in row.operation for i in span.parts])
+        WidthRow,
+        known,
+        operation=Key(parts, lambda row: [i for span in row.operation for i in span.parts]),
     )
     return record_of(
         OperationWidths, {**known, WidthRow: row}, name=None, model=None,
@@ -155,10 +169,17 @@ def bands_codec(digits: int) -> Codec[CertifiedWidths]:
 
 _NARROW: Codec[Enclosure] = in_words(partial(narrowly_known, digits=PATH_DIGITS), optional(TEXT))
 _POINTS: Known = {
-    kind: record_of(kind, {Enclosure: _NARROW}, sides=None, **unless_default(kind, "reals", known={Enclosure: _NARROW}))
+    kind: record_of(
+        kind,
+        {Enclosure: _NARROW},
+        sides=None,
+        **unless_default(kind, "reals", known={Enclosure: _NARROW}),
+    )
     for kind in (PathPoint, Target)
 }
-_ENERGY: Codec[Any] = in_words(lambda energy: energy and settled(energy, PATH_DIGITS), optional(TEXT))
+_ENERGY: Codec[Any] = in_words(
+    lambda energy: energy and settled(energy, PATH_DIGITS), optional(TEXT)
+)
 _PATH_END = record_of(
     PathEnd, {**_POINTS, **_places(PATH_DIGITS)}, fate=choice(Fate, by_name), text=derived(attrgetter("fate.value")),
     energy=_ENERGY, target_energy=_ENERGY, **unless_default(PathEnd, "among"),
@@ -205,5 +226,11 @@ def schema() -> Mapping[str, Any]:
 
 def document(name: str, mechanism: str, parts: Mapping[str, Any]) -> str:
     """The JSON text of an answer; ``parts`` has some of the entries line, enclosed, over and path."""
-    data = {"format": FORMAT, "name": name, "mechanism": mechanism, **parts, "versions": {"ptmcad": __version__}}
+    data = {
+        "format": FORMAT,
+        "name": name,
+        "mechanism": mechanism,
+        **parts,
+        "versions": {"ptmcad": __version__},
+    }
     return json.dumps(data, ensure_ascii=False, indent=1) + "\n"

@@ -16,14 +16,14 @@ from ptmcad.text.numerals import Numbers, equalities, magnitude, shortest_text
 MAX_DIGITS = 1000
 """That may be asked for."""
 NARROW = Fraction(1, 10**20)
-"""A number that is so nearly known and does not settle a digit is taken for the short decimal that it cannot leave."""
+"""A number that is so nearly known and does not settle a digit is taken for the short decimal that
+it cannot leave.
+"""
 
 
 def line_head(along: Axis, at: Numbers) -> str:
     """The window along a line, and what is fixed on it."""
-    return (
-        f"{along.name} in ({shortest_text(along.low)}, {shortest_text(along.high)}) at {equalities(at, shortest_text)}"
-    )
+    return f"{along.name} in ({shortest_text(along.low)}, {shortest_text(along.high)}) at {equalities(at, shortest_text)}"
 
 
 def end_text(end: End | Enclosure, digits: int) -> str:
@@ -41,7 +41,9 @@ def end_text(end: End | Enclosure, digits: int) -> str:
 
 
 def settled(enclosure: Enclosure, digits: int) -> str | None:
-    """The text of an enclosure that cannot be made narrower; None when it does not settle a single digit."""
+    """The text of an enclosure that cannot be made narrower; None when it does not settle a single
+    digit.
+    """
     for fewer in range(digits, 0, -1):
         if enclosure.settles(fewer):
             return enclosure.text(fewer)
@@ -49,18 +51,26 @@ def settled(enclosure: Enclosure, digits: int) -> str | None:
 
 
 def known(enclosure: Enclosure, digits: int) -> str:
-    """The text of a narrow enclosure; where it holds a decimal of so many digits, which it cannot settle, that one."""
+    """The text of a narrow enclosure; where it holds a decimal of so many digits, which it cannot
+    settle, that one.
+    """
     text = settled(enclosure, digits)
     if text is not None:
         return text
     size = max(abs(enclosure.low), abs(enclosure.high))
     unit = Fraction(10) ** (magnitude(size) + 1 - digits) if size else Fraction(1)
-    value = round(enclosure.center / unit) * unit if enclosure.low > 0 or enclosure.high < 0 else Fraction(0)
+    value = (
+        round(enclosure.center / unit) * unit
+        if enclosure.low > 0 or enclosure.high < 0
+        else Fraction(0)
+    )
     return Enclosure(value, value).text(digits)
 
 
 def narrowly_known(enclosure: Enclosure, digits: int) -> str | None:
-    """As many digits as the enclosure settles, or what `known` says of one that is narrow; None of a wider one."""
+    """As many digits as the enclosure settles, or what `known` says of one that is narrow; None of
+    a wider one.
+    """
     text = settled(enclosure, digits)
     return known(enclosure, digits) if text is None and enclosure.radius < NARROW else text
 
@@ -68,7 +78,8 @@ def narrowly_known(enclosure: Enclosure, digits: int) -> str | None:
 def width_text(interval: Span, digits: int) -> str:
     """The width of an interval as a decimal.
 
-    A width that is a short decimal or lies nearer to one than 10^-1000 is shown with as many digits as are certain.
+    A width that is a short decimal or lies nearer to one than 10^-1000 is shown with as many digits
+    as are certain.
     """
     bits = 128
     while True:
@@ -82,5 +93,7 @@ def width_text(interval: Span, digits: int) -> str:
 
 def finer(interval: Span, width: Fraction) -> Span:
     """The same interval with its ends isolated within ``width`` > 0."""
-    low, high = (e if isinstance(e, Fraction) else refined(e, width) for e in (interval.low, interval.high))
+    low, high = (
+        e if isinstance(e, Fraction) else refined(e, width) for e in (interval.low, interval.high)
+    )
     return Span(low, high)

@@ -39,7 +39,9 @@ def table(found: CountIntervals, digits: int = 10) -> str:
         heads["stable"] = "stable"
     if first.index is not None:
         heads["index"] = _INDEX_HEADS.get(len(first.index), "index")
-    lines = interval_rows(found, heads, lambda i: (end_text(i.low, digits), end_text(i.high, digits)))
+    lines = interval_rows(
+        found, heads, lambda i: (end_text(i.low, digits), end_text(i.high, digits))
+    )
     if found.changes:
         lines.append("")
         changes = [["at", f"as {name} increases", "root of"]]
@@ -54,7 +56,9 @@ def table(found: CountIntervals, digits: int = 10) -> str:
 
 
 def interval_rows(
-    found: CountIntervals | CertifiedIntervals, heads: Mapping[str, str], ends: Callable[[Any], Iterable[str]]
+    found: CountIntervals | CertifiedIntervals,
+    heads: Mapping[str, str],
+    ends: Callable[[Any], Iterable[str]],
 ) -> list[str]:
     """A line for each interval, below what is fixed.
 
@@ -82,7 +86,11 @@ _WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", 
 def operation_name(model: Model, number: int) -> str:
     """What the range of so many stable solutions is called: only a mechanism operates."""
     nouns = model.nouns
-    return nouns.range if number == nouns.usual else nouns.range_with.format(working_text(model, number))
+    return (
+        nouns.range
+        if number == nouns.usual
+        else nouns.range_with.format(working_text(model, number))
+    )
 
 
 def working_text(model: Model, number: int) -> str:
@@ -97,10 +105,18 @@ def nowhere(model: Model, number: int) -> str:
 
 
 def _range_text(interval: Span, digits: int) -> str:
-    edges = [side for side, end in (("lower", interval.low), ("upper", interval.high)) if isinstance(end, Fraction)]
+    edges = [
+        side
+        for side, end in (("lower", interval.low), ("upper", interval.high))
+        if isinstance(end, Fraction)
+    ]
     note = ""
     if edges:
-        note = f" (its {edges[0]} end is the window's edge)" if len(edges) == 1 else " (the whole window)"
+        note = (
+            f" (its {edges[0]} end is the window's edge)"
+            if len(edges) == 1
+            else " (the whole window)"
+        )
     low, high = end_text(interval.low, digits), end_text(interval.high, digits)
     return f"{low} to {high}, width {width_text(interval, digits)}{note}"
 
@@ -110,7 +126,9 @@ def formula(end: End, name: str) -> str:
     if isinstance(end, Fraction):
         return ""
     text = PlanePolynomial.of((k, 0, c) for k, c in enumerate(end.polynomial)).text((name, "_"))
-    return text if len(text) <= MAX_POLYNOMIAL else f"a polynomial of degree {end.degree}, in the JSON"
+    return (
+        text if len(text) <= MAX_POLYNOMIAL else f"a polynomial of degree {end.degree}, in the JSON"
+    )
 
 
 def width_rows(
@@ -143,7 +161,10 @@ def width_table(found: OperationWidths, digits: int = 10) -> str:
             yield end_text(end, digits) + " *" * isinstance(end, Fraction)
         yield width_text(span, digits)
 
-    lines = [*width_rows(found, range_name, lambda row: "degenerate" if row.remark else "none", cells), ""]
+    lines = [
+        *width_rows(found, range_name, lambda row: "degenerate" if row.remark else "none", cells),
+        "",
+    ]
     if not found.maxima:
         lines.append(f"widest {range_name}: none, {nowhere(found.model, found.working)}")
     for m in found.maxima:
@@ -153,7 +174,9 @@ def width_table(found: OperationWidths, digits: int = 10) -> str:
 
 def maximum_text(found: Maximum, over: str, digits: int) -> str:
     """A maximum in words."""
-    low, high = (decimal(end, up, 4) for end, up in ((found.width.low, False), (found.width.high, True)))
+    low, high = (
+        decimal(end, up, 4) for end, up in ((found.width.low, False), (found.width.high, True))
+    )
     return f"width {settled(found.width, digits) or f'from {low} to {high}'}, {found.words(over, digits)}"
 
 
@@ -167,7 +190,9 @@ def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
         heights = _heights(model)
         side = f"; {_side(path, heights)} {where}" if heights else ""
         at = f"{name} = {shortest_text(path.start)}"
-        lines.append(f"{model.nouns.pose} {path.number} at {at}: {_unknowns(place, model, digits)}{side}")
+        lines.append(
+            f"{model.nouns.pose} {path.number} at {at}: {_unknowns(place, model, digits)}{side}"
+        )
         ends = (("down", path.low), ("up", path.high))
         lines += [f"  {direction}: {_end(e, found, digits)}" for direction, e in ends]
     if found.joined and lines:
@@ -176,7 +201,11 @@ def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
             "numbers on both sides of it, and is not proved; where several stable ones are left, steepest descent says "
             "to which the mechanism snaps"
         )
-    return "\n".join(lines) if lines else f"no {followed(model)} at {name} = {shortest_text(found.start)}"
+    return (
+        "\n".join(lines)
+        if lines
+        else f"no {followed(model)} at {name} = {shortest_text(found.start)}"
+    )
 
 
 def _heights(model: Model) -> list[str]:
@@ -189,7 +218,11 @@ def _heights(model: Model) -> list[str]:
 def _side(path: PosePath, heights: Sequence[str]) -> str:
     if path.upright or path.reverse:
         return " and ".join(_signed(heights, ">" if path.upright else "<"))
-    return f"{', '.join(heights)} of mixed sign" if len(heights) > 1 else f"{heights[0]} of either sign"
+    return (
+        f"{', '.join(heights)} of mixed sign"
+        if len(heights) > 1
+        else f"{heights[0]} of either sign"
+    )
 
 
 def _signed(heights: Sequence[str], sign: str) -> list[str]:
@@ -207,7 +240,11 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
         return f"could not be followed beyond {name} = {shortest_text(end.last.value)}, before {at}"
     what = f"{at}: {_event(end, model)}"
     if end.target is None:
-        rests = f"under the {acting(model, found.moved)} it may never come to rest: " if found.moved else ""
+        rests = (
+            f"under the {acting(model, found.moved)} it may never come to rest: "
+            if found.moved
+            else ""
+        )
         unsaid = model.criterion.no_target
         return f"{what}; {rests}{unsaid}" if unsaid else what
     target = _unknowns(end.target, model, digits)
@@ -215,11 +252,18 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
         return f"{what}; the pose goes on, without a snap, as {target}"
     drop = None
     if end.energy is not None and end.target_energy is not None:
-        drop = settled(Enclosure(end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low), 5)
+        drop = settled(
+            Enclosure(
+                end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low
+            ),
+            5,
+        )
     heights = _heights(model)
     kind = f" ({_posture(end.target, heights)})" if heights else ""
     lower = drop or "an undecided amount"
-    return f"{what}; {model.nouns.whole} snaps to {target}{kind}, where the energy is lower by {lower}"
+    return (
+        f"{what}; {model.nouns.whole} snaps to {target}{kind}, where the energy is lower by {lower}"
+    )
 
 
 def _event(end: PathEnd, model: Model) -> str:
@@ -248,7 +292,11 @@ def _posture(point: Target, heights: Sequence[str]) -> str:
         return ", ".join(_signed(heights, ">"))
     if set(point.sides) == {-1}:
         return "reverse: " + ", ".join(_signed(heights, "<"))
-    return f"{', '.join(heights)} of mixed sign or zero" if len(heights) > 1 else f"{heights[0]} near zero"
+    return (
+        f"{', '.join(heights)} of mixed sign or zero"
+        if len(heights) > 1
+        else f"{heights[0]} near zero"
+    )
 
 
 def _unknowns(point: PathPoint | Target, model: Model, digits: int) -> str:
@@ -261,7 +309,9 @@ UNDECIDED = "undecided"
 
 
 def degrees(angle: Enclosure, digits: int) -> str:
-    """An angle in degrees, with as many digits as are settled; zero where it cannot be told from it."""
+    """An angle in degrees, with as many digits as are settled; zero where it cannot be told from
+    it.
+    """
     with ctx.workprec(200):
         ball = ball_of(angle.low).union(ball_of(angle.high)) * 180 / arb.pi()
         text = narrowly_known(enclosure_of(ball), digits)

@@ -1,4 +1,6 @@
-"""Pictures of results; but for those of the studies the only importer of matplotlib, loaded when the first is drawn."""
+"""Pictures of results; but for those of the studies the only importer of matplotlib, loaded when
+the first is drawn.
+"""
 
 from importlib import import_module
 from typing import Any
@@ -22,7 +24,9 @@ _FUNCTIONS = {
     "solid": ("solid_figure",),
     "sweepfilm": ("SweepFilm",),
 }
-"""What other rooms draw with, by the modules that have it: the report needs outlines and colours only."""
+"""What other rooms draw with, by the modules that have it: the report needs outlines and colours
+only.
+"""
 _MODULES = {function: module for module, functions in _FUNCTIONS.items() for function in functions}
 
 

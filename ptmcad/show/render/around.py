@@ -1,8 +1,9 @@
-"""The map with the stable poses at some of its points around it, each led to its point: the paper's own kind of figure.
+"""The map with the stable poses at some of its points around it, each led to its point: the paper's
+own kind of figure.
 
-Guarantee: points are where their exact coordinates are, and poses are those of the map's mechanism there. Poses of all
-points are drawn at one scale. Lines to the points cross neither each other nor text where
-`ptmcad.show.render.leaders` finds such courses.
+Guarantee: points are where their exact coordinates are, and poses are those of the map's mechanism
+there. Poses of all points are drawn at one scale. Lines to the points cross neither each other nor
+text where `ptmcad.show.render.leaders` finds such courses.
 """
 
 from __future__ import annotations
@@ -70,7 +71,11 @@ def _remedy(drawing: MapDrawing, points: Sequence[PointPoses]) -> str:
         return "give fewer points, or a size of your own"
     wide, tall = style.size
     for step in range(1, _STEPS):
-        larger = styled(style, size=(wide * _STEP**step, tall * _STEP**step)) if wide * _STEP**step < MAX_SIDE else None
+        larger = (
+            styled(style, size=(wide * _STEP**step, tall * _STEP**step))
+            if wide * _STEP**step < MAX_SIDE
+            else None
+        )
         if larger is None or larger.size is None:
             break
         try:
@@ -107,7 +112,9 @@ def _drawn(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
         tips = [_tip(axes, seen.whole.view.approximate_position(points[n][0])) for n in side]
         along = BlockColumn([blocks[n] for n in side], slot, frame, em, size[1])
         chart = moved.chart
-        order, courses = routed(tips, along.berths, texts, (chart[1] + 0.05, chart[1] + chart[3] - 0.05))
+        order, courses = routed(
+            tips, along.berths, texts, (chart[1] + 0.05, chart[1] + chart[3] - 0.05)
+        )
         for k, (block, place) in enumerate(along.placed(order)):
             _draw_block(figure, block, frame, place, style)
             _lead(figure, courses[k], block.number, style)
@@ -119,7 +126,9 @@ def _map_beside(drawing: MapDrawing) -> tuple[Any, Layout]:
     try:
         return drawing.fit()
     except ConfigError as error:
-        raise ConfigError("the map and its legend have no room beside the poses", key=error.key) from error
+        raise ConfigError(
+            "the map and its legend have no room beside the poses", key=error.key
+        ) from error
 
 
 def _moved(layout: Layout, left: float, size: Size) -> Layout:
@@ -146,7 +155,9 @@ def _texts(figure: Figure) -> list[Box]:
             box = text.get_window_extent(renderer)
             patch = text.get_bbox_patch()
             box = box if patch is None else patch.get_window_extent(renderer)
-            found.append((box.x0 / figure.dpi, box.y0 / figure.dpi, box.x1 / figure.dpi, box.y1 / figure.dpi))
+            found.append(
+                (box.x0 / figure.dpi, box.y0 / figure.dpi, box.x1 / figure.dpi, box.y1 / figure.dpi)
+            )
     return found
 
 
@@ -169,7 +180,9 @@ def _tip(axes: Any, at: Position) -> Position:
     return (chart.x0 + at[0] * chart.width) * width, (chart.y0 + at[1] * chart.height) * tall
 
 
-def _draw_block(figure: Figure, block: Block, frame: PanelFrame, slot: Slot, style: PictureStyle) -> None:
+def _draw_block(
+    figure: Figure, block: Block, frame: PanelFrame, slot: Slot, style: PictureStyle
+) -> None:
     """A point's head and poses."""
     line, left = 1.3 * style.base_font / 72, slot.start(block, frame)
     look = {"fontweight": "bold", "va": "center_baseline", "color": INK}
@@ -189,7 +202,16 @@ def _lead(figure: Figure, course: Course, number: int, style: PictureStyle) -> N
     """A line to a point of the map, and a mark there."""
     xs, ys = zip(*course, strict=True)
     stroke(figure, xs, ys, color="white", linewidth=2.2, zorder=8, solid_joinstyle="round")
-    stroke(figure, xs, ys, color=INK, linewidth=0.8, zorder=8, solid_joinstyle="round", gid=f"leader-{number}")
+    stroke(
+        figure,
+        xs,
+        ys,
+        color=INK,
+        linewidth=0.8,
+        zorder=8,
+        solid_joinstyle="round",
+        gid=f"leader-{number}",
+    )
     stroke(
         figure, xs[-1:], ys[-1:], marker="D", markersize=5.5 * style.base_font / 9, markerfacecolor="white",
         markeredgecolor=INK, markeredgewidth=1.2, linestyle="none", zorder=9, gid=f"point-{number}",

@@ -1,7 +1,8 @@
-"""The axes of a picture: symbols, units and scales that stay readable for windows of any size and place.
+"""The axes of a picture: symbols, units and scales that stay readable for windows of any size and
+place.
 
-Guarantee: the numbers at the ticks have few digits: a large offset and a power of ten are taken out, exactly, and put
-into the axis's name.
+Guarantee: the numbers at the ticks have few digits: a large offset and a power of ten are taken
+out, exactly, and put into the axis's name.
 """
 
 from __future__ import annotations
@@ -16,10 +17,10 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.units import unit, with_unit
 from ptmcad.text.numerals import decimal_places, magnitude, power_of_ten
 
-_LETTERS = (
-    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi"
+_LETTERS = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi"
+_GREEK = dict(
+    zip((*_LETTERS.split(), "chi", "psi", "omega"), "αβγδεζηθικλμνξοπρστυφχψω", strict=True)
 )
-_GREEK = dict(zip((*_LETTERS.split(), "chi", "psi", "omega"), "αβγδεζηθικλμνξοπρστυφχψω", strict=True))
 _GREEK |= {name.capitalize(): letter.upper() for name, letter in _GREEK.items()} | {"th": "θ"}
 _SUBSCRIPT = str.maketrans("0123456789x", "₀₁₂₃₄₅₆₇₈₉ₓ")
 
@@ -34,7 +35,9 @@ class Scale:
     high: float
 
     def name(self, symbol: str, most: int = 24) -> str:
-        """The name of what is shown, such as ``(k - 1000) / 10⁻³``; an offset of more characters is cut off."""
+        """The name of what is shown, such as ``(k - 1000) / 10⁻³``; an offset of more characters is
+        cut off.
+        """
         if self.offset:
             sign = "−" if self.offset > 0 else "+"
             symbol = f"{symbol} {sign} {_offset_text(abs(self.offset), most)}"
@@ -45,7 +48,8 @@ class Scale:
 
 
 def _offset_text(value: Fraction, most: int) -> str:
-    """A positive decimal, cut off after so many characters; of a small one its first digits are among them.
+    """A positive decimal, cut off after so many characters; of a small one its first digits are
+    among them.
 
     >>> [_offset_text(Fraction(text), 6) for text in ("0.25", "0.142857", "2.0408163e-53")]
     ['0.25', '0.142…', '2.040…·10⁻⁵³']
@@ -59,7 +63,8 @@ def _offset_text(value: Fraction, most: int) -> str:
 
 
 def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
-    """The scale for an interval, low < high, such that ticks have about so many digits more than they need.
+    """The scale for an interval, low < high, such that ticks have about so many digits more than
+    they need.
 
     >>> scale_of(Fraction(0), Fraction(2))
     Scale(offset=Fraction(0, 1), exponent=0, low=0.0, high=2.0)
@@ -82,11 +87,13 @@ def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
 
 
 def symbol(name: str) -> str:
-    """A parameter's name as it is printed: ``L1`` as L₁, ``F3x`` as F₃ₓ, ``rho`` as ρ, ``rho_max`` as ρ_max; other
-    names as they are.
+    """A parameter's name as it is printed: ``L1`` as L₁, ``F3x`` as F₃ₓ, ``rho`` as ρ, ``rho_max``
+    as ρ_max; other names as they are.
     """
     match = re.fullmatch(r"([A-Za-z]+?)(\d{1,2}x?)?(_\w*)?", name)
-    if match is None or not (letter := _GREEK.get(match[1], match[1] if len(match[1]) == 1 and not match[3] else "")):
+    if match is None or not (
+        letter := _GREEK.get(match[1], match[1] if len(match[1]) == 1 and not match[3] else "")
+    ):
         return name
     return letter + (match[2] or "").translate(_SUBSCRIPT) + (match[3] or "")
 
@@ -97,14 +104,20 @@ def with_symbols(text: str) -> str:
 
 
 def heading_of(slice: Slice) -> str:
-    """The slice's heading, with the symbols of its names: where axes have them, so has all that is said."""
+    """The slice's heading, with the symbols of its names: where axes have them, so has all that is
+    said.
+    """
     model = slice.model
-    return named(slice.heading, {*slice.parameters, *slice.axis_names, *model.unknowns, *model.shorthands})
+    return named(
+        slice.heading, {*slice.parameters, *slice.axis_names, *model.unknowns, *model.shorthands}
+    )
 
 
 def named(text: str, names: Container[str]) -> str:
     """A text with symbols in place of these names."""
-    return re.sub(r"[^\W\d]\w*", lambda match: symbol(match[0]) if match[0] in names else match[0], text)
+    return re.sub(
+        r"[^\W\d]\w*", lambda match: symbol(match[0]) if match[0] in names else match[0], text
+    )
 
 
 def axis_name(slice: Slice, axis: int) -> str:
@@ -114,7 +127,9 @@ def axis_name(slice: Slice, axis: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Dress:
-    """Sizes in points of the numbers at the ticks and of the axes' names, and the most intervals on each axis."""
+    """Sizes in points of the numbers at the ticks and of the axes' names, and the most intervals on
+    each axis.
+    """
 
     ticks: float = 9
     names: float = 11
@@ -127,7 +142,11 @@ SMALL = Dress(7, 7, (4, 4), small=True)
 
 
 def dress(
-    axes: Any, slice: Slice, x: tuple[Fraction, Fraction], y: tuple[Fraction, Fraction], how: Dress | None = None
+    axes: Any,
+    slice: Slice,
+    x: tuple[Fraction, Fraction],
+    y: tuple[Fraction, Fraction],
+    how: Dress | None = None,
 ) -> None:
     """Give matplotlib axes their limits, ticks and names; in small ones (insets) without units."""
     from matplotlib import rcParams
@@ -140,11 +159,15 @@ def dress(
     for number, (matplotlib_axis, interval) in enumerate(((axes.xaxis, x), (axes.yaxis, y))):
         scale = scale_of(*interval, digits=2 if small else 4)
         (axes.set_ylim if number else axes.set_xlim)(scale.low, scale.high)
-        matplotlib_axis.set_major_locator(MaxNLocator(nbins=how.intervals[number], steps=[1, 2, 2.5, 5, 10]))
+        matplotlib_axis.set_major_locator(
+            MaxNLocator(nbins=how.intervals[number], steps=[1, 2, 2.5, 5, 10])
+        )
         formatter = ScalarFormatter(useOffset=False)
         formatter.set_scientific(False)
         matplotlib_axis.set_major_formatter(formatter)
-        text = scale.name(_cut(symbol(slice.axes[number].name), 10 if small else 40), 9 if small else 24)
+        text = scale.name(
+            _cut(symbol(slice.axes[number].name), 10 if small else 40), 9 if small else 24
+        )
         known = "" if small else unit(slice, number)
         matplotlib_axis.set_label_text(with_unit(text, known), fontsize=how.names)
         axes.tick_params(

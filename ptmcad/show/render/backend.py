@@ -1,7 +1,8 @@
 """Matplotlib as it is needed here: loaded whatever the environment says of backends and settings.
 
-Guarantee: no backend is chosen but those that write files, and nothing is printed. What the environment names as the
-backend is what `matplotlib.rcParams` has afterwards, if matplotlib knows it, for a caller who shows pictures too.
+Guarantee: no backend is chosen but those that write files, and nothing is printed. What the
+environment names as the backend is what `matplotlib.rcParams` has afterwards, if matplotlib knows
+it, for a caller who shows pictures too.
 """
 
 from __future__ import annotations
@@ -31,8 +32,12 @@ def load_matplotlib() -> None:
 
     log = logging.getLogger("matplotlib")
     level, wanted = log.level, os.environ.get(_BACKEND)
-    log.setLevel(logging.ERROR)  # of a settings file that is not used, of a folder for caches that is not there
-    os.environ[_BACKEND] = "agg"  # another may not exist here: a notebook's, in an environment of its own
+    log.setLevel(
+        logging.ERROR
+    )  # of a settings file that is not used, of a folder for caches that is not there
+    os.environ[_BACKEND] = (
+        "agg"  # another may not exist here: a notebook's, in an environment of its own
+    )
     try:
         with loading():
             import matplotlib.backends.backend_agg

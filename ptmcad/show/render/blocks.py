@@ -1,7 +1,8 @@
-"""Where poses stand around a map: blocks of them for each point, at its two sides, on a page of some size.
+"""Where poses stand around a map: blocks of them for each point, at its two sides, on a page of
+some size.
 
-Guarantee: poses of all points have one scale, and no block overlaps another one or the map. What has no room is
-refused.
+Guarantee: poses of all points have one scale, and no block overlaps another one or the map. What
+has no room is refused.
 """
 
 from __future__ import annotations
@@ -83,7 +84,9 @@ class Slot:
 
 @dataclass(frozen=True, slots=True)
 class _PosePage:
-    """A page's width and, where it does not grow, its height; a panel's width in points, and how many side by side."""
+    """A page's width and, where it does not grow, its height; a panel's width in points, and how
+    many side by side.
+    """
 
     width: float
     height: float | None
@@ -93,7 +96,9 @@ class _PosePage:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """The points' blocks, and the numbers of those at the left and at the right of the map, from above."""
+    """The points' blocks, and the numbers of those at the left and at the right of the map, from
+    above.
+    """
 
     page: _PosePage
     frame: PanelFrame
@@ -114,8 +119,11 @@ class Plan:
         return max(heights) + 2 * GAP
 
 
-def sized(plan: Plan, style: PictureStyle, points: int) -> tuple[Position, list[float], PictureStyle]:
-    """The page's size, inches that poses take at the left and at the right, and the style of the map between.
+def sized(
+    plan: Plan, style: PictureStyle, points: int
+) -> tuple[Position, list[float], PictureStyle]:
+    """The page's size, inches that poses take at the left and at the right, and the style of the
+    map between.
 
     Raises
     ------
@@ -126,15 +134,21 @@ def sized(plan: Plan, style: PictureStyle, points: int) -> tuple[Position, list[
     taken = [_taken(number, page.panel) for number in plan.most]
     width = page.width - sum(taken)
     tall = _height(page, plan.tall(style.base_font / 72), width, style, points)
-    inner = style._replace(size=(width, tall), font_size=style.base_font, legend=style.legend or LegendPlace.BELOW)
+    inner = style._replace(
+        size=(width, tall), font_size=style.base_font, legend=style.legend or LegendPlace.BELOW
+    )
     return (page.width, tall), taken, inner
 
 
 def arranged(result: RegionMap, points: Sequence[PointPoses], style: PictureStyle) -> Plan:
-    """Half of the points at each side of the map, few all at the right; on a page of a given width as fits best."""
+    """Half of the points at each side of the map, few all at the right; on a page of a given width
+    as fits best.
+    """
     shown = [poses.working for _, poses in points]
     usual = len(points) // 2 if len(points) > 3 else 0
-    most = PAGE_HEIGHT if style.wide is not None else style.size[1] if style.size is not None else None
+    most = (
+        PAGE_HEIGHT if style.wide is not None else style.size[1] if style.size is not None else None
+    )
     found: list[tuple[float, Plan]] = []
     refused: ConfigError | None = None
     for left in sorted(range(len(points)), key=lambda n: abs(n - usual)):
@@ -165,7 +179,9 @@ def arranged(result: RegionMap, points: Sequence[PointPoses], style: PictureStyl
 
 @dataclass(frozen=True, slots=True)
 class BlockColumn:
-    """The blocks at one side of the map, from the slot at the top downwards on a page of some height."""
+    """The blocks at one side of the map, from the slot at the top downwards on a page of some
+    height.
+    """
 
     blocks: Sequence[Block]
     first: Slot
@@ -187,9 +203,13 @@ class BlockColumn:
 
 
 def _sides(points: Sequence[Point], left: int) -> tuple[list[int], list[int]]:
-    """Numbers of the points at the left of the map, which are so many, and at the right, from above."""
+    """Numbers of the points at the left of the map, which are so many, and at the right, from
+    above.
+    """
     order = sorted(range(len(points)), key=lambda n: points[n][0])
-    before, after = (sorted(part, key=lambda n: -points[n][1]) for part in (order[:left], order[left:]))
+    before, after = (
+        sorted(part, key=lambda n: -points[n][1]) for part in (order[:left], order[left:])
+    )
     return before, after
 
 
@@ -199,16 +219,21 @@ def _taken(number: int, panel: float) -> float:
 
 
 def _page(style: PictureStyle, numbers: Sequence[Sequence[int]]) -> _PosePage:
-    """The page for so many poses at each point at the left and at the right: side by side where that has room."""
+    """The page for so many poses at each point at the left and at the right: side by side where
+    that has room.
+    """
     scale = style.base_font / 9
     largest = max(max(side, default=0) for side in numbers)
     width = style.widest
     if width is None:
         most = [max(side, default=0) for side in numbers]
-        return _PosePage(scale * _MAP[0] + sum(_taken(number, PANEL) for number in most), None, PANEL, largest)
+        return _PosePage(
+            scale * _MAP[0] + sum(_taken(number, PANEL) for number in most), None, PANEL, largest
+        )
     for across in range(largest, 0, -1):
         most = [max((min(number, across) for number in side), default=0) for side in numbers]
-        # nearly half of the page is the map's; on a large page the poses do not grow beyond what they need
+        # nearly half of the page is the map's; on a large page the poses do not grow beyond what
+        # they need
         gaps = sum(_taken(number, 0.0) for number in most)
         room = (_SHARE * width - gaps) * 72 / sum(most)
         if room >= MIN_PANEL:
@@ -216,7 +241,8 @@ def _page(style: PictureStyle, numbers: Sequence[Sequence[int]]) -> _PosePage:
             return _PosePage(width, height, min(room, PANEL * max(1.0, scale)), across)
     least = sum(_taken(number, MIN_PANEL) for number in most) / _SHARE
     raise ConfigError(
-        f"poses beside the map need a width of {least + 0.01:.2f} inches, and there are {width:.2f}", key="size"
+        f"poses beside the map need a width of {least + 0.01:.2f} inches, and there are {width:.2f}",
+        key="size",
     )
 
 
@@ -228,13 +254,20 @@ def _height(page: _PosePage, tall: float, inner: float, style: PictureStyle, poi
     there = PAGE_HEIGHT if page.height is None else page.height
     if tall > there:
         raise ConfigError(
-            f"poses at {points} points need a height of {tall + 0.01:.2f} inches, and there are {there:.2f}", key="size"
+            f"poses at {points} points need a height of {tall + 0.01:.2f} inches, and there are {there:.2f}",
+            key="size",
         )
     return there if page.height is not None else min(there, natural)
 
 
 def _head(result: RegionMap, number: int, at: Point, poses: Poses) -> str:
-    where = ", ".join(assigned(axis.name, value) for axis, value in zip(result.slice.axes, at, strict=True))
+    where = ", ".join(
+        assigned(axis.name, value) for axis, value in zip(result.slice.axes, at, strict=True)
+    )
     stable = poses.known_stable
-    what = counted(poses.model, len(poses.equilibria)) if stable is None else f"{stable}\N{NO-BREAK SPACE}stable"
+    what = (
+        counted(poses.model, len(poses.equilibria))
+        if stable is None
+        else f"{stable}\N{NO-BREAK SPACE}stable"
+    )
     return f"{number}:  {where}; {what}"

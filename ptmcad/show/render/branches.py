@@ -1,6 +1,8 @@
-"""A bifurcation diagram: quantities of all solutions along a line, stable branches solid and the others broken.
+"""A bifurcation diagram: quantities of all solutions along a line, stable branches solid and the
+others broken.
 
-Guarantee: as of `ptmcad.show.render.ranges`; lines join what is next to each other, which is no claim.
+Guarantee: as of `ptmcad.show.render.ranges`; lines join what is next to each other, which is no
+claim.
 """
 
 from __future__ import annotations
@@ -32,14 +34,19 @@ def draw_branches(slice: Slice, found: Branches) -> Figure:
     """A panel for each quantity."""
     kinds = list(dict.fromkeys(kind(b, found.model) for b in found.branches))
     kinds.sort(key=_rank)
-    entries = (Entry(("branches",), strong=True), *(Entry((name,), line_mark(_look(name))) for name in kinds))
+    entries = (
+        Entry(("branches",), strong=True),
+        *(Entry((name,), line_mark(_look(name))) for name in kinds),
+    )
     shown = (with_symbols(name.replace(":", " ")) for name in found.quantities)
     names = [with_unit(*pair) for pair in zip(shown, found.units, strict=True)]
     words = f"{', '.join(found.quantities)} of all solutions along {found.along.name}: {', '.join(kinds)}."
     with settings():
         figure, panels = panelled(slice, found, names, entries, words)
         for number, axes in enumerate(panels):
-            for branch in sorted(found.branches, key=lambda b: bool(b.stable)):  # the stable ones on top
+            for branch in sorted(
+                found.branches, key=lambda b: bool(b.stable)
+            ):  # the stable ones on top
                 look = _look(kind(branch, found.model))
                 for xs, ys in _strokes(branch, number, found):
                     axes.plot(xs, ys, **look)
@@ -47,20 +54,32 @@ def draw_branches(slice: Slice, found: Branches) -> Figure:
 
 
 def draw_paths_and_branches(slice: Slice, paths: PosePaths, found: Branches) -> Figure:
-    """The paths of poses, and behind them the branches that no path follows; ``found`` has the unknowns, in order."""
-    others = [branch for branch in found.branches if branch.stable is False or _is_left(branch, paths, found)]
+    """The paths of poses, and behind them the branches that no path follows; ``found`` has the
+    unknowns, in order.
+    """
+    others = [
+        branch
+        for branch in found.branches
+        if branch.stable is False or _is_left(branch, paths, found)
+    ]
     kinds = sorted({kind(branch, found.model) for branch in others}, key=_rank)
-    further = [Entry((f"{name}, not followed",), line_mark(_look(name) | _BEHIND)) for name in kinds]
+    further = [
+        Entry((f"{name}, not followed",), line_mark(_look(name) | _BEHIND)) for name in kinds
+    ]
     figure = draw_paths(slice, paths, further)
     for number in range(len(found.quantities)):
         for branch in others:
             for xs, ys in _strokes(branch, number, found):
-                figure.axes[number].plot(xs, ys, zorder=1.5, **(_look(kind(branch, found.model)) | _BEHIND))
+                figure.axes[number].plot(
+                    xs, ys, zorder=1.5, **(_look(kind(branch, found.model)) | _BEHIND)
+                )
     return figure
 
 
 def _is_left(branch: Branch, paths: PosePaths, found: Branches) -> bool:
-    """Whether not all stable branches beside this stable one are followed: the paths are drawn over those that are."""
+    """Whether not all stable branches beside this stable one are followed: the paths are drawn over
+    those that are.
+    """
     middle = branch.points[len(branch.points) // 2].value
     ranges = [(b.points[0].value, b.points[-1].value) for b in found.branches if b.stable]
     followed = [(path.points[0].value, path.points[-1].value) for path in paths.paths]
@@ -68,7 +87,9 @@ def _is_left(branch: Branch, paths: PosePaths, found: Branches) -> bool:
     return branch.stable is True and number > known
 
 
-def _strokes(branch: Branch, number: int, found: Branches) -> Iterator[tuple[list[float], list[float]]]:
+def _strokes(
+    branch: Branch, number: int, found: Branches
+) -> Iterator[tuple[list[float], list[float]]]:
     """The line of a quantity, cut where it has none, and where an angle comes round."""
     turns = found.quantities[number].removeprefix("angle:") in found.model.angles
     xs: list[float] = []

@@ -1,8 +1,8 @@
 """Places for labels clear of drawn strokes and of each other.
 
-Guarantee: the same for the same drawing. A label covers a stroke, a box or another label only where none of the
-`TRIED` places within the bounds is free; then it stands where it covers the fewest. A line that
-leads to a label crosses boxes only where it must.
+Guarantee: the same for the same drawing. A label covers a stroke, a box or another label only where
+none of the `TRIED` places within the bounds is free; then it stands where it covers the fewest. A
+line that leads to a label crosses boxes only where it must.
 """
 
 from __future__ import annotations
@@ -32,7 +32,9 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A text and the point that it names; half its width and height; the direction that it had best lie in."""
+    """A text and the point that it names; half its width and height; the direction that it had best
+    lie in.
+    """
 
     text: str
     at: Position
@@ -42,7 +44,9 @@ class Label:
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A label's centre, and the end of a line that leads from its point to it when it lies far from there."""
+    """A label's centre, and the end of a line that leads from its point to it when it lies far from
+    there.
+    """
 
     label: Label
     center: Position
@@ -60,7 +64,9 @@ def polyline(points: Sequence[Position], half: float) -> Iterator[Stroke]:
         yield Stroke(start, end, half)
 
 
-def place(labels: Iterable[Label], strokes: Iterable[Stroke], boxes: Iterable[Box], bounds: Box) -> list[Placed]:
+def place(
+    labels: Iterable[Label], strokes: Iterable[Stroke], boxes: Iterable[Box], bounds: Box
+) -> list[Placed]:
     """Places for the labels, one after the other.
 
     Parameters
@@ -91,7 +97,9 @@ def _best(label: Label, strokes: Sequence[Stroke], boxes: Sequence[Box], bounds:
             if box[0] < bounds[0] or box[1] < bounds[1] or box[2] > bounds[2] or box[3] > bounds[3]:
                 continue
             leader = _edge(label.at, box) if distance > 11 else None
-            covered = sum(crosses(stroke, box) for stroke in strokes) + sum(overlap(box, other) for other in boxes)
+            covered = sum(crosses(stroke, box) for stroke in strokes) + sum(
+                overlap(box, other) for other in boxes
+            )
             passed = 0
             if leader is not None:
                 line = Stroke(label.at, leader, 0.5)
@@ -107,7 +115,9 @@ def _beside(label: Label, angle: float, distance: float) -> Position:
     """The centre of a label whose nearest edge or corner is at a distance from its point."""
     dx, dy = cos(angle), sin(angle)
     width, height = label.half
-    reach = min(width / abs(dx) if abs(dx) > 1e-9 else 1e9, height / abs(dy) if abs(dy) > 1e-9 else 1e9)
+    reach = min(
+        width / abs(dx) if abs(dx) > 1e-9 else 1e9, height / abs(dy) if abs(dy) > 1e-9 else 1e9
+    )
     return label.at[0] + dx * (reach + distance), label.at[1] + dy * (reach + distance)
 
 
@@ -132,7 +142,9 @@ def overlap(a: Box, b: Box) -> bool:
 
 
 def crosses(stroke: Stroke, box: Box) -> bool:
-    """Whether a stroke meets a box: its middle line is clipped to the box, which is made larger by half the width."""
+    """Whether a stroke meets a box: its middle line is clipped to the box, which is made larger by
+    half the width.
+    """
     low, high = 0.0, 1.0
     for k in (0, 1):
         origin, step = stroke.start[k], stroke.end[k] - stroke.start[k]
@@ -155,7 +167,11 @@ def distance(point: Position, stroke: Stroke) -> float:
     (ax, ay), (bx, by) = stroke.start, stroke.end
     dx, dy = bx - ax, by - ay
     square = dx * dx + dy * dy
-    t = 0.0 if square == 0 else min(1.0, max(0.0, ((point[0] - ax) * dx + (point[1] - ay) * dy) / square))
+    t = (
+        0.0
+        if square == 0
+        else min(1.0, max(0.0, ((point[0] - ax) * dx + (point[1] - ay) * dy) / square))
+    )
     return hypot(point[0] - ax - t * dx, point[1] - ay - t * dy)
 
 

@@ -1,12 +1,15 @@
-"""The colour of a count: the same in every picture, distinguishable to the colour-blind and on grey prints.
+"""The colour of a count: the same in every picture, distinguishable to the colour-blind and on grey
+prints.
 
-Guarantee: two different counts of a torus of two unknowns (where saddles = minima + maxima) never have the same fill,
-nor have others of one or two unknowns with up to three maxima. Of three unknowns few have: hatches would be too dense.
-Along a row of the palette the lightness falls by at least six units of CIE L* a step; the hues start from those of
-Okabe & Ito. Seen with deuteranopia neighbours of a row are apart by at least 15 units of CIE Lab, and each
-colour is from what is undetermined. So are any two of the fills for 0 to 12 solutions in all, by at least 11 units.
+Guarantee: two different counts of a torus of two unknowns (where saddles = minima + maxima) never
+have the same fill, nor have others of one or two unknowns with up to three maxima. Of three
+unknowns few have: hatches would be too dense. Along a row of the palette the lightness falls by at
+least six units of CIE L* a step; the hues start from those of Okabe & Ito. Seen with deuteranopia
+neighbours of a row are apart by at least 15 units of CIE Lab, and each colour is from what is
+undetermined. So are any two of the fills for 0 to 12 solutions in all, by at least 11 units.
 
-Not guaranteed: as many for a caller's own colours, which are taken in turn for the counts of one map.
+Not guaranteed: as many for a caller's own colours, which are taken in turn for the counts of one
+map.
 
 Reference: Okabe & Ito, Color universal design, 2008.
 """
@@ -25,9 +28,13 @@ ONE_MAXIMUM = ("#f7f6f2", "#c7e4f6", "#eda43f", "#ca8d7a", "#45917d", "#8a5e8b",
 TWO_MAXIMA = ("#e8eacd", "#bf78a3", "#38836d", "#5d5db1", "#874120", "#4b3e62", "#253836")
 """Faces for the same with two maxima; L* = 92, 59, 50, 43, 36, 29, 22."""
 ODD_TOTALS = (*TWO_MAXIMA[:2], "#0b85be", "#6f720e", "#1252aa", "#22490b", "#4b0f2b")
-"""Faces for 1, 3, 5, ... solutions in all, told from those for 2, 4, 6, ...; from 5 on L* = 52, 46, 36, 27, 16."""
+"""Faces for 1, 3, 5, ... solutions in all, told from those for 2, 4, 6, ...; from 5 on L* = 52, 46,
+36, 27, 16.
+"""
 HATCHES = ("////", "....", "xxxx", "oooo", "++++", "****", "\\\\\\\\", "----", "||||")
-"""Beyond the palette's end and for no or many maxima; repeated more densely where these do not suffice."""
+"""Beyond the palette's end and for no or many maxima; repeated more densely where these do not
+suffice.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,16 +48,20 @@ class Fill:
 UNKNOWN = Fill("#ffffff")
 NONE = Fill("#ffffff", "////")
 UNDETERMINED = Fill("#c4c4c4")
-"""L* = 79, between the palette's steps; the only grey, and one that no colour comes near to without red and green."""
+"""L* = 79, between the palette's steps; the only grey, and one that no colour comes near to without
+red and green.
+"""
 GREYS = ("#ffffff", "#e2e2e2", "#bcbcbc", "#979797", "#757575", "#545454")
 """L* = 100, 90, 76, 62, 49, 36."""
 UNDETERMINED_IN_GREY = Fill("#ffffff", "xxxxxxxx")
 
 
 def fill_of(region: Region, count: Count) -> Fill:
-    """The fill of a region, by the count that distinguishes regions; white where that count is not known.
+    """The fill of a region, by the count that distinguishes regions; white where that count is not
+    known.
 
-    Totals are even on a torus (the Euler sum): 4 and 6 in all are coloured as 1 and 2 stable, which mostly go together.
+    Totals are even on a torus (the Euler sum): 4 and 6 in all are coloured as 1 and 2 stable, which
+    mostly go together.
     """
     number = region.number(count)
     if number is None:
@@ -60,21 +71,27 @@ def fill_of(region: Region, count: Count) -> Fill:
     return _of_total(number) if count.kind.shades is Shades.TOTAL else _of(ONE_MAXIMUM, number, 0)
 
 
-def filler(regions: Sequence[Region], count: Count, palette: str | tuple[str, ...]) -> Callable[[Region], Fill]:
+def filler(
+    regions: Sequence[Region], count: Count, palette: str | tuple[str, ...]
+) -> Callable[[Region], Fill]:
     """The fills of one map's regions in a palette.
 
     Parameters
     ----------
-    palette : ``default``; ``grey`` has greys for numbers of stable equilibria, or of all, and hatches; or colours, for
-        the counts of these regions in increasing order, again with hatches where they are too few.
+    palette : ``default``; ``grey`` has greys for numbers of stable equilibria, or of all, and
+        hatches; or colours, for the counts of these regions in increasing order, again with hatches
+        where they are too few.
     """
     if palette == "default":
         return lambda region: fill_of(region, count)
     values = sorted({counted_by(region, count) for region in regions} - {(-1,)})
     faces = GREYS if palette == "grey" else tuple(palette)
-    # greys go by the count itself, so that all grey maps agree, while the palette has enough of them
+    # greys go by the count itself, so that all grey maps agree, while the palette has enough of
+    # them
     few = all(len(value) == 1 and value[0] < len(GREYS) for value in values)
-    steps = {value: value[0] if palette == "grey" and few else step for step, value in enumerate(values)}
+    steps = {
+        value: value[0] if palette == "grey" and few else step for step, value in enumerate(values)
+    }
 
     def fill(region: Region) -> Fill:
         step = steps.get(counted_by(region, count))
@@ -89,7 +106,9 @@ def undetermined_fill(palette: str | tuple[str, ...]) -> Fill:
 
 
 def fill_of_counts(counts: Counts) -> Fill:
-    """The fill for all that is known of the solutions: by index, else by the stable ones, else by all."""
+    """The fill for all that is known of the solutions: by index, else by the stable ones, else by
+    all.
+    """
     if counts.index is not None:
         return fill_of_index(counts.index)
     return _of_total(counts.total) if counts.stable is None else _of(ONE_MAXIMUM, counts.stable, 0)
@@ -97,15 +116,19 @@ def fill_of_counts(counts: Counts) -> Fill:
 
 def _of_total(total: int) -> Fill:
     half, odd = divmod(total, 2)
-    return NONE if total == 0 else _of(ODD_TOTALS if odd else ONE_MAXIMUM, half if odd else half - 1, 0)
+    return (
+        NONE
+        if total == 0
+        else _of(ODD_TOTALS if odd else ONE_MAXIMUM, half if odd else half - 1, 0)
+    )
 
 
 def fill_of_index(index: MorseIndex) -> Fill:
     """The fill for numbers of critical points by index.
 
-    Of one unknown as of two; of more the fewest saddles that a torus allows (strong Morse inequality) are without a
-    hatch, and further saddles and maxima change it. So does what no torus has: fewer saddles, or a sum of indices that
-    is not zero.
+    Of one unknown as of two; of more the fewest saddles that a torus allows (strong Morse
+    inequality) are without a hatch, and further saddles and maxima change it. So does what no torus
+    has: fewer saddles, or a sum of indices that is not zero.
     """
     minima, maxima = index[0], index[-1]
     turns = (1, 0, 0)[maxima] if maxima < 3 else maxima - 2
@@ -114,7 +137,11 @@ def fill_of_index(index: MorseIndex) -> Fill:
     if len(index) == 3:
         turns += 2 * _natural(surplus)
     elif len(index) > 3:
-        turns += index[1] - fewest if index[1] >= fewest and not surplus else 2 * (index[1] + 3 * sum(index[2:-1]))
+        turns += (
+            index[1] - fewest
+            if index[1] >= fewest and not surplus
+            else 2 * (index[1] + 3 * sum(index[2:-1]))
+        )
     return _of(ONE_MAXIMUM if maxima <= 1 else TWO_MAXIMA, minima, turns)
 
 

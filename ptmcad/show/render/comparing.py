@@ -49,7 +49,9 @@ NO_MARKS = Marks()
 
 @dataclass(frozen=True, slots=True)
 class _MapPanel:
-    """A chart with what stands above and below it, and regions that are seen however narrow they are."""
+    """A chart with what stands above and below it, and regions that are seen however narrow they
+    are.
+    """
 
     seen: Shapes
     paint: Paint
@@ -82,7 +84,10 @@ def difference_words(comparison: Comparison) -> list[str]:
     lines = [
         f"The counts differ on an area of {_area(comparison, comparison.area)}, {_share(comparison)} of the window."
     ]
-    lines += [f"{change_text(comparison, c)}: area {_area(comparison, c.area)}." for c in comparison.changes]
+    lines += [
+        f"{change_text(comparison, c)}: area {_area(comparison, c.area)}."
+        for c in comparison.changes
+    ]
     return lines + ([f"One map or both leave {open_part} undetermined."] if open_part else [])
 
 
@@ -140,7 +145,8 @@ def _figure(comparison: Comparison, dpi: int, style: PictureStyle) -> Figure:
         missing = MIN_SIDE * em - side, MIN_SIDE * em - tall
         least = (width + 3 * max(0.0, missing[0]), rest + tall + max(0.0, missing[1]))
         raise ConfigError(
-            f"three maps with their legends need at least {least[0] + 0.01:.2f}x{least[1] + 0.01:.2f}in", key="size"
+            f"three maps with their legends need at least {least[0] + 0.01:.2f}x{least[1] + 0.01:.2f}in",
+            key="size",
         )
     figure = Figure(figsize=(width, tall + rest), dpi=dpi, facecolor="white")
     for k, panel in enumerate(panels):
@@ -152,32 +158,47 @@ def _figure(comparison: Comparison, dpi: int, style: PictureStyle) -> Figure:
     return figure
 
 
-def _panels(comparison: Comparison, first: Shapes, style: PictureStyle, sides: Size, dpi: int) -> list[_MapPanel]:
+def _panels(
+    comparison: Comparison, first: Shapes, style: PictureStyle, sides: Size, dpi: int
+) -> list[_MapPanel]:
     """The two maps and the difference, with text as wide as they are."""
     type, side = Type.of(style), sides[0]
     found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], Marks]] = []
     pair = (comparison.first, comparison.second)
-    for letter, own, result, seen in zip(LETTERS, own_words(*pair), pair, (first, shapes(pair[1])), strict=True):
+    for letter, own, result, seen in zip(
+        LETTERS, own_words(*pair), pair, (first, shapes(pair[1])), strict=True
+    ):
         paint = paint_of(style, result)
         marks = marks_of(seen, sides, dpi, type.detail)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
         paint = replace(paint, thin_walls=thin)
-        told = list(entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined)))
+        told = list(
+            entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined))
+        )
         title = whole_title(result) if style.title is None else own
         found.append((seen, paint, f"{letter}: {title}" if title else letter, told, {}, marks))
     fills = _fills(comparison, style)
     decomposition = comparison.decomposition
-    of_cells = {region.cells: fills.get(n, _EQUAL) for n, region in enumerate(decomposition.regions)}
+    of_cells = {
+        region.cells: fills.get(n, _EQUAL) for n, region in enumerate(decomposition.regions)
+    }
     strong = style.strong / 4
     bare = Paint(
-        lambda region: of_cells[region.cells], undetermined_fill(style.palette), strong, strong, thin_walls=False
+        lambda region: of_cells[region.cells],
+        undetermined_fill(style.palette),
+        strong,
+        strong,
+        thin_walls=False,
     )
     whole = shapes(decomposition)
     names = [""] * len(decomposition.regions)
     for change in comparison.changes:
         names[change.region] = change_text(comparison, change)
     marks = marks_of(whole, sides, dpi, type.detail, names)
-    changes = [*_differences(comparison, style), *([Entry((hidden_words(marks.hidden),))] if marks.hidden else [])]
+    changes = [
+        *_differences(comparison, style),
+        *([Entry((hidden_words(marks.hidden),))] if marks.hidden else []),
+    ]
     found.append((whole, bare, f"Difference, {' → '.join(LETTERS)}", changes, fills, marks))
     untold = style.legend is LegendPlace.NONE
     return [
@@ -190,9 +211,15 @@ def _panels(comparison: Comparison, first: Shapes, style: PictureStyle, sides: S
 
 
 def own_words(first: RegionMap, second: RegionMap) -> tuple[str, str]:
-    """What each of two maps has and the other has not, in few words: parameters of other values; else their names."""
+    """What each of two maps has and the other has not, in few words: parameters of other values;
+    else their names.
+    """
     both = [
-        {name: value.constant() for name, value in result.slice.parameters.items() if value.is_constant}
+        {
+            name: value.constant()
+            for name, value in result.slice.parameters.items()
+            if value.is_constant
+        }
         for result in (first, second)
     ]
     other = [name for name in both[0] if name in both[1] and both[0][name] != both[1][name]]
@@ -207,7 +234,10 @@ def _assignments(values: Numbers, names: Sequence[str]) -> str:
     equal: dict[Fraction, list[str]] = {}
     for name in names:
         equal.setdefault(values[name], []).append(symbol(name))
-    return ", ".join(" = ".join((*symbols, shortest_text(value).replace("-", "−"))) for value, symbols in equal.items())
+    return ", ".join(
+        " = ".join((*symbols, shortest_text(value).replace("-", "−")))
+        for value, symbols in equal.items()
+    )
 
 
 def _head(title: str, side: float, type: Type) -> list[str]:
@@ -220,7 +250,9 @@ def _fills(comparison: Comparison, style: PictureStyle) -> dict[int, Fill]:
     found: dict[int, Fill] = {}
     for n, change in enumerate(comparison.changes):
         rounds, step = divmod(n, len(faces))
-        found[change.region] = Fill(faces[step], HATCHES[(rounds - 1) % len(HATCHES)] if rounds else "")
+        found[change.region] = Fill(
+            faces[step], HATCHES[(rounds - 1) % len(HATCHES)] if rounds else ""
+        )
     return found
 
 
@@ -236,7 +268,12 @@ def _differences(comparison: Comparison, style: PictureStyle) -> list[Entry]:
         area = _area(comparison, change.area)
         told.append(Entry((change_text(comparison, change), f"area {area}"), fills[change.region]))
     if open_part:
-        told.append(Entry((f"undetermined {open_part}", "by one map or both"), undetermined_fill(style.palette)))
+        told.append(
+            Entry(
+                (f"undetermined {open_part}", "by one map or both"),
+                undetermined_fill(style.palette),
+            )
+        )
     return told
 
 

@@ -1,10 +1,12 @@
-"""The outlines of a certified map's regions in a view, as polygons for drawing, and what it leaves open between them.
+"""The outlines of a certified map's regions in a view, as polygons for drawing, and what it leaves
+open between them.
 
-Guarantee: without simplification the polygons are the components of the cover's complement exactly, but for the
-rounding of positions to floats; simplification moves no point of them by more than `TOLERANCE` of the view's size.
+Guarantee: without simplification the polygons are the components of the cover's complement exactly,
+but for the rounding of positions to floats; simplification moves no point of them by more than
+`TOLERANCE` of the view's size.
 
-Not guaranteed: that two simplified outlines with less than twice the tolerance between them do not cross. Nothing but
-pictures may be decided by an outline.
+Not guaranteed: that two simplified outlines with less than twice the tolerance between them do not
+cross. Nothing but pictures may be decided by an outline.
 """
 
 from __future__ import annotations
@@ -59,7 +61,9 @@ class CoverOutline:
             yield from found[cell]
 
     def cells(self, tolerance: float = 0.0) -> Iterator[CellShape]:
-        """Every cell's outlines; with a tolerance those that collapse are among them, as a line or a point."""
+        """Every cell's outlines; with a tolerance those that collapse are among them, as a line or
+        a point.
+        """
         for cell, found in enumerate(_polygons(Same(self), tolerance)):
             if found:
                 yield cell, list(found)
@@ -75,30 +79,46 @@ class CoverOutline:
                 yield np.concatenate([polygon, polygon[:1]])
 
     def raster(self, columns: int, rows: int) -> NDArray[np.int64]:
-        """The region just right of and above each pixel's centre, shape (rows, columns), from the bottom; -1: none."""
+        """The region just right of and above each pixel's centre, shape (rows, columns), from the
+        bottom; -1: none.
+        """
         tree = self.complement.subdivision
         steps = tree.steps
         places = []
-        for axis, shown, n in zip(self.result.slice.axes, (self.view.x, self.view.y), (columns, rows), strict=True):
-            start, step = axis.share(shown[0]) * steps, (shown[1] - shown[0]) / axis.width * steps / n
-            places.append(np.array([int(start + (k + Fraction(1, 2)) * step) for k in range(n)], dtype=np.int64))
+        for axis, shown, n in zip(
+            self.result.slice.axes, (self.view.x, self.view.y), (columns, rows), strict=True
+        ):
+            start, step = (
+                axis.share(shown[0]) * steps,
+                (shown[1] - shown[0]) / axis.width * steps / n,
+            )
+            places.append(
+                np.array(
+                    [int(start + (k + Fraction(1, 2)) * step) for k in range(n)], dtype=np.int64
+                )
+            )
         x, y = np.clip(places[0], 0, steps - 1), np.clip(places[1], 0, steps - 1)
         leaf = tree.leaves_right_above(np.tile(x, rows), np.repeat(y, columns))
         free = tree.state[leaf] == FREE
-        image = np.full(len(leaf), -1, dtype=np.int64)  # a covered leaf's owner is a cluster, not a component
+        image = np.full(
+            len(leaf), -1, dtype=np.int64
+        )  # a covered leaf's owner is a cluster, not a component
         image[free] = self.region_at[self.complement.owner[leaf[free]]]
         return image.reshape(rows, columns)
 
 
 @lru_cache(maxsize=16)
 def _polygons(of: Same[CoverOutline], tolerance: float) -> tuple[tuple[Floats, ...], ...]:
-    """Each cell's outlines in the view: without a tolerance of one's own those that do not collapse.
+    """Each cell's outlines in the view: without a tolerance of one's own those that do not
+    collapse.
 
     All at once, as the fill of every region and the lines along them ask for the same ones.
     """
     seen = of.it
     found: list[list[Floats]] = [[] for _ in seen.result.cells]
-    cells = np.array([cell for cell, polygons in enumerate(seen.corners) for _ in polygons], dtype=np.int64)
+    cells = np.array(
+        [cell for cell, polygons in enumerate(seen.corners) for _ in polygons], dtype=np.int64
+    )
     corners = [polygon for polygons in seen.corners for polygon in polygons]
     if not corners:
         return tuple(map(tuple, found))
@@ -118,7 +138,9 @@ def _polygons(of: Same[CoverOutline], tolerance: float) -> tuple[tuple[Floats, .
 def _in_view(corners: NDArray[np.int64], seen: CoverOutline) -> Floats:
     """Lattice points in the view's coordinates."""
     columns = []
-    for k, (axis, shown) in enumerate(zip(seen.result.slice.axes, (seen.view.x, seen.view.y), strict=True)):
+    for k, (axis, shown) in enumerate(
+        zip(seen.result.slice.axes, (seen.view.x, seen.view.y), strict=True)
+    ):
         width = shown[1] - shown[0]
         scale = float(axis.width / width / seen.complement.cover.steps)
         columns.append(corners[:, k] * scale + float((axis.low - shown[0]) / width))
@@ -131,12 +153,13 @@ def _meets_view(low: Floats, high: Floats) -> NDArray[np.bool_]:
 
 
 def cover_outline(result: RegionMap) -> CoverOutline:
-    """The outlines of a certified map over its whole window; traced once for several pictures of it.
+    """The outlines of a certified map over its whole window; traced once for several pictures of
+    it.
 
     Raises
     ------
-    ValueError
-        When the map contradicts itself: a sample is in no component of its own, or a rectangle is none.
+    ValueError When the map contradicts itself: a sample is in no component of its own, or a
+        rectangle is none.
     """
     return _cover_outline(Same(result))
 
@@ -165,6 +188,8 @@ def _components_of(result: RegionMap, complement: Components) -> Mapping[int, in
         ]
         component = complement.locate(*place)
         if component is None or component in found.values():
-            raise ValueError(f"the sample of cell {number} is in the cover, or in the component of another cell")
+            raise ValueError(
+                f"the sample of cell {number} is in the cover, or in the component of another cell"
+            )
         found[number] = component
     return found

@@ -2,7 +2,8 @@
 
 Guarantee: what is drawn is said in words, and each figure's label holds a title and a description.
 
-Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact answer.
+Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact
+answer.
 """
 
 from __future__ import annotations
@@ -34,12 +35,16 @@ _COLUMNS = 96
 
 
 def figure_of_design(found: BestDesign) -> Figure:
-    """The values over one design parameter, or over the first two, with the bounds and the best one."""
+    """The values over one design parameter, or over the first two, with the bounds and the best
+    one.
+    """
     words = [*_words(found), *design_table(found).splitlines()[-2:-1]]
     lines = [part for line in words for part in textwrap.wrap(line, _COLUMNS)]
     foot = 0.6 + 0.2 * len(lines)
     with settings():
-        figure = figure_of([_title(found)], (LEFT + WIDE + RIGHT + 0.8, foot + TALL + 0.1), "\n".join(lines))
+        figure = figure_of(
+            [_title(found)], (LEFT + WIDE + RIGHT + 0.8, foot + TALL + 0.1), "\n".join(lines)
+        )
         axes = axes_in(figure, (LEFT, foot, WIDE, TALL))
         if len(found.over) == 1:
             _draw_curve(axes, found)
@@ -72,10 +77,17 @@ def _words(found: BestDesign) -> list[str]:
 def _draw_curve(axes: Any, found: BestDesign) -> None:
     (over,) = found.over
     known = sorted((p.at[0], float(p.value)) for p in found.points if p.value is not None)
-    axes.plot([scaled(at, over) for at, _ in known], [v for _, v in known], ".", color=INK, markersize=3)
+    axes.plot(
+        [scaled(at, over) for at, _ in known], [v for _, v in known], ".", color=INK, markersize=3
+    )
     for box in found.boxes:
         low, high = box.ranges[0]
-        axes.plot([scaled(low, over), scaled(high, over)], [float(box.bound)] * 2, color="#377eb8", linewidth=1.2)
+        axes.plot(
+            [scaled(low, over), scaled(high, over)],
+            [float(box.bound)] * 2,
+            color="#377eb8",
+            linewidth=1.2,
+        )
     if found.bound is not None and not found.boxes:
         axes.axhline(float(found.bound), color="#377eb8", linewidth=0.8, linestyle="--")
     if found.best is not None and found.value is not None:
@@ -87,7 +99,9 @@ def _draw_curve(axes: Any, found: BestDesign) -> None:
 
 def _draw_plane(figure: Figure, axes: Any, found: BestDesign, foot: float) -> None:
     first, second = found.over[:2]
-    values = [float(p.value) for p in found.points if p.value is not None] + [float(b.bound) for b in found.boxes]
+    values = [float(p.value) for p in found.points if p.value is not None] + [
+        float(b.bound) for b in found.boxes
+    ]
     if values:
         norm = Normalize(min(values), max(values) if max(values) > min(values) else min(values) + 1)
         patches = [_rectangle(box.ranges, first, second) for box in found.boxes]
@@ -99,7 +113,10 @@ def _draw_plane(figure: Figure, axes: Any, found: BestDesign, foot: float) -> No
             [scaled(at[0], first) for at, _ in known], [scaled(at[1], second) for at, _ in known],
             c=[v for _, v in known], cmap=COLOURS, norm=norm, s=9, edgecolors=INK, linewidths=0.3, zorder=3,
         )  # fmt: skip
-        bar = figure.colorbar(ScalarMappable(norm, COLOURS), cax=axes_in(figure, (LEFT + WIDE + 0.15, foot, BAR, TALL)))
+        bar = figure.colorbar(
+            ScalarMappable(norm, COLOURS),
+            cax=axes_in(figure, (LEFT + WIDE + 0.15, foot, BAR, TALL)),
+        )
         bar.set_label(_value_name(found), fontsize=SIZE + 1)
         bar.ax.tick_params(labelsize=SIZE)
     if found.best is not None:
@@ -112,7 +129,12 @@ def _draw_plane(figure: Figure, axes: Any, found: BestDesign, foot: float) -> No
 
 def _rectangle(ranges: Any, first: Axis, second: Axis) -> Rectangle:
     (a, b), (c, d) = ranges[:2]
-    left, right, low, high = scaled(a, first), scaled(b, first), scaled(c, second), scaled(d, second)
+    left, right, low, high = (
+        scaled(a, first),
+        scaled(b, first),
+        scaled(c, second),
+        scaled(d, second),
+    )
     return Rectangle((left, low), right - left, high - low)
 
 
@@ -123,4 +145,8 @@ def _label(axes: Any, over: Axis, side: str) -> None:
 
 
 def _value_name(found: BestDesign) -> str:
-    return f"length of the range of {symbol(found.along.name)}" if found.along is not None else found.maximise
+    return (
+        f"length of the range of {symbol(found.along.name)}"
+        if found.along is not None
+        else found.maximise
+    )

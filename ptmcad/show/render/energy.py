@@ -1,8 +1,8 @@
 """The energy at a point as a function that can be drawn, less the work of moments where these work.
 
-Guarantee: the constant part is taken out exactly before anything is rounded, so that small differences of large
-energies are seen. The derivatives of what is drawn are zero at the equilibria: it is U - M u with a moment M on an
-unknown u.
+Guarantee: the constant part is taken out exactly before anything is rounded, so that small
+differences of large energies are seen. The derivatives of what is drawn are zero at the equilibria:
+it is U - M u with a moment M on an unknown u.
 """
 
 from __future__ import annotations
@@ -41,9 +41,10 @@ def _sum(terms: Terms, bases: Sequence[Floats], shape: tuple[int, ...]) -> Float
 
 @dataclass(frozen=True, slots=True)
 class Energy:
-    """The energy as (U - offset) / unit: terms with exponents of the coordinates, cosine and sine of each angle, then
-    the unknowns on the line; and for each spring with a free length -k l0 with the terms of its length squared, whose
-    root it multiplies. Of each unknown on which a moment works the number, and minus the moment over the unit."""
+    """The energy as (U - offset) / unit: terms with exponents of the coordinates, cosine and sine
+    of each angle, then the unknowns on the line; and for each spring with a free length -k l0 with
+    the terms of its length squared, whose root it multiplies. Of each unknown on which a moment
+    works the number, and minus the moment over the unit."""
 
     angles: int
     offset: Fraction
@@ -54,7 +55,9 @@ class Energy:
 
     def __call__(self, *unknowns: Floats) -> Floats:
         """Over arrays of angles in radians, and of unknowns on the line."""
-        bases = [function(angle) for angle in unknowns[: self.angles] for function in (np.cos, np.sin)]
+        bases = [
+            function(angle) for angle in unknowns[: self.angles] for function in (np.cos, np.sin)
+        ]
         bases += unknowns[self.angles :]
         shape = np.broadcast(*unknowns).shape
         total = _sum(self.terms, bases, shape)
@@ -69,9 +72,13 @@ class Energy:
         return float((value - self.offset) / self.unit)
 
     def level(self, pose: Pose, place: Sequence[float]) -> float:
-        """Where a pose lies: its energy less the moments' work up to a place, angles in degrees, in the unit."""
+        """Where a pose lies: its energy less the moments' work up to a place, angles in degrees, in
+        the unit.
+        """
         inputs = [radians(x) if k < self.angles else x for k, x in enumerate(place)]
-        return self.scaled(pose.known_energy.center) + sum(slope * inputs[k] for k, slope in self.slopes)
+        return self.scaled(pose.known_energy.center) + sum(
+            slope * inputs[k] for k, slope in self.slopes
+        )
 
 
 def energy_of(model: Model, parameters: Numbers) -> Energy:
@@ -84,7 +91,9 @@ def energy_of(model: Model, parameters: Numbers) -> Energy:
     known = compiled(model)
     given = Assignment(dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters), Fraction)
     moments = known.values(tuple(known.acting.values()), given)
-    unit = Fraction(10) ** magnitude(max(map(abs, (*exact.values(), *moments)), default=Fraction(1)))
+    unit = Fraction(10) ** magnitude(
+        max(map(abs, (*exact.values(), *moments)), default=Fraction(1))
+    )
     roots = []
     for spring in known.springs:
         pull, collapsed = known.values((spring.pull, spring.collapsed), given)
@@ -92,9 +101,18 @@ def energy_of(model: Model, parameters: Numbers) -> Energy:
             offset += collapsed
             (square,) = elements_of(model, [spring.square])
             square_terms = polynomial_at(system, square, values)
-            roots.append((float(-pull / unit), tuple((m, float(to_fraction(c))) for m, c in square_terms.items())))
+            roots.append(
+                (
+                    float(-pull / unit),
+                    tuple((m, float(to_fraction(c))) for m, c in square_terms.items()),
+                )
+            )
     terms = tuple((m, float(c / unit)) for m, c in sorted(exact.items()))
-    slopes = tuple((k, float(-moment / unit)) for k, moment in zip(known.acting, moments, strict=True) if moment)
+    slopes = tuple(
+        (k, float(-moment / unit))
+        for k, moment in zip(known.acting, moments, strict=True)
+        if moment
+    )
     return Energy(len(model.angles), offset, unit, terms, tuple(roots), slopes)
 
 

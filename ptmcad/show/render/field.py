@@ -1,9 +1,10 @@
-"""The picture of a continuous quantity over a map's window: colours, contour lines, and the map's exact boundaries.
+"""The picture of a continuous quantity over a map's window: colours, contour lines, and the map's
+exact boundaries.
 
-Guarantee: the same field gives the same bytes with the same matplotlib. Pixels are shown as they are, without any
-smoothing, so that none shows a value from the other side of a boundary; contour lines are drawn within a region and a
-branch only, and where the branch changes there is an edge. Everything is on the page, in text of at least
-`ptmcad.show.style.MIN_FONT` points.
+Guarantee: the same field gives the same bytes with the same matplotlib. Pixels are shown as they
+are, without any smoothing, so that none shows a value from the other side of a boundary; contour
+lines are drawn within a region and a branch only, and where the branch changes there is an edge.
+Everything is on the page, in text of at least `ptmcad.show.style.MIN_FONT` points.
 """
 
 from __future__ import annotations
@@ -26,7 +27,16 @@ from ptmcad.show.render.colours import Fill, undetermined_fill
 from ptmcad.show.render.fieldlines import branch_edges, contour_lines
 from ptmcad.show.render.fitting import MIN_SIDE, beside, dressed
 from ptmcad.show.render.inches import Box
-from ptmcad.show.render.legend import INK, RIM_INK, STRONG, Entry, Type, draw_rows, in_rows, line_mark
+from ptmcad.show.render.legend import (
+    INK,
+    RIM_INK,
+    STRONG,
+    Entry,
+    Type,
+    draw_rows,
+    in_rows,
+    line_mark,
+)
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.textwidth import text_width, wrapped
 from ptmcad.show.render.view import Floats, View
@@ -34,9 +44,13 @@ from ptmcad.show.style import DEFAULT, MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.units import with_unit
 
 SIDE, GAP, BAR = 4.6, 0.2, 0.2
-"""In inches, in 9 points: the map's side where no size is given, the space before the scale, and the scale."""
+"""In inches, in 9 points: the map's side where no size is given, the space before the scale, and
+the scale.
+"""
 COLOURS, GREYS = "viridis", ("#000000", "#d4d4d4")
-"""Perceptually uniform, distinguishable to the colour-blind, and monotone on grey prints; or grey, none of it white."""
+"""Perceptually uniform, distinguishable to the colour-blind, and monotone on grey prints; or grey,
+none of it white.
+"""
 _LINES: dict[str, Any] = {"colors": "white", "linewidths": 0.6, "alpha": 0.85}
 _EMPTY = "#ffffff"
 _WORDS = ("energy", "stiffness", "barrier", "force", "length", "angle")
@@ -45,7 +59,8 @@ _WORDS = ("energy", "stiffness", "barrier", "force", "length", "angle")
 def title_of(result: RegionMap, field: Field) -> str:
     """What is shown, of which slice."""
     text = _name(field)
-    # others are names, coordinates and expressions, which are written as they were asked for: u is not U
+    # others are names, coordinates and expressions, which are written as they were asked for: u is
+    # not U
     text = text[0].upper() + text[1:] if text.split()[0] in _WORDS else text
     return f"{text} of {pose_words(result, field)}: {result.slice.name}"
 
@@ -85,7 +100,12 @@ def field_figure(
 
 
 def _figure(
-    result: RegionMap, field: Field, boundaries: Sequence[Boundary], contours: int, dpi: int, style: PictureStyle
+    result: RegionMap,
+    field: Field,
+    boundaries: Sequence[Boundary],
+    contours: int,
+    dpi: int,
+    style: PictureStyle,
 ) -> Figure:
     figure = Figure(figsize=style.size or (6.0, 6.0), dpi=dpi, facecolor="white")
     font = style.base_font
@@ -110,20 +130,35 @@ def _figure(
     dress(axes, result.slice, view.x, view.y, Dress() if style.flows else dressed(font, chart))
     legend = [] if style.legend is LegendPlace.NONE else _legend(result, field, boundaries, style)
     _FieldPage(
-        figure, axes, bar_axes, title_of(result, field) if style.title is None else style.title, legend, style
+        figure,
+        axes,
+        bar_axes,
+        title_of(result, field) if style.title is None else style.title,
+        legend,
+        style,
     ).set()
     figure.set_label(f"{title_of(result, field)}\n{description(field)}")
     return figure
 
 
 def _extent(view: View) -> tuple[float, ...]:
-    return tuple(v for interval in (view.x, view.y) for s in [scale_of(*interval)] for v in (s.low, s.high))
+    return tuple(
+        v for interval in (view.x, view.y) for s in [scale_of(*interval)] for v in (s.low, s.high)
+    )
 
 
 def fill_empty(axes: Any, field: Field, extent: Sequence[float], fill: Fill) -> None:
-    """The pixels of which the map says nothing, and in white those of its regions, over which the values come."""
+    """The pixels of which the map says nothing, and in white those of its regions, over which the
+    values come.
+    """
     axes.patch.set(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=RIM_INK, linewidth=0)
-    show_pixels(axes, np.where(field.region == NONE, np.nan, 0.0), extent, cmap=ListedColormap([_EMPTY]), gid="empty")
+    show_pixels(
+        axes,
+        np.where(field.region == NONE, np.nan, 0.0),
+        extent,
+        cmap=ListedColormap([_EMPTY]),
+        gid="empty",
+    )
 
 
 def show_pixels(axes: Any, values: Any, extent: Sequence[float], **look: Any) -> Any:
@@ -133,7 +168,9 @@ def show_pixels(axes: Any, values: Any, extent: Sequence[float], **look: Any) ->
     )  # fmt: skip
 
 
-def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, style: PictureStyle) -> Any:
+def _fill(
+    figure: Figure, axes: Any, field: Field, view: View, number: int, style: PictureStyle
+) -> Any:
     """The pixels with their lines, and the scale, whose axes are returned."""
     extent = _extent(view)
     low, high = float(field.known.min()), float(field.known.max())
@@ -147,7 +184,13 @@ def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, styl
     for width, colour, kind in _edge(style):
         if jumps:
             drawn = LineCollection(
-                jumps, colors=colour, linewidths=width, linestyles=kind, gid="jumps", capstyle="butt", zorder=2.5
+                jumps,
+                colors=colour,
+                linewidths=width,
+                linestyles=kind,
+                gid="jumps",
+                capstyle="butt",
+                zorder=2.5,
             )
             axes.add_collection(drawn, autolim=False)
     bar_axes = figure.add_axes((0.8, 0.2, 0.05, 0.5))
@@ -181,10 +224,15 @@ def _colours(style: PictureStyle) -> Any:
 
 def _edge(style: PictureStyle) -> Sequence[tuple[float, str, Any]]:
     """Width, colour and dashes of the lines that make an edge between branches, from below."""
-    return ((2.4 * style.line_scale, "white", "solid"), (1.1 * style.line_scale, INK, (0, (3.0, 1.6))))
+    return (
+        (2.4 * style.line_scale, "white", "solid"),
+        (1.1 * style.line_scale, INK, (0, (3.0, 1.6))),
+    )
 
 
-def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: PictureStyle) -> list[Entry]:
+def _legend(
+    result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: PictureStyle
+) -> list[Entry]:
     """What lines, white and grey mean, as far as they are there."""
     told = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
     if any(jump.any() for jump in field.jumps or ()):
@@ -192,7 +240,9 @@ def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary], sty
     unknown = field.region == NONE
     if (np.isnan(field.values) & ~unknown).any() and field.known.size:
         what = "barrier" if field.quantity == "barrier" else pose_words(result, field)
-        told.append(Entry((f"no {what}" if not field.missed + field.beyond else "no value",), Fill(_EMPTY)))
+        told.append(
+            Entry((f"no {what}" if not field.missed + field.beyond else "no value",), Fill(_EMPTY))
+        )
     if unknown.any():
         # a pixel of an exact map is open where its centre is on a curve
         words = "on a curve" if result.cover is None else "undetermined"
@@ -200,12 +250,16 @@ def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary], sty
     return told
 
 
-_edge_mark = line_mark(*({"color": c, "linewidth": width, "linestyle": kind} for width, c, kind in _edge(DEFAULT)))
+_edge_mark = line_mark(
+    *({"color": c, "linewidth": width, "linestyle": kind} for width, c, kind in _edge(DEFAULT))
+)
 
 
 @dataclass(frozen=True, slots=True)
 class _FieldPage:
-    """The parts of a picture, which are set where they have room: what stands beside axes is measured."""
+    """The parts of a picture, which are set where they have room: what stands beside axes is
+    measured.
+    """
 
     figure: Figure
     axes: Any
@@ -234,7 +288,9 @@ class _FieldPage:
         foot = 1.35 * type.line * len([row for row in rows if row]) + 0.5 * em
         for _ in range(3):  # how many numbers an axis has depends on its length
             left, below, right, above = beside(self.figure, self.axes)
-            gap, after = (0.0, 0.0) if self.bar is None else (GAP * scale, beside(self.figure, self.bar)[2])
+            gap, after = (
+                (0.0, 0.0) if self.bar is None else (GAP * scale, beside(self.figure, self.bar)[2])
+            )
             bar = gap and BAR * scale
             rest = (left + max(right, gap + bar + after) + 0.8 * em, below + above + head + foot)
             if size is None:
@@ -242,7 +298,10 @@ class _FieldPage:
                 self.figure.set_size_inches(wide, tall)
             chart = (wide - rest[0], tall - rest[1])
             if min(chart) < MIN_SIDE * em:
-                least = (rest[0] + max(MIN_SIDE * em, chart[0]), rest[1] + max(MIN_SIDE * em, chart[1]))
+                least = (
+                    rest[0] + max(MIN_SIDE * em, chart[0]),
+                    rest[1] + max(MIN_SIDE * em, chart[1]),
+                )
                 raise ConfigError(
                     f"the map with its scale does not fit into {wide:.2f}x{tall:.2f}in in text of {font:g} points; "
                     f"it needs at least {least[0] + 0.01:.2f}x{least[1] + 0.01:.2f}in", key="size",
@@ -250,7 +309,9 @@ class _FieldPage:
             corner = (0.4 * em + left, foot + below)
             _place(self.axes, (*corner, *chart), (wide, tall))
             if self.bar is not None:
-                _place(self.bar, (corner[0] + chart[0] + gap, corner[1], bar, chart[1]), (wide, tall))
+                _place(
+                    self.bar, (corner[0] + chart[0] + gap, corner[1], bar, chart[1]), (wide, tall)
+                )
                 _thin_numbers(self.bar, chart[1])
         if lines:
             title = self.axes.annotate(
@@ -271,7 +332,10 @@ def _thin_numbers(bar: Any, tall: float) -> None:
     """Leave out numbers at the scale that would lie on each other."""
     ticks = [float(v) for v in bar.get_yticks() if bar.get_ylim()[0] <= v <= bar.get_ylim()[1]]
     apart = 1.3 * bar.yaxis.get_ticklabels()[0].get_fontsize() / 72 if ticks else 0.0
-    if len(ticks) > 1 and tall * (ticks[1] - ticks[0]) / (bar.get_ylim()[1] - bar.get_ylim()[0]) < apart:
+    if (
+        len(ticks) > 1
+        and tall * (ticks[1] - ticks[0]) / (bar.get_ylim()[1] - bar.get_ylim()[0]) < apart
+    ):
         bar.set_yticks(ticks[::2])
 
 

@@ -1,4 +1,5 @@
-"""The figure of a region map with the stable poses at one of its points, as the paper shows them side by side.
+"""The figure of a region map with the stable poses at one of its points, as the paper shows them
+side by side.
 
 Guarantee: the point is marked where its exact coordinates are.
 """
@@ -40,7 +41,8 @@ _DPI = 150
 
 
 def draw_figure(result: RegionMap, point: Point, poses: Poses) -> Figure:
-    """The region map at the left, the stable poses at a point at the right; the point is marked in the map.
+    """The region map at the left, the stable poses at a point at the right; the point is marked in
+    the map.
 
     Parameters
     ----------
@@ -55,7 +57,9 @@ def draw_figure(result: RegionMap, point: Point, poses: Poses) -> Figure:
     parts = (Entry(("spring; bars are thick",), spring_mark()), *support_legend(mechanism))
     entries = (*parts, *_LOADS) if arrows else parts
     below = below_panel(shown[0], mechanism)
-    values = [assigned(axis.name, value) for axis, value in zip(result.slice.axes, point, strict=True)]
+    values = [
+        assigned(axis.name, value) for axis, value in zip(result.slice.axes, point, strict=True)
+    ]
     head = textwrap.wrap(f"Stable poses at {', '.join(values)}", 34)
     frame = frame_of(shown, most_height=_MAX_HEIGHT)
     wide = 200.0 / 72
@@ -70,12 +74,16 @@ def draw_figure(result: RegionMap, point: Point, poses: Poses) -> Figure:
         bottom = chart.get_position().y0 * tall
         left, place = width - wide - _RIM, (LEFT + SIDE + GAP, bottom + key)
         if len(figure.axes) > 1 or lowest - 0.3 < bottom + key:
-            figure = MapDrawing(result, dpi=_DPI).figure(FreeSpace(wide + _GAP + _RIM, panels + key))
+            figure = MapDrawing(result, dpi=_DPI).figure(
+                FreeSpace(wide + _GAP + _RIM, panels + key)
+            )
             chart = figure.axes[0]
             tall = float(figure.get_size_inches()[1])
             place = (left, chart.get_position().y1 * tall - panels)
         top = chart.get_position().y1 * tall
-        figure.set_label(f"{heading_of(result.slice)}\n{description(result)} Beside it: {describe(poses)}")
+        figure.set_label(
+            f"{heading_of(result.slice)}\n{description(result)} Beside it: {describe(poses)}"
+        )
         _mark(chart, result, point)
         _write_head(figure, head, left, top)
         top -= _LINE * len(head) + 0.1
@@ -83,7 +91,9 @@ def draw_figure(result: RegionMap, point: Point, poses: Poses) -> Figure:
             top -= HEAD + frame.height / 72
             panel(figure, Scene(mechanism, frame, arrows), pose, number, (left, top))
             top -= below + 0.06
-        scale_bar(figure, frame, (place[0], place[1] - Type().height(entries) - 0.16), result.slice.units)
+        scale_bar(
+            figure, frame, (place[0], place[1] - Type().height(entries) - 0.16), result.slice.units
+        )
         draw_legend(figure, entries, *place)
     return figure
 

@@ -1,6 +1,7 @@
 """Pictures one after the other as a file: an animated GIF, or MP4 by the program ffmpeg.
 
-Guarantee: the same pictures give the same GIF with the same Pillow. A film begins and ends with a rest.
+Guarantee: the same pictures give the same GIF with the same Pillow. A film begins and ends with a
+rest.
 """
 
 from __future__ import annotations
@@ -45,8 +46,8 @@ def save_film(motion: Motion, path: Path, style: PictureStyle, fps: int, dpi: in
 
     Raises
     ------
-    ConfigError
-        For a system that cannot be drawn, another suffix, a size that is too small, or MP4 without ffmpeg.
+    ConfigError For a system that cannot be drawn, another suffix, a size that is too small, or MP4
+        without ffmpeg.
     OSError
         When the file cannot be written.
     """
@@ -69,7 +70,9 @@ def save_pictures(make: Callable[[], Pictures], path: Path, style: PictureStyle,
     """
     suffix = path.suffix.lower().removeprefix(".")
     if suffix not in FORMATS:
-        raise ConfigError(f"{path.name}: the format {suffix!r} is not among {', '.join(FORMATS)}", key="--format")
+        raise ConfigError(
+            f"{path.name}: the format {suffix!r} is not among {', '.join(FORMATS)}", key="--format"
+        )
     with settings(style):
         if suffix == "mp4":
             _write_mp4(make(), path, fps)
@@ -96,7 +99,13 @@ def _gif(pictures: Pictures, fps: int) -> bytes:
     durations[0] = durations[-1] = max(pause, round(1000 * REST))
     data = BytesIO()
     drawn[0].save(
-        data, format="GIF", save_all=True, append_images=drawn[1:], duration=durations, loop=0, optimize=False
+        data,
+        format="GIF",
+        save_all=True,
+        append_images=drawn[1:],
+        duration=durations,
+        loop=0,
+        optimize=False,
     )
     return data.getvalue()
 

@@ -1,8 +1,9 @@
 """The layout of a map's picture on a page of a given size.
 
-Guarantee: all text has the size that is asked for, none less than `ptmcad.show.style.MIN_FONT` points, and every
-part is on the page. To that end insets are left out first, then the legend goes below the map, then areas are left out
-of it; what does not fit even so is refused with the least size that would do.
+Guarantee: all text has the size that is asked for, none less than `ptmcad.show.style.MIN_FONT`
+points, and every part is on the page. To that end insets are left out first, then the legend goes
+below the map, then areas are left out of it; what does not fit even so is refused with the least
+size that would do.
 
 Measured, not guessed: widths of text in its font, and what numbers and names take beside the axes.
 """
@@ -68,7 +69,8 @@ class PageParts:
 
 
 def fitted(parts: PageParts, style: PictureStyle, size: Size) -> Layout:
-    """The layout of the parts on a page of this size, in inches; within `ptmcad.show.render.printing.settings`.
+    """The layout of the parts on a page of this size, in inches; within
+    `ptmcad.show.render.printing.settings`.
 
     Raises
     ------
@@ -130,7 +132,9 @@ class _PageLayout:
 
     @property
     def texts(self) -> Texts:
-        return Texts(title=1.1 * self.font, inset=_points(0.83 * self.font), arrow=_points(0.89 * self.font))
+        return Texts(
+            title=1.1 * self.font, inset=_points(0.83 * self.font), arrow=_points(0.89 * self.font)
+        )
 
     def dressed(self, width: float, height: float, small: bool = False) -> Dress:
         """Sizes at axes of these sides, with as many numbers as there is room for."""
@@ -148,9 +152,15 @@ class _PageLayout:
     def top(self) -> float:
         """Of what stands below the title."""
         lines = len(self.title())
-        return self.size[1] - self.rim - (self.title_line * lines + 0.3 * self.em if lines else 0.35 * self.em)
+        return (
+            self.size[1]
+            - self.rim
+            - (self.title_line * lines + 0.3 * self.em if lines else 0.35 * self.em)
+        )
 
-    def layout(self, chart: Box, legend: Sequence[tuple[Position, Sequence[Entry]]], insets: Sequence[Box]) -> Layout:
+    def layout(
+        self, chart: Box, legend: Sequence[tuple[Position, Sequence[Entry]]], insets: Sequence[Box]
+    ) -> Layout:
         inset = insets[0] if insets else chart
         return Layout(
             size=self.size, chart=chart, title=self.title(),
@@ -161,12 +171,15 @@ class _PageLayout:
 
 
 def dressed(font: float, sides: Size, small: bool = False) -> Dress:
-    """Sizes at axes of these sides beside text of this size, with as many numbers as there is room for."""
+    """Sizes at axes of these sides beside text of this size, with as many numbers as there is room
+    for.
+    """
     ticks = _points((0.78 if small else 0.95) * font)
     names = _points((0.78 if small else 1.05) * font)
     most = 4 if small else 8
     across, up = (
-        int(max(2, min(most, side / (ems * ticks / 72)))) for side, ems in zip(sides, (3.3, 2.0), strict=True)
+        int(max(2, min(most, side / (ems * ticks / 72))))
+        for side, ems in zip(sides, (3.3, 2.0), strict=True)
     )
     return Dress(ticks, names, (across, up), small, font / 9)
 
@@ -187,12 +200,14 @@ def _on(parts: PageParts, style: PictureStyle, size: Size, font: float) -> Layou
 
 
 def _placed(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | None:
-    """The legend where it is asked for; else at the right unless the map is much larger when it is below."""
+    """The legend where it is asked for; else at the right unless the map is much larger when it is
+    below.
+    """
     place = page.style.legend
     if place is not None:
-        return {LegendPlace.RIGHT: _right, LegendPlace.BELOW: _below, LegendPlace.NONE: _alone}[place](
-            page, legend, insets
-        )
+        return {LegendPlace.RIGHT: _right, LegendPlace.BELOW: _below, LegendPlace.NONE: _alone}[
+            place
+        ](page, legend, insets)
     right, below = _right(page, legend, insets), _below(page, legend, insets)
     if right is None or below is None:
         return right or below
@@ -242,13 +257,17 @@ def _below(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | 
     if found is None:
         return None
     chart, boxes = found
-    widths = [max((page.type.entry_width(entry) for entry in column), default=0.0) for column in columns]
+    widths = [
+        max((page.type.entry_width(entry) for entry in column), default=0.0) for column in columns
+    ]
     gap = min(2 * em, (width - 2 * page.rim - sum(widths)) / max(1, len(widths) - 1))
     # below the map where there is room for that
     left = max(page.rim, min(chart[0], width - page.rim - sum(widths) - gap * (len(widths) - 1)))
     starts = [left + sum(widths[:k]) + gap * k for k in range(len(widths))]
     return page.layout(
-        chart, [((x, page.rim + height), column) for x, column in zip(starts, columns, strict=True)], boxes
+        chart,
+        [((x, page.rim + height), column) for x, column in zip(starts, columns, strict=True)],
+        boxes,
     )
 
 
@@ -267,7 +286,10 @@ def _over(page: _PageLayout, bottom: float, insets: int) -> tuple[Box, list[Box]
         if each < _INSET[0] * em:
             return None
         each, tall = min(each, 14 * em), _INSET[1] * em
-        boxes = [(page.rim + left + k * (each + left + 0.6 * em), bottom + below, each, tall) for k in range(insets)]
+        boxes = [
+            (page.rim + left + k * (each + left + 0.6 * em), bottom + below, each, tall)
+            for k in range(insets)
+        ]
         bottom += below + tall + _inset_head(page)
     chart = _chart(page, width - 2 * page.rim, page.top - bottom)
     return None if chart is None else (chart, boxes)
@@ -279,7 +301,9 @@ def _chart(page: _PageLayout, width: float, height: float) -> Box | None:
     for _ in range(3):  # what numbers take depends on how many there are, hence on the sides
         if min(inner) < MIN_SIDE * page.em:
             return None
-        left, below, right, _above = overhang(page.parts, page.parts.views[0], inner, page.dressed(*inner))
+        left, below, right, _above = overhang(
+            page.parts, page.parts.views[0], inner, page.dressed(*inner)
+        )
         inner = (width - left - right, height - below)
     if min(inner) < MIN_SIDE * page.em:
         return None
@@ -313,13 +337,18 @@ def _inset_head(page: _PageLayout) -> float:
 def _inset_overhang(page: _PageLayout) -> Box:
     """What numbers and names of the insets' axes take: the most of all."""
     sides = (_INSET[0] * page.em, _INSET[1] * page.em)
-    found = [overhang(page.parts, view, sides, page.dressed(*sides, small=True)) for view in page.parts.views[1:]]
+    found = [
+        overhang(page.parts, view, sides, page.dressed(*sides, small=True))
+        for view in page.parts.views[1:]
+    ]
     left, below, right, above = (max(of[k] for of in found) for k in range(4))
     return left, below + 0.3 * page.em, right, above
 
 
 def overhang(parts: PageParts, view: View, sides: Size, how: Dress) -> Box:
-    """Inches that numbers and names take at the left, below, at the right and above axes of these sides."""
+    """Inches that numbers and names take at the left, below, at the right and above axes of these
+    sides.
+    """
     key = (view, how)
     if key not in parts.measured:
         parts.measured[key] = _measured(Same(parts.slice), view, how, _look())
@@ -364,16 +393,24 @@ def rewrapped(entry: Entry, width: float, type: Type) -> Entry:
     room = width - (0.0 if entry.mark is None else type.indent)
     if not entry.lines:
         return entry
-    entry = replace(entry, lines=tuple(line.replace(" %", "\N{NO-BREAK SPACE}%") for line in entry.lines))
+    entry = replace(
+        entry, lines=tuple(line.replace(" %", "\N{NO-BREAK SPACE}%") for line in entry.lines)
+    )
     head = wrapped(" ".join(entry.lines[: entry.heads]), room, type.head, entry.strong)
-    rest = wrapped(" ".join(entry.lines[entry.heads :]), room, type.detail) if entry.lines[entry.heads :] else []
+    rest = (
+        wrapped(" ".join(entry.lines[entry.heads :]), room, type.detail)
+        if entry.lines[entry.heads :]
+        else []
+    )
     return replace(entry, lines=(*head, *rest), heads=len(head))
 
 
 def _balanced(entries: Sequence[Entry], number: int, type: Type) -> list[list[Entry]]:
     """Columns in reading order, none longer than it must be."""
     heights = [type.entry_height(entry) for entry in entries]
-    most = next(most for most in _sums(heights) if len(list(_columns(entries, heights, most))) <= number)
+    most = next(
+        most for most in _sums(heights) if len(list(_columns(entries, heights, most))) <= number
+    )
     return list(_columns(entries, heights, most))
 
 
@@ -383,7 +420,9 @@ def _sums(heights: Sequence[float]) -> list[float]:
     return sorted(run + 1e-9 for run in runs)
 
 
-def _columns(entries: Sequence[Entry], heights: Sequence[float], most: float) -> Iterator[list[Entry]]:
+def _columns(
+    entries: Sequence[Entry], heights: Sequence[float], most: float
+) -> Iterator[list[Entry]]:
     column: list[Entry] = []
     filled = 0.0
     for entry, height in zip(entries, heights, strict=True):

@@ -26,7 +26,13 @@ def check_families(families: Sequence[str]) -> None:
         try:
             fontManager.findfont(FontProperties(family=[family]), fallback_to_default=False)
         except ValueError as error:
-            names = sorted({font.name for font in fontManager.ttflist if not font.name.startswith((".", "STIX", "cm"))})
+            names = sorted(
+                {
+                    font.name
+                    for font in fontManager.ttflist
+                    if not font.name.startswith((".", "STIX", "cm"))
+                }
+            )
             more = "" if len(names) <= _SHOWN else f" and {len(names) - _SHOWN} more"
             raise ConfigError(
                 f"no font of the family {family!r} is installed; there are {', '.join(names[:_SHOWN])}{more}, "

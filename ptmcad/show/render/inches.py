@@ -1,4 +1,6 @@
-"""What stands on a page at places in inches from its lower left corner: axes, lines of text, strokes and points."""
+"""What stands on a page at places in inches from its lower left corner: axes, lines of text,
+strokes and points.
+"""
 
 from __future__ import annotations
 
@@ -21,10 +23,14 @@ def axes_at(figure: Any, box: Box, gid: str | None = None) -> Any:
 
 def write(figure: Any, at: Position, text: str, size: float, **look: Any) -> Any:
     """A line of text of a size in points, by default from the middle of its left end."""
-    return figure.text(*at, text, transform=figure.dpi_scale_trans, fontsize=size, **{"va": "center", **look})
+    return figure.text(
+        *at, text, transform=figure.dpi_scale_trans, fontsize=size, **{"va": "center", **look}
+    )
 
 
-def write_lines(figure: Any, at: Position, lines: Iterable[str], size: float, step: float, **look: Any) -> None:
+def write_lines(
+    figure: Any, at: Position, lines: Iterable[str], size: float, step: float, **look: Any
+) -> None:
     """Lines of text below each other, the first one at a place."""
     for k, line in enumerate(lines):
         write(figure, (at[0], at[1] - k * step), line, size, **look)

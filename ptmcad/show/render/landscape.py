@@ -1,14 +1,17 @@
-"""The picture of the energy over one unknown as a curve, or over two as contours, with all equilibria marked by kind.
+"""The picture of the energy over one unknown as a curve, or over two as contours, with all
+equilibria marked by kind.
 
-An angle goes round once; an unknown on the line goes through a range that holds all equilibria. Where moments work, the
-energy less their work is drawn, in which the equilibria are level. Over an angle it is not periodic: it is cut at 180
-degrees, and a title says so.
+An angle goes round once; an unknown on the line goes through a range that holds all equilibria.
+Where moments work, the energy less their work is drawn, in which the equilibria are level. Over an
+angle it is not periodic: it is cut at 180 degrees, and a title says so.
 
-Guarantee: every equilibrium is marked, at both edges where an angle is 180 degrees, with its number in the picture of
-`ptmcad.show.render.poses.draw_poses`. Contours pass through saddles and degenerate equilibria, also where the energy is
-large and its differences are small, because its constant part is taken out exactly before anything is rounded.
+Guarantee: every equilibrium is marked, at both edges where an angle is 180 degrees, with its number
+in the picture of `ptmcad.show.render.poses.draw_poses`. Contours pass through saddles and
+degenerate equilibria, also where the energy is large and its differences are small, because its
+constant part is taken out exactly before anything is rounded.
 
-Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact poses.
+Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact
+poses.
 """
 
 from __future__ import annotations
@@ -44,9 +47,13 @@ from ptmcad.show.render.view import Floats
 from ptmcad.show.units import energy_unit, unit_of_unknown, with_unit
 
 SIDE, LEFT, BOTTOM, BAR, KEY, MARGIN = 4.6, 0.85, 0.65, 1.25, 2.2, 0.15
-"""In inches: the square's side, the space at its left and below, the colour bar, the legend, the rim."""
+"""In inches: the square's side, the space at its left and below, the colour bar, the legend, the
+rim.
+"""
 _GRID, _FINE = 145, 433
-"""Points along a side for all contours, and for those through saddles, which are narrow crosses near a fold."""
+"""Points along a side for all contours, and for those through saddles, which are narrow crosses
+near a fold.
+"""
 _EVEN, _MIN_STEPS = 16, 4
 """Intervals of contours in all, and at least between two neighbouring critical energies."""
 _COLOURS = ("#16324f", "#3d6b8c", "#7fa6b5", "#c3d2c5", "#f3edd3")
@@ -97,13 +104,22 @@ class UnknownAxis:
         return copies(value) if self.is_angle else (value,)
 
 
-def sides_of(model: Model, shown: Sequence[Pose], units: Mapping[str, str]) -> tuple[UnknownAxis, ...]:
-    """The axes: angles all round, and for each unknown on the line a range that holds all equilibria."""
-    found = [UnknownAxis(name, -180.0, 180.0, True, unit_of_unknown(model, name, units)) for name in model.angles]
+def sides_of(
+    model: Model, shown: Sequence[Pose], units: Mapping[str, str]
+) -> tuple[UnknownAxis, ...]:
+    """The axes: angles all round, and for each unknown on the line a range that holds all
+    equilibria.
+    """
+    found = [
+        UnknownAxis(name, -180.0, 180.0, True, unit_of_unknown(model, name, units))
+        for name in model.angles
+    ]
     for k, name in enumerate(model.reals):
         low, high = (end(float(pose.reals[k]) for pose in shown) for end in (min, max))
         room = max((high - low) / 2, max(abs(low), abs(high)) / 4) or 1.0
-        found.append(UnknownAxis(name, low - room, high + room, False, unit_of_unknown(model, name, units)))
+        found.append(
+            UnknownAxis(name, low - room, high + room, False, unit_of_unknown(model, name, units))
+        )
     return tuple(found)
 
 
@@ -170,7 +186,10 @@ def _page(poses: Poses, beside: float, what: str) -> tuple[Figure, Any]:
 
 def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
     """The energy over two unknowns."""
-    energy, sides = energy_of(poses.model, poses.parameters), sides_of(poses.model, shown, poses.units)
+    energy, sides = (
+        energy_of(poses.model, poses.parameters),
+        sides_of(poses.model, shown, poses.units),
+    )
     (across, up), heights = _sampled(energy, sides, _GRID)
     critical = sorted({level for pose in shown for level in _levels(energy, sides, pose)})
     levels = contour_levels(critical, float(heights.min()), float(heights.max()))
@@ -182,10 +201,22 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
         norm = BoundaryNorm(levels, colours.N)
         clipped = np.clip(heights, levels[0], levels[-1])
         filled = axes.contourf(across, up, clipped, levels=levels, cmap=colours, norm=norm)
-        axes.contour(across, up, heights, levels=levels[1:-1], colors="white", linewidths=0.35, linestyles="solid")
-        through = sorted({v for p in shown if p.index in (1, None) for v in _levels(energy, sides, p)})
+        axes.contour(
+            across,
+            up,
+            heights,
+            levels=levels[1:-1],
+            colors="white",
+            linewidths=0.35,
+            linestyles="solid",
+        )
+        through = sorted(
+            {v for p in shown if p.index in (1, None) for v in _levels(energy, sides, p)}
+        )
         finer, fine_heights = _sampled(energy, sides, _FINE)
-        axes.contour(*finer, fine_heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
+        axes.contour(
+            *finer, fine_heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid"
+        )
         _decorate(axes, sides)
         _mark(axes, sides, shown)
         bar = axes_at(figure, (LEFT + SIDE + 0.2, BOTTOM, 0.16, SIDE))
@@ -200,7 +231,9 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
 
 def _levels(energy: Energy, sides: Sequence[UnknownAxis], pose: Pose) -> list[float]:
     """Where a pose lies: once, and again at the other edge of an angle."""
-    places = product(*(side.copies(value) for side, value in zip(sides, place_of(pose), strict=True)))
+    places = product(
+        *(side.copies(value) for side, value in zip(sides, place_of(pose), strict=True))
+    )
     return [energy.level(pose, place) for place in places]
 
 
@@ -216,17 +249,26 @@ def _title(poses: Poses) -> list[str]:
         for name, value in moments.items()
     )
     unit = " (radians)" if is_cut(poses) else ""
-    return [*lines, *textwrap.wrap(f"V {about} U{work}{unit}: {drawn(poses).lower().rstrip(',')}", _COLUMNS)]
+    return [
+        *lines,
+        *textwrap.wrap(f"V {about} U{work}{unit}: {drawn(poses).lower().rstrip(',')}", _COLUMNS),
+    ]
 
 
-def _sampled(energy: Energy, sides: Sequence[UnknownAxis], number: int) -> tuple[tuple[Floats, Floats], Floats]:
-    """What is shown along the sides, and the energy, shape (number, number), the first unknown along rows."""
+def _sampled(
+    energy: Energy, sides: Sequence[UnknownAxis], number: int
+) -> tuple[tuple[Floats, Floats], Floats]:
+    """What is shown along the sides, and the energy, shape (number, number), the first unknown
+    along rows.
+    """
     (across, first), (up, second) = (side.sampled(number) for side in sides)
     return (across, up), energy(first[None, :], second[:, None])
 
 
 def contour_levels(critical: Sequence[float], low: float, high: float) -> list[float]:
-    """Increasing levels from the least to the largest energy, all critical ones and some between any two."""
+    """Increasing levels from the least to the largest energy, all critical ones and some between
+    any two.
+    """
     marks = [low]
     for value in [*critical, high]:
         # energies nearer than what floats distinguish are one
@@ -267,11 +309,15 @@ def _mark(axes: Any, sides: Sequence[UnknownAxis], shown: Sequence[Pose]) -> Non
     for number, pose in enumerate(shown, 1):
         own = first_copy(sides, pose)
         # what is drawn later on the same place would hide it: it stands out around that
-        look = _marker(_kind(pose), _RING * sum(dist(places[number - 1], p) < near for p in places[number:]))
+        look = _marker(
+            _kind(pose), _RING * sum(dist(places[number - 1], p) < near for p in places[number:])
+        )
         first, second = place_of(pose)
         for x in sides[0].copies(first):
             for y in sides[1].copies(second):
-                _add_marker(axes, (x, y), f"equilibrium-{number}" if (x, y) == own else None, **look)
+                _add_marker(
+                    axes, (x, y), f"equilibrium-{number}" if (x, y) == own else None, **look
+                )
                 (u, v), half = on_paper((x, y)), look["markersize"] / 2 + 1
                 boxes.append((u - half, v - half, u + half, v + half))
     labels = []
@@ -283,7 +329,9 @@ def _mark(axes: Any, sides: Sequence[UnknownAxis], shown: Sequence[Pose]) -> Non
         x, y = back(placed.center)
         if placed.leader is not None:
             line = [back(end) for end in (placed.label.at, placed.leader)]
-            axes.add_collection(LineCollection([line], colors=INK, linewidths=0.6, zorder=5), autolim=False)
+            axes.add_collection(
+                LineCollection([line], colors=INK, linewidths=0.6, zorder=5), autolim=False
+            )
         axes.text(
             x, y, placed.label.text, gid=f"number-{placed.label.text}", **_NUMBER,
             bbox={"boxstyle": "round,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85},
@@ -320,7 +368,9 @@ def _energy_ticks(axes: Any, energy: Energy, low: float, high: float, unit: str)
         t for t in MaxNLocator(nbins=7, steps=[1, 2, 2.5, 5, 10]).tick_values(scale.low, scale.high)
         if scale.low <= t <= scale.high
     ]  # fmt: skip
-    axes.yaxis.set_ticks([position(t) for t in ticks], [f"{t:.6g}".replace("-", "−") for t in ticks])
+    axes.yaxis.set_ticks(
+        [position(t) for t in ticks], [f"{t:.6g}".replace("-", "−") for t in ticks]
+    )
     axes.minorticks_off()
     axes.tick_params(labelsize=9, direction="out", length=3.5)
     axes.set_ylabel(with_unit(scale.name("V" if energy.slopes else "U"), unit), fontsize=10)

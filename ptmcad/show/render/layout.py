@@ -1,7 +1,8 @@
-"""Where the parts of a map's picture stand, and how large its text is: a page that grows with what it shows.
+"""Where the parts of a map's picture stand, and how large its text is: a page that grows with what
+it shows.
 
-Guarantee: none of its parts overlap. `ptmcad.show.render.fitting` lays the same parts out on a page of a given size.
-All places are in inches from the page's lower left corner.
+Guarantee: none of its parts overlap. `ptmcad.show.render.fitting` lays the same parts out on a page
+of a given size. All places are in inches from the page's lower left corner.
 """
 
 from __future__ import annotations
@@ -15,12 +16,16 @@ from ptmcad.show.render.inches import Box
 from ptmcad.show.render.legend import Entry, Type
 
 SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15
-"""In inches: the map's side, the space at its left and below, a column at its right, the space before, the rim."""
+"""In inches: the map's side, the space at its left and below, a column at its right, the space
+before, the rim.
+"""
 INSET_WIDTH, INSET_HEIGHT, INSET_LEFT, INSET_BELOW, INSET_ABOVE = 1.75, 1.2, 0.62, 0.48, 0.42
 BLOCK = INSET_ABOVE + INSET_HEIGHT + INSET_BELOW
 TITLE_LINE = 0.22
 WIDEST = LEFT + SIDE + GAP + 2 * COLUMN + MARGIN
-"""Of a picture that grows with what it shows, whatever there is to zoom: what has no room beside the map goes below."""
+"""Of a picture that grows with what it shows, whatever there is to zoom: what has no room beside
+the map goes below.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +68,12 @@ class Layout:
 
 
 def flowing(
-    title: Sequence[str], legend: Sequence[Entry], type: Type, insets: int, beside: float, tallest: float
+    title: Sequence[str],
+    legend: Sequence[Entry],
+    type: Type,
+    insets: int,
+    beside: float,
+    tallest: float,
 ) -> Layout:
     """The layout of a map of a fixed side, with the legend and insets at its right.
 
@@ -87,13 +97,19 @@ def flowing(
         title=title,
         title_at=(LEFT, size[1] - MARGIN - TITLE_LINE * 0.5),
         legend=(((left, top), legend),),
-        insets=tuple((x + INSET_LEFT, y - INSET_ABOVE - INSET_HEIGHT, INSET_WIDTH, INSET_HEIGHT) for x, y in corners),
+        insets=tuple(
+            (x + INSET_LEFT, y - INSET_ABOVE - INSET_HEIGHT, INSET_WIDTH, INSET_HEIGHT)
+            for x, y in corners
+        ),
         type=type,
     )
 
 
-def _places(number: int, below: float, tall: float) -> tuple[list[tuple[int, float]], list[tuple[int, int]]]:
-    """Places for insets: the first ones below the legend, then in a column at its right, others in rows below the map.
+def _places(
+    number: int, below: float, tall: float
+) -> tuple[list[tuple[int, float]], list[tuple[int, int]]]:
+    """Places for insets: the first ones below the legend, then in a column at its right, others in
+    rows below the map.
 
     Of the former the column and the distance from the top, of the latter the row and its column.
     """

@@ -1,10 +1,12 @@
-"""Lines that lead from what stands beside a map to points of it: in which order that stands there, and their course.
+"""Lines that lead from what stands beside a map to points of it: in which order that stands there,
+and their course.
 
-Guarantee: the same for the same geometry. Lines of one side cross each other, a label or another point only where no
-course and no exchange of two neighbours that the search tries is without that.
+Guarantee: the same for the same geometry. Lines of one side cross each other, a label or another
+point only where no course and no exchange of two neighbours that the search tries is without that.
 
-Source: an assignment of least total length has no crossing (of two that cross an exchange is shorter), which is why
-length is what is made least after crossings; Bekos, Kaufmann, Symvonis and Wolff, "Boundary labeling" (2007).
+Source: an assignment of least total length has no crossing (of two that cross an exchange is
+shorter), which is why length is what is made least after crossings; Bekos, Kaufmann, Symvonis and
+Wolff, "Boundary labeling" (2007).
 """
 
 from __future__ import annotations
@@ -20,7 +22,8 @@ Course = tuple[Position, ...]
 """From a berth to a point, straight or with one bend."""
 
 _CROSSING, _COVERED, _BEND, _OFF = 100.0, 10.0, 0.5, 0.15
-"""What a crossing, a covered box, a bend and an inch off a berth's middle cost, in inches of line."""
+"""What a crossing, a covered box, a bend and an inch off a berth's middle cost, in inches of line.
+"""
 _STARTS, _BENDS = 7, 13
 _HALF, _MARK = 0.035, 0.06
 """Inches: half a line's width with a little space, and half the side of a point's mark."""
@@ -29,7 +32,9 @@ _ROUNDS = 3
 
 @dataclass(frozen=True, slots=True)
 class Berth:
-    """Where a line may begin: an upright edge, in inches, and the upright on which it may bend towards the map."""
+    """Where a line may begin: an upright edge, in inches, and the upright on which it may bend
+    towards the map.
+    """
 
     x: float
     low: float
@@ -74,18 +79,27 @@ def _best(
     targets: Sequence[Position], order: Order, berths: Sequence[Berth], boxes: Sequence[Box],
     heights: tuple[float, float],
 ) -> tuple[float, list[Course]]:  # fmt: skip
-    """Courses of little cost for an order: the cheapest of each alone, then of each beside the others."""
+    """Courses of little cost for an order: the cheapest of each alone, then of each beside the
+    others.
+    """
     offered = []
     for n, berth in zip(order, berths, strict=True):
         marks = [around(other, (_MARK, _MARK)) for k, other in enumerate(targets) if k != n]
         free = [box for box in (*boxes, *marks) if not holds(box, targets[n])]
-        offered.append([(_alone(course, berth, free), course) for course in _courses(berth, targets[n], heights)])
+        offered.append(
+            [
+                (_alone(course, berth, free), course)
+                for course in _courses(berth, targets[n], heights)
+            ]
+        )
     chosen = [min(courses) for courses in offered]
     for _ in range(_ROUNDS):
         before = list(chosen)
         for k, courses in enumerate(offered):
             others = [course for j, (_, course) in enumerate(chosen) if j != k]
-            chosen[k] = min(courses, key=lambda each: (each[0] + _CROSSING * _crossed(each[1], others), each))
+            chosen[k] = min(
+                courses, key=lambda each: (each[0] + _CROSSING * _crossed(each[1], others), each)
+            )
         if chosen == before:
             break
     found = [course for _, course in chosen]
@@ -94,7 +108,9 @@ def _best(
 
 
 def _courses(berth: Berth, target: Position, heights: tuple[float, float]) -> Iterator[Course]:
-    """Straight lines from the berth, and lines along the gutter to a height of the map and from there straight."""
+    """Straight lines from the berth, and lines along the gutter to a height of the map and from
+    there straight.
+    """
     nearest = min(max(target[1], berth.low), berth.high)
     for k in range(_STARTS):
         yield (berth.x, berth.low + (berth.high - berth.low) * k / (_STARTS - 1)), target

@@ -1,6 +1,8 @@
-"""The legend: what each colour and each line means, with the regions of every count and their areas.
+"""The legend: what each colour and each line means, with the regions of every count and their
+areas.
 
-Guarantee: every digit of an area is certified, and the same as in the table (`ptmcad.show.table.area_text`).
+Guarantee: every digit of an area is certified, and the same as in the table
+(`ptmcad.show.table.area_text`).
 """
 
 from __future__ import annotations
@@ -25,7 +27,9 @@ from ptmcad.text.bounds import percent
 STRONG, THIN, INK = 1.3, 0.5, "#111111"
 """Widths in points of walls that separate regions and of others, and the colour of both."""
 RIM, CORE, RIM_INK = 0.45, 0.6, "#404040"
-"""Widths in points of the line around what is undetermined, and of the least of this that is seen within."""
+"""Widths in points of the line around what is undetermined, and of the least of this that is seen
+within.
+"""
 
 LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
 """Inches between lines, width of a swatch, characters in a line."""
@@ -35,12 +39,14 @@ FILL = 0.14
 """Height of a swatch."""
 
 Mark = Callable[[Any, float, float], None]
-"""Draws into a figure, from a place in inches (left, middle) to the right, no wider than a swatch."""
+"""Draws into a figure, from a place in inches (left, middle) to the right, no wider than a swatch.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """Some lines of text beside a fill, a line (`STRONG` or `THIN`), a dot, a drawing of its own or nothing.
+    """Some lines of text beside a fill, a line (`STRONG` or `THIN`), a dot, a drawing of its own or
+    nothing.
 
     ``heads`` is the number of lines, from the first, in the larger type.
     """
@@ -93,17 +99,24 @@ class Type:
 
     def entry_width(self, entry: Entry) -> float:
         """Of an entry with its mark, in inches."""
-        from ptmcad.show.render.textwidth import text_width  # brings matplotlib, which the report's words do without
+        from ptmcad.show.render.textwidth import (
+            text_width,
+        )  # brings matplotlib, which the report's words do without
 
         indent = 0.0 if entry.mark is None else self.indent
         sizes = [self.head if k < entry.heads else self.detail for k in range(len(entry.lines))]
-        texts = (text_width(line, size, entry.strong) for line, size in zip(entry.lines, sizes, strict=True))
+        texts = (
+            text_width(line, size, entry.strong)
+            for line, size in zip(entry.lines, sizes, strict=True)
+        )
         return indent + max(texts, default=0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Wording:
-    """What a legend says: the fill of a region, that of what is undetermined, and whether areas are told."""
+    """What a legend says: the fill of a region, that of what is undetermined, and whether areas are
+    told.
+    """
 
     fill: Callable[[Region], Fill]
     undetermined: Fill = UNDETERMINED
@@ -180,7 +193,9 @@ def hidden_words(hidden: int) -> str:
 
 
 def thin_entry() -> Entry:
-    """Of curves where unstable solutions alone differ, or complex ones meet, or some leave every bounded set."""
+    """Of curves where unstable solutions alone differ, or complex ones meet, or some leave every
+    bounded set.
+    """
     return Entry(("another curve of the variety,", "the count does not change"), THIN)
 
 
@@ -197,13 +212,17 @@ def _with_total(text: str, regions: list[Region], result: RegionMap) -> str:
 
 
 def _areas(result: RegionMap, text: str, regions: list[Region]) -> list[str]:
-    """The areas of the regions of a count, or what they have in all where they are many or their bounds are apart."""
+    """The areas of the regions of a count, or what they have in all where they are many or their
+    bounds are apart.
+    """
     number = len(regions)
     if result.cover is None and 1 < number <= _MAX_AREAS:
         areas = ", ".join(area_text(result, region.area) for region in regions)
         return textwrap.wrap(f"{number} regions, areas {areas}", COLUMNS)
     together = area_text(result, area_by_count(result)[text])
-    return textwrap.wrap(f"area {together}" if number == 1 else f"{number} regions, in all {together}", COLUMNS)
+    return textwrap.wrap(
+        f"area {together}" if number == 1 else f"{number} regions, in all {together}", COLUMNS
+    )
 
 
 Rows = list[list[tuple[float, Entry]]]
@@ -231,7 +250,9 @@ def draw_rows(figure: Any, rows: Rows, at: Position, step: float, type: Type) ->
             draw_legend(figure, [entry], at[0] + left, at[1] - k * step, type)
 
 
-def draw_legend(figure: Any, legend: Sequence[Entry], left: float, top: float, type: Type | None = None) -> None:
+def draw_legend(
+    figure: Any, legend: Sequence[Entry], left: float, top: float, type: Type | None = None
+) -> None:
     """Draw the entries from the place given in inches downwards."""
     type = type or Type()
     for entry in legend:
@@ -245,7 +266,9 @@ def draw_legend(figure: Any, legend: Sequence[Entry], left: float, top: float, t
         top -= type.entry_height(entry)
 
 
-def _draw_mark(figure: Any, mark: Fill | float | str | Mark | None, left: float, middle: float, type: Type) -> None:
+def _draw_mark(
+    figure: Any, mark: Fill | float | str | Mark | None, left: float, middle: float, type: Type
+) -> None:
     from matplotlib.patches import Rectangle
 
     swatch, tall = SWATCH * type.scale, FILL * type.scale
@@ -258,10 +281,26 @@ def _draw_mark(figure: Any, mark: Fill | float | str | Mark | None, left: float,
                 )
             )  # fmt: skip
         case float(width):
-            width, kind = (type.strong, "solid") if width == STRONG else (type.thin, type.thin_lines)
-            stroke(figure, (left, left + swatch), (middle, middle), color=INK, linewidth=width, linestyle=kind)
+            width, kind = (
+                (type.strong, "solid") if width == STRONG else (type.thin, type.thin_lines)
+            )
+            stroke(
+                figure,
+                (left, left + swatch),
+                (middle, middle),
+                color=INK,
+                linewidth=width,
+                linestyle=kind,
+            )
         case str():
-            stroke(figure, (left + swatch / 2,), (middle,), color=INK, marker="o", markersize=2.5 * type.scale)
+            stroke(
+                figure,
+                (left + swatch / 2,),
+                (middle,),
+                color=INK,
+                marker="o",
+                markersize=2.5 * type.scale,
+            )
         case None:
             pass
         case draw:

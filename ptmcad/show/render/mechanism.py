@@ -1,7 +1,9 @@
-"""The drawing of a mechanism's sketch: thick bars, zigzag springs, spirals, supports, sliders, arrows for loads.
+"""The drawing of a mechanism's sketch: thick bars, zigzag springs, spirals, supports, sliders,
+arrows for loads.
 
-Guarantee: stable poses are strong and others pale, which grey prints and colour-blind eyes see as well: each colour's
-pale version is lighter by at least 25 units of CIE L*, and two bars differ in width and lightness.
+Guarantee: stable poses are strong and others pale, which grey prints and colour-blind eyes see as
+well: each colour's pale version is lighter by at least 25 units of CIE L*, and two bars differ in
+width and lightness.
 """
 
 from __future__ import annotations
@@ -51,10 +53,14 @@ def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> N
     """Draw a sketch into axes of which a unit is a point."""
     _supports(axes, seen, style, prefix)
     few = len(seen.bars) <= len(BAR_WIDTHS)
-    for number, ((start, end), names) in enumerate(zip(seen.bars, seen.mechanism.bars, strict=True)):
+    for number, ((start, end), names) in enumerate(
+        zip(seen.bars, seen.mechanism.bars, strict=True)
+    ):
         kind = number if few else 0
         width = bar_width(seen.mechanism, number)
-        _line(axes, (start, end), style.bars[kind], width, f"{prefix}bar-{''.join(names)}", 2 + kind)
+        _line(
+            axes, (start, end), style.bars[kind], width, f"{prefix}bar-{''.join(names)}", 2 + kind
+        )
     for name, points in seen.coils.items():
         _line(axes, points, "white", 2.4, "", 4)
         _line(axes, points, style.spring, 0.95, f"{prefix}{name}", 5)
@@ -71,7 +77,9 @@ def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> N
         )  # fmt: skip
 
 
-def _line(axes: Any, points: Sequence[Position], colour: str, width: float, gid: str, z: float) -> None:
+def _line(
+    axes: Any, points: Sequence[Position], colour: str, width: float, gid: str, z: float
+) -> None:
     line = Line2D(
         *zip(*points, strict=True), color=colour, linewidth=width, solid_capstyle="round", solid_joinstyle="round",
         zorder=z, gid=gid or None, clip_on=False,
@@ -80,7 +88,16 @@ def _line(axes: Any, points: Sequence[Position], colour: str, width: float, gid:
 
 
 def _pin(x: float, y: float, colour: str, gid: str | None = None) -> Any:
-    return Circle((x, y), PIN, facecolor="white", edgecolor=colour, linewidth=0.9, zorder=6, gid=gid, clip_on=False)
+    return Circle(
+        (x, y),
+        PIN,
+        facecolor="white",
+        edgecolor=colour,
+        linewidth=0.9,
+        zorder=6,
+        gid=gid,
+        clip_on=False,
+    )
 
 
 def _arrow(start: Position, end: Position, colour: str, gid: str | None = None) -> Any:
@@ -91,14 +108,22 @@ def _arrow(start: Position, end: Position, colour: str, gid: str | None = None) 
 
 
 def _supports(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> None:
-    """Rails or the telescopic base, a support under each fixed point and a slider around each sliding one."""
+    """Rails or the telescopic base, a support under each fixed point and a slider around each
+    sliding one.
+    """
     for number, ends in enumerate(seen.rails, 1):
-        _line(axes, ends, style.base, 1.8, f"{prefix}base" + (f"-{number}" if number > 1 else ""), 1)
+        _line(
+            axes, ends, style.base, 1.8, f"{prefix}base" + (f"-{number}" if number > 1 else ""), 1
+        )
         _line(axes, ends, "white", 0.7, "", 1.1)
     for name, kind in seen.mechanism.supports.items():
         x, y = seen.nodes[name]
         fixed = kind is Support.PIN
-        for artist in _support(x, y, style.base) if fixed else [_slider(x, y, style.base, kind is Support.SLIDER_Y)]:
+        for artist in (
+            _support(x, y, style.base)
+            if fixed
+            else [_slider(x, y, style.base, kind is Support.SLIDER_Y)]
+        ):
             axes.add_artist(artist)
 
 
@@ -115,7 +140,8 @@ def _support(x: float, y: float, colour: str) -> list[Any]:
         right = x - width + 2 + k * 3.6
         lines.append(((right, bottom), (right - GROUND, bottom - GROUND)))
     ground = [
-        Line2D(*zip(*line, strict=True), color=colour, linewidth=0.7, zorder=1.5, clip_on=False) for line in lines
+        Line2D(*zip(*line, strict=True), color=colour, linewidth=0.7, zorder=1.5, clip_on=False)
+        for line in lines
     ]
     return [triangle, *ground]
 
@@ -130,7 +156,9 @@ def _slider(x: float, y: float, colour: str, upright: bool = False) -> Any:
 
 def bar_mark(number: int, style: SketchColours = STRONG, many: bool = False) -> Mark:
     """A bar in a legend: of two a number, or one of many."""
-    return _line_mark([(0.0, 0.0), (SWATCH, 0.0)], style.bars[number], MANY_BARS if many else BAR_WIDTHS[number])
+    return _line_mark(
+        [(0.0, 0.0), (SWATCH, 0.0)], style.bars[number], MANY_BARS if many else BAR_WIDTHS[number]
+    )
 
 
 def spring_mark() -> Mark:

@@ -1,6 +1,8 @@
-"""The maps of a family's members side by side (small multiples), all in the same colours, with one legend.
+"""The maps of a family's members side by side (small multiples), all in the same colours, with one
+legend.
 
-Guarantee: every chart shows the whole window to the same scale; a colour stands for the same count in all of them.
+Guarantee: every chart shows the whole window to the same scale; a colour stands for the same count
+in all of them.
 """
 
 from __future__ import annotations
@@ -47,17 +49,22 @@ _MAX_COLUMNS = 6
 
 def title_of(family: FamilyMap) -> str:
     shown = [shortest_text(end).replace("-", "−") for end in (family.free.low, family.free.high)]
-    return f"{family.title or family.name}, {symbol(family.free.name)} from {shown[0]} to {shown[1]}"
+    return (
+        f"{family.title or family.name}, {symbol(family.free.name)} from {shown[0]} to {shown[1]}"
+    )
 
 
 def in_words(family: FamilyMap) -> str:
     """Each member's number of regions, for who cannot see the picture."""
     return ". ".join(
-        f"At {family.free.name} = {shortest_text(value)}: {len(result.regions)} regions" for value, result in family
+        f"At {family.free.name} = {shortest_text(value)}: {len(result.regions)} regions"
+        for value, result in family
     )
 
 
-def family_entries(family: FamilyMap, paint: Paint, thin: bool = False, hidden: int = 0) -> list[Entry]:
+def family_entries(
+    family: FamilyMap, paint: Paint, thin: bool = False, hidden: int = 0
+) -> list[Entry]:
     """The legend: a fill for each count that some member has.
 
     Parameters
@@ -117,21 +124,39 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
     paint = replace(paint, thin_walls=thin)
     told = family_entries(family, paint, thin, sum(mark.hidden for mark in marks))
     titles, lines = titles_and_rows(family, style, told, wide, type)
-    rest = 1.5 * em * len(titles) + 0.4 * em + rows * head + below + (type.line * 1.35) * len(lines) + 0.7 * em
+    rest = (
+        1.5 * em * len(titles)
+        + 0.4 * em
+        + rows * head
+        + below
+        + (type.line * 1.35) * len(lines)
+        + 0.7 * em
+    )
     between = 0.5 * em * (rows - 1)
     tall = (style.size[1] - rest - between) / rows if style.size is not None else side
     if min(side, tall) < 0.5 * MIN_SIDE * em:
-        raise ConfigError(f"{len(seen)} maps do not fit: make it larger, or draw fewer members", key="size")
+        raise ConfigError(
+            f"{len(seen)} maps do not fit: make it larger, or draw fewer members", key="size"
+        )
     height = rest + between + rows * tall
     figure = Figure(figsize=(wide, height), dpi=dpi, facecolor="white")
-    write_lines(figure, (0.6 * em, height - 0.9 * em), titles, font, 1.5 * em, fontweight="bold", color=INK)
+    write_lines(
+        figure, (0.6 * em, height - 0.9 * em), titles, font, 1.5 * em, fontweight="bold", color=INK
+    )
     top = height - 1.5 * em * len(titles) - 0.4 * em
     for k, (value, shape) in enumerate(zip(family.values, seen, strict=True)):
         row, column = divmod(k, columns)
-        box = (left + column * (side + gap), top - (row + 1) * (head + tall) - row * 0.5 * em, side, tall)
+        box = (
+            left + column * (side + gap),
+            top - (row + 1) * (head + tall) - row * 0.5 * em,
+            side,
+            tall,
+        )
         axes = draw_chart(figure, box, shape, paint, marks[k], how, f"{k}-")
         _strip_inner(axes, column > 0, k + columns < len(seen))
-        write(figure, (box[0], box[1] + tall + 0.75 * em), value_text(family, value), font, color=INK)
+        write(
+            figure, (box[0], box[1] + tall + 0.75 * em), value_text(family, value), font, color=INK
+        )
     draw_flowed(figure, lines, em, type)
     return figure
 
@@ -139,7 +164,9 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
 def _columns(number: int, size: Size | None) -> int:
     """So that charts are about as wide as high."""
     if size is None:
-        return min(number, 3 if number in (3, 5, 6, 9) else 4 if number in (7, 8, 12) else _MAX_COLUMNS)
+        return min(
+            number, 3 if number in (3, 5, 6, 9) else 4 if number in (7, 8, 12) else _MAX_COLUMNS
+        )
     return max(1, min(number, round(math.sqrt(number * size[0] / size[1]))))
 
 
@@ -156,7 +183,9 @@ def _strip_inner(axes: Any, has_left: bool, has_below: bool) -> None:
 def titles_and_rows(
     family: FamilyMap, style: PictureStyle, told: Sequence[Entry], wide: float, type: Type
 ) -> tuple[list[str], Rows]:
-    """The lines of the title and the rows of the legend of a figure of a width in inches, as the style wants them."""
+    """The lines of the title and the rows of the legend of a figure of a width in inches, as the
+    style wants them.
+    """
     title = title_of(family) if style.title is None else style.title
     inner = wide - 1.2 * style.base_font / 72
     titles = wrapped(title, inner, style.base_font, True)

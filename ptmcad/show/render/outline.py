@@ -1,9 +1,10 @@
 """The outline of a region map in a view: the walls of its stacks as polylines, for drawing.
 
-Guarantee: each wall is the branch that the map names, from exact root isolation of the stored polynomials at rational
-abscissae; every vertex is within 2^-17 of the view's size of the branch (2^-14 in a coarser outline), and two
-neighbouring vertices are so near that their chord misses the branch's middle by at most `TOLERANCE`, or what is asked
-for, of the view's size, up to the depth of subdivision.
+Guarantee: each wall is the branch that the map names, from exact root isolation of the stored
+polynomials at rational abscissae; every vertex is within 2^-17 of the view's size of the branch
+(2^-14 in a coarser outline), and two neighbouring vertices are so near that their chord misses the
+branch's middle by at most `TOLERANCE`, or what is asked for, of the view's size, up to the depth of
+subdivision.
 
 Not guaranteed: the shape between the vertices. Nothing but pictures may be decided by an outline.
 """
@@ -33,7 +34,9 @@ TOLERANCE = 1.5e-4
 DEPTH = 7
 _BITS, _COARSE_BITS = 17, 14
 _LIMIT = Fraction(1, 2**48)
-"""A stack's ends are seen as limits from this fraction of its width: a square root's error is 2^-24 of its size."""
+"""A stack's ends are seen as limits from this fraction of its width: a square root's error is 2^-24
+of its size.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +47,8 @@ class StackOutline:
     ----------
     number : the stack's number in the map.
     along : shape (n,), increasing: positions on the base axis.
-    heights : shape (walls + 2, n): the window's lower edge, the walls, the window's upper edge; clipped to [-1, 2].
+    heights : shape (walls + 2, n): the window's lower edge, the walls, the window's upper edge;
+        clipped to [-1, 2].
     """
 
     number: int
@@ -59,7 +63,8 @@ class Outline:
     Attributes
     ----------
     swapped : whether the stacks stand over the vertical axis.
-    lines : (position on the base axis, number of the stack at its left, number of its component) for vertical lines.
+    lines : (position on the base axis, number of the stack at its left, number of its component)
+        for vertical lines.
     """
 
     result: RegionMap
@@ -83,7 +88,9 @@ class Outline:
         return simplified_line(points, tolerance) if tolerance else points
 
     def polygons(self, region: int, tolerance: float = 0.0) -> Iterator[Floats]:
-        """The region's parts over each stack, neighbouring cells joined; all with the same orientation."""
+        """The region's parts over each stack, neighbouring cells joined; all with the same
+        orientation.
+        """
         for stack in self.stacks:
             levels = [self.region(stack.number, k) == region for k in range(len(stack.heights) - 1)]
             start = None
@@ -117,7 +124,9 @@ class Outline:
             if left in by_number and left + 1 in by_number:
                 yield from self._line(position, component, by_number[left], by_number[left + 1])
 
-    def _line(self, position: float, component: int, left: StackOutline, right: StackOutline) -> Iterator[WallShape]:
+    def _line(
+        self, position: float, component: int, left: StackOutline, right: StackOutline
+    ) -> Iterator[WallShape]:
         before, after = left.heights[:, -1], right.heights[:, 0]
         for low, high in pairwise(np.unique(np.concatenate([before, after]))):
             middle = (low + high) / 2
@@ -125,14 +134,20 @@ class Outline:
                 self.region(s.number, min(max(int(np.searchsorted(h, middle)) - 1, 0), len(h) - 2))
                 for s, h in ((left, before), (right, after))
             ]
-            yield component, regions[0] != regions[1], self.points(np.full(2, position), np.array([low, high]))
+            yield (
+                component,
+                regions[0] != regions[1],
+                self.points(np.full(2, position), np.array([low, high])),
+            )
 
     def region(self, stack: int, level: int) -> int:
         """The region of a stack's cell."""
         return self.result.cells[self.result.stacks[stack].cells[level]].region
 
     def raster(self, columns: int, rows: int) -> NDArray[np.int64]:
-        """The region at the centre of every pixel, shape (rows, columns), from the bottom; -1 where there is none."""
+        """The region at the centre of every pixel, shape (rows, columns), from the bottom; -1 where
+        there is none.
+        """
         across, up = (rows, columns) if self.swapped else (columns, rows)
         image = np.full((up, across), -1, dtype=np.int64)
         centres = (np.arange(across) + 0.5) / across
@@ -141,7 +156,9 @@ class Outline:
             inside = np.flatnonzero((stack.along[0] < centres) & (centres < stack.along[-1]))
             if not len(inside):
                 continue
-            edges = np.array([np.interp(centres[inside], stack.along, row) for row in stack.heights])
+            edges = np.array(
+                [np.interp(centres[inside], stack.along, row) for row in stack.heights]
+            )
             regions = np.array([self.region(stack.number, k) for k in range(len(edges) - 1)])
             for k, column in enumerate(inside):
                 level = np.searchsorted(edges[:, k], heights) - 1
@@ -155,7 +172,8 @@ def outline(result: RegionMap, view: View | None = None, tolerance: float = TOLE
 
     Parameters
     ----------
-    tolerance : how far a chord may miss its branch, as a share of the view's size; the vertices are on it in any case.
+    tolerance : how far a chord may miss its branch, as a share of the view's size; the vertices are
+        on it in any case.
     """
     return _outline(Same(result), View.whole(result) if view is None else view, tolerance)
 
@@ -266,14 +284,21 @@ class _Tracer:
         return StackOutline(self.number, ordered[:, 0], heights)
 
     def _column(self, at: Fraction, drawn_at: Fraction | None = None) -> tuple[float, ...]:
-        """Position on the base axis, then the heights of the lower edge, the walls and the upper edge."""
+        """Position on the base axis, then the heights of the lower edge, the walls and the upper
+        edge.
+        """
         u = from_fraction(at)
         roots: dict[int, list[float]] = {}
         for n, c in self.curves.items():
             found = c.roots_over(u, self.fibre)
             roots[n] = [self._height(to_fraction(refine(r, self.width).middle)) for r in found]
         heights = [roots[w.component][w.root] for w in self.stack.walls]
-        return (self._position(at if drawn_at is None else drawn_at), self.edges[0], *heights, self.edges[1])
+        return (
+            self._position(at if drawn_at is None else drawn_at),
+            self.edges[0],
+            *heights,
+            self.edges[1],
+        )
 
     def _position(self, at: Fraction) -> float:
         return float((at - self.base[0]) / (self.base[1] - self.base[0]))
@@ -291,7 +316,9 @@ def _between(low: Fraction, high: Fraction, s: float) -> Fraction:
     return round((low + (high - low) * share) / step) * step
 
 
-def _deviation(first: tuple[float, ...], middle: tuple[float, ...], last: tuple[float, ...]) -> float:
+def _deviation(
+    first: tuple[float, ...], middle: tuple[float, ...], last: tuple[float, ...]
+) -> float:
     """The largest distance of a wall's middle point from its chord."""
     a, b, c = np.array(first), np.array(middle), np.array(last)
     across, up = c[0] - a[0], c[1:] - a[1:]

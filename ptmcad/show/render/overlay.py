@@ -1,7 +1,7 @@
 """Points of a caller's own, such as measured ones, drawn on a map.
 
-Guarantee: a point with a count of its own is marked by whether the map has the same count there; kinds of marks differ
-in shape or lightness, not in hue alone.
+Guarantee: a point with a count of its own is marked by whether the map has the same count there;
+kinds of marks differ in shape or lightness, not in hue alone.
 """
 
 from __future__ import annotations
@@ -49,7 +49,9 @@ def overlay_entries(overlay: Overlay) -> tuple[Entry, ...]:
     for kind in Agreement:
         number = sum(point.agreement is kind for point in overlay)
         if number:
-            found.append(Entry((kind.value, several(number, "point")), point_mark(**_style(kind, 1.0))))
+            found.append(
+                Entry((kind.value, several(number, "point")), point_mark(**_style(kind, 1.0)))
+            )
     return tuple(found)
 
 

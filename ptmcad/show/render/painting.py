@@ -36,7 +36,11 @@ class Paint:
 def paint_of(style: PictureStyle, *results: RegionMap) -> Paint:
     """The same for all maps that are drawn beside each other, which count the same."""
     return Paint(
-        filler([region for result in results for region in result.regions], results[0].slice.count, style.palette),
+        filler(
+            [region for result in results for region in result.regions],
+            results[0].slice.count,
+            style.palette,
+        ),
         undetermined_fill(style.palette),
         style.strong,
         style.strong * THIN / STRONG,
@@ -48,12 +52,16 @@ def paint_of(style: PictureStyle, *results: RegionMap) -> Paint:
 def fills_by_count(paint: Paint, *results: RegionMap) -> dict[str, Fill]:
     """What the counts of some maps are filled with, by their texts and in their order."""
     count = results[0].slice.count
-    regions = sorted((r for result in results for r in result.regions), key=lambda r: counted_by(r, count))
+    regions = sorted(
+        (r for result in results for r in result.regions), key=lambda r: counted_by(r, count)
+    )
     return {count_text(region, count): paint.fill(region) for region in regions}
 
 
 def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = None) -> None:
-    """Fill the regions and draw the walls; ``place`` takes the view to the page: if not given, to all of the axes."""
+    """Fill the regions and draw the walls; ``place`` takes the view to the page: if not given, to
+    all of the axes.
+    """
     from matplotlib.collections import LineCollection
     from matplotlib.patches import PathPatch, Rectangle
     from matplotlib.path import Path as Curve
@@ -69,11 +77,14 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
         )  # fmt: skip
     rim = (CORE + 2 * RIM) * paint.scale if result.cover is not None else 0.0
     for number, region in enumerate(result.regions):
-        polygons = [Curve(_beyond(np.vstack([p, p[:1]])), closed=True) for p in seen.polygons(number)]
+        polygons = [
+            Curve(_beyond(np.vstack([p, p[:1]])), closed=True) for p in seen.polygons(number)
+        ]
         if not polygons:
             continue
         fill = paint.fill(region)
-        # one path for all parts: where two of them share an edge, their coverage adds up and no seam is left
+        # one path for all parts: where two of them share an edge, their coverage adds up and no
+        # seam is left
         axes.add_artist(
             PathPatch(
                 Curve.make_compound_path(*polygons), transform=place, facecolor=fill.face, edgecolor=INK,
@@ -83,8 +94,8 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
         )  # fmt: skip
     edges = [Curve(_beyond(edge), closed=True) for edge in seen.edges()]
     if edges:
-        # all but the regions, whose outlines have them at the left hand, and a line's width of them: what is
-        # undetermined is seen between its rims, however narrow it is
+        # all but the regions, whose outlines have them at the left hand, and a line's width of
+        # them: what is undetermined is seen between its rims, however narrow it is
         around = Curve([(-1, -1), (-1, 2), (2, 2), (2, -1), (-1, -1)], closed=True)
         axes.add_artist(
             PathPatch(
@@ -111,5 +122,7 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
 
 def _beyond(outline: Floats) -> Floats:
     """An outline with what is on the frame moved over it, so that the frame has no rim."""
-    moved: Floats = outline + _OVER * (np.isclose(outline, 1, 0, 1e-9) * 1.0 - np.isclose(outline, 0, 0, 1e-9))
+    moved: Floats = outline + _OVER * (
+        np.isclose(outline, 1, 0, 1e-9) * 1.0 - np.isclose(outline, 0, 0, 1e-9)
+    )
     return moved

@@ -1,4 +1,5 @@
-"""Pictures of the paths of poses: each followed pose along an axis, where it ends, and to which pose it snaps.
+"""Pictures of the paths of poses: each followed pose along an axis, where it ends, and to which
+pose it snaps.
 
 Guarantee and what is not guaranteed: as of `ptmcad.show.render.ranges`.
 """
@@ -20,12 +21,19 @@ from ptmcad.show.render.printing import settings
 from ptmcad.show.render.rangeplate import EACH, LOOKS, middle_of, panelled, scaled, short
 from ptmcad.show.units import unit_of_unknown, with_unit
 
-_MARKERS = {Fate.SNAP: "o", Fate.MERGE: "s", Fate.VANISH: "x", Fate.UNSTABLE: "x", Fate.EXCLUDED: "x"}
+_MARKERS = {
+    Fate.SNAP: "o",
+    Fate.MERGE: "s",
+    Fate.VANISH: "x",
+    Fate.UNSTABLE: "x",
+    Fate.EXCLUDED: "x",
+}
 """Where a path ends within the window."""
 
 
 def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) -> Figure:
-    """The unknowns of each followed pose along the axis, a panel for each; an arrow shows each snap.
+    """The unknowns of each followed pose along the axis, a panel for each; an arrow shows each
+    snap.
 
     ``further`` are the legend's last entries, of what is going to be added.
     """
@@ -43,10 +51,14 @@ def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) ->
     occurring = {_MARKERS.get(end.fate) for path in found.paths for end in (path.low, path.high)}
     for marker, lines in ends.items():
         if marker in occurring:
-            entries.append(Entry(lines, point_mark(color=INK, marker=marker, fillstyle="none", markersize=6)))
+            entries.append(
+                Entry(lines, point_mark(color=INK, marker=marker, fillstyle="none", markersize=6))
+            )
     entries += further
     unknowns = model.sorted_unknowns
-    names = [with_unit(symbol(name), unit_of_unknown(model, name, slice.units)) for name in unknowns]
+    names = [
+        with_unit(symbol(name), unit_of_unknown(model, name, slice.units)) for name in unknowns
+    ]
     kind = "Unknowns" if model.reals else "Angles"
     words = f"{kind} of {len(found.paths)} {followed(model)}s along {found.along.name}."
     with settings():
@@ -61,7 +73,9 @@ def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) ->
                     if end.fate not in _MARKERS:
                         continue
                     x, y = scaled(end.last.value, found.along), _angle(end.last, number)
-                    axes.plot([x], [y], _MARKERS[end.fate], color=colour, fillstyle="none", markersize=6)
+                    axes.plot(
+                        [x], [y], _MARKERS[end.fate], color=colour, fillstyle="none", markersize=6
+                    )
                     if end.fate is Fate.SNAP and end.target is not None:
                         tip = (scaled(middle_of(end.at), found.along), _angle(end.target, number))
                         axes.annotate("", tip, (x, y), arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.0,

@@ -1,7 +1,9 @@
-"""Pixels as a picture of their own: the counts of a grid, or the values of a field, without the map they are of.
+"""Pixels as a picture of their own: the counts of a grid, or the values of a field, without the map
+they are of.
 
-Guarantee: every pixel has the colour of its own value. Lines are between pixels of different regions; the map itself
-(`ptmcad.show.render.regionmap`, `ptmcad.show.render.field`) has the exact curves.
+Guarantee: every pixel has the colour of its own value. Lines are between pixels of different
+regions; the map itself (`ptmcad.show.render.regionmap`, `ptmcad.show.render.field`) has the exact
+curves.
 """
 
 from __future__ import annotations
@@ -29,13 +31,18 @@ _LINE = 0.8
 
 
 def grid_png(grid: Grid, dpi: int) -> bytes:
-    """The numbers of stable equilibria, or of all where stability is not told, as the content of a PNG."""
+    """The numbers of stable equilibria, or of all where stability is not told, as the content of a
+    PNG.
+    """
     told = bool((grid.stable != NONE).any())
     counts = grid.stable if told else grid.total
     known = sorted({int(count) for count in np.unique(counts)} - {NONE})
     colours = [
         UNDETERMINED.face,
-        *(fill_of_counts(Counts(0, count, None) if told else Counts(count, None, None)).face for count in known),
+        *(
+            fill_of_counts(Counts(0, count, None) if told else Counts(count, None, None)).face
+            for count in known
+        ),
     ]  # pixels show no hatch
     codes = np.searchsorted(np.array([NONE, *known]), counts)
     with settings():
@@ -44,7 +51,9 @@ def grid_png(grid: Grid, dpi: int) -> bytes:
         image = show_pixels(axes, codes, grid.extent, cmap=ListedColormap(colours), norm=steps)
         _walls(axes, grid, grid.region)
         shown = [k for k in range(len(colours)) if k or (counts == NONE).any()]
-        bar = figure.colorbar(image, ax=axes, boundaries=[shown[0] - 0.5, *(k + 0.5 for k in shown)], ticks=shown)
+        bar = figure.colorbar(
+            image, ax=axes, boundaries=[shown[0] - 0.5, *(k + 0.5 for k in shown)], ticks=shown
+        )
         bar.ax.set_yticklabels([str(known[k - 1]) if k else "undetermined" for k in shown])
         bar.set_label("stable" if told else "in all")
         return printed(figure, "png", dpi, repr(grid), "")
@@ -77,6 +86,13 @@ def _walls(axes: Any, pixels: Grid | Field, region: NDArray[np.int64]) -> None:
     left, right, bottom, top = pixels.extent
     rows, columns = region.shape
     x, y = np.linspace(left, right, columns + 1), np.linspace(bottom, top, rows + 1)
-    upright = [((x[c + 1], y[r]), (x[c + 1], y[r + 1])) for r, c in np.argwhere(region[:, 1:] != region[:, :-1])]
-    level = [((x[c], y[r + 1]), (x[c + 1], y[r + 1])) for r, c in np.argwhere(region[1:] != region[:-1])]
-    axes.add_collection(LineCollection([*upright, *level], colors=INK, linewidths=_LINE), autolim=False)
+    upright = [
+        ((x[c + 1], y[r]), (x[c + 1], y[r + 1]))
+        for r, c in np.argwhere(region[:, 1:] != region[:, :-1])
+    ]
+    level = [
+        ((x[c], y[r + 1]), (x[c + 1], y[r + 1])) for r, c in np.argwhere(region[1:] != region[:-1])
+    ]
+    axes.add_collection(
+        LineCollection([*upright, *level], colors=INK, linewidths=_LINE), autolim=False
+    )

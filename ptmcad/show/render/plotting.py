@@ -27,14 +27,19 @@ from ptmcad.show.style import LegendPlace, PictureStyle, styled
 
 
 def plot(
-    result: RegionMap, ax: Any, style: str | PictureStyle, samples: bool, dpi: int, options: dict[str, Any]
+    result: RegionMap,
+    ax: Any,
+    style: str | PictureStyle,
+    samples: bool,
+    dpi: int,
+    options: dict[str, Any],
 ) -> Any:
     """A figure of its own, or the axes that were given, with the map in them.
 
     Raises
     ------
-    ConfigError
-        For an unknown style or option, a value that cannot be drawn, or what does not fit into the size.
+    ConfigError For an unknown style or option, a value that cannot be drawn, or what does not fit
+        into the size.
     """
     made = styled(style, **options)
     if ax is not None:
@@ -54,12 +59,19 @@ def draw_on(axes: Any, result: RegionMap, samples: bool, style: PictureStyle) ->
     """
     whole, paint = shapes(result), paint_of(style, result)
     sides = [tuple(float(end) for end in whole.view.along(k)) for k in (0, 1)]
-    unit_square = Affine2D().scale(*(high - low for low, high in sides)).translate(*(low for low, _ in sides))
+    unit_square = (
+        Affine2D().scale(*(high - low for low, high in sides)).translate(*(low for low, _ in sides))
+    )
     paint_map(axes, whole, "", paint, unit_square + axes.transData)
     if samples:
         points = np.array([c.sample for c in result.cells], dtype=float)
         axes.plot(*points.T, "o", markersize=2.5 * paint.scale, color=INK, gid="samples")
-    axes.set(xlim=sides[0], ylim=sides[1], xlabel=axis_name(result.slice, 0), ylabel=axis_name(result.slice, 1))
+    axes.set(
+        xlim=sides[0],
+        ylim=sides[1],
+        xlabel=axis_name(result.slice, 0),
+        ylabel=axis_name(result.slice, 1),
+    )
     title = whole_title(result) if style.title is None else style.title
     if title:
         axes.set_title(title, loc="left", wrap=True)
@@ -75,7 +87,9 @@ def draw_on(axes: Any, result: RegionMap, samples: bool, style: PictureStyle) ->
 def handles_of(fills: Mapping[str, Fill]) -> list[Patch]:
     """What matplotlib's own legends show of fills, by their texts."""
     return [
-        Patch(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4, label=text)
+        Patch(
+            facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4, label=text
+        )
         for text, fill in fills.items()
     ]
 
@@ -88,7 +102,8 @@ def draw_with_poses(
     style: PictureStyle,
     overlay: Overlay,
 ) -> tuple[str, ...]:
-    """Write the map with the stable poses at points around it; what had no room is returned, in words.
+    """Write the map with the stable poses at points around it; what had no room is returned, in
+    words.
 
     Raises
     ------

@@ -1,9 +1,12 @@
-"""The picture of all equilibria at one point: each drawn as a mechanism, at one scale, the stable ones strong.
+"""The picture of all equilibria at one point: each drawn as a mechanism, at one scale, the stable
+ones strong.
 
-Guarantee: every equilibrium has a panel, with its kind and its energy, of which every digit shown is certified; the
-figure's label holds a title and a description in words. `ptmcad.show.render.printing.save` writes it.
+Guarantee: every equilibrium has a panel, with its kind and its energy, of which every digit shown
+is certified; the figure's label holds a title and a description in words.
+`ptmcad.show.render.printing.save` writes it.
 
-Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact poses.
+Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact
+poses.
 """
 
 from __future__ import annotations
@@ -28,9 +31,24 @@ from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.inches import axes_at, stroke, write, write_lines
 from ptmcad.show.render.legend import INK, Entry, Type, draw_legend
-from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark
+from ptmcad.show.render.mechanism import (
+    PALE,
+    STRONG,
+    bar_mark,
+    draw_sketch,
+    spring_mark,
+    symbol_mark,
+)
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.sketch import MAX_ARROW, MIN_ARROW, PanelFrame, Scene, arrow_lengths, components, frame_of
+from ptmcad.show.render.sketch import (
+    MAX_ARROW,
+    MIN_ARROW,
+    PanelFrame,
+    Scene,
+    arrow_lengths,
+    components,
+    frame_of,
+)
 from ptmcad.show.style import Size
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure
@@ -38,7 +56,9 @@ from ptmcad.text.numerals import magnitude, power_of_ten, shortest_text
 from ptmcad.text.tree import to_text
 
 MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
-"""In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of the title."""
+"""In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of
+the title.
+"""
 _DIGITS = 6
 _MAX_VALUE = 14
 """Longer values of parameters are rounded in the title."""
@@ -49,7 +69,8 @@ def draw_poses(poses: Poses) -> Figure:
 
     Parameters
     ----------
-    poses : of a mechanism; when it has none (infinitely many equilibria), its remark is the picture.
+    poses : of a mechanism; when it has none (infinitely many equilibria), its remark is the
+        picture.
 
     Returns
     -------
@@ -96,7 +117,9 @@ def kind(pose: Pose) -> str:
         return f"degenerate, multiplicity {pose.multiplicity}"
     if pose.index is None:
         return {True: "stable", False: "unstable", None: "equilibrium"}[pose.stable]
-    return "stable (minimum)" if pose.index == 0 else critical_point(pose.index, len(pose.eigenvalues))
+    return (
+        "stable (minimum)" if pose.index == 0 else critical_point(pose.index, len(pose.eigenvalues))
+    )
 
 
 def _lines_below(model: Model, pose: Pose) -> list[str]:
@@ -125,7 +148,9 @@ def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: Positio
     flat = ", flat" if pose.flat else ""
     above = (corner[0], corner[1] + frame.height / 72 + 0.12)
     write(figure, above, f"{number}  {kind(pose)}{flat}", 9, fontweight=weight, color=colour)
-    write_lines(figure, (corner[0], corner[1] - 0.11), _lines_below(mechanism, pose), 8, 0.16, color=colour)
+    write_lines(
+        figure, (corner[0], corner[1] - 0.11), _lines_below(mechanism, pose), 8, 0.16, color=colour
+    )
     return axes
 
 
@@ -171,7 +196,9 @@ def assigned(name: str, value: Fraction) -> str:
 
 
 def values(poses: Poses) -> list[str]:
-    """The parameters with their values; equal stiffnesses or free lengths as one; loads only where there are any."""
+    """The parameters with their values; equal stiffnesses or free lengths as one; loads only where
+    there are any.
+    """
     model = poses.model
     shown = merged(poses.parameters, model)
     loads = {name: value for name, value in shown.items() if name in model.forces}
@@ -186,7 +213,9 @@ def values(poses: Poses) -> list[str]:
 def heading(poses: Poses, columns: int) -> list[str]:
     """The title's lines: where the equilibria are."""
     at = ",  ".join(values(poses))
-    return textwrap.wrap(f"{_count(poses)} at {at}" if at else _count(poses).rstrip(","), max(columns, 30))
+    return textwrap.wrap(
+        f"{_count(poses)} at {at}" if at else _count(poses).rstrip(","), max(columns, 30)
+    )
 
 
 def _count(poses: Poses) -> str:
@@ -230,7 +259,11 @@ def titled(lines: Sequence[str], size: Size, left: float) -> Figure:
 
 def empty(poses: Poses) -> Figure:
     """The picture when there is nothing to draw: it says why."""
-    lines = [*heading(poses, 80), "", *textwrap.wrap(poses.remark or "No equilibrium is known here.", 80)]
+    lines = [
+        *heading(poses, 80),
+        "",
+        *textwrap.wrap(poses.remark or "No equilibrium is known here.", 80),
+    ]
     with settings():
         figure = titled(lines, (7.0, 2 * MARGIN + TITLE_LINE * len(lines)), MARGIN)
         figure.set_label(f"{lines[0]}\n{describe(poses)}")
@@ -249,7 +282,12 @@ def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
         yield Entry(tuple(textwrap.wrap(untold(mechanism), _KEY_COLUMNS)))
     if any(pose.energy is not None for pose in poses.equilibria):
         left_out = of_what(mechanism, poses.parameters)
-        yield Entry((f"U: energy, in {energy_unit(mechanism, poses.units)}", *textwrap.wrap(left_out, _KEY_COLUMNS)))
+        yield Entry(
+            (
+                f"U: energy, in {energy_unit(mechanism, poses.units)}",
+                *textwrap.wrap(left_out, _KEY_COLUMNS),
+            )
+        )
     yield Entry(())
     yield Entry(("Parts",), strong=True)
     yield from parts_legend(mechanism)
@@ -270,18 +308,26 @@ def parts_legend(mechanism: Mechanism) -> Iterator[Entry]:
         for number, name in enumerate(bars):
             yield Entry((f"bar {name}{width[number]}",), bar_mark(number))
     else:
-        yield Entry(tuple(textwrap.wrap(f"bars {', '.join(bars)}", _KEY_COLUMNS)), bar_mark(0, many=True))
+        yield Entry(
+            tuple(textwrap.wrap(f"bars {', '.join(bars)}", _KEY_COLUMNS)), bar_mark(0, many=True)
+        )
     springs = ["".join(map(symbol, ends)) for ends in mechanism.spring_ends]
     if springs:
-        names = textwrap.wrap(f"spring{'s' * (len(springs) > 1)} {', '.join(springs)};", _KEY_COLUMNS)
-        yield Entry((*names, "drawn aside where one lies on", "a bar or is very short"), spring_mark())
+        names = textwrap.wrap(
+            f"spring{'s' * (len(springs) > 1)} {', '.join(springs)};", _KEY_COLUMNS
+        )
+        yield Entry(
+            (*names, "drawn aside where one lies on", "a bar or is very short"), spring_mark()
+        )
     yield from torsion_legend(mechanism)
     yield from support_legend(mechanism)
 
 
 def torsion_legend(mechanism: Mechanism) -> Iterator[Entry]:
     """Torsion springs at their joints, and those of which no joint is known."""
-    springs = [(with_symbols(to_text(spring.angle)), joint) for spring, joint in torsion_springs(mechanism)]
+    springs = [
+        (with_symbols(to_text(spring.angle)), joint) for spring, joint in torsion_springs(mechanism)
+    ]
     drawn = [f"{angle} at {symbol(joint.point)}" for angle, joint in springs if joint is not None]
     others = [angle for angle, joint in springs if joint is None]
     for texts, end, mark in ((drawn, "", symbol_mark("spiral")), (others, "; not drawn", None)):
@@ -293,18 +339,31 @@ def torsion_legend(mechanism: Mechanism) -> Iterator[Entry]:
 
 def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
     """Where the mechanism is held."""
-    at = {kind: [symbol(name) for name, of in mechanism.supports.items() if of is kind] for kind in Support}
+    at = {
+        kind: [symbol(name) for name, of in mechanism.supports.items() if of is kind]
+        for kind in Support
+    }
     if pins := at[Support.PIN]:
-        yield Entry((f"fixed support{'s' * (len(pins) > 1)}, at {', '.join(pins)}",), symbol_mark("support"))
+        yield Entry(
+            (f"fixed support{'s' * (len(pins) > 1)}, at {', '.join(pins)}",), symbol_mark("support")
+        )
     if sliding := at[Support.SLIDER_X]:
-        on = "slider on the base" if pins and len(sliding) == 1 else "slider" + "s" * (len(sliding) > 1)
+        on = (
+            "slider on the base"
+            if pins and len(sliding) == 1
+            else "slider" + "s" * (len(sliding) > 1)
+        )
         yield Entry((f"{on}, at {', '.join(sliding)}",), symbol_mark("slider"))
     if rising := at[Support.SLIDER_Y]:
-        yield Entry((f"vertical slider{'s' * (len(rising) > 1)}, at {', '.join(rising)}",), symbol_mark("slider"))
+        yield Entry(
+            (f"vertical slider{'s' * (len(rising) > 1)}, at {', '.join(rising)}",),
+            symbol_mark("slider"),
+        )
 
 
 def _load_texts(mechanism: Mechanism, acting: Sequence[PointForce]) -> Iterator[str]:
-    """The components of loads that are not zero: a parameter by its name, with the points where it acts at several.
+    """The components of loads that are not zero: a parameter by its name, with the points where it
+    acts at several.
 
     What was given as a number or an expression is a force across, Fx, or up, Fy, at its point.
     """
@@ -312,7 +371,9 @@ def _load_texts(mechanism: Mechanism, acting: Sequence[PointForce]) -> Iterator[
     known = components(acting)
     for load in acting:
         for axis, name in zip("xy", load.names, strict=True):
-            what = symbol(name) if name in mechanism.parameters else f"F{axis} at {symbol(load.point)}"
+            what = (
+                symbol(name) if name in mechanism.parameters else f"F{axis} at {symbol(load.point)}"
+            )
             if known[name]:
                 places.setdefault((what, name), []).append(symbol(load.point))
     for (what, name), points in places.items():

@@ -1,8 +1,8 @@
-"""Printing: a figure as the content of a PNG, SVG, PDF or EPS file, for screen readers with a title and a
-description where the format has room for them.
+"""Printing: a figure as the content of a PNG, SVG, PDF or EPS file, for screen readers with a title
+and a description where the format has room for them.
 
-Guarantee: the same figure gives the same bytes with the same matplotlib, whatever the user's settings, the date and
-the machine. Global state of matplotlib is neither used nor changed.
+Guarantee: the same figure gives the same bytes with the same matplotlib, whatever the user's
+settings, the date and the machine. Global state of matplotlib is neither used nor changed.
 """
 
 from __future__ import annotations
@@ -57,15 +57,18 @@ _KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
 
 @contextmanager
 def settings(style: PictureStyle = DEFAULT) -> Iterator[None]:
-    """Matplotlib's own defaults and the project's fonts, not a user's matplotlibrc; for drawing and for printing.
+    """Matplotlib's own defaults and the project's fonts, not a user's matplotlibrc; for drawing and
+    for printing.
 
-    A style's font comes first; letters that it lacks are taken from the one that comes with matplotlib.
+    A style's font comes first; letters that it lacks are taken from the one that comes with
+    matplotlib.
     """
     own: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS
     if style.font_family:
         own["font.family"] = [*style.font_family, *_SETTINGS["font.family"]]
     with matplotlib.rc_context(own), warnings.catch_warnings():
-        # a title in a script that the font lacks is shown with boxes; SVG's title and the JSON keep it
+        # a title in a script that the font lacks is shown with boxes; SVG's title and the JSON keep
+        # it
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
         yield
 
@@ -113,7 +116,10 @@ def content(figure: Figure, suffix: str, *, dpi: int = 150, style: PictureStyle 
 def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str) -> bytes:
     """The picture as a file's content, without dates and versions; to be called within `settings`."""
     data = BytesIO()
-    metadata = {**_UNDATED[suffix], "Title": title.encode("ascii", "replace").decode() if suffix == "eps" else title}
+    metadata = {
+        **_UNDATED[suffix],
+        "Title": title.encode("ascii", "replace").decode() if suffix == "eps" else title,
+    }
     with _opaque():
         figure.savefig(data, format=suffix, dpi=dpi, metadata=metadata)
     if suffix == "eps":

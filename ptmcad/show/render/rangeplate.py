@@ -1,4 +1,6 @@
-"""What the pictures of ranges, paths and branches have in common: sizes, a heading, axes in inches and their names."""
+"""What the pictures of ranges, paths and branches have in common: sizes, a heading, axes in inches
+and their names.
+"""
 
 from __future__ import annotations
 
@@ -36,11 +38,14 @@ LOOKS: dict[str, dict[str, Any]] = {
 }
 """Lines of solutions, by what these are called: stable ones are solid, and no others are."""
 EACH = ("#0b5394", "#2a9d8f", "#741b47", "#7d9be0", "#274e13", "#c27ba0")
-"""Of solutions of one kind that are told from each other; no other kind has one of these colours."""
+"""Of solutions of one kind that are told from each other; no other kind has one of these colours.
+"""
 
 
 def beside(heading: str, key: float, tall: float, words: str) -> Figure:
-    """A figure for axes with a legend of this width beside them, under a heading in at most three lines."""
+    """A figure for axes with a legend of this width beside them, under a heading in at most three
+    lines.
+    """
     wide = LEFT + WIDE + RIGHT + key + RIGHT
     return figure_of(wrapped(heading, wide - LEFT - MARGIN, TITLE)[:3], (wide, tall), words)
 
@@ -60,9 +65,15 @@ def heading(slice: Slice, at: Numbers) -> str:
 
 
 def panelled(
-    slice: Slice, found: PosePaths | Branches, names: Sequence[str], entries: Sequence[Entry], words: str
+    slice: Slice,
+    found: PosePaths | Branches,
+    names: Sequence[str],
+    entries: Sequence[Entry],
+    words: str,
 ) -> tuple[Figure, list[Any]]:
-    """A figure with a legend beside panels one below the other, for what has these names; and the panels' axes."""
+    """A figure with a legend beside panels one below the other, for what has these names; and the
+    panels' axes.
+    """
     last = len(names) - 1
     tall = max((last + 1) * PANEL + last * GAP + FOOT, Type().height(entries) + 0.2)
     figure = beside(heading(slice, found.at), Type().width(entries), tall, words)

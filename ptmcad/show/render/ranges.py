@@ -1,9 +1,11 @@
-"""Pictures of ranges: the bar of intervals along a line, and the operation range over the other axis.
+"""Pictures of ranges: the bar of intervals along a line, and the operation range over the other
+axis.
 
-Guarantee: labels do not overlap; what colours and lines mean is said in words; each figure's label holds a title and a
-description. `ptmcad.show.render.printing.save` writes them.
+Guarantee: labels do not overlap; what colours and lines mean is said in words; each figure's label
+holds a title and a description. `ptmcad.show.render.printing.save` writes them.
 
-Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact answer.
+Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact
+answer.
 """
 
 from __future__ import annotations
@@ -74,9 +76,13 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
                           bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5, "alpha": 0.85})  # fmt: skip
         for span in found.operation:
             ends = [_place(end, found.along) for end in (span.low, span.high)]
-            axes.plot(ends, [1.2, 1.2], color=INK, linewidth=1.6, clip_on=False, marker="|", markersize=6)
+            axes.plot(
+                ends, [1.2, 1.2], color=INK, linewidth=1.6, clip_on=False, marker="|", markersize=6
+            )
         axes.set(xlim=(0, 1), ylim=(0, 1), xticks=[], yticks=[])
-        _labels(figure, axes, [_place(c.at, found.along) for c in found.changes], texts, below, upright)
+        _labels(
+            figure, axes, [_place(c.at, found.along) for c in found.changes], texts, below, upright
+        )
         ruler = axes_in(figure, (LEFT, ROOM + 0.2, WIDE, 0.01))
         ruler.set(xlim=(scale.low, scale.high), yticks=[])
         ruler.spines[["left", "right", "top"]].set_visible(False)
@@ -93,13 +99,17 @@ def _bar_legend(found: CountIntervals) -> list[Entry]:
     for i in found.intervals:
         if i.counts not in seen:
             seen.append(i.counts)
-            head = str(i.total) if i.stable is None else f"{i.stable}   of {counted(model, i.total)}"
+            head = (
+                str(i.total) if i.stable is None else f"{i.stable}   of {counted(model, i.total)}"
+            )
             entries.append(Entry((head, *_unstable(i.index)), fill_of_counts(i.counts)))
     for span in found.operation:
         what = operation_name(model, found.working)
         entries.append(Entry((what, f"(bracket), width {width_text(span, _DIGITS)}")))
     if any(c.before == c.after for c in found.changes):
-        entries.append(Entry(("a label within one colour:", f"{noun(model)} touch, counts unchanged")))
+        entries.append(
+            Entry(("a label within one colour:", f"{noun(model)} touch, counts unchanged"))
+        )
     return entries
 
 
@@ -113,20 +123,31 @@ def _unstable(index: MorseIndex | None) -> tuple[str, ...]:
 
 
 def _labels(
-    figure: Figure, axes: Any, places: Sequence[float], texts: Sequence[str], below: float, upright: bool
+    figure: Figure,
+    axes: Any,
+    places: Sequence[float],
+    texts: Sequence[str],
+    below: float,
+    upright: bool,
 ) -> None:
     """Labels under the bar, side by side, each joined to its place by a line."""
-    half = (SIZE * 0.75 if upright else max((len(t) for t in texts), default=0) * SIZE * 0.64 / 2 + 4) / (WIDE * 72)
+    half = (
+        SIZE * 0.75 if upright else max((len(t) for t in texts), default=0) * SIZE * 0.64 / 2 + 4
+    ) / (WIDE * 72)
     centers = spread(places, half)
     drop = 0.2 / BAR
     for place, center, text in zip(places, centers, texts, strict=True):
-        axes.plot([place, place, center], [0, -0.05 / BAR, -drop], color=INK, linewidth=0.6, clip_on=False)
+        axes.plot(
+            [place, place, center], [0, -0.05 / BAR, -drop], color=INK, linewidth=0.6, clip_on=False
+        )
         at = (LEFT + center * WIDE, below - 0.22)
         write(figure, at, text, SIZE, ha="center", va="top", rotation=90 if upright else 0)
 
 
 def spread(places: Sequence[float], half: float) -> list[float]:
-    """Centres near the given places in [0, 1], in their order and at least ``2 half`` apart where there is room."""
+    """Centres near the given places in [0, 1], in their order and at least ``2 half`` apart where
+    there is room.
+    """
     if not places:
         return []
     step = min(2 * half, 1 / len(places))
@@ -188,7 +209,9 @@ def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figur
         upper.set_ylim(fibre.low, fibre.high)
         upper.set_ylabel(axis_name(slice, along), fontsize=SIZE + 2)
         known = unit(slice, slice.axis_names.index(along.name))
-        lower.set_ylabel(f"width of the\n{with_unit(found.model.nouns.range, known)}", fontsize=SIZE + 1)
+        lower.set_ylabel(
+            f"width of the\n{with_unit(found.model.nouns.range, known)}", fontsize=SIZE + 1
+        )
         lower.set_ylim(bottom=0)
         lower.margins(y=0.12)
         for axes in (upper, lower):
@@ -201,7 +224,9 @@ def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figur
 
 
 def _draw_bars(axes: Any, found: OperationWidths | CertifiedWidths) -> None:
-    """A bar for each operation range at its row; nothing between the rows, where nothing is computed."""
+    """A bar for each operation range at its row; nothing between the rows, where nothing is
+    computed.
+    """
     rows = [scaled(row.value, found.over) for row in found.rows]
     scale = scale_of(found.over.low, found.over.high)
     nearest = min((b - a for a, b in pairwise(sorted(rows))), default=scale.high - scale.low)
@@ -212,7 +237,15 @@ def _draw_bars(axes: Any, found: OperationWidths | CertifiedWidths) -> None:
             low, high = (scaled(middle_of(end), found.along) for end in (one.low, one.high))
             bars.append((scaled(row.value, found.over), low, high))
     places, lows, highs = ([bar[k] for bar in bars] for k in range(3))
-    axes.vlines(places, lows, highs, color=fill_of_index((2, 3, 1)).face, linewidth=thick, capstyle="butt", gid="bars")
+    axes.vlines(
+        places,
+        lows,
+        highs,
+        color=fill_of_index((2, 3, 1)).face,
+        linewidth=thick,
+        capstyle="butt",
+        gid="bars",
+    )
     for ends in (lows, highs):
         axes.plot(places, ends, "_", color=INK, markersize=thick, markeredgewidth=1.2, gid="ends")
 

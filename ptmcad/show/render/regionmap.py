@@ -1,10 +1,13 @@
-"""The picture of a region map: regions coloured by count, walls, legend, and an inset for every sliver.
+"""The picture of a region map: regions coloured by count, walls, legend, and an inset for every
+sliver.
 
-Guarantee: the same map gives the same bytes (SVG and PNG) with the same matplotlib; regions that the drawing's
-resolution hides are marked by an arrow and shown in insets. What a certified map leaves undetermined is grey, with a
-hairline around it, so that it is seen however narrow it is. Global state of matplotlib is neither used nor changed.
+Guarantee: the same map gives the same bytes (SVG and PNG) with the same matplotlib; regions that
+the drawing's resolution hides are marked by an arrow and shown in insets. What a certified map
+leaves undetermined is grey, with a hairline around it, so that it is seen however narrow it is.
+Global state of matplotlib is neither used nor changed.
 
-Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact map.
+Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact
+map.
 """
 
 from __future__ import annotations
@@ -39,8 +42,23 @@ from ptmcad.show.render.overlay import Overlay, draw_overlay, overlay_entries
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
-from ptmcad.show.render.thinmarks import RESOLVED, Marks, counts_of, draw_marks, placed_marks, ranked
+from ptmcad.show.render.slivers import (
+    MAX_ZOOMS,
+    Sliver,
+    Zoom,
+    seen_thin_walls,
+    thin_regions,
+    unstable_zooms,
+    zooms,
+)
+from ptmcad.show.render.thinmarks import (
+    RESOLVED,
+    Marks,
+    counts_of,
+    draw_marks,
+    placed_marks,
+    ranked,
+)
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
@@ -79,8 +97,8 @@ def draw(
 
     Guarantee
     ---------
-    No region is invisible, unless the style sets a size in which its label has no room: the legend says of how many,
-    if that has room.
+    No region is invisible, unless the style sets a size in which its label has no room: the legend
+    says of how many, if that has room.
     """
     with settings(style):
         figure, missing = MapDrawing(result, style, dpi, samples, overlay).drawn()
@@ -90,11 +108,13 @@ def draw(
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """What of a map is to be drawn: its shapes, and the views of the regions that its resolution hides.
+    """What of a map is to be drawn: its shapes, and the views of the regions that its resolution
+    hides.
 
-    ``thin_lines`` says whether curves are seen at which the count does not change; if none is, none is drawn: a
-    trace of one at the frame, which no legend explains, would look like a number's tick. ``unnamed`` is the number of
-    thin parts in which unstable solutions differ that have neither inset nor label.
+    ``thin_lines`` says whether curves are seen at which the count does not change; if none is, none
+    is drawn: a trace of one at the frame, which no legend explains, would look like a number's
+    tick. ``unnamed`` is the number of thin parts in which unstable solutions differ that have
+    neither inset nor label.
     """
 
     whole: Shapes
@@ -104,23 +124,34 @@ class _Seen:
     unnamed: int = 0
 
     def with_room(self, sides: Size, size: float) -> _Seen:
-        """The same but for what has no label of its own in a picture with sides in points, where no inset stands."""
+        """The same but for what has no label of its own in a picture with sides in points, where no
+        inset stands.
+        """
         ranked = self.ranked
         names = [_name_of(self.whole.result, sliver, None) for sliver in ranked]
         marks = Marks(ranked, names=names)
-        marks = placed_marks(self.whole, marks, counts_of(self.whole.result), sides, size, skip=True)
+        marks = placed_marks(
+            self.whole, marks, counts_of(self.whole.result), sides, size, skip=True
+        )
         kept = [sliver for sliver, mark in zip(ranked, marks.placed, strict=True) if mark.clear]
         if len(kept) == len(ranked):
             return self
-        views = tuple(replace(zoom, slivers=tuple(s for s in zoom.slivers if s in kept)) for zoom in self.views)
+        views = tuple(
+            replace(zoom, slivers=tuple(s for s in zoom.slivers if s in kept))
+            for zoom in self.views
+        )
         parts = [sum(sliver.cell is not None for sliver in each) for each in (ranked, kept)]
         lines = parts[1] > 0 or seen_thin_walls(self.whole, sides)
         views = tuple(zoom for zoom in views if zoom.slivers)
-        return replace(self, views=views, thin_lines=lines, unnamed=self.unnamed + parts[0] - parts[1])
+        return replace(
+            self, views=views, thin_lines=lines, unnamed=self.unnamed + parts[0] - parts[1]
+        )
 
     @property
     def ranked(self) -> list[Sliver]:
-        """What is marked: first the largest region of each count that is seen nowhere else, then by size."""
+        """What is marked: first the largest region of each count that is seen nowhere else, then by
+        size.
+        """
         return ranked(self.whole, self.marked, self.thin)
 
     @property
@@ -147,7 +178,9 @@ def _seen(whole: Shapes, sides: Size, dpi: int, earlier: _Seen | None = None) ->
 
 @dataclass(frozen=True, slots=True)
 class FreeSpace:
-    """Inches left free at the right of a picture that grows with what it shows, and how tall it is there at least."""
+    """Inches left free at the right of a picture that grows with what it shows, and how tall it is
+    there at least.
+    """
 
     beside: float = 0.0
     tallest: float = 0.0
@@ -186,7 +219,9 @@ class MapDrawing(NamedTuple):
         result, style = self.result, self.style
         if style.flows:
             seen = _seen(shapes(result), (SIDE, SIDE), self.dpi)
-            type = Type(strong=style.strong, thin=style.strong * THIN / STRONG, thin_lines=style.thin_lines)
+            type = Type(
+                strong=style.strong, thin=style.strong * THIN / STRONG, thin_lines=style.thin_lines
+            )
             legend = self.legend(seen)[0]
             title = _lines(self.title)
             layout = flowing(title, legend, type, len(seen.views), room.beside, room.tallest)
@@ -200,7 +235,8 @@ class MapDrawing(NamedTuple):
     def fit(self) -> tuple[_Seen, Layout]:
         """What is to be drawn on a page of a given size, and where.
 
-        What is thin follows from the map's size, which follows from what has to be told about thin regions.
+        What is thin follows from the map's size, which follows from what has to be told about thin
+        regions.
         """
         result, style, whole = self.result, self.style, shapes(self.result)
         wide, tall = style.size or (8.4, 5.7)
@@ -217,11 +253,13 @@ class MapDrawing(NamedTuple):
             except ConfigError:
                 if not seen.hidden:
                     raise
-                # a small picture rather has no word on the thin regions without a label, which it shows all the same
+                # a small picture rather has no word on the thin regions without a label, which it
+                # shows all the same
                 untold = replace(parts, legend=self.legend(seen, told=False))
                 layout = fitted(untold, style, style.size or _natural(style, untold))
             if seen.views and not layout.insets:
-                # what no inset shows is named by a label that an arrow leads to it, if that has room
+                # what no inset shows is named by a label that an arrow leads to it, if that has
+                # room
                 sides = (72 * layout.chart[2], 72 * layout.chart[3])
                 bare = seen.with_room(sides, layout.texts.arrow)
                 if bare is not seen:
@@ -234,13 +272,21 @@ class MapDrawing(NamedTuple):
             seen = again
 
     def legend(self, seen: _Seen, told: bool = True) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
-        """The legend with areas and without; ``told`` says whether it tells how many thin regions have no label."""
+        """The legend with areas and without; ``told`` says whether it tells how many thin regions
+        have no label.
+        """
         if self.style.legend is LegendPlace.NONE:
             return (), ()
         paint, hidden = paint_of(self.style, self.result), seen.hidden * told
         further = overlay_entries(self.overlay)
         with_areas, without = (
-            entries(self.result, seen.thin_lines, self.samples, hidden, Wording(paint.fill, paint.undetermined, areas))
+            entries(
+                self.result,
+                seen.thin_lines,
+                self.samples,
+                hidden,
+                Wording(paint.fill, paint.undetermined, areas),
+            )
             for areas in (True, False)
         )
         return (*with_areas, *further), (*without, *further)
@@ -253,7 +299,9 @@ class MapDrawing(NamedTuple):
         axes = axes_at(figure, layout.chart, "map")
         paint_map(axes, seen.whole, "", on_map)
         if self.samples:
-            points = np.array([seen.whole.view.approximate_position(c.sample) for c in result.cells])
+            points = np.array(
+                [seen.whole.view.approximate_position(c.sample) for c in result.cells]
+            )
             axes.plot(
                 *points.T, "o", markersize=2.5 * paint.scale, color=INK, transform=axes.transAxes, gid="samples",
                 clip_on=False,
@@ -262,7 +310,10 @@ class MapDrawing(NamedTuple):
         for corner, part in layout.legend:
             draw_legend(figure, part, *corner, layout.type)
         marked = seen.marked if layout.insets else seen.ranked
-        names = [_name_of(result, s, k if len(marked) > 1 and layout.insets else None) for k, s in enumerate(marked)]
+        names = [
+            _name_of(result, s, k if len(marked) > 1 and layout.insets else None)
+            for k, s in enumerate(marked)
+        ]
         rest = iter(names)
         for zoom, box in zip(seen.views, layout.insets, strict=False):
             _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
@@ -285,10 +336,14 @@ def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
 
 
 def _natural(style: PictureStyle, parts: PageParts) -> Size:
-    """A size for a map as large as in a picture that grows with what it shows, in proportion to the text."""
+    """A size for a map as large as in a picture that grows with what it shows, in proportion to the
+    text.
+    """
     scale = style.base_font / 9
     lines = sum(len(entry.lines) for entry in parts.legend[0])
-    wide = {LegendPlace.RIGHT: 8.4, None: 8.4, LegendPlace.BELOW: 6.0, LegendPlace.NONE: 5.7}[style.legend]
+    wide = {LegendPlace.RIGHT: 8.4, None: 8.4, LegendPlace.BELOW: 6.0, LegendPlace.NONE: 5.7}[
+        style.legend
+    ]
     tall = 5.7 + (0.1 * lines if style.legend is LegendPlace.BELOW else 0.0)
     return wide * scale, tall * scale
 
@@ -316,7 +371,9 @@ def _name_of(result: RegionMap, sliver: Sliver, number: int | None) -> str:
     return f"{letters}: {text}"
 
 
-def _inset(figure: Figure, zoom: Zoom, names: Sequence[str], box: Box, layout: Layout, paint: Paint) -> None:
+def _inset(
+    figure: Figure, zoom: Zoom, names: Sequence[str], box: Box, layout: Layout, paint: Paint
+) -> None:
     """Axes with the zoomed view of one or more slivers."""
     result = zoom.outline.result
     number = zoom.slivers[0].region
@@ -350,7 +407,9 @@ def _mark(
     """An arrow to every sliver, labels apart from each other."""
     sides, told = (layout.chart[2] * 72, layout.chart[3] * 72), counts_of(seen.whole.result)
     skip = not layout.insets
-    marks = placed_marks(seen.whole, Marks(slivers, names=names), told, sides, layout.texts.arrow, skip)
+    marks = placed_marks(
+        seen.whole, Marks(slivers, names=names), told, sides, layout.texts.arrow, skip
+    )
     draw_marks(axes, marks, paint.scale)
 
 
@@ -360,7 +419,8 @@ def description(result: RegionMap) -> str:
     window = " and ".join(f"{a.name} from {a.low} to {a.high}" for a in result.slice.axes)
     known = areas_are_known(result)
     regions = "; ".join(
-        count_text(r, count) + (f" ({area_text(result, r.area)})" if known else "") for r in result.regions
+        count_text(r, count) + (f" ({area_text(result, r.area)})" if known else "")
+        for r in result.regions
     )
     bracket = "; area in brackets" if known else ""
     return f"Regions of equal count ({count.value} {noun(result.slice.model)}{bracket}) over {window}: {regions}."

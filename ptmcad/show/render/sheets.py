@@ -1,9 +1,10 @@
-"""A boundary surface in a picture in three dimensions: shaded sheets, and curves of members on them.
+"""A boundary surface in a picture in three dimensions: shaded sheets, and curves of members on
+them.
 
 Guarantee: each triangle is one of the surface's mesh or a part of it, each curve a member's own.
 
-Not guaranteed: what hides what, where sheets or curves are nearer to one another than the pieces are long: these are
-painted one after the other, from the back.
+Not guaranteed: what hides what, where sheets or curves are nearer to one another than the pieces
+are long: these are painted one after the other, from the back.
 """
 
 from __future__ import annotations
@@ -30,20 +31,26 @@ Pair = tuple[tuple[int, ...], tuple[int, ...]]
 BOX = (1.0, 1.0, 1.05)
 """Sides of the box as it is seen."""
 MAX_PIECES = 20_000
-"""Of a vector picture, SVG or PDF, some megabytes: of more pieces it has an image, in the resolution of a PNG."""
+"""Of a vector picture, SVG or PDF, some megabytes: of more pieces it has an image, in the
+resolution of a PNG.
+"""
 _LIGHT = np.array([-0.35, -0.55, 0.76])
 """Where light comes from, in the box's own coordinates."""
 _DARKEST, _FLATTEST = 0.66, 0.25
-"""Of a colour's lightness, where a sheet is seen against the light; and of the shading's range, what is never used."""
+"""Of a colour's lightness, where a sheet is seen against the light; and of the shading's range,
+what is never used.
+"""
 _LIFT = 0.018
-"""Of the box: how far towards the eye curves are moved, so that the sheets on which they lie do not hide them."""
+"""Of the box: how far towards the eye curves are moved, so that the sheets on which they lie do not
+hide them.
+"""
 MAX_SIDE = 0.03
 """Of the box: sides of triangles as they are painted."""
 _OTHER = 0.15
 """Of a sheet's colour, what comes from the smaller count's."""
 _LIGHTEST, _DEEPER = 0.75, 0.9
-"""The lightness of sheets' colours, and what is left at most of a mixed colour's: so that shades are seen on sheets,
-and they are told from the regions that they enclose."""
+"""The lightness of sheets' colours, and what is left at most of a mixed colour's: so that shades
+are seen on sheets, and they are told from the regions that they enclose."""
 _SEAM = 0.3
 """Points by which triangles overlap, so that no gap is seen between them."""
 
@@ -79,7 +86,9 @@ def camera_of(axes: Any) -> Camera:
 
 
 def sheet_colours(family: FamilyMap, surface: BoundarySurface, paint: Paint) -> dict[Pair, str]:
-    """For each pair of counts that a sheet parts a colour: mostly that of the larger count, with some of the other."""
+    """For each pair of counts that a sheet parts a colour: mostly that of the larger count, with
+    some of the other.
+    """
     from matplotlib.colors import to_hex, to_rgb
 
     count = family.members[0].slice.count
@@ -105,7 +114,9 @@ def _with_count(region: Region, count: Count, key: tuple[int, ...]) -> Region:
     return replace(region, **{count.value: number})  # type: ignore[arg-type]  # the fields have the counts' names
 
 
-def sheet_entries(surface: BoundarySurface, colours: Mapping[Pair, str], told: Sequence[Entry]) -> list[Entry]:
+def sheet_entries(
+    surface: BoundarySurface, colours: Mapping[Pair, str], told: Sequence[Entry]
+) -> list[Entry]:
     """The legend: which counts the sheets part, and how the surface was made.
 
     Parameters
@@ -113,16 +124,25 @@ def sheet_entries(surface: BoundarySurface, colours: Mapping[Pair, str], told: S
     told : the entries above: what is counted, and the fills of a map on the floor.
     """
     found = list(told)
-    found += [Entry((f"between {' and '.join(map(key_text, pair))}",), Fill(face)) for pair, face in colours.items()]
+    found += [
+        Entry((f"between {' and '.join(map(key_text, pair))}",), Fill(face))
+        for pair, face in colours.items()
+    ]
     found.append(Entry(("boundary of a member",), THIN))
-    found.append(Entry((f"sheets: linear between {len(surface.members)} exact boundaries",), heads=0))
+    found.append(
+        Entry((f"sheets: linear between {len(surface.members)} exact boundaries",), heads=0)
+    )
     if not surface.complete:
         found.append(Entry(("(not proved that nothing changes between them)",), heads=0))
     return found
 
 
 def add_sheets(
-    axes: Any, surface: BoundarySurface, colours: Mapping[Pair, str], curves: Sequence[Floats], width: float
+    axes: Any,
+    surface: BoundarySurface,
+    colours: Mapping[Pair, str],
+    curves: Sequence[Floats],
+    width: float,
 ) -> None:
     """Paint the sheets and curves of members.
 
@@ -140,7 +160,10 @@ def add_sheets(
     plain = np.array([to_rgb(colours[sheet.counts]) for sheet in surface.sheets]).reshape(-1, 3)
     faces = plain[surface.sheet] * _brightness(corners)[:, None]
     corners, faces = halved(corners, faces)
-    ribbons = [_ribbons(camera.boxed(line) + _LIFT * camera.towards, camera.towards, width) for line in curves]
+    ribbons = [
+        _ribbons(camera.boxed(line) + _LIFT * camera.towards, camera.towards, width)
+        for line in curves
+    ]
     lines = np.concatenate([np.zeros((0, 3, 3)), *ribbons])
     lines, inks = halved(lines, np.tile(to_rgb(INK), (len(lines), 1)))
     pieces = camera.unboxed(np.concatenate([corners, lines]))
@@ -155,7 +178,8 @@ def add_sheets(
 
 
 def halved(corners: Floats, colours: Floats) -> tuple[Floats, Floats]:
-    """Triangles cut in two along their longest sides until none is longer than `MAX_SIDE`, with their colours.
+    """Triangles cut in two along their longest sides until none is longer than `MAX_SIDE`, with
+    their colours.
 
     Pieces are sorted by their middles' distance from the eye, which says little of long ones.
     """
@@ -165,7 +189,9 @@ def halved(corners: Floats, colours: Floats) -> tuple[Floats, Floats]:
         if not long.any():
             return corners, colours
         first = sides[long].argmax(axis=1)
-        turned = np.take_along_axis(corners[long], (first[:, None] + np.arange(3))[:, :, None] % 3, axis=1)
+        turned = np.take_along_axis(
+            corners[long], (first[:, None] + np.arange(3))[:, :, None] % 3, axis=1
+        )
         a, b, c = turned[:, 0], turned[:, 1], turned[:, 2]
         middle = (a + b) / 2
         halves = [np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)]
@@ -184,7 +210,9 @@ def _brightness(corners: Floats) -> Floats:
 
 
 def _ribbons(line: Floats, towards: Floats, width: float) -> Floats:
-    """Two triangles for each piece of a polyline, so wide as seen by the eye; shape (2 n - 2, 3, 3)."""
+    """Two triangles for each piece of a polyline, so wide as seen by the eye; shape (2 n - 2, 3,
+    3).
+    """
     along = np.diff(line, axis=0)
     across = np.cross(along, towards)
     length = np.linalg.norm(across, axis=1, keepdims=True)

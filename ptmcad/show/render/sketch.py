@@ -1,10 +1,11 @@
-"""The sketch of a pose: bars, zigzag springs, spirals, supports, load arrows and labels as lines on paper, in points.
+"""The sketch of a pose: bars, zigzag springs, spirals, supports, load arrows and labels as lines on
+paper, in points.
 
 Spirals are torsion springs, where their joints are known (`ptmcad.model.joints`).
 
-Guarantee: nodes are where the pose has them, at one scale for all poses. A spring that would lie on a bar or on another
-spring, or is too short for its turns, is drawn aside and led back to its nodes. Labels keep clear of all that is drawn
-(`ptmcad.show.render.clearance`).
+Guarantee: nodes are where the pose has them, at one scale for all poses. A spring that would lie on
+a bar or on another spring, or is too short for its turns, is drawn aside and led back to its nodes.
+Labels keep clear of all that is drawn (`ptmcad.show.render.clearance`).
 """
 
 from __future__ import annotations
@@ -20,7 +21,16 @@ from ptmcad.model.elements import Load
 from ptmcad.model.joints import joints_of
 from ptmcad.model.work import PointForce, loads_at
 from ptmcad.show.render.axes import symbol
-from ptmcad.show.render.clearance import Box, Label, Placed, Position, Stroke, distance, place, polyline
+from ptmcad.show.render.clearance import (
+    Box,
+    Label,
+    Placed,
+    Position,
+    Stroke,
+    distance,
+    place,
+    polyline,
+)
 from ptmcad.show.render.view import Point
 from ptmcad.show.spiral import spirals
 
@@ -33,11 +43,13 @@ SUPPORT, GROUND = (7.0, 10.0), 4.0
 SLIDER, RAIL = (7.5, 4.2), 17.0
 """Half its width and height."""
 MIN_TURNS, TURN = 6, 6.0
-"""A spring has so many turns, or one for each such length: else the teeth of a long one lie so flat that it looks like
-stairs."""
+"""A spring has so many turns, or one for each such length: else the teeth of a long one lie so flat
+that it looks like stairs."""
 AMPLITUDE = 3.4
 SPIRAL, SPIRAL_GAP = (PIN + 1.3, 8.8), 2.4
-"""The inner and the outer radius of a torsion spring, and what is left free between two at one joint."""
+"""The inner and the outer radius of a torsion spring, and what is left free between two at one
+joint.
+"""
 _END, _MIN_LENGTH = 7.0, 19.0
 _ASIDE = (9.0, -9.0, 15.5, -15.5, 22.0, -22.0)
 MAX_ARROW, MIN_ARROW = 27.0, 8.5
@@ -79,9 +91,11 @@ class Sketch:
 
     Attributes
     ----------
-    rails : what sliders slide on: a telescopic base from a fixed support at their height, else a short one.
+    rails : what sliders slide on: a telescopic base from a fixed support at their height, else a
+        short one.
     bars : in the order of the mechanism's.
-    coils : the springs' polylines by their names in a picture: zigzags, and spirals from the joint outwards.
+    coils : the springs' polylines by their names in a picture: zigzags, and spirals from the joint
+        outwards.
     """
 
     mechanism: Mechanism
@@ -93,12 +107,18 @@ class Sketch:
     labels: tuple[Placed, ...]
 
 
-def frame_of(shown: Sequence[Pose], width: float = WIDTH, most_height: float = MAX_HEIGHT) -> PanelFrame:
-    """The frame that shows all these poses at one scale, as large as the width and the height allow."""
+def frame_of(
+    shown: Sequence[Pose], width: float = WIDTH, most_height: float = MAX_HEIGHT
+) -> PanelFrame:
+    """The frame that shows all these poses at one scale, as large as the width and the height
+    allow.
+    """
     sides = [[high - low for low, high in _sides(_centers(pose).values())] for pose in shown]
     wide, tall = (max(side[k] for side in sides) for k in (0, 1))
     room = (Fraction(width - 2 * MARGIN), Fraction(most_height - 2 * MARGIN))
-    scale = min((r / side for r, side in zip(room, (wide, tall), strict=True) if side), default=Fraction(1))
+    scale = min(
+        (r / side for r, side in zip(room, (wide, tall), strict=True) if side), default=Fraction(1)
+    )
     return PanelFrame(scale, max(MIN_HEIGHT, float(tall * scale) + 2 * MARGIN), width)
 
 
@@ -113,7 +133,9 @@ def _sides(points: Iterable[Point]) -> tuple[Point, Point]:
 
 
 def arrow_lengths(poses: Poses) -> dict[str, float]:
-    """The loads that are not zero, and the lengths of their arrows: by force, but none shorter than is seen."""
+    """The loads that are not zero, and the lengths of their arrows: by force, but none shorter than
+    is seen.
+    """
     mechanism = poses.model.whole
     assert mechanism is not None
     forces = components(loads_at(mechanism, poses.parameters))
@@ -130,8 +152,12 @@ def arrows_of(forces: Mapping[str, Fraction], largest: Fraction) -> dict[str, fl
 
 
 def components(loads: Iterable[PointForce]) -> dict[str, Fraction]:
-    """The components of all loads by their names; constants and expressions are named by their text."""
-    return {name: force for load in loads for name, force in zip(load.names, load.force, strict=True)}
+    """The components of all loads by their names; constants and expressions are named by their
+    text.
+    """
+    return {
+        name: force for load in loads for name, force in zip(load.names, load.force, strict=True)
+    }
 
 
 def bar_width(mechanism: Mechanism, number: int) -> float:
@@ -152,7 +178,9 @@ class Scene:
         return sketch(self.mechanism, pose, self.frame, self.arrows)
 
 
-def sketch(mechanism: Mechanism, pose: Pose, frame: PanelFrame, arrows: Mapping[str, float]) -> Sketch:
+def sketch(
+    mechanism: Mechanism, pose: Pose, frame: PanelFrame, arrows: Mapping[str, float]
+) -> Sketch:
     """A pose in a frame, with arrows of these lengths."""
     return sketched(mechanism, frame.nodes(pose), (frame.width, frame.height), arrows)
 
@@ -182,19 +210,28 @@ def sketched(
     strokes = [*drawn, *(Stroke(a, b, 1.0) for a, b in rails)]
     strokes += [Stroke(start, end, 3.0) for _, start, end in placed_arrows]
     placed = place(
-        (labels or _labels)(nodes), strokes, _symbols(mechanism, nodes), (2.0, 2.0, sides[0] - 2.0, sides[1] - 2.0)
+        (labels or _labels)(nodes),
+        strokes,
+        _symbols(mechanism, nodes),
+        (2.0, 2.0, sides[0] - 2.0, sides[1] - 2.0),
     )
     return Sketch(mechanism, nodes, rails, bars, coils, placed_arrows, tuple(placed))
 
 
 def _rails(mechanism: Mechanism, nodes: Nodes) -> Iterator[tuple[Position, Position]]:
-    fixed = next((nodes[name] for name, kind in mechanism.supports.items() if kind is Support.PIN), None)
+    fixed = next(
+        (nodes[name] for name, kind in mechanism.supports.items() if kind is Support.PIN), None
+    )
     for name, kind in mechanism.supports.items():
         x, y = nodes[name]
         if kind is Support.SLIDER_Y:
             yield (x, y - RAIL), (x, y + RAIL)
         elif kind is Support.SLIDER_X:
-            yield (fixed, (x, y)) if fixed is not None and abs(fixed[1] - y) < 1e-6 else ((x - RAIL, y), (x + RAIL, y))
+            yield (
+                (fixed, (x, y))
+                if fixed is not None and abs(fixed[1] - y) < 1e-6
+                else ((x - RAIL, y), (x + RAIL, y))
+            )
 
 
 def _symbols(mechanism: Mechanism, nodes: Nodes) -> Iterator[Box]:
@@ -210,11 +247,21 @@ def _symbols(mechanism: Mechanism, nodes: Nodes) -> Iterator[Box]:
             yield x - wide, y - tall, x + wide, y + tall
 
 
-def _spring(start: Position, end: Position, drawn: Sequence[Stroke], turns: int | None) -> tuple[Position, ...]:
-    """The zigzag between two nodes, aside when something is already drawn there or they are too near."""
+def _spring(
+    start: Position, end: Position, drawn: Sequence[Stroke], turns: int | None
+) -> tuple[Position, ...]:
+    """The zigzag between two nodes, aside when something is already drawn there or they are too
+    near.
+    """
     length = dist(start, end)
-    along = ((end[0] - start[0]) / length, (end[1] - start[1]) / length) if length > 1e-6 else (1.0, 0.0)
-    if along[0] < -1e-9 or (abs(along[0]) <= 1e-9 and along[1] < 0):  # aside means above first, not below
+    along = (
+        ((end[0] - start[0]) / length, (end[1] - start[1]) / length)
+        if length > 1e-6
+        else (1.0, 0.0)
+    )
+    if along[0] < -1e-9 or (
+        abs(along[0]) <= 1e-9 and along[1] < 0
+    ):  # aside means above first, not below
         return _spring(end, start, drawn, turns)[::-1]
     straight = _zigzag(start, end, along, 0.0, turns)
     if length >= _MIN_LENGTH + 2 * _END and not _covered(straight, drawn):
@@ -223,26 +270,37 @@ def _spring(start: Position, end: Position, drawn: Sequence[Stroke], turns: int 
     return next((line for line in tried if not _covered(line, drawn)), tried[-1])
 
 
-def _zigzag(start: Position, end: Position, along: Position, aside: float, turns: int | None) -> tuple[Position, ...]:
+def _zigzag(
+    start: Position, end: Position, along: Position, aside: float, turns: int | None
+) -> tuple[Position, ...]:
     length = dist(start, end)
     wound = max(_MIN_LENGTH, length - 2 * _END)
     across = (-along[1], along[0])
-    middle = ((start[0] + end[0]) / 2 + across[0] * aside, (start[1] + end[1]) / 2 + across[1] * aside)
+    middle = (
+        (start[0] + end[0]) / 2 + across[0] * aside,
+        (start[1] + end[1]) / 2 + across[1] * aside,
+    )
     teeth = 2 * (max(MIN_TURNS, round(wound / TURN)) if turns is None else turns)
     offsets = [(-wound / 2, 0.0)]
     for k in range(teeth):
         offsets.append((wound * ((k + 0.5) / teeth - 0.5), AMPLITUDE if k % 2 else -AMPLITUDE))
     offsets.append((wound / 2, 0.0))
     inner = tuple(
-        (middle[0] + along[0] * u + across[0] * v, middle[1] + along[1] * u + across[1] * v) for u, v in offsets
+        (middle[0] + along[0] * u + across[0] * v, middle[1] + along[1] * u + across[1] * v)
+        for u, v in offsets
     )
     return (start, *inner, end)
 
 
 def _covered(line: Sequence[Position], drawn: Sequence[Stroke]) -> bool:
-    """Whether more than a third of the zigzag's middle line runs along strokes that are already drawn."""
+    """Whether more than a third of the zigzag's middle line runs along strokes that are already
+    drawn.
+    """
     first, last = line[1], line[-2]
-    points = [(first[0] + (last[0] - first[0]) * k / 20, first[1] + (last[1] - first[1]) * k / 20) for k in range(21)]
+    points = [
+        (first[0] + (last[0] - first[0]) * k / 20, first[1] + (last[1] - first[1]) * k / 20)
+        for k in range(21)
+    ]
     return sum(any(distance(p, s) < AMPLITUDE + s.half for s in drawn) for p in points) > 7
 
 
@@ -256,7 +314,9 @@ def _arrows(loads: Sequence[Load], nodes: Nodes, lengths: Mapping[str, float]) -
         for name, (u, v) in zip(load.names, ((1, 0), (0, 1)), strict=True):
             if name in lengths:
                 rim = copysign(PIN, lengths[name])
-                start, end = ((x + u * r + v * side, y + v * r + u * side) for r in (rim, rim + lengths[name]))
+                start, end = (
+                    (x + u * r + v * side, y + v * r + u * side) for r in (rim, rim + lengths[name])
+                )
                 yield name, start, end
 
 
@@ -264,7 +324,9 @@ def own_labels(nodes: Nodes, offsets: Nodes) -> Iterator[Label]:
     """A label for each node, to lie where these offsets point."""
     for name, at in nodes.items():
         text = symbol(name)
-        yield Label(text, at, (max(6.9, 3.45 * len(text)), LABEL_HALF_HEIGHT), offsets.get(text, (0.0, 1.0)))
+        yield Label(
+            text, at, (max(6.9, 3.45 * len(text)), LABEL_HALF_HEIGHT), offsets.get(text, (0.0, 1.0))
+        )
 
 
 def _labels(nodes: Nodes) -> Iterator[Label]:

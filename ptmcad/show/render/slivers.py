@@ -1,7 +1,9 @@
-"""Slivers: regions too thin to be seen at a drawing's resolution, and the views in which they are seen clearly.
+"""Slivers: regions too thin to be seen at a drawing's resolution, and the views in which they are
+seen clearly.
 
-Guarantee: a region of which no square of three pixels' side fits into the drawing is reported; the view for it shows a
-square of it with at least a twelfth of the view's sides, or as much as `STEPS` steps of shortening the view reach.
+Guarantee: a region of which no square of three pixels' side fits into the drawing is reported; the
+view for it shows a square of it with at least a twelfth of the view's sides, or as much as `STEPS`
+steps of shortening the view reach.
 """
 
 from __future__ import annotations
@@ -35,8 +37,8 @@ Mask = NDArray[np.bool_]
 class Sliver:
     """A thin region and a point in the thick of it, in the axes' order.
 
-    ``cell`` is one of its cells where it is a thin part of a larger region, in which only the counts of unstable
-    solutions differ.
+    ``cell`` is one of its cells where it is a thin part of a larger region, in which only the
+    counts of unstable solutions differ.
     """
 
     region: int
@@ -66,8 +68,8 @@ def thin_regions(whole: Shapes, pixels: int) -> tuple[int, ...]:
 def unstable_zooms(whole: Shapes, pixels: int, most: int) -> tuple[Zoom, ...]:
     """Views of parts of regions that are too thin to be seen and differ by unstable solutions only.
 
-    Of the map that tells such parts from each other thin regions are found and zoomed as of any; what is shown then is
-    the map itself, with the thin curve around that part.
+    Of the map that tells such parts from each other thin regions are found and zoomed as of any;
+    what is shown then is the map itself, with the thin curve around that part.
     """
     result = whole.result
     all_known = all(None not in (region.total, region.index) for region in result.regions)
@@ -81,7 +83,10 @@ def unstable_zooms(whole: Shapes, pixels: int, most: int) -> tuple[Zoom, ...]:
         if len(finer.regions[n].cells) < len(result.regions[result.cells[finer.regions[n].cells[0]].region].cells)
     ]  # fmt: skip
     return tuple(
-        Zoom(whole.in_view(zoom.outline.view), tuple(_part(result, finer, sliver) for sliver in zoom.slivers))
+        Zoom(
+            whole.in_view(zoom.outline.view),
+            tuple(_part(result, finer, sliver) for sliver in zoom.slivers),
+        )
         for zoom in zooms(in_parts, parts, most)
     )
 
@@ -92,8 +97,8 @@ def _part(result: RegionMap, finer: RegionMap, sliver: Sliver) -> Sliver:
 
 
 def seen_thin_walls(whole: Shapes, sides: Size) -> bool:
-    """Whether a wall that separates nothing is further than a line's width from the frame of a picture somewhere;
-    of solutions that are not isolated there is a line of another kind.
+    """Whether a wall that separates nothing is further than a line's width from the frame of a
+    picture somewhere; of solutions that are not isolated there is a line of another kind.
 
     Parameters
     ----------
@@ -104,7 +109,9 @@ def seen_thin_walls(whole: Shapes, sides: Size) -> bool:
     return any(
         not separates
         and component not in continua
-        and ((x < line[:, 0]) & (line[:, 0] < 1 - x) & (y < line[:, 1]) & (line[:, 1] < 1 - y)).any()
+        and (
+            (x < line[:, 0]) & (line[:, 0] < 1 - x) & (y < line[:, 1]) & (line[:, 1] < 1 - y)
+        ).any()
         for component, separates, line in whole.walls()
     )
 
@@ -135,13 +142,17 @@ def _told_apart(of: Same[RegionMap]) -> RegionMap:
         cell = result.cells[members[0]]
         of_cell |= dict.fromkeys(members, number)
         nothing = (Fraction(0), Fraction(0))
-        regions.append(Region(cell.stable, cell.total, cell.index, nothing, tuple(members), cell.sample))
+        regions.append(
+            Region(cell.stable, cell.total, cell.index, nothing, tuple(members), cell.sample)
+        )
     cells = tuple(replace(cell, region=of_cell[n]) for n, cell in enumerate(result.cells))
     return replace(result, cells=cells, regions=tuple(regions))
 
 
 def zooms(whole: Shapes, thin: Sequence[int], most: int = MAX_ZOOMS) -> tuple[Zoom, ...]:
-    """Views that show the thin regions clearly, each as many of them as it happens to; at most so many views."""
+    """Views that show the thin regions clearly, each as many of them as it happens to; at most so
+    many views.
+    """
     waiting = list(thin)
     found: list[Zoom] = []
     while waiting and len(found) < most:
@@ -168,7 +179,9 @@ def _zoom(whole: Shapes, region: int) -> Shapes:
         if depth >= _CLEAR:
             break
         factor = Fraction(1, 16 if depth < 0 else 2)
-        view = View(_shortened(view.x, at[0], window.x, factor), _shortened(view.y, at[1], window.y, factor))
+        view = View(
+            _shortened(view.x, at[0], window.x, factor), _shortened(view.y, at[1], window.y, factor)
+        )
         seen = whole.in_view(view)
     return seen
 
@@ -204,7 +217,9 @@ def _shortened(shown: Interval, at: Fraction, window: Interval, factor: Fraction
 
 
 def _thick(seen: Shapes, region: int) -> tuple[int, Point]:
-    """Half the side, in pixels, of the largest square within the region in the view (-1: none), and its centre."""
+    """Half the side, in pixels, of the largest square within the region in the view (-1: none), and
+    its centre.
+    """
     depth, *place = innermost(seen.raster(_PIXELS, _PIXELS) == region)
     if depth < 0:
         return depth, inside(seen, region)
@@ -223,7 +238,9 @@ def inside(seen: Shapes, region: int) -> Point:
 
 
 def innermost(mask: Mask) -> tuple[int, int, int]:
-    """How often a mask can be eroded, and column and row of a pixel that is left then; -1 first of an empty one."""
+    """How often a mask can be eroded, and column and row of a pixel that is left then; -1 first of
+    an empty one.
+    """
     depth, last = -1, mask
     while mask.any():
         depth, last = depth + 1, mask

@@ -1,7 +1,8 @@
-"""A family in three dimensions: its members' maps one above the other, or the surface between different counts.
+"""A family in three dimensions: its members' maps one above the other, or the surface between
+different counts.
 
-Guarantee: every curve that is drawn is one of a member's map. Between members nothing is drawn but the sheets of a
-boundary surface, where one is given; the picture says that they are interpolated.
+Guarantee: every curve that is drawn is one of a member's map. Between members nothing is drawn but
+the sheets of a boundary surface, where one is given; the picture says that they are interpolated.
 """
 
 from __future__ import annotations
@@ -20,7 +21,14 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
 from ptmcad.show.render.inches import Box, write_lines
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type
-from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, title_of, titles_and_rows, value_text
+from ptmcad.show.render.multiples import (
+    draw_flowed,
+    family_entries,
+    in_words,
+    title_of,
+    titles_and_rows,
+    value_text,
+)
 from ptmcad.show.render.painting import Paint, paint_of
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.shapes import shapes
@@ -31,12 +39,16 @@ from ptmcad.show.units import unit_of_free, with_unit
 
 SIZE = (5.8, 5.5)
 _BOX_DIAGONAL = 1.7
-"""Of the box's side: how much the picture's width or height shows, about; widths of lines on a surface rest on it."""
+"""Of the box's side: how much the picture's width or height shows, about; widths of lines on a
+surface rest on it.
+"""
 MAX_FLOORS = 7
 """Of filled maps: more would hide each other."""
 
 
-def solid_figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundarySurface | None = None) -> Figure:
+def solid_figure(
+    family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundarySurface | None = None
+) -> Figure:
     """The picture: at most `MAX_FLOORS` maps are filled, of the other members there are the curves.
 
     Parameters
@@ -45,12 +57,16 @@ def solid_figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: Boun
     """
     with settings(style):
         figure = _figure(family, dpi, style, surface)
-    words = in_words(family) if surface is None else f"{in_words(family)}. Surface: {surface.words()}"
+    words = (
+        in_words(family) if surface is None else f"{in_words(family)}. Surface: {surface.words()}"
+    )
     figure.set_label(f"{title_of(family)}, in three dimensions\n{words}")
     return figure
 
 
-def _figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundarySurface | None) -> Figure:
+def _figure(
+    family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundarySurface | None
+) -> Figure:
     font = style.base_font
     em, small = font / 72, max(MIN_FONT, 0.85 * font)
     wide, tall = style.size or SIZE
@@ -65,11 +81,19 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle, surface: BoundaryS
         fills = [entry for entry in told if entry.mark != STRONG]
         told = sheet_entries(surface, colours, fills if _lowest(family) else fills[:1])
     titles, lines = titles_and_rows(family, style, told, wide, type)
-    head, foot = 1.5 * em * len(titles) + 0.4 * em, 1.35 * type.line * len(lines) + (0.7 * em if lines else 0.0)
-    # names of axes are so many letters below the box, whose lowest corner is a tenth above the axes' end
+    head, foot = (
+        1.5 * em * len(titles) + 0.4 * em,
+        1.35 * type.line * len(lines) + (0.7 * em if lines else 0.0),
+    )
+    # names of axes are so many letters below the box, whose lowest corner is a tenth above the
+    # axes' end
     foot += max(0.0, 4.8 * em - 0.1 * (tall - head - foot))
     # members' values stand at the left of the box, which is not as wide as its axes
-    before = 0.0 if surface is not None else 0.5 * max(text_width(value_text(family, v), small) for v in family.values)
+    before = (
+        0.0
+        if surface is not None
+        else 0.5 * max(text_width(value_text(family, v), small) for v in family.values)
+    )
     left = max(0.02, before / wide)
     box = (left, foot / tall, 0.94 - left, (tall - head - foot) / tall)
     axes = _axes(figure, box, family, font)
@@ -103,7 +127,10 @@ def _axes(figure: Figure, box: Box, family: FamilyMap, font: float) -> Any:
     how = {"fontsize": 0.95 * font, "labelpad": 0.3 * font}
     axes.set_xlabel(axis_name(slice, 0), **how)
     axes.set_ylabel(axis_name(slice, 1), **how)
-    axes.set_zlabel(with_unit(symbol(family.free.name), unit_of_free(slice, family.free.name, family.text)), **how)
+    axes.set_zlabel(
+        with_unit(symbol(family.free.name), unit_of_free(slice, family.free.name, family.text)),
+        **how,
+    )
     axes.tick_params(labelsize=max(MIN_FONT, 0.85 * font), pad=0)
     for each, end in ((axes.xaxis, "upper"), (axes.yaxis, "lower"), (axes.zaxis, None)):
         # at the corner that two axes share, one number would lie on the other
@@ -119,7 +146,9 @@ def _of_floors(family: FamilyMap) -> list[Entry]:
         told.append(Entry(("curves of the other members",), THIN))
     if len(family.values) > 1:
         told.append(Entry(("paler: seen through a map above it",), heads=0))
-    if any(not separates for result in family.members for _, separates, _ in shapes(result).walls()):
+    if any(
+        not separates for result in family.members for _, separates, _ in shapes(result).walls()
+    ):
         told.append(Entry(("other curves left out",), heads=0))
     return told
 
@@ -143,7 +172,9 @@ def _least(*members: RegionMap) -> tuple[int, ...]:
 
 
 def _lowest(family: FamilyMap) -> list[tuple[Fraction, RegionMap]]:
-    """The member at the lower end of the range, if there is one: on the box's floor its map hides nothing."""
+    """The member at the lower end of the range, if there is one: on the box's floor its map hides
+    nothing.
+    """
     return [member for member in family if member[0] == family.free.low]
 
 
@@ -160,8 +191,12 @@ def _ends(axis: Any) -> tuple[float, float]:
     return float(axis.low), float(axis.high)
 
 
-def _floor(axes: Any, result: RegionMap, height: float, paint: Paint, least: tuple[int, ...] | None) -> None:
-    """A member's map at its height, filled so that one sees through where the count is least, or its curves alone."""
+def _floor(
+    axes: Any, result: RegionMap, height: float, paint: Paint, least: tuple[int, ...] | None
+) -> None:
+    """A member's map at its height, filled so that one sees through where the count is least, or
+    its curves alone.
+    """
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Curve
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, pathpatch_2d_to_3d
@@ -170,9 +205,12 @@ def _floor(axes: Any, result: RegionMap, height: float, paint: Paint, least: tup
     scale, origin = _frame(result)
     if least is not None:
         for number, region in enumerate(result.regions):
-            polygons = [Curve(polygon * scale + origin, closed=False) for polygon in seen.polygons(number)]
+            polygons = [
+                Curve(polygon * scale + origin, closed=False) for polygon in seen.polygons(number)
+            ]
             if polygons:
-                # one path for all parts, as on the page: where two of them share an edge no seam is left
+                # one path for all parts, as on the page: where two of them share an edge no seam is
+                # left
                 patch = PathPatch(
                     Curve.make_compound_path(*polygons), facecolor=paint.fill(region).face, linewidth=0, zorder=height,
                     alpha=0.3 if counted_by(region, result.slice.count) == least else 0.85, gid=f"{height}-{number}",
@@ -196,7 +234,9 @@ def _frame(result: RegionMap) -> tuple[Any, Any]:
 
 
 def _lifted(result: RegionMap, height: float) -> list[Any]:
-    """The curves of a map at which counts change, and the rims of what is undetermined, at a height."""
+    """The curves of a map at which counts change, and the rims of what is undetermined, at a
+    height.
+    """
     seen = shapes(result)
     scale, origin = _frame(result)
     lines = [line for _, separates, line in seen.walls() if separates] + list(seen.edges())

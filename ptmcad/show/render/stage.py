@@ -1,7 +1,8 @@
-"""The pictures of a motion: the map with the moving point, the mechanism, and the energy of the followed pose.
+"""The pictures of a motion: the map with the moving point, the mechanism, and the energy of the
+followed pose.
 
-Guarantee: all pictures of a motion have one scale, and fixed points of the mechanism stand still. A picture of a fall
-says that it shows no equilibrium. What does not move is drawn once.
+Guarantee: all pictures of a motion have one scale, and fixed points of the mechanism stand still. A
+picture of a fall says that it shows no equilibrium. What does not move is drawn once.
 
 Not guaranteed: anything that only the pictures show. They are drawn in floating point.
 """
@@ -46,7 +47,9 @@ SIZE = (9.0, 5.1)
 MIN_SIZE = (6.5, 3.4)
 """Inches in which all parts have room."""
 LEFT, RIGHT, GAP, TOP, BOTTOM, LINE = 0.72, 0.15, 0.42, 0.62, 0.55, 0.19
-"""Inches: at the map's left, the rim, between the parts, above them, below the map, a line of the legend."""
+"""Inches: at the map's left, the rim, between the parts, above them, below the map, a line of the
+legend.
+"""
 CURVE, MIN_PANEL = 0.21, 1.4
 """The energy's chart, against the height, where so many inches are left for the mechanism."""
 RIM = 27.0
@@ -86,7 +89,9 @@ class Stage:
         self.motion, self.mechanism = motion, check_drawable(motion)
         size = style.size or SIZE
         if size[0] < MIN_SIZE[0] or size[1] < MIN_SIZE[1]:
-            raise ConfigError(f"a film needs at least {MIN_SIZE[0]:g}x{MIN_SIZE[1]:g}in", key="size")
+            raise ConfigError(
+                f"a film needs at least {MIN_SIZE[0]:g}x{MIN_SIZE[1]:g}in", key="size"
+            )
         self.figure = Figure(figsize=size, dpi=dpi, facecolor="white")
         canvas: Any = FigureCanvasAgg(self.figure)
         self.canvas = canvas
@@ -144,7 +149,9 @@ class Stage:
         yield self._point(number)
         before = set(self.panel.get_children())
         if step.falling:
-            begun = next(k for k in range(number, -1, -1) if k == 0 or not motion.steps[k - 1].falling)
+            begun = next(
+                k for k in range(number, -1, -1) if k == 0 or not motion.steps[k - 1].falling
+            )
             draw_sketch(self.panel, replace(self.sketches[begun], labels=()), PALE, "")
             yield [a for a in self.panel.get_children() if a not in before]
         draw_sketch(self.panel, self.sketches[number], STRONG, "")
@@ -181,9 +188,9 @@ class Stage:
     def _said(self, step: Step) -> Iterator[Any]:
         """Where the point is, what is drawn, and its unknowns."""
         names, model = self.motion.result.slice.axis_names, self.mechanism
-        where = ",  ".join(f"{symbol(n)} = {float(v):.4g}" for n, v in zip(names, step.at, strict=True)).replace(
-            "-", "−"
-        )
+        where = ",  ".join(
+            f"{symbol(n)} = {float(v):.4g}" for n, v in zip(names, step.at, strict=True)
+        ).replace("-", "−")
         yield self._text(self.where, where, SIZES[1])
         if step.falling:
             what, colour = "the pose has vanished: steepest descent, no equilibrium", FALLING
@@ -206,7 +213,9 @@ class Stage:
         result = self.motion.result
         whole = shapes(result)
         paint_map(self.chart, whole, "", paint_of(style, result))
-        dress(self.chart, result.slice, whole.view.x, whole.view.y, Dress(SIZES[2], SIZES[1], (6, 6)))
+        dress(
+            self.chart, result.slice, whole.view.x, whole.view.y, Dress(SIZES[2], SIZES[1], (6, 6))
+        )
         track = [whole.view.approximate_position(at) for at in self.motion.path]
         self.chart.add_artist(
             Line2D(*zip(*track, strict=True), color=INK, linewidth=0.9, linestyle=(0, (4, 2)),
@@ -226,7 +235,9 @@ class Stage:
             if len(inside) < len(dots):
                 which = f"{noun(self.mechanism)} within the frame"
             if inside:
-                axes.plot(*zip(*inside, strict=True), "o", markersize=1.6, color=colour, zorder=2 + wanted)
+                axes.plot(
+                    *zip(*inside, strict=True), "o", markersize=1.6, color=colour, zorder=2 + wanted
+                )
         axes.set(xlim=(0, 100), ylim=(low - room, high + room))
         from matplotlib.ticker import MaxNLocator
 
@@ -236,7 +247,9 @@ class Stage:
         several = any(s.others for s in steps)
         axes.set_ylabel("energy", fontsize=SIZES[1], labelpad=2)
         if several:
-            axes.set_title(f"dots: {which}, stable ones blue", fontsize=SIZES[2], loc="right", pad=2)
+            axes.set_title(
+                f"dots: {which}, stable ones blue", fontsize=SIZES[2], loc="right", pad=2
+            )
 
     def _text(self, at: Position, text: str, size: float, colour: str = INK) -> Any:
         return write(self.figure, at, text, size, color=colour)
@@ -247,27 +260,42 @@ def _places(motion: Motion, mechanism: Mechanism, sides: Size) -> Iterator[dict[
     places = np.array([step.points for step in motion.steps]).reshape(-1, 2)
     low, high = places.min(axis=0), places.max(axis=0)
     room = [max(side - 2 * RIM, 10.0) for side in sides]
-    k = min((r / float(b - a) for r, a, b in zip(room, low, high, strict=True) if b > a), default=1.0)
+    k = min(
+        (r / float(b - a) for r, a, b in zip(room, low, high, strict=True) if b > a), default=1.0
+    )
     dx, dy = (side / 2 - k * float(a + b) / 2 for side, a, b in zip(sides, low, high, strict=True))
     for step in motion.steps:
-        yield {name: (x * k + dx, y * k + dy) for name, (x, y) in zip(mechanism.points, step.points, strict=True)}
+        yield {
+            name: (x * k + dx, y * k + dy)
+            for name, (x, y) in zip(mechanism.points, step.points, strict=True)
+        }
 
 
 def _sketches(motion: Motion, mechanism: Mechanism, sides: Size) -> list[Sketch]:
-    """The mechanism at each step; labels keep their side while they can, and glide where they cannot."""
+    """The mechanism at each step; labels keep their side while they can, and glide where they
+    cannot.
+    """
     arrows, sketches = _arrows(motion, mechanism), list[Sketch]()
     offsets: dict[str, Position] = {}
     ways: list[dict[str, Position]] = []
     for step, nodes in zip(motion.steps, _places(motion, mechanism, sides), strict=True):
         labels = partial(own_labels, offsets=dict(offsets))
         seen = sketched(mechanism, nodes, sides, arrows[step.at], TURNS, labels)
-        offsets = {p.label.text: (p.center[0] - p.label.at[0], p.center[1] - p.label.at[1]) for p in seen.labels}
+        offsets = {
+            p.label.text: (p.center[0] - p.label.at[0], p.center[1] - p.label.at[1])
+            for p in seen.labels
+        }
         sketches.append(seen)
         ways.append(offsets)
-    return [replace(seen, labels=tuple(_glided(seen.labels, ways, k))) for k, seen in enumerate(sketches)]
+    return [
+        replace(seen, labels=tuple(_glided(seen.labels, ways, k)))
+        for k, seen in enumerate(sketches)
+    ]
 
 
-def _glided(labels: Iterable[Placed], ways: list[dict[str, Position]], number: int) -> Iterator[Placed]:
+def _glided(
+    labels: Iterable[Placed], ways: list[dict[str, Position]], number: int
+) -> Iterator[Placed]:
     """Labels at the mean of where they stand in the steps around, without lines that lead to them."""
     near = ways[max(0, number - GLIDE) : number + GLIDE + 1]
     for placed in labels:
@@ -276,13 +304,17 @@ def _glided(labels: Iterable[Placed], ways: list[dict[str, Position]], number: i
 
 
 def _arrows(motion: Motion, mechanism: Mechanism) -> dict[Point, dict[str, float]]:
-    """For each point the lengths of its loads' arrows, in proportion to the largest load of the motion."""
+    """For each point the lengths of its loads' arrows, in proportion to the largest load of the
+    motion.
+    """
     parameters = motion.result.slice.parameters
     forces = {}
     for at in {step.at for step in motion.steps}:
         values = values_at(parameters, *at)
         forces[at] = components(loads_at(mechanism, values))
-    largest = max((abs(force) for own in forces.values() for force in own.values()), default=Fraction(0))
+    largest = max(
+        (abs(force) for own in forces.values() for force in own.values()), default=Fraction(0)
+    )
     return {at: arrows_of(own, largest) for at, own in forces.items()}
 
 
@@ -291,7 +323,10 @@ def _key(motion: Motion, style: PictureStyle, width: float) -> Rows:
     result = motion.result
     paint = paint_of(style, result)
     fills = fills_by_count(paint, result)
-    entries = [Entry((head_of(result.slice)[0],)), *(Entry((text,), fill) for text, fill in fills.items())]
+    entries = [
+        Entry((head_of(result.slice)[0],)),
+        *(Entry((text,), fill) for text, fill in fills.items()),
+    ]
     if result.cover is not None and result.undetermined:
         entries.append(Entry(("undetermined",), paint.undetermined))
     return in_rows(entries, width + 0.2, TYPE)

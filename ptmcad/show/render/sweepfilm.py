@@ -1,7 +1,7 @@
 """Pictures of a sweep's maps, one after another in one frame, for a film.
 
-Guarantee: the frame, the colours and the legend are the same in all pictures, so that only the regions move. The values
-above a map are exact.
+Guarantee: the frame, the colours and the legend are the same in all pictures, so that only the
+regions move. The values above a map are exact.
 """
 
 from __future__ import annotations
@@ -43,7 +43,9 @@ class SweepFilm:
     values : of what is swept, for each map.
     """
 
-    def __init__(self, maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]]) -> None:
+    def __init__(
+        self, maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]]
+    ) -> None:
         self.maps, self.values = maps, values
         self.head, fills = "", dict[str, Fill]()
         for number in range(len(values)):
@@ -59,8 +61,15 @@ class SweepFilm:
         figure = Figure(figsize=SIZE, dpi=_DPI, facecolor="white")
         axes: Any = figure.add_axes(_BOX)
         draw_on(axes, self.maps(number), False, _STYLE)
-        text = ",  ".join(f"{symbol(n)} = {shortest_text(fraction_of(v))}" for n, v in self.values[number].items())
-        figure.text(_BOX[0], 0.93, text if len(text) <= _MAX_LENGTH else f"{text[:_MAX_LENGTH]}…", fontsize=12)
+        text = ",  ".join(
+            f"{symbol(n)} = {shortest_text(fraction_of(v))}" for n, v in self.values[number].items()
+        )
+        figure.text(
+            _BOX[0],
+            0.93,
+            text if len(text) <= _MAX_LENGTH else f"{text[:_MAX_LENGTH]}…",
+            fontsize=12,
+        )
         figure.legend(
             handles=self.legend, title=self.head, loc="upper left",
             bbox_to_anchor=(_BOX[0] + _BOX[2] + 0.02, _BOX[1] + _BOX[3]), borderaxespad=0, frameon=False, fontsize=9,

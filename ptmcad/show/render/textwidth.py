@@ -14,7 +14,9 @@ ALLOWANCE = 1.03
 
 
 def wrapped(text: str, width: float, size: float, strong: bool = False) -> list[str]:
-    """Lines of whole words, each as long as the width in inches allows; none ends within ``k = 100``."""
+    """Lines of whole words, each as long as the width in inches allows; none ends within
+    ``k = 100``.
+    """
     lines: list[str] = []
     for word in re.findall(r"\S+(?: = \S+)*", text):
         longer = f"{lines[-1]} {word}" if lines else word

@@ -1,6 +1,7 @@
 """Arrows with counts to regions that a drawing's resolution hides.
 
-Guarantee: labels are apart from each other and within the drawing; regions whose label has no room are counted.
+Guarantee: labels are apart from each other and within the drawing; regions whose label has no room
+are counted.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ from ptmcad.show.style import Size
 from ptmcad.show.table import count_text
 
 RESOLVED = 42
-"""What is thinner than three pixels of this many to the inch (5 points) is taken for hidden by the walls around it."""
+"""What is thinner than three pixels of this many to the inch (5 points) is taken for hidden by the
+walls around it.
+"""
 RIMMED = 126
 """The same where it has a rim of its own colour instead of walls (1.7 points)."""
 
@@ -55,17 +58,25 @@ def ranked(whole: Shapes, slivers: Sequence[Sliver], thin: Sequence[int]) -> lis
     return [*first, *(sliver for sliver in by_size if sliver not in first)]
 
 
-def placed_marks(whole: Shapes, marks: Marks, told: Sequence[str], sides: Size, size: float, skip: bool) -> Marks:
+def placed_marks(
+    whole: Shapes, marks: Marks, told: Sequence[str], sides: Size, size: float, skip: bool
+) -> Marks:
     """The marks with places for their names.
 
     Parameters
     ----------
-    told : what is said of each region of the map: the label of one best stands where the same is true.
+    told : what is said of each region of the map: the label of one best stands where the same is
+        true.
     sides, size, skip : as of `place`.
     """
     tips = [whole.view.approximate_position(sliver.at) for sliver in marks.slivers]
-    homes = [[n for n, text in enumerate(told) if text == told[sliver.region]] for sliver in marks.slivers]
-    return replace(marks, placed=place(tips, marks.names, whole, sides, size, skip=skip, homes=homes))
+    homes = [
+        [n for n, text in enumerate(told) if text == told[sliver.region]]
+        for sliver in marks.slivers
+    ]
+    return replace(
+        marks, placed=place(tips, marks.names, whole, sides, size, skip=skip, homes=homes)
+    )
 
 
 def counts_of(result: RegionMap) -> list[str]:
@@ -73,15 +84,17 @@ def counts_of(result: RegionMap) -> list[str]:
     return [count_text(region, result.slice.count) for region in result.regions]
 
 
-def marks_of(whole: Shapes, sides: Size, dpi: int, size: float, names: Sequence[str] | None = None) -> Marks:
+def marks_of(
+    whole: Shapes, sides: Size, dpi: int, size: float, names: Sequence[str] | None = None
+) -> Marks:
     """The marks of a map in a drawing of its own, without insets.
 
     Parameters
     ----------
     sides : of the drawing, in inches.
     size : of the labels, in points.
-    names : of the regions, in their order, empty for those that need no mark; else their counts. Regions with names
-        are drawn with rims of their own colour, so that thinner ones are seen.
+    names : of the regions, in their order, empty for those that need no mark; else their counts.
+        Regions with names are drawn with rims of their own colour, so that thinner ones are seen.
     """
     result = whole.result
     resolved = RESOLVED if names is None else RIMMED
@@ -95,11 +108,16 @@ def marks_of(whole: Shapes, sides: Size, dpi: int, size: float, names: Sequence[
     found = placed_marks(whole, marks, told, (72 * sides[0], 72 * sides[1]), size, skip=True).placed
     clear = [k for k, placement in enumerate(found) if placement.clear]
     return Marks(
-        [slivers[k] for k in clear], [found[k] for k in clear], [labels[k] for k in clear], len(thin) - len(clear)
+        [slivers[k] for k in clear],
+        [found[k] for k in clear],
+        [labels[k] for k in clear],
+        len(thin) - len(clear),
     )
 
 
-def draw_chart(figure: Any, box: Box, seen: Shapes, paint: Paint, marks: Marks, how: Dress, prefix: str = "") -> Any:
+def draw_chart(
+    figure: Any, box: Box, seen: Shapes, paint: Paint, marks: Marks, how: Dress, prefix: str = ""
+) -> Any:
     """A map in a box on the page, with its marks and its axes' numbers; its axes."""
     axes = axes_at(figure, box)
     paint_map(axes, seen, prefix, paint)

@@ -1,7 +1,9 @@
-"""What a picture of a region map is drawn from: a view of its window, and the shapes seen in it, whatever the engine.
+"""What a picture of a region map is drawn from: a view of its window, and the shapes seen in it,
+whatever the engine.
 
-Guarantee: none but that of the classes that have these methods, `ptmcad.show.render.outline` for exact maps and
-`ptmcad.show.render.coveroutline` for certified ones. Positions are fractions of the view's sides.
+Guarantee: none but that of the classes that have these methods, `ptmcad.show.render.outline` for
+exact maps and `ptmcad.show.render.coveroutline` for certified ones. Positions are fractions of the
+view's sides.
 """
 
 from __future__ import annotations
@@ -30,7 +32,9 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Same(Generic[T]):
-    """A key that only the very same object equals: to compare whole maps would take as long as to draw them."""
+    """A key that only the very same object equals: to compare whole maps would take as long as to
+    draw them.
+    """
 
     it: T
 
@@ -61,11 +65,15 @@ class View:
     def approximate_position(self, point: Point) -> Position:
         """A point in the view's own coordinates, (0, 0) to (1, 1)."""
         (left, right), (bottom, top) = self.x, self.y
-        return float((point[0] - left) / (right - left)), float((point[1] - bottom) / (top - bottom))
+        return float((point[0] - left) / (right - left)), float(
+            (point[1] - bottom) / (top - bottom)
+        )
 
 
 def from_above(line: Floats, side: float) -> Floats:
-    """Fractions of a view's sides in units of which a picture's side has so many, from its upper left corner."""
+    """Fractions of a view's sides in units of which a picture's side has so many, from its upper
+    left corner.
+    """
     placed: Floats = np.stack([line[:, 0], 1 - line[:, 1]], axis=1) * side
     return placed
 
@@ -92,8 +100,9 @@ class Shapes(Protocol):
 
         Parameters
         ----------
-        tolerance : of the view's side; outlines may depart by as much, to have fewer corners, and still meet where
-            they are the same wall. None is left out, even one that shrinks to a line or a point.
+        tolerance : of the view's side; outlines may depart by as much, to have fewer corners, and
+            still meet where they are the same wall. None is left out, even one that shrinks to a
+            line or a point.
         """
         ...
 
@@ -110,5 +119,7 @@ class Shapes(Protocol):
         ...
 
     def raster(self, columns: int, rows: int) -> NDArray[np.int64]:
-        """The region at the centre of every pixel, shape (rows, columns), from the bottom; -1 where there is none."""
+        """The region at the centre of every pixel, shape (rows, columns), from the bottom; -1 where
+        there is none.
+        """
         ...

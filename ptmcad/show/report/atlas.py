@@ -1,10 +1,12 @@
-"""A sweep as one HTML page: all maps on a sheet, sliders, and areas, ranges and optima against what is swept.
+"""A sweep as one HTML page: all maps on a sheet, sliders, and areas, ranges and optima against what
+is swept.
 
-Guarantee: the page needs no network and no other file. Whatever a record, an error or a result says stands in it as
-text; its policy allows this page's own script and style and nothing else. The same sweep gives the same text.
+Guarantee: the page needs no network and no other file. Whatever a record, an error or a result says
+stands in it as text; its policy allows this page's own script and style and nothing else. The same
+sweep gives the same text.
 
-Not guaranteed: all maps of a sweep with more than `MAX_MAPS` members. Then members at equal distances are shown, and
-the page says so.
+Not guaranteed: all maps of a sweep with more than `MAX_MAPS` members. Then members at equal
+distances are shown, and the page says so.
 """
 
 from __future__ import annotations
@@ -35,7 +37,9 @@ _MAX_ERROR = 200
 
 @dataclass(frozen=True, slots=True)
 class SheetFrame:
-    """What all maps of a sweep have in common: the axes' names and windows as texts, and what is counted."""
+    """What all maps of a sweep have in common: the axes' names and windows as texts, and what is
+    counted.
+    """
 
     axes: tuple[tuple[str, str, str], ...]
     heading: str
@@ -48,7 +52,9 @@ def chosen(sweep: Sweep) -> Sequence[int]:
     return range(0, len(sweep), every)
 
 
-def atlas(sweep: Sweep, frame: SheetFrame, members: Sequence[Member], sketches: Mapping[int, Thumbnail]) -> str:
+def atlas(
+    sweep: Sweep, frame: SheetFrame, members: Sequence[Member], sketches: Mapping[int, Thumbnail]
+) -> str:
     """The whole page as HTML text.
 
     Parameters
@@ -59,7 +65,9 @@ def atlas(sweep: Sweep, frame: SheetFrame, members: Sequence[Member], sketches: 
     style = asset("page.css") + asset("atlas.css")
     script = "".join(asset(name) for name in SCRIPTS)
     fills = {fill for s in sketches.values() for fill in (s.plate, *(fill for fill, _ in s.paths))}
-    values = {name: _sorted({member.parameters[name] for member in members}) for name in sweep.names}
+    values = {
+        name: _sorted({member.parameters[name] for member in members}) for name in sweep.names
+    }
     columns = len(values[sweep.names[-1]]) if _is_table(values, members) else 0
     return template("atlas.html").substitute(
         policy=escape(policy_of(style, script)),
@@ -81,11 +89,17 @@ def atlas(sweep: Sweep, frame: SheetFrame, members: Sequence[Member], sketches: 
 
 
 def _is_table(values: Mapping[str, Sequence[str]], members: Sequence[Member]) -> bool:
-    """Whether two parameters are swept in all combinations, so that the sheet has a row for each value of the first."""
+    """Whether two parameters are swept in all combinations, so that the sheet has a row for each
+    value of the first.
+    """
     if len(values) != 2:
         return False
     first, second = values.values()
-    return len(first) * len(second) == len({tuple(m.parameters.values()) for m in members}) == len(members)
+    return (
+        len(first) * len(second)
+        == len({tuple(m.parameters.values()) for m in members})
+        == len(members)
+    )
 
 
 def _order(sweep: Sweep, columns: int) -> str:
@@ -104,7 +118,11 @@ def _axis(frame: SheetFrame, number: int) -> str:
 
 
 def _banners(sweep: Sweep, members: Sequence[Member]) -> Iterator[str]:
-    missing = [f"{number} {state.value}" for state, number in sweep.states.items() if state is not State.DONE]
+    missing = [
+        f"{number} {state.value}"
+        for state, number in sweep.states.items()
+        if state is not State.DONE
+    ]
     if missing:
         yield f'<p class="banner">Of {len(sweep)} members {escape(", ".join(missing))}: these have no map.</p>'
     if len(members) < len(sweep):
@@ -114,7 +132,9 @@ def _banners(sweep: Sweep, members: Sequence[Member]) -> Iterator[str]:
 
 def _cell(sweep: Sweep, member: Member, sketch: Thumbnail | None) -> str:
     """One map of the sheet, as a button."""
-    label = ", ".join(f"{symbol(n)} = {_shown(fraction_of(member.parameters[n]))}" for n in sweep.names)
+    label = ", ".join(
+        f"{symbol(n)} = {_shown(fraction_of(member.parameters[n]))}" for n in sweep.names
+    )
     if sketch is None:
         return (
             f'<button type="button" class="small none" data-m="{member.number}" aria-label="{escape(label)}: '
@@ -132,7 +152,9 @@ def _cell(sweep: Sweep, member: Member, sketch: Thumbnail | None) -> str:
 
 
 def _legend(sketches: Collection[Thumbnail], frame: SheetFrame) -> Iterator[str]:
-    """The fills of all counts that occur, in the order of the counts, and that of what is undetermined."""
+    """The fills of all counts that occur, in the order of the counts, and that of what is
+    undetermined.
+    """
     found = {text: fill for each in sketches for text, fill in each.legend}
     shown = [(f"{frame.counted}: {text}", found[text]) for text in sorted(found, key=in_order)]
     if any(each.plate == UNDETERMINED for each in sketches):
@@ -151,11 +173,17 @@ def _shown(value: Fraction) -> str:
 
 
 def _data(
-    sweep: Sweep, frame: SheetFrame, members: Sequence[Member], values: Mapping[str, Sequence[str]], columns: int
+    sweep: Sweep,
+    frame: SheetFrame,
+    members: Sequence[Member],
+    values: Mapping[str, Sequence[str]],
+    columns: int,
 ) -> dict[str, Any]:
     """What the script shows."""
     places = {name: {value: k for k, value in enumerate(found)} for name, found in values.items()}
-    counts = sorted({a.count for m in members if m.summary for a in m.summary.areas}, key=count_order)
+    counts = sorted(
+        {a.count for m in members if m.summary for a in m.summary.areas}, key=count_order
+    )
     along = next((m.summary.widest.along for m in members if m.summary and m.summary.widest), "")
     over = next((name for name, _, _ in frame.axes if name != along), "")
     return {
@@ -163,10 +191,18 @@ def _data(
         "counted": frame.counted,
         "along": symbol(along),
         "over": symbol(over),
-        "axes": [{"name": symbol(name), "low": low, "high": high} for name, low, high in frame.axes],
+        "axes": [
+            {"name": symbol(name), "low": low, "high": high} for name, low, high in frame.axes
+        ],
         "swept": [
-            {"name": symbol(name), "texts": list(map(_shown, found)), "values": list(map(float, found))}
-            for name, found in ((name, list(map(fraction_of, texts))) for name, texts in values.items())
+            {
+                "name": symbol(name),
+                "texts": list(map(_shown, found)),
+                "values": list(map(float, found)),
+            }
+            for name, found in (
+                (name, list(map(fraction_of, texts))) for name, texts in values.items()
+            )
         ],
         "counts": counts,
         "members": [_member_data(sweep, m, places, counts) for m in members],
@@ -177,24 +213,33 @@ def _member_data(
     sweep: Sweep, member: Member, places: Mapping[str, Mapping[str, int]], counts: Sequence[str]
 ) -> dict[str, Any]:
     found = member.summary
-    data: dict[str, Any] = {"n": member.number, "p": [places[n][member.parameters[n]] for n in sweep.names]}
+    data: dict[str, Any] = {
+        "n": member.number,
+        "p": [places[n][member.parameters[n]] for n in sweep.names],
+    }
     if found is None:
         return data | {"e": f"{member.state.value}: {member.error}"[:_MAX_ERROR]}
     areas = {area.count: area for area in found.areas}
     data["a"] = [
-        _rounded(middle(areas[c].area)) if c in areas and areas[c].area[0] else _absent(areas, c) for c in counts
+        _rounded(middle(areas[c].area)) if c in areas and areas[c].area[0] else _absent(areas, c)
+        for c in counts
     ]
     data["r"] = found.regions
     data["f"] = member.file
     if found.widest is not None and found.widest.width is not None:
         data["w"] = _rounded(middle(found.widest.width))
         data["s"] = found.widest.proof
-        data["at"] = [sorted({_rounded(fraction_of(end)) for end in place}) for place in found.widest.places[:4]]
+        data["at"] = [
+            sorted({_rounded(fraction_of(end)) for end in place})
+            for place in found.widest.places[:4]
+        ]
     return data
 
 
 def _absent(areas: Mapping[str, Any], count: str) -> float | None:
-    """The area of a count that no region has is zero; that of one whose areas were left out is not known."""
+    """The area of a count that no region has is zero; that of one whose areas were left out is not
+    known.
+    """
     return None if count in areas else 0.0
 
 
@@ -203,9 +248,19 @@ def _rounded(value: Fraction) -> float:
 
 
 def frame_of(sweep: Sweep, slice: Any, sketches: Iterable[Thumbnail]) -> SheetFrame:
-    """What the maps have in common, from the slice of one of them and the drawings of all on the page."""
+    """What the maps have in common, from the slice of one of them and the drawings of all on the
+    page.
+    """
     axes = tuple((a.name, _shown(a.low), _shown(a.high)) for a in slice.axes)
     common = set[str](slice.fixed).intersection(*(sketch.fixed for sketch in sketches))
-    fixed = [part for part in slice.fixed if part in common and part.partition(" = ")[0] not in sweep.names]
-    heading = heading_of(slice) if slice.title else ", ".join(named(part, slice.parameters) for part in fixed)
+    fixed = [
+        part
+        for part in slice.fixed
+        if part in common and part.partition(" = ")[0] not in sweep.names
+    ]
+    heading = (
+        heading_of(slice)
+        if slice.title
+        else ", ".join(named(part, slice.parameters) for part in fixed)
+    )
     return SheetFrame(axes, heading, slice.count.value)

@@ -1,7 +1,8 @@
-"""Arithmetic with rational bounds of real numbers, and decimals that are certified to their last digit.
+"""Arithmetic with rational bounds of real numbers, and decimals that are certified to their last
+digit.
 
-Guarantee: the bounds of a result contain its value whenever those of the operands do; `decimal_text` is within one unit
-of its last digit of every number between the bounds.
+Guarantee: the bounds of a result contain its value whenever those of the operands do;
+`decimal_text` is within one unit of its last digit of every number between the bounds.
 """
 
 from __future__ import annotations
@@ -40,10 +41,15 @@ class Bounds(NamedTuple):
     def __pow__(self, exponent: int) -> Bounds:
         """An even power is not negative."""
         low, high = sorted(x**exponent for x in self)
-        return Bounds(Fraction(0) if exponent and exponent % 2 == 0 and self.low < 0 < self.high else low, high)
+        return Bounds(
+            Fraction(0) if exponent and exponent % 2 == 0 and self.low < 0 < self.high else low,
+            high,
+        )
 
 
-_PER_RADIAN = Bounds(Fraction(180 * 10**18, 3141592653589793239), Fraction(180 * 10**18, 3141592653589793238))
+_PER_RADIAN = Bounds(
+    Fraction(180 * 10**18, 3141592653589793239), Fraction(180 * 10**18, 3141592653589793238)
+)
 """Degrees."""
 _MAX_PLAIN_PLACES = 12
 """Places before or after the point from which the form with an exponent is used."""
@@ -61,7 +67,8 @@ def square_root(a: Bounds) -> Bounds:
 
 
 def degrees(cosine: Bounds, sine: Bounds) -> Bounds | None:
-    """The angle, in (-180, 180] up to its own width, whose cosine and sine lie between these bounds.
+    """The angle, in (-180, 180] up to its own width, whose cosine and sine lie between these
+    bounds.
 
     None when the bounds are too wide to decide, or no angle has such a cosine and sine nearby.
     """
@@ -76,20 +83,24 @@ def degrees(cosine: Bounds, sine: Bounds) -> Bounds | None:
 
 
 def cosine_sine(angle: Bounds) -> tuple[Bounds, Bounds]:
-    """Cosine and sine of an angle in radians: those at the middle of its bounds, which nothing leaves faster than the
-    angle itself."""
+    """Cosine and sine of an angle in radians: those at the middle of its bounds, which nothing
+    leaves faster than the angle itself."""
     slack = (angle.high - angle.low) / 2
     cosine, sine = (at + Bounds(-slack, slack) for at in _cosine_sine((angle.low + angle.high) / 2))
     return cosine, sine
 
 
 def _cosine_sine(angle: Fraction) -> tuple[Bounds, Bounds]:
-    cosine, sine = rational_bounds(lambda ball: ball.cos(), angle), rational_bounds(lambda ball: ball.sin(), angle)
+    cosine, sine = (
+        rational_bounds(lambda ball: ball.cos(), angle),
+        rational_bounds(lambda ball: ball.sin(), angle),
+    )
     return Bounds(*cosine), Bounds(*sine)
 
 
 def decimal_text(a: Bounds, exponent: int) -> str:
-    """A decimal with 10^exponent as the unit of its last digit, or a larger unit where the bounds are wider.
+    """A decimal with 10^exponent as the unit of its last digit, or a larger unit where the bounds
+    are wider.
 
     >>> decimal_text((Fraction(-1, 3), Fraction(-1, 3)), -4), decimal_text((Fraction(1), Fraction(11, 10)), -4)
     ('−0.3333', '1.0')

@@ -1,10 +1,11 @@
 """The region map as inline SVG: fills, walls, axes, and one focusable area for every cell.
 
-Guarantee: every cell of the view has an area with its number; nothing is drawn with a style attribute, which the page's
-policy forbids. The same map gives the same text.
+Guarantee: every cell of the view has an area with its number; nothing is drawn with a style
+attribute, which the page's policy forbids. The same map gives the same text.
 
-A certified map's rims are drawn within `SLACK` of their places, and at least twice as wide, over all fills: what is
-seen of a fill, and what of an area can be pointed at, is in that cell of the map itself.
+A certified map's rims are drawn within `SLACK` of their places, and at least twice as wide, over
+all fills: what is seen of a fill, and what of an area can be pointed at, is in that cell of the map
+itself.
 """
 
 from __future__ import annotations
@@ -37,20 +38,26 @@ Label = tuple[int, float, float]
 """A region and the place of its count."""
 
 MAP_PIXELS = 300
-"""Pixels of the map's side on a phone: regions thinner than three of them get a view of their own."""
+"""Pixels of the map's side on a phone: regions thinner than three of them get a view of their own.
+"""
 _WALLS, _RIMS, SLACK = 0.1, 0.25, 0.3
-"""By how much, in the picture's units, walls and a certified map's rims may depart to have fewer corners, and these
-together with the rounding to the grid. A unit is less than a pixel where the page is largest."""
+"""By how much, in the picture's units, walls and a certified map's rims may depart to have fewer
+corners, and these together with the rounding to the grid. A unit is less than a pixel where the
+page is largest."""
 RIM_WIDTH, CORE_WIDTH, _OPEN_WIDTH = 2.0, 1.0, 0.7
-"""Of a certified map's rims, of what is undetermined between them at least, and of what keeps the pointer from it, in
-the picture's units: no less than twice `SLACK`."""
+"""Of a certified map's rims, of what is undetermined between them at least, and of what keeps the
+pointer from it, in the picture's units: no less than twice `SLACK`."""
 LABEL, _LETTER = 42, 0.55
-"""Size of the counts' type on phones, in the picture's units, and a character's width against it, on the whole."""
+"""Size of the counts' type on phones, in the picture's units, and a character's width against it,
+on the whole.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class MapPictures:
-    """The whole window, and views of thin regions, as SVG; ``places`` are the samples' positions in the window."""
+    """The whole window, and views of thin regions, as SVG; ``places`` are the samples' positions in
+    the window.
+    """
 
     whole: str
     details: tuple[str, ...]
@@ -66,14 +73,18 @@ def chart(seen: Shapes) -> MapPictures:
     views = zooms(seen, thin)
     marks = [(chr(ord("A") + k), zoom) for k, zoom in enumerate(views)]
     tips = [
-        (letter, seen.view.approximate_position(sliver.at)) for letter, zoom in marks for sliver in zoom.slivers[:1]
+        (letter, seen.view.approximate_position(sliver.at))
+        for letter, zoom in marks
+        for sliver in zoom.slivers[:1]
     ]
     places = tuple(seen.view.approximate_position(c.sample) for c in result.cells)
     return MapPictures(
         whole=_picture(seen, "map", tips, region_labels(seen)),
         details=tuple(_picture(zoom.outline, f"detail-{letter}", (), ()) for letter, zoom in marks),
         places=places,
-        thin_walls=any(not separates and n not in result.continua for n, separates, _ in seen.walls()),
+        thin_walls=any(
+            not separates and n not in result.continua for n, separates, _ in seen.walls()
+        ),
         hidden=len(thin) - sum(len(zoom.slivers) for zoom in views),
     )
 
@@ -93,7 +104,9 @@ def pattern_defs(fills: Sequence[Fill]) -> str:
 
 
 def hatch_id(hatch: str) -> str:
-    """The pattern's name: matplotlib's hatch character, which is repeated for density, as a number, and how often."""
+    """The pattern's name: matplotlib's hatch character, which is repeated for density, as a number,
+    and how often.
+    """
     return f"hatch-{ord(hatch[0]):x}-{len(hatch)}"
 
 
@@ -153,13 +166,22 @@ def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[La
 def _window_text(seen: Shapes) -> str:
     axes = seen.result.slice.axes
     ends = (seen.view.x, seen.view.y)
-    spans = (f"{a.name} from {_shortened(e[0])} to {_shortened(e[1])}" for a, e in zip(axes, ends, strict=True))
+    spans = (
+        f"{a.name} from {_shortened(e[0])} to {_shortened(e[1])}"
+        for a, e in zip(axes, ends, strict=True)
+    )
     return "Region map over " + " and ".join(spans)
 
 
 def _shortened(value: Fraction) -> str:
     text = shortest_text(value)
-    return text if len(text) <= 12 else f"{float(value):.6g}" if abs(value) < 10**300 else text[:12] + "…"
+    return (
+        text
+        if len(text) <= 12
+        else f"{float(value):.6g}"
+        if abs(value) < 10**300
+        else text[:12] + "…"
+    )
 
 
 def _closed(polygon: Floats) -> str:
@@ -211,10 +233,11 @@ def wall_lines(seen: Shapes, simpler: bool = True) -> dict[tuple[bool, int], str
 
 
 def _rimmed_areas(seen: Shapes, name: str) -> Iterator[str]:
-    """A certified map's cells: their outlines once, what fills them, their rims, and what can be pointed at.
+    """A certified map's cells: their outlines once, what fills them, their rims, and what can be
+    pointed at.
 
-    Between two cells is what is undetermined, however narrow: it is seen within the rims, which are over all fills, and
-    the last of them, which nobody sees, keeps the pointer from the areas below.
+    Between two cells is what is undetermined, however narrow: it is seen within the rims, which are
+    over all fills, and the last of them, which nobody sees, keeps the pointer from the areas below.
     """
     result = seen.result
     outlines = {n: "".join(map(_closed, p)) for n, p in seen.cells(_RIMS / SIDE)}
@@ -246,12 +269,24 @@ def counts_text(part: Cell | Region, model: Model) -> str:
 
 
 def region_labels(seen: Shapes) -> list[Label]:
-    """For each region into which its count can be written, even in the larger type of phones, a point deep inside."""
+    """For each region into which its count can be written, even in the larger type of phones, a
+    point deep inside.
+    """
     pixels = 60
     image = seen.raster(pixels, pixels)
     found = []
     for number, region in enumerate(seen.result.regions):
-        half = ceil(len(count_text(region, seen.result.slice.count)) * LABEL * _LETTER / 2 * pixels / SIDE) + 1
+        half = (
+            ceil(
+                len(count_text(region, seen.result.slice.count))
+                * LABEL
+                * _LETTER
+                / 2
+                * pixels
+                / SIDE
+            )
+            + 1
+        )
         padded = np.pad(image == number, ((2, 2), (half, half)))
         room = np.asarray(sliding_window_view(padded, (5, 2 * half + 1)).all(axis=(2, 3)))
         depth, column, row = innermost(room)

@@ -1,7 +1,7 @@
 """The equilibria at a cell's sample point, from the boxes that the result stores around them.
 
-Guarantee: every text is within one unit of its last digit of the number it stands for, if the box holds the
-equilibrium, as `ptmcad.verify` checks. Numbers that are not texts are for drawing only.
+Guarantee: every text is within one unit of its last digit of the number it stands for, if the box
+holds the equilibrium, as `ptmcad.verify` checks. Numbers that are not texts are for drawing only.
 """
 
 from __future__ import annotations
@@ -32,7 +32,9 @@ from ptmcad.text.expressions import values_at
 from ptmcad.text.numerals import shortest_text, text_of
 
 MAX_DRAWN = 10**100
-"""Of parameters and coefficients that can be drawn: their products stay far within the range of floating point."""
+"""Of parameters and coefficients that can be drawn: their products stay far within the range of
+floating point.
+"""
 
 _MAX_TURNED = 1000
 """Radians in a stored angle, which is within one turn or a few."""
@@ -44,12 +46,14 @@ Value = TypeVar("Value")
 
 
 def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
-    """All that the page shows and draws for a cell's sample: parameters, loads, potential and equilibria, as JSON data.
+    """All that the page shows and draws for a cell's sample: parameters, loads, potential and
+    equilibria, as JSON data.
 
-    Parameters are those besides the axes, which the sample has.
-    Moments are those on the unknowns, angles first, whose work is not in the potential; none where all are zero.
+    Parameters are those besides the axes, which the sample has. Moments are those on the unknowns,
+    angles first, whose work is not in the potential; none where all are zero.
 
-    Where springs have free lengths, whose energy is no polynomial, the potential's terms are left out.
+    Where springs have free lengths, whose energy is no polynomial, the potential's terms are left
+    out.
 
     Raises
     ------
@@ -61,9 +65,12 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     except PoleError as error:
         raise ConfigError(f"a parameter has no value at a sample: {error}") from error
     model = result.slice.model
-    # a certified map knows angles by themselves, and its potential may have roots, of lengths alone too
+    # a certified map knows angles by themselves, and its potential may have roots, of lengths alone
+    # too
     polynomial = result.cover is None and result.system.unknowns == coordinates(model)
-    potential = potential_at(result.system, values) if polynomial and result.system.potential else None
+    potential = (
+        potential_at(result.system, values) if polynomial and result.system.potential else None
+    )
     drawn = (
         (polynomial or result.system.unknowns == model.sorted_unknowns)
         and all(name in values for name in model.without_free_lengths)
@@ -73,11 +80,15 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | values
     acting = (system.shown.loads, system.moments[: system.criterion.order])
     loads, moments = evaluated(acting if drawn else ((), ()), _Within(system, known))
-    others = {n: v for n, v in distinct_parameters(values, model).items() if n not in cell.sample.names}
+    others = {
+        n: v for n, v in distinct_parameters(values, model).items() if n not in cell.sample.names
+    }
     return {
         "parameters": [[n, both(v)] for n, v in others.items()],
         "loads": [[float(component[0]) for component in force] for force in loads],
-        "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()] if drawn else [],
+        "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()]
+        if drawn
+        else [],
         "moments": [float(moment[0]) for moment in moments if any(map(any, moments))],
         "equilibria": _solutions(model, cell, known, potential, polynomial) if drawn else [],
     }
@@ -85,12 +96,17 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
 
 def coordinates(model: Model) -> tuple[str, ...]:
     """The unknowns of a result's equations: cosine and sine of each angle, then those on the line."""
-    return (*(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin")), *model.reals)
+    return (
+        *(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin")),
+        *model.reals,
+    )
 
 
 def distinct_parameters(values: Mapping[str, Value], model: Model) -> dict[str, Value]:
     """The parameters worth telling: one k when all springs have it."""
-    return merged({name: value for name, value in values.items() if name not in model.shorthands}, model)
+    return merged(
+        {name: value for name, value in values.items() if name not in model.shorthands}, model
+    )
 
 
 def _plain(value: Fraction) -> str:
@@ -110,15 +126,27 @@ def both(value: Fraction) -> str:
 
 
 def _solutions(
-    model: Model, cell: Cell, values: Mapping[str, Fraction], potential: Potential | None, polynomial: bool
+    model: Model,
+    cell: Cell,
+    values: Mapping[str, Fraction],
+    potential: Potential | None,
+    polynomial: bool,
 ) -> list[dict[str, Any]]:
-    """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last place."""
+    """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last
+    place.
+    """
     system = compiled(model)
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
     drawn = system.shown
-    formulas = _Pose(None if polynomial else system.potential(), drawn.points, drawn.stretches, drawn.elastic[1])
+    formulas = _Pose(
+        None if polynomial else system.potential(), drawn.points, drawn.stretches, drawn.elastic[1]
+    )
     poses: list[_Pose] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
-    energies = [pose.energy for pose in poses] if potential is None else [energy(potential, box) for box in boxes]
+    energies = (
+        [pose.energy for pose in poses]
+        if potential is None
+        else [energy(potential, box) for box in boxes]
+    )
     known = [bounds for bounds in energies if bounds is not None]
     energy_place = _place(known)
     turns = 2 * len(model.angles)
@@ -159,7 +187,9 @@ class _Pose(NamedTuple):
 
 def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]:
     """Of each equilibrium the points, and what springs of both sorts do."""
-    places = [coordinate for pose in poses for place in pose.points.values() for coordinate in place]
+    places = [
+        coordinate for pose in poses for place in pose.points.values() for coordinate in place
+    ]
     length_place = _place([*places, *(length for pose in poses for length, _, _ in pose.stretches)])
     force_place = _place(force for pose in poses for _, _, force in pose.stretches)
     moment_place = _place(spring.moment for pose in poses for spring in pose.turned)
@@ -170,7 +200,10 @@ def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]
             for name, (x, y) in pose.points.items()
         }
         turned = [
-            (_angle_text(degrees(spring.cosine, spring.sine)), decimal_text(spring.moment, moment_place))
+            (
+                _angle_text(degrees(spring.cosine, spring.sine)),
+                decimal_text(spring.moment, moment_place),
+            )
             for spring in pose.turned
         ]
         entry: dict[str, Any] = {
@@ -201,9 +234,15 @@ def _angle_text(angle: Bounds | None) -> str:
 
 
 def _box(solution: Solution, model: Model, polynomial: bool) -> tuple[Bounds, ...]:
-    """Cosines, sines and unknowns on the line, from a box around them, or around the angles, as certified maps have."""
+    """Cosines, sines and unknowns on the line, from a box around them, or around the angles, as
+    certified maps have.
+    """
     angles = len(model.angles)
-    turns, kind = (2 * angles, "cosines, sines and unknowns on the line") if polynomial else (angles, "the unknowns")
+    turns, kind = (
+        (2 * angles, "cosines, sines and unknowns on the line")
+        if polynomial
+        else (angles, "the unknowns")
+    )
     widest = 1 if turns or not polynomial else MAX_DRAWN
     most = [2 if polynomial else _MAX_TURNED] * turns + [MAX_DRAWN] * len(model.reals)
     center, radius = solution.center, solution.radius
@@ -217,7 +256,9 @@ def _box(solution: Solution, model: Model, polynomial: bool) -> tuple[Bounds, ..
 
 @dataclass(frozen=True, slots=True)
 class _Within:
-    """The arithmetic of bounds, at exact parameters and a box of cosines, sines and unknowns on the line."""
+    """The arithmetic of bounds, at exact parameters and a box of cosines, sines and unknowns on the
+    line.
+    """
 
     system: CompiledSystem
     values: Mapping[str, Fraction]

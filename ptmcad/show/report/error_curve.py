@@ -1,7 +1,8 @@
-"""The curve of error against run time, read from a measurement's file and drawn with logarithmic axes.
+"""The curve of error against run time, read from a measurement's file and drawn with logarithmic
+axes.
 
-Guarantee: a file that is not such a measurement is refused with the place of the fault; every point of it is drawn and
-given in the table.
+Guarantee: a file that is not such a measurement is refused with the place of the fault; every point
+of it is drawn and given in the table.
 """
 
 from __future__ import annotations
@@ -23,7 +24,12 @@ FORMAT = "ptmcad-error-time/1"
 MAX_BYTES = 1_000_000
 _MAX_SERIES, _MAX_POINTS = 8, 1000
 _WIDTH, _HEIGHT, _LEFT, _BOTTOM = 600, 360, 110, 100
-_MARKS = ("M-6 0a6 6 0 1 0 12 0a6 6 0 1 0 -12 0", "M-6 -6H6V6H-6Z", "M0 -7L7 6H-7Z", "M0 -8L8 0L0 8L-8 0Z")
+_MARKS = (
+    "M-6 0a6 6 0 1 0 12 0a6 6 0 1 0 -12 0",
+    "M-6 -6H6V6H-6Z",
+    "M0 -7L7 6H-7Z",
+    "M0 -8L8 0L0 8L-8 0Z",
+)
 
 
 T = TypeVar("T")
@@ -31,7 +37,9 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class MeasuredSeries:
-    """Measurements of one method: pairs (seconds, error), both positive, in the order in which they are joined."""
+    """Measurements of one method: pairs (seconds, error), both positive, in the order in which they
+    are joined.
+    """
 
     name: str
     points: tuple[tuple[float, float], ...]
@@ -46,14 +54,20 @@ class ErrorCurve:
 
 
 def read_error_curve(path: Path) -> ErrorCurve:
-    """Read a measurement: ``{"format": FORMAT, "error": text, "series": [{"name": text, "points": [[s, e], ...]}]}``.
+    """Read a measurement: ``{"format": FORMAT, "error": text, "series": [{"name": text, "points":
+    [[s, e], ...]}]}``.
 
     Raises
     ------
     ConfigError
         When the file is missing or is no such measurement.
     """
-    return read_as(path, MAX_BYTES, FORMAT, lambda text: _CURVE.read(opened(text, FORMAT, MAX_BYTES, "ptmcad bench")))
+    return read_as(
+        path,
+        MAX_BYTES,
+        FORMAT,
+        lambda text: _CURVE.read(opened(text, FORMAT, MAX_BYTES, "ptmcad bench")),
+    )
 
 
 def _positive(node: Node) -> float:
@@ -74,14 +88,20 @@ def _some(codec: Codec[T], most: int) -> Codec[tuple[T, ...]]:
     return Codec(list, read)
 
 
-_SERIES = record_of(MeasuredSeries, name=line(60), points=_some(listed(Codec[float](float, _positive), 2), _MAX_POINTS))
+_SERIES = record_of(
+    MeasuredSeries,
+    name=line(60),
+    points=_some(listed(Codec[float](float, _positive), 2), _MAX_POINTS),
+)
 _CURVE = record_of(ErrorCurve, error=line(200), series=_some(_SERIES, _MAX_SERIES))
 
 
 def error_section(curve: ErrorCurve) -> str:
     """The section: picture, legend and table."""
     rows = ((escape(s.name), f"{x:.4g}", f"{y:.3g}") for s in curve.series for x, y in s.points)
-    legend = "".join(f"<li>{_sample(k)}<span>{escape(s.name)}</span></li>" for k, s in enumerate(curve.series))
+    legend = "".join(
+        f"<li>{_sample(k)}<span>{escape(s.name)}</span></li>" for k, s in enumerate(curve.series)
+    )
     return (
         '<section aria-labelledby="h-errors"><h2 id="h-errors">Error against time</h2>'
         f'<p>{escape(curve.error)}</p>{"".join(_picture(curve))}<ul class="legend">{legend}</ul>'

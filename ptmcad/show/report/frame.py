@@ -1,7 +1,8 @@
 """The frame of a map in SVG: its size, ticks, numbers and the names of the axes.
 
-Guarantee: a tick is exactly where its number says, up to the picture's own rounding to a tenth of a unit. Numbers and
-names have room beside each other also in the larger type of phones, in a font that is no wider than DejaVu Sans.
+Guarantee: a tick is exactly where its number says, up to the picture's own rounding to a tenth of a
+unit. Numbers and names have room beside each other also in the larger type of phones, in a font
+that is no wider than DejaVu Sans.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ SIDE, RIM = 600, 24
 _LEFT, _BOTTOM = 110, 100
 """The least room for the axes' numbers and names."""
 _NUMBER, _NAME, _DETAIL = 29, 31, 36
-"""The sizes of their type on phones, as page.css has them: in the map, and of both in a view of thin regions."""
+"""The sizes of their type on phones, as page.css has them: in the map, and of both in a view of
+thin regions.
+"""
 _WIDTHS = {".": 0.32, "−": 0.84}
 """Of characters against the type's size; digits are 0.64 wide."""
 _MAX_TICKS = 6
@@ -31,7 +34,9 @@ _MAX_NAME = 24
 
 @dataclass(frozen=True, slots=True)
 class Margins:
-    """What is left around the window for numbers and names, and the size of the names' type on phones."""
+    """What is left around the window for numbers and names, and the size of the names' type on
+    phones.
+    """
 
     left: float
     right: float
@@ -50,11 +55,15 @@ class Margins:
 
 
 def room(seen: Shapes, detail: bool) -> Margins:
-    """The room that the numbers of a view need: of the whole window, or of thin regions, where the type is larger."""
+    """The room that the numbers of a view need: of the whole window, or of thin regions, where the
+    type is larger.
+    """
     number, name = (_DETAIL, _DETAIL) if detail else (_NUMBER, _NAME)
     across, up = (ticks(interval, scale_of(*interval)) for interval in (seen.view.x, seen.view.y))
     beside = max((_width(text) for text, _ in up), default=0) * number
-    beyond = max(((float(at) - 1) * SIDE + _width(text) * number / 2 for text, at in across), default=0)
+    beyond = max(
+        ((float(at) - 1) * SIDE + _width(text) * number / 2 for text, at in across), default=0
+    )
     return Margins(
         left=ceil(max(_LEFT, 14 + beside + 6 + 1.3 * name)),
         right=ceil(max(RIM, beyond + 2)),
@@ -69,7 +78,9 @@ def _width(text: str) -> float:
 
 
 def frame(seen: Shapes, room: Margins) -> Iterator[str]:
-    """The frame with ticks, numbers and names, as elements of a group whose origin is its upper left corner."""
+    """The frame with ticks, numbers and names, as elements of a group whose origin is its upper
+    left corner.
+    """
     yield f'<rect class="frame" width="{SIDE}" height="{SIDE}"/>'
     slice = seen.result.slice
     for number, interval in enumerate((seen.view.x, seen.view.y)):
@@ -94,12 +105,16 @@ def frame(seen: Shapes, room: Margins) -> Iterator[str]:
 
 
 def ticks(interval: Interval, scale: Scale) -> list[tuple[str, Fraction]]:
-    """At most `_MAX_TICKS` + 1 round numbers of a scale, as text, and where they are between the ends (0 to 1)."""
+    """At most `_MAX_TICKS` + 1 round numbers of a scale, as text, and where they are between the
+    ends (0 to 1).
+    """
     low, high = interval
     power = Fraction(10) ** scale.exponent
     shown = ((low - scale.offset) / power, (high - scale.offset) / power)
     step = Fraction(10) ** magnitude((shown[1] - shown[0]) / _MAX_TICKS)
-    factor = next(f for f in (1, 2, Fraction(5, 2), 5, 10) if (shown[1] - shown[0]) / (step * f) <= _MAX_TICKS)
+    factor = next(
+        f for f in (1, 2, Fraction(5, 2), 5, 10) if (shown[1] - shown[0]) / (step * f) <= _MAX_TICKS
+    )
     step *= factor
     first, last = -(-shown[0] // step), shown[1] // step
     values = [k * step for k in range(int(first), int(last) + 1)]

@@ -1,4 +1,5 @@
-"""Tables as columns, in which equal entries are written once: what the page gives its script, in fewer characters.
+"""Tables as columns, in which equal entries are written once: what the page gives its script, in
+fewer characters.
 
 Guarantee: theme.js's ``unpacked`` gives the same rows again.
 """
@@ -15,8 +16,9 @@ Row = Mapping[str, Any]
 def packed(rows: Sequence[Row], inner: Sequence[str] = ()) -> dict[str, Any]:
     """Rows with the same names as a mapping of columns.
 
-    A column is ``{"of": entries}``, or ``{"of": distinct, "at": numbers}`` with the number of each row's entry, none at
-    all where the distinct entry is one. One of tables is ``{"many": lengths, "rows": packed}``.
+    A column is ``{"of": entries}``, or ``{"of": distinct, "at": numbers}`` with the number of each
+    row's entry, none at all where the distinct entry is one. One of tables is ``{"many": lengths,
+    "rows": packed}``.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
 """The page: the template filled with the map, its data and the sections.
 
-Guarantee: the policy in its head allows nothing but the page's own style sheet and script, named by their hashes; the
-data cannot end the element it stands in. The same result gives the same bytes, timings apart.
+Guarantee: the policy in its head allows nothing but the page's own style sheet and script, named by
+their hashes; the data cannot end the element it stands in. The same result gives the same bytes,
+timings apart.
 """
 
 from __future__ import annotations
@@ -40,8 +41,18 @@ from ptmcad.show.units import declared_units
 from ptmcad.version import __version__
 
 _POINT_DIGITS = 12
-"""Of a sample's floating-point numbers: even in the thinnest cells the solutions are found from there."""
-SCRIPTS = ("theme.js", "mechanism.js", "landscape.js", "cells.js", "follow.js", "live.js", "embed.js")
+"""Of a sample's floating-point numbers: even in the thinnest cells the solutions are found from
+there.
+"""
+SCRIPTS = (
+    "theme.js",
+    "mechanism.js",
+    "landscape.js",
+    "cells.js",
+    "follow.js",
+    "live.js",
+    "embed.js",
+)
 """In the order in which they run."""
 
 
@@ -90,14 +101,20 @@ def _outline(result: RegionMap) -> Shapes:
     try:
         return shapes(result)
     except (IndexError, ValueError, ArithmeticError) as error:
-        raise ConfigError(f"the map contradicts itself ({error}); check it with ptmcad verify") from error
+        raise ConfigError(
+            f"the map contradicts itself ({error}); check it with ptmcad verify"
+        ) from error
 
 
 def _curves(result: RegionMap) -> str:
     """The section of the boundary curves; a certified map knows only rectangles that hold them."""
     if result.cover is not None:
         return ""
-    return '<section aria-labelledby="h-curves"><h2 id="h-curves">Boundary curves</h2>' + curves(result) + "</section>"
+    return (
+        '<section aria-labelledby="h-curves"><h2 id="h-curves">Boundary curves</h2>'
+        + curves(result)
+        + "</section>"
+    )
 
 
 def _shown(model: Model) -> str:
@@ -149,7 +166,9 @@ def harmless(data: object) -> str:
 
 
 def drawing_of(model: Model) -> dict[str, Any]:
-    """What the script draws of a mechanism, by the numbers of its points; of a system only the unknowns' names."""
+    """What the script draws of a mechanism, by the numbers of its points; of a system only the
+    unknowns' names.
+    """
     unknowns = {"unknowns": [symbol(name) for name in model.sorted_unknowns]}
     mechanism = model.drawable
     if mechanism is None:
@@ -162,7 +181,10 @@ def drawing_of(model: Model) -> dict[str, Any]:
 
     # a mechanism without torsion springs says nothing of them
     torsion = [
-        {"name": with_symbols(spring.name), "at": [number[name] for name in joint if name] if joint else []}
+        {
+            "name": with_symbols(spring.name),
+            "at": [number[name] for name in joint if name] if joint else [],
+        }
         for spring, joint in torsion_springs(mechanism)
     ]
     return unknowns | {
@@ -179,7 +201,9 @@ def drawing_of(model: Model) -> dict[str, Any]:
 
 
 def _work(model: Model) -> str:
-    """What the energies of poses leave out, where moments work; empty where there are none, or no energies."""
+    """What the energies of poses leave out, where moments work; empty where there are none, or no
+    energies.
+    """
     steady = () if model.drawable is None else split_moments(model.drawable).steady
     return moments_work(model, [moment.unknown for moment in steady])
 
@@ -189,7 +213,8 @@ def _declared(slice: Slice) -> dict[str, Any]:
     if slice.model.drawable is None:
         return {}
     unknowns = [
-        "".join(slice.units.get(part, "") for part in slice.model.unit_of(name)) for name in slice.model.sorted_unknowns
+        "".join(slice.units.get(part, "") for part in slice.model.unit_of(name))
+        for name in slice.model.sorted_unknowns
     ]
     return {**declared_units(slice.model, slice.units), "unknowns": unknowns}
 

@@ -1,7 +1,8 @@
 """Lines as the data of SVG paths, in few characters: whole steps of a grid, from corner to corner.
 
-Guarantee: every corner is within half a step of the grid of its place in each direction, and corners at one place are
-drawn alike: browsers add the steps up in single precision, in which whole numbers of this size are exact.
+Guarantee: every corner is within half a step of the grid of its place in each direction, and
+corners at one place are drawn alike: browsers add the steps up in single precision, in which whole
+numbers of this size are exact.
 """
 
 from __future__ import annotations
@@ -13,13 +14,16 @@ from ptmcad.show.render.simplification import distinct
 from ptmcad.show.render.view import Floats
 
 GRID = 20
-"""Steps of the grid in one of the picture's units; what is drawn by such data is scaled down by as much."""
+"""Steps of the grid in one of the picture's units; what is drawn by such data is scaled down by as
+much.
+"""
 
 
 def path_data(line: Floats, *, closed: bool = False) -> str:
     """The data of a polyline, or of a polygon; corners within a side along an axis are left out.
 
-    A line that is shorter than a step is drawn one step long: a browser leaves out one without length.
+    A line that is shorter than a step is drawn one step long: a browser leaves out one without
+    length.
 
     >>> path_data(np.array([[0, 10], [2.5, 10], [3, 10], [3, 9.75], [2, 9.1], [1.5, 8.5]]))
     'M0 200h60v-5l-20-13-10-12'
@@ -30,7 +34,9 @@ def path_data(line: Floats, *, closed: bool = False) -> str:
     x, y = corners[0].tolist()
     parts, last = [f"M{x}{_after(y)}"], "M"
     for dx, dy in np.diff(corners, axis=0).tolist():
-        command, numbers = ("v", f"{dy}") if not dx else ("h", f"{dx}") if not dy else ("l", f"{dx}{_after(dy)}")
+        command, numbers = (
+            ("v", f"{dy}") if not dx else ("h", f"{dx}") if not dy else ("l", f"{dx}{_after(dy)}")
+        )
         parts.append(command if command != last else "" if numbers[0] == "-" else " ")
         parts.append(numbers)
         last = command
@@ -43,7 +49,9 @@ def _after(steps: int) -> str:
 
 
 def _needed(corners: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Without corners that are where the one before them is, or on the way along an axis to the next one."""
+    """Without corners that are where the one before them is, or on the way along an axis to the
+    next one.
+    """
     corners = distinct(corners)
     if len(corners) < 3:
         return corners

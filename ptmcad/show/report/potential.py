@@ -1,4 +1,5 @@
-"""The stored potential at one point: a polynomial in the cosines and sines of the angles with rational coefficients.
+"""The stored potential at one point: a polynomial in the cosines and sines of the angles with
+rational coefficients.
 
 Guarantee: the coefficients are exact. A text that is no polynomial in the known names is refused.
 """
@@ -58,7 +59,9 @@ def _number(text: str) -> Fraction:
     try:
         return fraction_of(text)
     except ValueError as error:
-        raise ConfigError(f"{text[:40]!r} is neither a number nor a known name", key="system.potential") from error
+        raise ConfigError(
+            f"{text[:40]!r} is neither a number nor a known name", key="system.potential"
+        ) from error
 
 
 def energy(potential: Potential, unknowns: tuple[Bounds, ...]) -> Bounds:

@@ -1,7 +1,8 @@
 """The problem record and the command lines that pose a result's question again.
 
-Guarantee: a record or command line that is returned, read by `ptmcad.question.config`, gives the result's slice,
-parameter for parameter: that is tried before it is returned. What cannot be posed again is None.
+Guarantee: a record or command line that is returned, read by `ptmcad.question.config`, gives the
+result's slice, parameter for parameter: that is tried before it is returned. What cannot be posed
+again is None.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ from ptmcad.text.yamltree import read_text
 
 
 def reproduction(slice: Slice) -> tuple[str | None, str | None]:
-    """Ways to the same slice: a record in YAML, and a command line that needs none (it cannot set the title)."""
+    """Ways to the same slice: a record in YAML, and a command line that needs none (it cannot set
+    the title).
+    """
     # what the user wrote, if that gives the same functions; else the functions themselves
     for values in (_given(slice, slice.text), _given(slice, {})):
         record = _yaml(_mapping(slice, values))
@@ -35,7 +38,10 @@ def _given(slice: Slice, written: Mapping[str, str]) -> dict[str, str]:
     """The values that a record has to give: not those of the axes, nor the defaults."""
     names = slice.axis_names
     mechanism = slice.model
-    always = (mechanism.first(Kind.LENGTH), mechanism.first(Kind.STIFFNESS))  # what the reader compares others with
+    always = (
+        mechanism.first(Kind.LENGTH),
+        mechanism.first(Kind.STIFFNESS),
+    )  # what the reader compares others with
     # shorthands are no parameters where the springs do not have them, but other texts may name them
     alone = {name: text for name, text in written.items() if name not in slice.parameters}
     values = {
@@ -45,7 +51,12 @@ def _given(slice: Slice, written: Mapping[str, str]) -> dict[str, str]:
     for name, expression in slice.parameters.items():
         text = written.get(name, expression.to_text(names))
         known = mechanism.parameters.get(name)
-        if known is not None and name not in names and known.alias_of in alone and known.kind is Kind.STIFFNESS:
+        if (
+            known is not None
+            and name not in names
+            and known.alias_of in alone
+            and known.kind is Kind.STIFFNESS
+        ):
             values[name] = text  # else the shorthand would be that spring's too
             continue
         if name in names or (known is not None and text == known.default and name not in always):
@@ -57,7 +68,9 @@ def _given(slice: Slice, written: Mapping[str, str]) -> dict[str, str]:
         if mechanism.kind(shorthand) is Kind.FREE_LENGTH and shorthand not in (*names, *alone):
             free = {values.get(name, "") for name in own}
             if len(free) == 1 and (text := free.pop()) and shorthand not in text:
-                values = {name: value for name, value in values.items() if name not in own} | {shorthand: text}
+                values = {name: value for name, value in values.items() if name not in own} | {
+                    shorthand: text
+                }
     return values
 
 
@@ -134,7 +147,12 @@ def _value(value: object) -> str:
 
 def _quoted(value: object) -> str:
     text = str(value)
-    plain = text.isascii() and text.replace("_", "a").isalnum() and text[0].isalpha() and text.lower() not in _WORDS
+    plain = (
+        text.isascii()
+        and text.replace("_", "a").isalnum()
+        and text[0].isalpha()
+        and text.lower() not in _WORDS
+    )
     return text if plain else json.dumps(text, ensure_ascii=False)
 
 

@@ -1,6 +1,8 @@
-"""The page's sections below the map: the question, regions, what was left out, times, how to do it again.
+"""The page's sections below the map: the question, regions, what was left out, times, how to do it
+again.
 
-Guarantee: whatever comes from the result goes through `html.escape`, also what the reader of results has let pass.
+Guarantee: whatever comes from the result goes through `html.escape`, also what the reader of
+results has let pass.
 """
 
 from __future__ import annotations
@@ -33,7 +35,9 @@ Row = Iterable[str]
 
 
 def table(head: Row, rows: Iterable[Row], label: str, stacked: bool = False) -> str:
-    """A table of markup in a box that scrolls by itself; a stacked one has its entries below each other on phones."""
+    """A table of markup in a box that scrolls by itself; a stacked one has its entries below each
+    other on phones.
+    """
     names = tuple(head)
     kind = ' class="stacked"' if stacked else ""
     above = "".join(f'<th scope="col">{name}</th>' for name in names)
@@ -59,7 +63,9 @@ def copied(text: str, label: str) -> str:
 
 def swatch(fill: Fill) -> str:
     """A small square of a fill."""
-    hatch = f'<rect width="30" height="18" fill="url(#{hatch_id(fill.hatch)})"/>' if fill.hatch else ""
+    hatch = (
+        f'<rect width="30" height="18" fill="url(#{hatch_id(fill.hatch)})"/>' if fill.hatch else ""
+    )
     return (
         f'<svg class="swatch" viewBox="0 0 30 18" aria-hidden="true"><rect width="30" height="18" fill="{fill.face}"/>'
         f"{hatch}</svg>"
@@ -130,8 +136,13 @@ def legend(result: RegionMap, chart: MapPictures) -> str:
     for entry in entries(result, chart.thin_walls, samples=False, hidden=chart.hidden):
         match entry.mark:
             case Fill() as fill:
-                head, rest = entry.lines[0], " ".join(entry.lines[1:])  # a count, and what is said of its regions
-                parts.append(f"<li>{swatch(fill)}<span>{escape(f'{head}: {rest}' if rest else head)}</span></li>")
+                head, rest = (
+                    entry.lines[0],
+                    " ".join(entry.lines[1:]),
+                )  # a count, and what is said of its regions
+                parts.append(
+                    f"<li>{swatch(fill)}<span>{escape(f'{head}: {rest}' if rest else head)}</span></li>"
+                )
             case float(width):
                 parts.append(_line_entry('"wall strong"' if width > 1 else '"wall"', entry))
             case _ if callable(entry.mark):  # of curves on which solutions are not isolated
@@ -158,17 +169,22 @@ def regions(result: RegionMap) -> str:
         if not known:
             middle, bounds = NOT_COMPUTED, ""
         elif result.cover is not None:
-            bounds = f"proved: {decimal(low, up=False, digits=7)} to {decimal(high, up=True, digits=7)}"
+            bounds = (
+                f"proved: {decimal(low, up=False, digits=7)} to {decimal(high, up=True, digits=7)}"
+            )
         elif low == high:
             bounds = f"exactly {text_of(low)}"
         else:
             width = certified_digits(exactly(high - low), 1)
             bounds = f"bounds {width} apart"
-        sample = ", ".join(f"{escape(symbol(n))} = {escape(both(region.sample[n]))}" for n in region.sample.names)
+        sample = ", ".join(
+            f"{escape(symbol(n))} = {escape(both(region.sample[n]))}" for n in region.sample.names
+        )
         rows.append(
             (
                 f"{swatch(fill_of(region, result.slice.count))} {number}",
-                escape(counts_text(region, result.slice.model)) + (f" ({escape(index)})" if index else ""),
+                escape(counts_text(region, result.slice.model))
+                + (f" ({escape(index)})" if index else ""),
                 f"{middle}<br><small>{bounds}</small>" if bounds else middle,
                 sample,
                 f'<span class="chips">{buttons}</span>',
@@ -180,7 +196,13 @@ def regions(result: RegionMap) -> str:
     note = "" if all(r.index is None for r in result.regions) else f"<p>In brackets: {words}.</p>"
     return (
         table(
-            ("region", "count", escape(with_unit("area", area_unit(result.slice))), "sample", "cells"),
+            (
+                "region",
+                "count",
+                escape(with_unit("area", area_unit(result.slice))),
+                "sample",
+                "cells",
+            ),
             rows,
             "Regions",
             stacked=True,
@@ -196,7 +218,11 @@ def left_out(result: RegionMap) -> str:
     saved = [s for s in steps if not s.done]
 
     def listed(steps: Iterable[tuple[str, str]]) -> str:
-        return "<ul>" + "".join(f"<li>{escape(a)} <small>({escape(b)})</small></li>" for a, b in steps) + "</ul>"
+        return (
+            "<ul>"
+            + "".join(f"<li>{escape(a)} <small>({escape(b)})</small></li>" for a, b in steps)
+            + "</ul>"
+        )
 
     parts = []
     if saved:
@@ -250,5 +276,7 @@ def again(result: RegionMap) -> Iterator[str]:
     sample = result.regions[0].sample if result.regions else None
     first, second = result.slice.axes
     at = (sample[0], sample[1]) if sample else (first.middle(), second.middle())
-    point = ",".join(f"{axis.name}={text_of(v)}" for axis, v in zip(result.slice.axes, at, strict=True))
+    point = ",".join(
+        f"{axis.name}={text_of(v)}" for axis, v in zip(result.slice.axes, at, strict=True)
+    )
     yield copied(f"ptmcad locate {name}.json --at {point}", "the question")

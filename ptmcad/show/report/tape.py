@@ -1,7 +1,8 @@
-"""A model's equations as data for the page's script: one list of instructions, from which it reads all it draws.
+"""A model's equations as data for the page's script: one list of instructions, from which it reads
+all it draws.
 
-Guarantee: the instructions are those of the compiled system's formulas, with constants rounded to doubles. No model is
-known by name, and nothing is computed here.
+Guarantee: the instructions are those of the compiled system's formulas, with constants rounded to
+doubles. No model is known by name, and nothing is computed here.
 """
 
 from __future__ import annotations
@@ -23,8 +24,9 @@ MAX_OPERATIONS = 2000
 def tape(result: RegionMap) -> dict[str, Any] | None:
     """What the script needs to follow solutions over the map; None where nothing can be followed.
 
-    That is where no cell has solutions, a parameter has no value or a number is too large for doubles; and with free
-    lengths in closed loops, whose roots are in no equation of the description.
+    That is where no cell has solutions, a parameter has no value or a number is too large for
+    doubles; and with free lengths in closed loops, whose roots are in no equation of the
+    description.
     """
     slice = result.slice
     model, system = slice.model, compiled(slice.model)

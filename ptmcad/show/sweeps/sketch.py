@@ -1,7 +1,7 @@
 """A map as a small drawing: the regions as paths of few characters, for a sheet of many maps.
 
-Guarantee: the same map gives the same text. A point of an outline is within `TOLERANCE` of the window's side, and the
-rounding to the drawing's grid, of the outline that the other pictures have.
+Guarantee: the same map gives the same text. A point of an outline is within `TOLERANCE` of the
+window's side, and the rounding to the drawing's grid, of the outline that the other pictures have.
 """
 
 from __future__ import annotations
@@ -73,7 +73,9 @@ def _data(polygons: list[Floats], tolerance: float) -> str:
     parts = []
     for polygon in polygons:
         half = len(polygon) // 2
-        kept = np.concatenate([simplified_line(part, tolerance) for part in (polygon[:half], polygon[half:])])
+        kept = np.concatenate(
+            [simplified_line(part, tolerance) for part in (polygon[:half], polygon[half:])]
+        )
         placed = distinct(np.rint(from_above(kept, SIDE)).astype(np.int64))
         if len(placed) > 2:
             corners = " ".join(f"{x} {y}" for x, y in placed.tolist())

@@ -1,9 +1,10 @@
 """A sweep as a table: a screen of text, CSV, rows of a data frame.
 
-Guarantee: the CSV is the sweep's canonical form, ordered by member: it is the same text whatever the order in which
-members were computed, the processes or the interruptions. What differs between runs, seconds and attempts, is not in
-it. Numbers are exact, or decimals that bound from outside; cells that begin as a spreadsheet's formula would are
-texts of this program's, but for errors, which are quoted with an apostrophe then.
+Guarantee: the CSV is the sweep's canonical form, ordered by member: it is the same text whatever
+the order in which members were computed, the processes or the interruptions. What differs between
+runs, seconds and attempts, is not in it. Numbers are exact, or decimals that bound from outside;
+cells that begin as a spreadsheet's formula would are texts of this program's, but for errors, which
+are quoted with an apostrophe then.
 """
 
 from __future__ import annotations
@@ -60,13 +61,19 @@ def _cells(sweep: Sweep, member: Member) -> list[str]:
     found = member.summary
     if found is None:
         return [*values, member.state.value, member.error[:60], ""]
-    areas = "; ".join(f"{area.count}: {_rounded(area.area)}" for area in found.areas if area.area[0])
+    areas = "; ".join(
+        f"{area.count}: {_rounded(area.area)}" for area in found.areas if area.area[0]
+    )
     return [*values, str(found.regions), areas, _widest(found.widest)]
 
 
 def _widest(found: Widest | None) -> str:
     """The width, and whether it is attained."""
-    return "" if found is None or found.width is None else f"{_rounded(found.width)}, {found.attainment}"
+    return (
+        ""
+        if found is None or found.width is None
+        else f"{_rounded(found.width)}, {found.attainment}"
+    )
 
 
 def _rounded(bounds: tuple[str, str]) -> str:
@@ -81,7 +88,9 @@ def middle(bounds: tuple[str, str]) -> Fraction:
 def csv_text(sweep: Sweep, members: Members) -> str:
     """All members as CSV, one a line."""
     counts = counts_in(members())
-    return data.csv_text((row(sweep, member, counts) for member in members()), columns(sweep, counts))
+    return data.csv_text(
+        (row(sweep, member, counts) for member in members()), columns(sweep, counts)
+    )
 
 
 def counts_in(members: Iterable[Member]) -> tuple[str, ...]:
@@ -105,9 +114,14 @@ _BY_COUNT = (("regions", ""), ("area", "_low"), ("area", "_high"))
 
 
 def parameter_columns(sweep: Sweep) -> dict[str, str]:
-    """The columns of what is swept: the names, with an underscore where the table has such a column already."""
+    """The columns of what is swept: the names, with an underscore where the table has such a column
+    already.
+    """
     own = {*_FIRST, *_LAST, "seconds", "attempts"}
-    return {name: f"{name}_" if name in own or name.startswith(("area_", "regions_")) else name for name in sweep.names}
+    return {
+        name: f"{name}_" if name in own or name.startswith(("area_", "regions_")) else name
+        for name in sweep.names
+    }
 
 
 def row(sweep: Sweep, member: Member, counts: Iterable[str]) -> Row:
@@ -129,7 +143,13 @@ def row(sweep: Sweep, member: Member, counts: Iterable[str]) -> Row:
     if (widest := found.widest) is not None:
         low, high = widest.width or ("", "")
         at = widest.places[0] if widest.places else ("", "")
-        cells |= {"along": widest.along, "width_low": low, "width_high": high, "at_low": at[0], "at_high": at[1]}
+        cells |= {
+            "along": widest.along,
+            "width_low": low,
+            "width_high": high,
+            "at_low": at[0],
+            "at_high": at[1],
+        }
         cells |= {"proof": widest.proof, "remark": _harmless(widest.remark)}
         cells["attainment"] = "" if widest.width is None else widest.attainment
     return cells
@@ -147,5 +167,7 @@ def frame_rows(sweep: Sweep, members: Members) -> Iterator[Row]:
     exact |= {name for name in columns(sweep, counts) if name.endswith(("_low", "_high"))}
     for member in members():
         cells = row(sweep, member, counts)
-        floats = {name: float(fraction_of(cells[name])) if cells.get(name) else None for name in exact}
+        floats = {
+            name: float(fraction_of(cells[name])) if cells.get(name) else None for name in exact
+        }
         yield {**cells, **floats, "seconds": member.seconds, "attempts": member.attempts}

@@ -43,12 +43,15 @@ def slices_of(given: Sequence[Path]) -> dict[Path, Slice]:
     """
     found = given or sorted(Path("configs").glob("*.yaml"))
     if not found:
-        raise PtmcadError("no configs/*.yaml here: name the problem records, or change to the project's folder")
+        raise PtmcadError(
+            "no configs/*.yaml here: name the problem records, or change to the project's folder"
+        )
     return {path: load(path) for path in found}
 
 
 def timed(options: argparse.Namespace) -> pd.DataFrame:
-    """Whole ``ptmcad classify`` processes, with JSON only and with pictures too, against the machine's floor.
+    """Whole ``ptmcad classify`` processes, with JSON only and with pictures too, against the
+    machine's floor.
 
     Each row of a record without free lengths holds what ``ptmcad check`` foretells.
     """
@@ -64,26 +67,42 @@ def timed(options: argparse.Namespace) -> pd.DataFrame:
         turns(jobs, options)
     rows = summary(jobs, "floor", "seconds")
     costs = {number: cost for number, cost in foretold.items() if cost is not None}
-    rows["foretold s"] = pd.Series({number: round(cost.seconds, 2) for number, cost in costs.items()}, dtype=float)
-    rows["foretold MB"] = pd.Series({number: round(cost.megabytes) for number, cost in costs.items()}, dtype="Int64")
+    rows["foretold s"] = pd.Series(
+        {number: round(cost.seconds, 2) for number, cost in costs.items()}, dtype=float
+    )
+    rows["foretold MB"] = pd.Series(
+        {number: round(cost.megabytes) for number, cost in costs.items()}, dtype="Int64"
+    )
     return rows
 
 
 def ablation(options: argparse.Namespace) -> pd.DataFrame:
-    """Records with each saving switched off, and with all of them; their own engine's savings, and "imports"."""
+    """Records with each saving switched off, and with all of them; their own engine's savings, and
+    "imports".
+    """
     tables = []
     for path, slice in slices_of(options.records).items():
-        savings = [s.name for s in SAVINGS if (s.engine is Engine.CERTIFIED) == slice.has_free_lengths]
+        savings = [
+            s.name for s in SAVINGS if (s.engine is Engine.CERTIFIED) == slice.has_free_lengths
+        ]
         more = LIMITS if slice.has_free_lengths else ()
         tables.append(_without(path, slice.name, slice.name, [*savings, ALL], more, options))
         if not slice.has_free_lengths:
-            turned, subject = ("--slice", ",".join(slice.axis_names[::-1])), f"{slice.name}, axes exchanged"
+            turned, subject = (
+                ("--slice", ",".join(slice.axis_names[::-1])),
+                f"{slice.name}, axes exchanged",
+            )
             tables.append(_without(path, slice.name, subject, ["axis-order"], turned, options))
     return pd.concat(tables)
 
 
 def _without(
-    record: Path, name: str, subject: str, savings: Sequence[str], more: Sequence[str], options: argparse.Namespace
+    record: Path,
+    name: str,
+    subject: str,
+    savings: Sequence[str],
+    more: Sequence[str],
+    options: argparse.Namespace,
 ) -> pd.DataFrame:
     """The rows of one record: all savings made, and each switched off."""
     with tempfile.TemporaryDirectory() as folder:
@@ -98,7 +117,8 @@ def _without(
     results = [RegionMap.from_json(job.said()) if job.usages else None for job in jobs]
     rows = summary(jobs, "all made")
     rows["differs"] = [
-        None if results[0] is None or result is None else difference(results[0], result) for result in results
+        None if results[0] is None or result is None else difference(results[0], result)
+        for result in results
     ]
     return rows
 
@@ -106,29 +126,46 @@ def _without(
 STUDIES: dict[str, tuple[str, Callable[[argparse.Namespace], pd.DataFrame], str]] = {
     "times": ("bench", timed, "time and memory of whole processes, and forecasts"),
     "ablation": ("ablation", ablation, "what each saving is worth"),
-    "scaling": ("scaling", scaling.measure, f"how cost grows, along the families {', '.join(scaling.FAMILIES)}"),
+    "scaling": (
+        "scaling",
+        scaling.measure,
+        f"how cost grows, along the families {', '.join(scaling.FAMILIES)}",
+    ),
 }
 """The name of the file, the measurement, and what it is."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a study; the exit status is 0, 1 where an answer differs, or 2 for bad input."""
-    parser = argparse.ArgumentParser("python -m ptmcad.studies.bench", description="Measure whole processes.")
+    parser = argparse.ArgumentParser(
+        "python -m ptmcad.studies.bench", description="Measure whole processes."
+    )
     chosen = parser.add_subparsers(dest="study", required=True)
     for name, (_, _, words) in STUDIES.items():
         command = chosen.add_parser(name, help=words, description=words)
         what = "families" if name == "scaling" else "records"
-        command.add_argument(what, nargs="*", type=str if what == "families" else Path, help="default: all")
-        command.add_argument("--out", type=Path, help="folder for the JSON file and what goes with it")
+        command.add_argument(
+            what, nargs="*", type=str if what == "families" else Path, help="default: all"
+        )
+        command.add_argument(
+            "--out", type=Path, help="folder for the JSON file and what goes with it"
+        )
         command.add_argument("--rounds", type=int, default=3, help="runs of each job (default 3)")
         command.add_argument("--seed", type=int, default=1, help="of all that is drawn (default 1)")
-        command.add_argument("--timeout", type=float, default=300, help="seconds for a run (default %(default)g)")
+        command.add_argument(
+            "--timeout", type=float, default=300, help="seconds for a run (default %(default)g)"
+        )
     options = parser.parse_args(arguments)
     for name in ("rounds", "timeout"):
         if not getattr(options, name) > 0:
             parser.error(f"--{name} must be positive")
     name, measure, _ = STUDIES[options.study]
-    found = {"format": f"ptmcad-{name}/2", **made_with(), "seed": options.seed, "rounds": options.rounds}
+    found = {
+        "format": f"ptmcad-{name}/2",
+        **made_with(),
+        "seed": options.seed,
+        "rounds": options.rounds,
+    }
     try:
         if options.out is not None:
             check_writable(options.out, (f"{name}.json",))

@@ -1,14 +1,16 @@
-"""The error of a drawn map, defined once: share of the window that is wrong, regions missed, distance of the boundary.
+"""The error of a drawn map, defined once: share of the window that is wrong, regions missed,
+distance of the boundary.
 
-Guarantee: nothing is sampled, and figures are between their bounds as far as doubles go: they are computed in floating
-point, with `ROUNDING` allowed for in areas and no proof that this is enough. They are a benchmark's figures, and no
-count rests on them. docs/error.md has the definitions.
+Guarantee: nothing is sampled, and figures are between their bounds as far as doubles go: they are
+computed in floating point, with `ROUNDING` allowed for in areas and no proof that this is enough.
+They are a benchmark's figures, and no count rests on them. docs/error.md has the definitions.
 
 The truth is an exact map, whose walls between regions are within proved distances of polylines
-(`ptmcad.exact.cad.chains`). A drawn map is made of pieces, rectangles with the count that is shown: pixels of a grid,
-or the parts of a certified map's window that its cover leaves. In a piece the area of a region is the sum of the areas
-below the walls that the region is below, less those below the walls that it is above; below a chord that is the
-integral of a clipped linear function. Coordinates are shares of the window, along the map's base axis and its fibre.
+(`ptmcad.exact.cad.chains`). A drawn map is made of pieces, rectangles with the count that is shown:
+pixels of a grid, or the parts of a certified map's window that its cover leaves. In a piece the
+area of a region is the sum of the areas below the walls that the region is below, less those below
+the walls that it is above; below a chord that is the integral of a clipped linear function.
+Coordinates are shares of the window, along the map's base axis and its fibre.
 """
 
 from __future__ import annotations
@@ -44,8 +46,8 @@ CODE = 100
 Bounds = tuple[float, float]
 Figures = dict[str, Any]
 FIGURES = ("wrong", "undetermined", "wrong_centres", "regions", "missed", "faintest", "distance")
-"""How far a drawn map is from the exact one, for one count, None where there is no such figure; bounds are pairs.
-``docs/bench.schema.json`` says what each is."""
+"""How far a drawn map is from the exact one, for one count, None where there is no such figure;
+bounds are pairs. ``docs/bench.schema.json`` says what each is."""
 DIGITS = 6
 DENSITY = 8
 """Points on the side of a pixel."""
@@ -91,12 +93,15 @@ class Truth(NamedTuple):
         """For each region the area in which walls may be, beside their polylines."""
         found = np.full(len(self.counts), ROUNDING)
         for wall in self.walls:
-            found[[wall.below, wall.above]] += wall.distance * (wall.points[-1, 0] - wall.points[0, 0])
+            found[[wall.below, wall.above]] += wall.distance * (
+                wall.points[-1, 0] - wall.points[0, 0]
+            )
         return found
 
 
 def shown_count(stable: Any, total: Any, count: str) -> Any:
-    """One number for the count that is asked for, from numbers or arrays; for the index both in one.
+    """One number for the count that is asked for, from numbers or arrays; for the index both in
+    one.
 
     >>> shown_count(2, 6, "index")
     602
@@ -127,18 +132,34 @@ def truths(result: RegionMap) -> dict[str, Truth] | None:
     except LimitReached:
         return None
     ends = [0.0, *(float(sum(share)) / 2 for share in critical_shares(result)), 1.0]
-    shown = {count: [shown_count(cell.stable, cell.total, count) for cell in result.cells] for count in COUNTS}
-    return {count: truth(result, of_cells, lines, ends) for count, of_cells in shown.items() if None not in of_cells}
+    shown = {
+        count: [shown_count(cell.stable, cell.total, count) for cell in result.cells]
+        for count in COUNTS
+    }
+    return {
+        count: truth(result, of_cells, lines, ends)
+        for count, of_cells in shown.items()
+        if None not in of_cells
+    }
 
 
-def truth(result: RegionMap, shown: list[int], lines: Sequence[Sequence[WallPolyline]], ends: Sequence[float]) -> Truth:
-    """What separates regions when each cell shows a number; `ends` are those of the stacks' parts of the base."""
+def truth(
+    result: RegionMap,
+    shown: list[int],
+    lines: Sequence[Sequence[WallPolyline]],
+    ends: Sequence[float],
+) -> Truth:
+    """What separates regions when each cell shows a number; `ends` are those of the stacks' parts
+    of the base.
+    """
     region_of = merge(shown, [Link(a.first, a.second, a.component) for a in result.adjacencies])
     counts = dict(zip(region_of, shown, strict=True))
     stacks = []
     for stack, of_stack, (left, right) in zip(result.stacks, lines, pairwise(ends), strict=True):
         here = [*(region_of[n] for n in stack.cells), -1]
-        polylines = [(np.array(line.points, dtype=float), float(line.distance)) for line in of_stack]
+        polylines = [
+            (np.array(line.points, dtype=float), float(line.distance)) for line in of_stack
+        ]
         polylines.append((np.array([[left, 1.0], [right, 1.0]]), 0.0))
         found = (Wall(*line, *sides) for line, sides in zip(polylines, pairwise(here), strict=True))
         stacks.append([wall for wall in found if wall.below != wall.above])
@@ -148,14 +169,25 @@ def truth(result: RegionMap, shown: list[int], lines: Sequence[Sequence[WallPoly
         for part in _between(before, after)
     ]
     walls = list(chain.from_iterable(stacks))
-    return Truth(result.base, region_of, [*counts.values()], walls, np.array(upright, dtype=float).reshape(-1, 3))
+    return Truth(
+        result.base,
+        region_of,
+        [*counts.values()],
+        walls,
+        np.array(upright, dtype=float).reshape(-1, 3),
+    )
 
 
 def _between(left: Sequence[Wall], right: Sequence[Wall]) -> Iterator[tuple[float, float]]:
     """The parts of the fibre over a critical value on whose sides different regions are."""
-    sides = [(walls, [float(wall.points[end, 1]) for wall in walls]) for walls, end in ((left, -1), (right, 0))]
+    sides = [
+        (walls, [float(wall.points[end, 1]) for wall in walls])
+        for walls, end in ((left, -1), (right, 0))
+    ]
     for low, high in pairwise(sorted({0.0, *sides[0][1], *sides[1][1]})):
-        one, other = (walls[int(np.searchsorted(heights, (low + high) / 2))].below for walls, heights in sides)
+        one, other = (
+            walls[int(np.searchsorted(heights, (low + high) / 2))].below for walls, heights in sides
+        )
         if one != other:
             yield low, high
 
@@ -170,8 +202,8 @@ def grid_error(truth: Truth, cells: np.ndarray, drawn: np.ndarray) -> Figures:
 
     Parameters
     ----------
-    cells : the exact map's cells at the centres, of shape (n, n), the first index along the slice's first axis;
-        negative for none.
+    cells : the exact map's cells at the centres, of shape (n, n), the first index along the slice's
+        first axis; negative for none.
     drawn : the counts that are shown, of the same shape; negative where none is shown.
     """
     picture, there = (drawn, cells) if truth.base == 0 else (drawn.T, cells.T)
@@ -187,9 +219,18 @@ def grid_error(truth: Truth, cells: np.ndarray, drawn: np.ndarray) -> Figures:
 
     region = np.where(there >= 0, np.array(truth.region_of)[there], -1)
     right = (region >= 0) & (np.array(truth.counts)[region] == picture)
-    found = _error(truth, pieces, picture[column[run], row[run]], (sides, 1 / n / DENSITY), float((drawn < 0).mean()))
+    found = _error(
+        truth,
+        pieces,
+        picture[column[run], row[run]],
+        (sides, 1 / n / DENSITY),
+        float((drawn < 0).mean()),
+    )
     wrong_centres = int((region >= 0).sum() - right.sum())
-    return found | {"wrong_centres": wrong_centres, "missed": len(truth.counts) - len(np.unique(region[right]))}
+    return found | {
+        "wrong_centres": wrong_centres,
+        "missed": len(truth.counts) - len(np.unique(region[right])),
+    }
 
 
 def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
@@ -213,7 +254,9 @@ def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
         rectangles = rectangles[:, [2, 3, 0, 1]]
     free = (tree.state == FREE) & (parts.owner >= 0)
     pieces = rectangles[free]
-    shown = np.array([counts[cells[n]] if n in cells else -1 for n in parts.owner[free].tolist()], dtype=np.int64)
+    shown = np.array(
+        [counts[cells[n]] if n in cells else -1 for n in parts.owner[free].tolist()], dtype=np.int64
+    )
     areas = np.diff(pieces[:, :2], axis=1) * np.diff(pieces[:, 2:], axis=1)
     loose = 1 - float(areas.sum()) - float(result.undetermined)
     drawn = rectangles[tree.state == COVERED], MAX_PIECE
@@ -222,7 +265,12 @@ def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
 
 
 def _error(
-    truth: Truth, pieces: Floats, shown: np.ndarray, drawn: tuple[Floats, float], least: float, loose: float = 0.0
+    truth: Truth,
+    pieces: Floats,
+    shown: np.ndarray,
+    drawn: tuple[Floats, float],
+    least: float,
+    loose: float = 0.0,
 ) -> Figures:
     """The figures of pieces that show a count.
 
@@ -232,7 +280,10 @@ def _error(
     least : the share that is undetermined.
     loose : the share that no piece holds though something is shown there.
     """
-    right, areas = shown_areas(truth, pieces, shown), shown_areas(truth, np.array([[0.0, 1.0, 0.0, 1.0]]))
+    right, areas = (
+        shown_areas(truth, pieces, shown),
+        shown_areas(truth, np.array([[0.0, 1.0, 0.0, 1.0]])),
+    )
     doubts = truth.doubts()
     wrong, doubt = 1 - float(right.sum()), float(doubts.sum()) / 2 + ROUNDING
     bounds = (float(np.clip(x, least, 1.0)) for x in (wrong - doubt - loose, wrong + doubt))
@@ -250,7 +301,8 @@ def _error(
 
 
 def shown_areas(truth: Truth, pieces: Floats, shown: np.ndarray | None = None) -> Floats:
-    """For each region the area in which pieces show its count, up to `Truth.doubts`; its area in all if none is shown.
+    """For each region the area in which pieces show its count, up to `Truth.doubts`; its area in
+    all if none is shown.
 
     Parameters
     ----------
@@ -274,7 +326,9 @@ def _below(points: Floats, pieces: Floats) -> float:
     chord += first[of]
     left, right = np.maximum(pieces[of, 0], u[chord]), np.minimum(pieces[of, 1], u[chord + 1])
     slope = (v[chord + 1] - v[chord]) / (u[chord + 1] - u[chord])
-    ends = np.sort([v[chord] + (left - u[chord]) * slope, v[chord] + (right - u[chord]) * slope], axis=0)
+    ends = np.sort(
+        [v[chord] + (left - u[chord]) * slope, v[chord] + (right - u[chord]) * slope], axis=0
+    )
     low, high = ends - pieces[of, 2]
     tall = pieces[of, 3] - pieces[of, 2]
     inside = np.clip(ends - pieces[of, 2], 0, tall)
@@ -286,7 +340,8 @@ def _below(points: Floats, pieces: Floats) -> float:
 
 
 def distance(truth: Truth, drawn: Floats, spacing: float) -> Bounds | None:
-    """The Hausdorff distance between the true walls and rectangles that are drawn, in the unit square.
+    """The Hausdorff distance between the true walls and rectangles that are drawn, in the unit
+    square.
 
     Parameters
     ----------
@@ -330,5 +385,7 @@ def _points(segments: Floats, spacing: float, thick: Floats) -> tuple[Floats, Fl
 
 def outward(low: float | Fraction, high: float | Fraction) -> Bounds:
     """Both bounds in six digits, the lower rounded down and the upper rounded up."""
-    first, last = (decimal(Fraction(x), up=up, digits=DIGITS) for x, up in ((low, False), (high, True)))
+    first, last = (
+        decimal(Fraction(x), up=up, digits=DIGITS) for x, up in ((low, False), (high, True))
+    )
     return float(first), float(last)

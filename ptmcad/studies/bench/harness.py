@@ -1,8 +1,9 @@
-"""What all measurements have in common: jobs take turns as whole processes, and their runs become a data frame.
+"""What all measurements have in common: jobs take turns as whole processes, and their runs become a
+data frame.
 
-Guarantee: in each round every job that is due runs once, in an order drawn from the seed, so that a slow minute of the
-machine hits all alike, and that the figures of one round belong together. A job that failed or ran out of time has a
-reason and no figures, and is not tried again.
+Guarantee: in each round every job that is due runs once, in an order drawn from the seed, so that a
+slow minute of the machine hits all alike, and that the figures of one round belong together. A job
+that failed or ran out of time has a reason and no figures, and is not tried again.
 """
 
 from __future__ import annotations
@@ -28,12 +29,29 @@ from ptmcad.studies.bench.error import Truth
 from ptmcad.studies.bench.process import Usage, run
 from ptmcad.studies.tables import installed
 
-PACKAGES = ("ptmcad", "python-flint", "numpy", "click", "PyYAML", "matplotlib", "sympy", "numba", "scipy", "gcad")
+PACKAGES = (
+    "ptmcad",
+    "python-flint",
+    "numpy",
+    "click",
+    "PyYAML",
+    "matplotlib",
+    "sympy",
+    "numba",
+    "scipy",
+    "gcad",
+)
 GRACE_SECONDS = 1.0
 """Seconds that an engine has to save what it has when its time is over."""
 FORMAT = "ptmcad-bench/1"
 Row = dict[str, Any]
-_SHOWN = {"median": "seconds", "minimum": "least", "maximum": "most", "processor": "processor", "peak": "peak MiB"}
+_SHOWN = {
+    "median": "seconds",
+    "minimum": "least",
+    "maximum": "most",
+    "processor": "processor",
+    "peak": "peak MiB",
+}
 """Figures of a job, and how their columns are called."""
 
 
@@ -44,9 +62,11 @@ class Job:
     Attributes
     ----------
     text : its standard input.
-    answer : the file that it writes, text but for NumPy's arrays; None where the answer is on standard output.
+    answer : the file that it writes, text but for NumPy's arrays; None where the answer is on
+        standard output.
     check : what is wrong with a process that is done; empty when nothing is.
-    saves : whether it takes ``--timeout`` and leaves an answer when its time is over, as the certified engine does.
+    saves : whether it takes ``--timeout`` and leaves an answer when its time is over, as the
+        certified engine does.
     reason : why there are no figures; empty while there may be.
     """
 
@@ -66,7 +86,11 @@ class Job:
         limit = ("--timeout", f"{max(timeout - GRACE_SECONDS, 0.1):.2f}") if self.saves else ()
         if self.answer is not None:
             self.answer.unlink(missing_ok=True)
-        usage = run((*self.command, *limit), text=self.text, timeout=max(timeout, 0.01) + GRACE_SECONDS * self.saves)
+        usage = run(
+            (*self.command, *limit),
+            text=self.text,
+            timeout=max(timeout, 0.01) + GRACE_SECONDS * self.saves,
+        )
         if self.answer is None:
             self.reason = usage.fault
         elif not self.answer.exists():
@@ -92,8 +116,9 @@ class Job:
 
 
 class Case(NamedTuple):
-    """What the methods are asked about: a slice with its own file, its map and what errors are measured against where
-    there are such, a folder for answers, and whether settings have to be few and coarse.
+    """What the methods are asked about: a slice with its own file, its map and what errors are
+    measured against where there are such, a folder for answers, and whether settings have to be few
+    and coarse.
     """
 
     slice: Slice
@@ -110,19 +135,48 @@ Asked = dict[str, Any] | str
 
 def classification(record: Path, name: str, folder: Path, *options: str) -> dict[str, Any]:
     """What a job has that writes the map of a record of this name into a folder."""
-    command = (sys.executable, "-m", "ptmcad", "classify", str(record), *options, "--out", str(folder))
+    command = (
+        sys.executable,
+        "-m",
+        "ptmcad",
+        "classify",
+        str(record),
+        *options,
+        "--out",
+        str(folder),
+    )
     return {"command": command, "answer": folder / f"{name}.json"}
 
 
-_KEYS = ("method", "setting", "seconds", "computing", "peak", "reason", "note", "figures", "area_width")
+_KEYS = (
+    "method",
+    "setting",
+    "seconds",
+    "computing",
+    "peak",
+    "reason",
+    "note",
+    "figures",
+    "area_width",
+)
 
 
 def measurement(method: str, setting: str, **more: Any) -> Row:
-    """What is known of one method at one setting; ``docs/bench.schema.json`` says what each key means."""
-    return dict.fromkeys(_KEYS) | {"method": method, "setting": setting, "reason": "", "note": "", **more}
+    """What is known of one method at one setting; ``docs/bench.schema.json`` says what each key
+    means.
+    """
+    return dict.fromkeys(_KEYS) | {
+        "method": method,
+        "setting": setting,
+        "reason": "",
+        "note": "",
+        **more,
+    }
 
 
-def take_turns(jobs: Sequence[Job], rounds: int, order: random.Random, attempt: Callable[[Job], object]) -> None:
+def take_turns(
+    jobs: Sequence[Job], rounds: int, order: random.Random, attempt: Callable[[Job], object]
+) -> None:
     """So many rounds, in each of which every job without a reason is attempted once."""
     for _ in range(rounds):
         due = [job for job in jobs if not job.reason]
@@ -142,7 +196,11 @@ def turns(jobs: Sequence[Job], options: argparse.Namespace) -> None:
 
 def times(seconds: Sequence[float]) -> Row:
     """How many runs, and their median and spread, rounded to 0.1 ms."""
-    spread = {"median": statistics.median(seconds), "minimum": min(seconds), "maximum": max(seconds)}
+    spread = {
+        "median": statistics.median(seconds),
+        "minimum": min(seconds),
+        "maximum": max(seconds),
+    }
     return {"runs": len(seconds)} | {name: round(x, 4) for name, x in spread.items()}
 
 
@@ -151,7 +209,8 @@ def summary(jobs: Sequence[Job], over: str = "", figure: str = "processor_second
 
     Parameters
     ----------
-    over : what the first job is: the column "over ..." has medians of the ratios to it within a round. None when empty.
+    over : what the first job is: the column "over ..." has medians of the ratios to it within a
+        round. None when empty.
     figure : of a `Usage`, of which ratios are taken.
     """
     rows = []
@@ -159,7 +218,9 @@ def summary(jobs: Sequence[Job], over: str = "", figure: str = "processor_second
         row: Row = {"subject": job.subject, "what": job.what, "setting": job.setting}
         if job.usages and not job.reason:
             row |= job.times
-            row["processor"] = round(statistics.median(usage.processor_seconds for usage in job.usages), 4)
+            row["processor"] = round(
+                statistics.median(usage.processor_seconds for usage in job.usages), 4
+            )
             row["peak"] = round(max(usage.peak_mebibytes for usage in job.usages), 4)
             pairs = zip(job.usages, () if jobs[0].reason else jobs[0].usages, strict=False)
             ratios = [getattr(usage, figure) / getattr(first, figure) for usage, first in pairs]
@@ -182,7 +243,11 @@ def made_with() -> dict[str, dict[str, str]]:
         "load before": " ".join(f"{load:.2f}" for load in os.getloadavg()),
     }
     where = shutil.which("qepcad")
-    said = run((where, "-v"), timeout=10).output.strip().splitlines() or ["unknown"] if where else ["not installed"]
+    said = (
+        run((where, "-v"), timeout=10).output.strip().splitlines() or ["unknown"]
+        if where
+        else ["not installed"]
+    )
     versions = {"python": platform.python_version(), **installed(PACKAGES), "qepcad": said[0]}
     return {"machine": machine, "versions": versions}
 

@@ -1,8 +1,8 @@
 """A process that is run once and measured.
 
-Guarantee: the figures are the kernel's for that process and the descendants it waited for. It is started by a small
-process, this file run by itself, because a child's peak is at least the size of the process that starts it: so whoever
-measures may be as large as it likes.
+Guarantee: the figures are the kernel's for that process and the descendants it waited for. It is
+started by a small process, this file run by itself, because a child's peak is at least the size of
+the process that starts it: so whoever measures may be as large as it likes.
 """
 
 from __future__ import annotations
@@ -29,7 +29,8 @@ class Usage:
     processor_seconds : user and system time.
     peak_mebibytes : largest resident set.
     output : what it wrote to standard output.
-    fault : that its time was over, or that it failed, with its last words on standard error; empty when it is done.
+    fault : that its time was over, or that it failed, with its last words on standard error; empty
+        when it is done.
     """
 
     seconds: float
@@ -55,14 +56,18 @@ def run(command: Sequence[str], *, text: str = "", timeout: float = threading.TI
     ('', 'desserts\\n', True)
     """
     with TemporaryDirectory() as name:
-        figures, given, *said = (Path(name, part) for part in ("figures", "input", "output", "errors"))
+        figures, given, *said = (
+            Path(name, part) for part in ("figures", "input", "output", "errors")
+        )
         given.write_text(text, encoding="utf-8")
         starter = [sys.executable, "-I", "-S", __file__, str(figures), str(timeout), *command]
         # files, not pipes: a descendant that outlives the process would keep a pipe open
         with given.open() as stdin, said[0].open("w") as stdout, said[1].open("w") as stderr:
             subprocess.run(starter, stdin=stdin, stdout=stdout, stderr=stderr, check=False)
         output, wrong = (path.read_text(encoding="utf-8", errors="replace") for path in said)
-        measured = json.loads(figures.read_text()) if figures.exists() else ("failed", 0.0, 0.0, 0.0)
+        measured = (
+            json.loads(figures.read_text()) if figures.exists() else ("failed", 0.0, 0.0, 0.0)
+        )
     last = (wrong.strip() or "no message").splitlines()[-1][-300:]
     fault = {"done": "", "late": f"not in {timeout:g} s", "failed": f"failed: {last}"}[measured[0]]
     return Usage(measured[1], measured[2], measured[3], output, fault)

@@ -1,9 +1,10 @@
 """Programs beside ptmcad: msolve and Singular make the critical curve, gcad and QEPCAD cells.
 
-Guarantee: an answer is what a run said that came to the end of its script without an error. It is compared exactly with
-ptmcad's map: curves as sets of irreducible polynomials, and cells by locating each sample of QEPCAD's in the map; gcad
-gives no samples, so only the number of its cells is compared. msolve and Singular are given the system that
-``ptmcad variety --format msolve`` writes; QEPCAD and gcad the finished curves, with the map's base axis first.
+Guarantee: an answer is what a run said that came to the end of its script without an error. It is
+compared exactly with ptmcad's map: curves as sets of irreducible polynomials, and cells by locating
+each sample of QEPCAD's in the map; gcad gives no samples, so only the number of its cells is
+compared. msolve and Singular are given the system that ``ptmcad variety --format msolve`` writes;
+QEPCAD and gcad the finished curves, with the map's base axis first.
 """
 
 from __future__ import annotations
@@ -34,7 +35,9 @@ END = "-- the script was read to its end --"
 QUIT = "Quitting the QEPCAD system"
 TEXTS = texts_beside(__file__, "programs.yaml")
 _ERROR = re.compile(r"^\s*\? .*$|^.*(?:\bError\b|Failure|Reason for|expected!).*$", re.MULTILINE)
-_CELL = re.compile(r"Information about the cell \(\d+,\d+\) -+$(.*?)^-{50,}$", re.MULTILINE | re.DOTALL)
+_CELL = re.compile(
+    r"Information about the cell \(\d+,\d+\) -+$(.*?)^-{50,}$", re.MULTILINE | re.DOTALL
+)
 _TRUE = re.compile(r"^Truth value\s*: T", re.MULTILINE)
 _COORDINATE = re.compile(r"^Coordinate [12] = (-?\d+(?:/\d+)?)$", re.MULTILINE)
 
@@ -43,7 +46,8 @@ _COORDINATE = re.compile(r"^Coordinate [12] = (-?\d+(?:/\d+)?)$", re.MULTILINE)
 
 
 def elimination(slice: Slice, has_map: bool) -> tuple[list[str], list[str]]:
-    """The system from which the unknowns have to be eliminated; the variety's own where that is within reach.
+    """The system from which the unknowns have to be eliminated; the variety's own where that is
+    within reach.
 
     Returns
     -------
@@ -60,7 +64,11 @@ def elimination(slice: Slice, has_map: bool) -> tuple[list[str], list[str]]:
 def for_singular(case: Case) -> Row:
     """Names and polynomials of the system, and what is eliminated."""
     names, polynomials = elimination(case.slice, case.exact is not None)
-    return {"names": ",".join(names), "ideal": ",".join(polynomials), "unknowns": "*".join(names[:-2])}
+    return {
+        "names": ",".join(names),
+        "ideal": ",".join(polynomials),
+        "unknowns": "*".join(names[:-2]),
+    }
 
 
 def by_singular(result: RegionMap, said: str) -> Verdict:
@@ -87,7 +95,8 @@ def by_msolve(result: RegionMap, said: str) -> Verdict:
 
 
 def curves(polynomials: Sequence[str], *, factors: bool = False) -> set[PlanePolynomial]:
-    """The irreducible curves on which all the polynomials in u0 and u1 vanish, or any if they are factors of one.
+    """The irreducible curves on which all the polynomials in u0 and u1 vanish, or any if they are
+    factors of one.
 
     Raises
     ------
@@ -115,7 +124,9 @@ def same_curves(result: RegionMap, found: set[PlanePolynomial]) -> Verdict:
 
 
 def for_gcad(case: Case) -> Row:
-    """The product of the map's curves, the window, and the step that puts the map's base axis first."""
+    """The product of the map's curves, the window, and the step that puts the map's base axis
+    first.
+    """
     assert case.exact is not None
     curves = [c.polynomial.text(("x", "y")) for c in case.exact.components if not c.left_out]
     product = "*".join(f"({curve.replace('^', '**')})" for curve in curves) or "1"
@@ -139,7 +150,8 @@ def for_qepcad(case: Case) -> Row:
 
 
 def by_qepcad(result: RegionMap, said: str) -> Verdict:
-    """Whether each of the map's cells has the sample of an open cell at least, and each sample lies in a cell.
+    """Whether each of the map's cells has the sample of an open cell at least, and each sample lies
+    in a cell.
 
     Raises
     ------
@@ -161,10 +173,16 @@ def by_qepcad(result: RegionMap, said: str) -> Verdict:
 
 SESSIONS: Mapping[str, tuple[Sequence[str], str, Callable[[Case], Row]]] = {
     "singular": (("Singular", "--quiet", "--no-rc"), END, for_singular),
-    "qepcad": (("qepcad", "-noecho", "+N20000000"), QUIT, for_qepcad),  # so many garbage collected cells
+    "qepcad": (
+        ("qepcad", "-noecho", "+N20000000"),
+        QUIT,
+        for_qepcad,
+    ),  # so many garbage collected cells
     "gcad": ((sys.executable, "-"), "}", for_gcad),
 }
-"""Programs that read a script from standard input: the command, what it says at the end, and what is in the script."""
+"""Programs that read a script from standard input: the command, what it says at the end, and what
+is in the script.
+"""
 COMPARED = {"singular": by_singular, "msolve": by_msolve, "qepcad": by_qepcad, "gcad": by_gcad}
 
 
@@ -185,7 +203,9 @@ def start(program: str, case: Case, _: str) -> Asked:
 
 
 def incomplete(end: str, usage: Usage) -> str:
-    """What is wrong with a session, which exits with status 0 after most errors; empty when nothing is."""
+    """What is wrong with a session, which exits with status 0 after most errors; empty when nothing
+    is.
+    """
     wrong = _ERROR.search(usage.output)
     if wrong is not None:
         return " ".join(wrong[0].split())[:100]
@@ -193,7 +213,9 @@ def incomplete(end: str, usage: Usage) -> str:
 
 
 def read(case: Case, job: Job) -> Row:
-    """What an answer without counts is beside the map, with "DIFFERS" where it is another or cannot be read."""
+    """What an answer without counts is beside the map, with "DIFFERS" where it is another or cannot
+    be read.
+    """
     if case.exact is None:
         return {}
     try:

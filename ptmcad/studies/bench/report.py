@@ -1,7 +1,7 @@
 """What a study says: the terminal's table, sentences on grids, points to draw, and the files.
 
-Guarantee: nothing is computed here but ratios of figures of the study. A study's files are written all or none; the
-JSON, which vouches for the others, last.
+Guarantee: nothing is computed here but ratios of figures of the study. A study's files are written
+all or none; the JSON, which vouches for the others, last.
 """
 
 from __future__ import annotations
@@ -29,7 +29,12 @@ SEEN_SHARE = 0.99
 CURVE_FORMAT = "ptmcad-error-time/1"
 """What ``ptmcad report`` reads."""
 _NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "index"}
-_LABELLED = {"certified": "tolerance ", "companion": "N = ", "multistart": "N = ", "qepcad": "where "}
+_LABELLED = {
+    "certified": "tolerance ",
+    "companion": "N = ",
+    "multistart": "N = ",
+    "qepcad": "where ",
+}
 """Methods whose points have their setting beside them in the picture, without these words."""
 
 
@@ -42,7 +47,9 @@ def sentences(study: Row) -> list[str]:
     for count, name in _NAMES.items() if len(grids) else ():
         own = grids["count"] == count
         first, whole = (
-            f"{n} x {n}" if (n := sizes[own & fit].min()) > 0 else f"none up to {sizes.max()} x {sizes.max()}"
+            f"{n} x {n}"
+            if (n := sizes[own & fit].min()) > 0
+            else f"none up to {sizes.max()} x {sizes.max()}"
             for fit in (grids["missed"] == 0, grids["faintest_low"] >= SEEN_SHARE)
         )
         found.append(
@@ -51,7 +58,9 @@ def sentences(study: Row) -> list[str]:
         )
     exact = table["seconds_median"][table["method"] == "exact"].min()
     for m in finest(study).to_dict("records"):
-        if (m["method"], m["setting"]) == ("companion", "N = 400") and m["seconds_median"] / exact > 0:
+        if (m["method"], m["setting"]) == ("companion", "N = 400") and m[
+            "seconds_median"
+        ] / exact > 0:
             found.append(
                 f"The exact engine has no error after {exact:.2f} s; the 400 x 400 grid has "
                 f"{m['seconds_median'] / exact:.1f} times that time and {_about(m, 'wrong')} of the window wrong."
@@ -84,8 +93,14 @@ def _about(m: Mapping[Any, Any], name: str) -> str:
 
 def notes(study: Row) -> list[str]:
     """What the errors with a star rest on, and why there are none of other methods."""
-    done = [f"* {m['method']}: {m['note']}" for m in study["measurements"] if m["note"] and m["seconds"]]
-    left = [f"{m['method']}, {m['setting']}: {m['reason']}" for m in study["measurements"] if not m["seconds"]]
+    done = [
+        f"* {m['method']}: {m['note']}" for m in study["measurements"] if m["note"] and m["seconds"]
+    ]
+    left = [
+        f"{m['method']}, {m['setting']}: {m['reason']}"
+        for m in study["measurements"]
+        if not m["seconds"]
+    ]
     return list(dict.fromkeys([*done, *(line.replace(", :", ":") for line in left)]))
 
 
@@ -101,20 +116,35 @@ def terminal(study: Row) -> str:
 
 
 def curves(study: Row) -> list[Curve]:
-    """What can be drawn of a study: every measurement with a time and an error, and widths of the exact maps' areas."""
+    """What can be drawn of a study: every measurement with a time and an error, and widths of the
+    exact maps' areas.
+    """
     table = finest(study).dropna(subset="seconds_median")
     found = [
-        _curve(number, rival.title, table[table["method"] == method], "wrong_low", "wrong_high", _LABELLED.get(method))
+        _curve(
+            number,
+            rival.title,
+            table[table["method"] == method],
+            "wrong_low",
+            "wrong_high",
+            _LABELLED.get(method),
+        )
         for number, (method, rival) in enumerate(RIVALS.items())
     ]
-    widths = table[(table["method"] == "exact") & (table["area_width"] > 0)]  # another kind of error
+    widths = table[
+        (table["method"] == "exact") & (table["area_width"] > 0)
+    ]  # another kind of error
     title = f"{RIVALS['exact'].title}: width of the area bounds"
     found.insert(1, _curve(len(RIVALS), title, widths, "area_width", "area_width", None))
     return [curve for curve in found if curve.marks]
 
 
-def _curve(style: int, title: str, rows: pd.DataFrame, low: str, high: str, before: str | None) -> Curve:
-    """A curve through the middles of bounds; settings stand beside it, without the words before them."""
+def _curve(
+    style: int, title: str, rows: pd.DataFrame, low: str, high: str, before: str | None
+) -> Curve:
+    """A curve through the middles of bounds; settings stand beside it, without the words before
+    them.
+    """
     marks = [
         Mark(m["seconds_median"], (m[low] + m[high]) / 2, m["seconds_min"], m["seconds_max"],
              "" if before is None else m["setting"].removeprefix(before))
@@ -150,7 +180,9 @@ def save(study: Row, folder: Path) -> tuple[Path, ...]:
     x = "seconds of whole processes, start-up included: medians, least and largest"
 
     def picture(path: Path) -> None:
-        save_figure(draw(title, x, "share of the window", {"": drawn}, sentences(study)), path, dpi=DPI)
+        save_figure(
+            draw(title, x, "share of the window", {"": drawn}, sentences(study)), path, dpi=DPI
+        )
 
     writers: dict[str, Writer] = {f"{name}.bench.csv": text_writer(write_table(study))}
     if drawn:
@@ -184,7 +216,9 @@ def page(studies: Sequence[Row]) -> str:
             checked = f"The exact map that errors are measured against {passed} `ptmcad verify`."
         blocks += [f"## {study['slice']}", f"{study['heading']}. {checked}"]
         if curves(study):
-            blocks.append(f"![Error against seconds for {study['slice']}]({study['slice']}.bench.svg)")
+            blocks.append(
+                f"![Error against seconds for {study['slice']}]({study['slice']}.bench.svg)"
+            )
         blocks += [[f"- {s}" for s in sentences(study)], _lines(study, tables.markdown)]
         blocks.append([f"- {note}".replace("- *", "- \\*") for note in notes(study)])
     first = studies[0]

@@ -1,11 +1,13 @@
-"""How cost grows: families of slices, each growing in one respect, as whole processes, with a fitted exponent.
+"""How cost grows: families of slices, each growing in one respect, as whole processes, with a
+fitted exponent.
 
-Guarantee: the numbers of regions of the slices are known from how they are made, and a run that finds another number is
-a failure. The same measurements give the same fits.
+Guarantee: the numbers of regions of the slices are known from how they are made, and a run that
+finds another number is a failure. The same measurements give the same fits.
 
-A parameter p becomes p + q(x, y) with a dense polynomial q that is small enough for the picture to stay, so that the
-degree of the curves grows alone; and Chebyshev polynomials fold the window: T_n maps each of
-the n intervals between neighbouring points cos(i pi / n) onto [-1, 1]. Without loads the stable count is 2 where
+A parameter p becomes p + q(x, y) with a dense polynomial q that is small enough for the picture to
+stay, so that the degree of the curves grows alone; and Chebyshev polynomials fold the window: T_n
+maps each of the n intervals between neighbouring points cos(i pi / n) onto [-1, 1]. Without loads
+the stable count is 2 where
 |L2 - L1| < 2 rho < L2 + L1, and 1 elsewhere.
 """
 
@@ -32,12 +34,16 @@ from ptmcad.studies.bench.process import Usage
 from ptmcad.studies.picture import STYLES, Curve, Mark, draw
 
 SHIFT = Fraction(1, 100)
-"""What a bend's coefficients' moduli add up to at most: the window's edge meets the same curves in the same order."""
+"""What a bend's coefficients' moduli add up to at most: the window's edge meets the same curves in
+the same order.
+"""
 MAX_COEFFICIENT = 9
 
 
 class GrowingFamily(NamedTuple):
-    """One family: what grows, its sizes, the record for a size and a seed, and its number of regions."""
+    """One family: what grows, its sizes, the record for a size and a seed, and its number of
+    regions.
+    """
 
     title: str
     sizes: tuple[int, ...]
@@ -50,32 +56,45 @@ def _record(axes: dict[str, Sequence[Any]], **parameters: Any) -> Row:
 
 
 def unloaded(n: int, seed: int) -> Row:
-    """No loads, rho = 1 + x, L2 = 1 + y + q(x, y): three curves, dense, of total degree n each; four regions."""
+    """No loads, rho = 1 + x, L2 = 1 + y + q(x, y): three curves, dense, of total degree n each;
+    four regions.
+    """
     source = random.Random(f"bend {n} {seed}")
     rows = [range(n + 1 - i) for i in range(n + 1)]  # of the powers of y, for each power of x
     scale = SHIFT / (MAX_COEFFICIENT * sum(map(len, rows)))
-    sizes = ([source.choice((-1, 1)) * source.randint(1, MAX_COEFFICIENT) for _ in row] for row in rows)
-    terms = (f"x^{i}*({' + '.join(f'({c * scale})*y^{j}' for j, c in enumerate(row))})" for i, row in enumerate(sizes))
+    sizes = (
+        [source.choice((-1, 1)) * source.randint(1, MAX_COEFFICIENT) for _ in row] for row in rows
+    )
+    terms = (
+        f"x^{i}*({' + '.join(f'({c * scale})*y^{j}' for j, c in enumerate(row))})"
+        for i, row in enumerate(sizes)
+    )
     ends = ["-9/10", "19/20"]
     return _record({"x": ends, "y": ends}, rho="1 + x", L2=" + ".join(["1 + y", *terms]))
 
 
 def fold(n: int, seed: int = 0) -> Row:
-    """rho = y and L2 = 1 + T_n(x)/2: n folds along x, over -1 < x < 1 and 0 < y < 2; n is at most 40."""
-    powers = enumerate(np.polynomial.chebyshev.cheb2poly([0] * n + [1]))  # in doubles, and whole up to n = 40
+    """rho = y and L2 = 1 + T_n(x)/2: n folds along x, over -1 < x < 1 and 0 < y < 2; n is at most
+    40.
+    """
+    powers = enumerate(
+        np.polynomial.chebyshev.cheb2poly([0] * n + [1])
+    )  # in doubles, and whole up to n = 40
     terms = " + ".join(f"({c:.0f})*x^{k}" for k, c in powers if c)
     return _record({"x": [-1, 1], "y": [0, 2]}, rho="y", L2=f"1 + ({terms})/2")
 
 
 FAMILIES = {
     "degree": GrowingFamily("Degree of the curves: no loads", (2, 4, 6, 8, 12, 16), unloaded, lambda n: 4),
-    # below 2 rho = |T_n|/2 one region on either side of each of the n zeros; that of two; that above
+    # below 2 rho = |T_n|/2 one region on either side of each of the n zeros; that of two; that
+    # above
     "fold": GrowingFamily("Folds along one axis", (2, 4, 8, 16, 32), fold, lambda n: n + 3),
 }  # fmt: skip
 
 
 def measure(options: argparse.Namespace) -> pd.DataFrame:
-    """The families' rows: what each size takes, the computation alone too, and the exponent that fits it.
+    """The families' rows: what each size takes, the computation alone too, and the exponent that
+    fits it.
 
     Raises
     ------
@@ -90,15 +109,29 @@ def measure(options: argparse.Namespace) -> pd.DataFrame:
     with tempfile.TemporaryDirectory() as folder:
         for name, n in [(family, size) for family in names for size in FAMILIES[family].sizes]:
             family, record = FAMILIES[name], Path(folder, f"{name}-{n}.yaml")
-            record.write_text(json.dumps({"name": record.stem, **family.record(n, options.seed)}), encoding="utf-8")
+            record.write_text(
+                json.dumps({"name": record.stem, **family.record(n, options.seed)}),
+                encoding="utf-8",
+            )
             asked = classification(record, record.stem, Path(folder), "--format", "json")
-            jobs.append(Job(name, family.title, str(n), **asked, check=partial(_unlike, family.regions(n))))
+            jobs.append(
+                Job(name, family.title, str(n), **asked, check=partial(_unlike, family.regions(n)))
+            )
         turns(jobs, options)
     taken = [[json.loads(usage.output)["timings"]["total"] for usage in job.usages] for job in jobs]
-    rows = summary(jobs).assign(computing=pd.Series([median(s) if s else None for s in taken], dtype=float).round(5))
+    rows = summary(jobs).assign(
+        computing=pd.Series([median(s) if s else None for s in taken], dtype=float).round(5)
+    )
     laws = [
-        {"subject": name, "what": FAMILIES[str(name)].title, "setting": "fit", "exponent": exponent(own)}
-        for name, own in rows.dropna(subset="computing").astype({"setting": int}).groupby("subject", sort=False)
+        {
+            "subject": name,
+            "what": FAMILIES[str(name)].title,
+            "setting": "fit",
+            "exponent": exponent(own),
+        }
+        for name, own in rows.dropna(subset="computing")
+        .astype({"setting": int})
+        .groupby("subject", sort=False)
     ]
     return pd.concat([rows, pd.DataFrame(laws)], ignore_index=True)
 
@@ -110,7 +143,8 @@ def _unlike(regions: int, usage: Usage) -> str:
 
 
 def exponent(rows: pd.DataFrame) -> float | None:
-    """The p of the power law y = c x^p through sizes and positive seconds, by least squares in logarithms.
+    """The p of the power law y = c x^p through sizes and positive seconds, by least squares in
+    logarithms.
 
     None when there are fewer than two.
     """
@@ -122,7 +156,9 @@ def exponent(rows: pd.DataFrame) -> float | None:
 def save_picture(rows: pd.DataFrame, folder: Path) -> None:
     """Draw the seconds of the computation along all families into scaling.svg."""
     curves = []
-    for style, (title, own) in zip(STYLES, rows.dropna(subset="computing").groupby("what", sort=False), strict=False):
+    for style, (title, own) in zip(
+        STYLES, rows.dropna(subset="computing").groupby("what", sort=False), strict=False
+    ):
         places = zip(own["setting"].astype(float), own["computing"], strict=True)
         curves.append(Curve(str(title), style, [Mark(n, seconds, n, n) for n, seconds in places]))
     if curves:

@@ -1,10 +1,12 @@
-"""A stored study: its JSON document, its CSV file, its measurements as a data frame, and two of one slice compared.
+"""A stored study: its JSON document, its CSV file, its measurements as a data frame, and two of one
+slice compared.
 
-Guarantee: `study_of(write_study(s))` equals s; a file that is not such a document is refused with the place of the
-fault. ``docs/bench.schema.json`` is its schema, and says what each key means. Of two studies an error is worse only if
-its bounds do not overlap the earlier ones. Times are compared as multiples of each study's own floor, so that machines
-of different speed compare; one is slower only if its fastest run is slower than the slowest run of the other by
-`MARGIN`, with the spread of both floors allowed for. That a small change is found is not guaranteed.
+Guarantee: `study_of(write_study(s))` equals s; a file that is not such a document is refused with
+the place of the fault. ``docs/bench.schema.json`` is its schema, and says what each key means. Of
+two studies an error is worse only if its bounds do not overlap the earlier ones. Times are compared
+as multiples of each study's own floor, so that machines of different speed compare; one is slower
+only if its fastest run is slower than the slowest run of the other by `MARGIN`, with the spread of
+both floors allowed for. That a small change is found is not guaranteed.
 """
 
 from __future__ import annotations
@@ -36,7 +38,12 @@ BAD = ("slower", "worse", "lost")
 """Verdicts that are no good news; the others are faster, better, gained and same."""
 _COMPARED = ("wrong", "undetermined", "wrong_centres", "missed", "distance")
 """Figures, numbers or bounds, larger being worse."""
-_CSV = {"seconds_minimum": "seconds_min", "seconds_maximum": "seconds_max", "seconds_runs": "runs", "peak": "peak_mib"}
+_CSV = {
+    "seconds_minimum": "seconds_min",
+    "seconds_maximum": "seconds_max",
+    "seconds_runs": "runs",
+    "peak": "peak_mib",
+}
 """Keys that have other names in the CSV file."""
 _PAIRS = ("wrong", "faintest", "distance")
 """Figures that are bounds: of each are two columns."""
@@ -67,7 +74,11 @@ def finest(study: Row) -> pd.DataFrame:
     """A row for each measurement, with the figures for the finest count that the method gives."""
     table = frame(study)
     ranks = table["count"].map({count.value: count.kind.rank for count in Count})
-    return table.loc[ranks.sort_values(kind="stable").index].drop_duplicates(["method", "setting"]).sort_index()
+    return (
+        table.loc[ranks.sort_values(kind="stable").index]
+        .drop_duplicates(["method", "setting"])
+        .sort_index()
+    )
 
 
 def write_study(study: Row) -> str:
@@ -120,7 +131,15 @@ _PAIR = listed(SECONDS, 2)
 _TIMES: Codec[Row] = record(dict, runs=POSITIVE, median=_TIME, minimum=_TIME, maximum=_TIME)
 _NUMBER: Codec[Any] = optional(codec.NATURAL)
 _BOUNDS: Codec[Any] = optional(_PAIR)
-_KINDS: tuple[Codec[Any], ...] = (_PAIR, SECONDS, _NUMBER, optional(POSITIVE), _NUMBER, _BOUNDS, _BOUNDS)
+_KINDS: tuple[Codec[Any], ...] = (
+    _PAIR,
+    SECONDS,
+    _NUMBER,
+    optional(POSITIVE),
+    _NUMBER,
+    _BOUNDS,
+    _BOUNDS,
+)
 _FIGURES: Codec[Row] = record(dict, **dict(zip(FIGURES, _KINDS, strict=True)))
 _MEASUREMENT: Codec[Row] = record(
     dict,
@@ -131,7 +150,9 @@ _MEASUREMENT: Codec[Row] = record(
     peak=optional(SECONDS),
     reason=line(1000),
     note=line(1000),
-    figures=optional(named(_FIGURES).narrowed(propertyNames={"enum": [count.value for count in Count]})),
+    figures=optional(
+        named(_FIGURES).narrowed(propertyNames={"enum": [count.value for count in Count]})
+    ),
     area_width=optional(SECONDS),
 )
 _STUDY: Codec[Row] = record(
@@ -154,22 +175,29 @@ _STUDY: Codec[Row] = record(
 
 
 def compare(old: Row, new: Row) -> tuple[Row, ...]:
-    """What changed from the old study to the new one, in the old one's order: method, setting, verdict and detail.
+    """What changed from the old study to the new one, in the old one's order: method, setting,
+    verdict and detail.
 
     Raises
     ------
-    ConfigError
-        When they are of different slices, or were made with different settings that figures depend on.
+    ConfigError When they are of different slices, or were made with different settings that figures
+        depend on.
     """
     for key in ("slice", "seed"):
         if old[key] != new[key]:
-            raise ConfigError(f"the two studies differ in {key}: {old[key]} and {new[key]}", key=key)
-    before, after = ({(m["method"], m["setting"]): m for m in study["measurements"]} for study in (old, new))
+            raise ConfigError(
+                f"the two studies differ in {key}: {old[key]} and {new[key]}", key=key
+            )
+    before, after = (
+        {(m["method"], m["setting"]): m for m in study["measurements"]} for study in (old, new)
+    )
     absent = measurement("", "", reason="not in that study")
     return tuple(
         {"method": place[0], "setting": place[1], "verdict": verdict, "detail": detail}
         for place in dict.fromkeys([*before, *after])
-        for verdict, detail in _changes(before.get(place, absent), old["floor"], after.get(place, absent), new["floor"])
+        for verdict, detail in _changes(
+            before.get(place, absent), old["floor"], after.get(place, absent), new["floor"]
+        )
     )
 
 
@@ -204,9 +232,16 @@ def _changes(before: Row, old_floor: Row, after: Row, new_floor: Row) -> Iterato
 
 def _bounds(m: Row, floor: Row) -> dict[str, tuple[float, float]]:
     """What is compared of a measurement: bounds of the time in floors, and of figures of error."""
-    found = {"time": (m["seconds"]["minimum"] / floor["maximum"], m["seconds"]["maximum"] / floor["minimum"])}
+    found = {
+        "time": (
+            m["seconds"]["minimum"] / floor["maximum"],
+            m["seconds"]["maximum"] / floor["minimum"],
+        )
+    }
     figures = {
-        f"{count}, {name.replace('_', ' ')}": f[name] for count, f in (m["figures"] or {}).items() for name in _COMPARED
+        f"{count}, {name.replace('_', ' ')}": f[name]
+        for count, f in (m["figures"] or {}).items()
+        for name in _COMPARED
     }
     for name, x in ({"width of area bounds": m["area_width"]} | figures).items():
         if x is not None:

@@ -1,10 +1,12 @@
-"""A study: error against run time of several rivals on one slice, measured; how each is started, and its answer read.
+"""A study: error against run time of several rivals on one slice, measured; how each is started,
+and its answer read.
 
-Guarantee: each job gets the same slice, with exact numbers where the method takes them; what a method cannot do for a
-slice, or what is not installed, is reported with its reason. All methods are run at their first setting before any is
-at its second; there each round runs every method once, in an order drawn from the seed, beside the reference job.
-Nothing is measured while something else is run. Figures of error are rounded outwards, so that bounds stay bounds;
-everything but times, memory and the machine is the same whenever the study is made again with the same seed.
+Guarantee: each job gets the same slice, with exact numbers where the method takes them; what a
+method cannot do for a slice, or what is not installed, is reported with its reason. All methods are
+run at their first setting before any is at its second; there each round runs every method once, in
+an order drawn from the seed, beside the reference job. Nothing is measured while something else is
+run. Figures of error are rounded outwards, so that bounds stay bounds; everything but times, memory
+and the machine is the same whenever the study is made again with the same seed.
 """
 
 from __future__ import annotations
@@ -29,7 +31,14 @@ from ptmcad.errors import LimitReached, PtmcadError
 from ptmcad.question.slice import Slice
 from ptmcad.show.table import area_by_count
 from ptmcad.studies.bench import programs
-from ptmcad.studies.bench.error import cover_error, figures, grid_error, outward, shown_count, truths
+from ptmcad.studies.bench.error import (
+    cover_error,
+    figures,
+    grid_error,
+    outward,
+    shown_count,
+    truths,
+)
 from ptmcad.studies.bench.harness import (
     FORMAT,
     Asked,
@@ -62,9 +71,11 @@ WARM_UP_SECONDS = 300.0
 
 
 class Rival(NamedTuple):
-    """One of the methods, as ``programs.yaml`` has them: its title, how a setting is called, and the settings.
+    """One of the methods, as ``programs.yaml`` has them: its title, how a setting is called, and
+    the settings.
 
-    Those are in order from the coarsest; so many of them are run when it has to be quick. It may need a package.
+    Those are in order from the coarsest; so many of them are run when it has to be quick. It may
+    need a package.
     """
 
     title: str
@@ -87,9 +98,15 @@ def jobs(method: str, case: Case) -> list[Job] | str:
     if rival.needs and find_spec(rival.needs) is None:
         return f"{rival.needs} is not installed (make bench installs it)"
     settings = rival.settings[: rival.quick if case.quick else None]
-    start = _start_engine if method in ENGINES else _start_grid if method in GRIDS else programs.start
+    start = (
+        _start_engine if method in ENGINES else _start_grid if method in GRIDS else programs.start
+    )
     asked = {rival.label.format(setting): start(method, case, setting) for setting in settings}
-    found = [Job(slice.name, method, label, **more) for label, more in asked.items() if not isinstance(more, str)]
+    found = [
+        Job(slice.name, method, label, **more)
+        for label, more in asked.items()
+        if not isinstance(more, str)
+    ]
     return found or str(next(iter(asked.values())))
 
 
@@ -97,8 +114,19 @@ def jobs(method: str, case: Case) -> list[Job] | str:
 
 
 def _start_engine(engine: str, case: Case, setting: str) -> Asked:
-    options = ("--engine", engine, "--count", finest_count(case.slice), ENGINES[engine], setting, "--format", "json")
-    asked = classification(case.record, case.slice.name, case.folder / f"{engine}-{setting}", *options)
+    options = (
+        "--engine",
+        engine,
+        "--count",
+        finest_count(case.slice),
+        ENGINES[engine],
+        setting,
+        "--format",
+        "json",
+    )
+    asked = classification(
+        case.record, case.slice.name, case.folder / f"{engine}-{setting}", *options
+    )
     return asked | {"saves": engine == "certified"}
 
 
@@ -111,8 +139,14 @@ def finest_count(slice: Slice) -> str:
 
 def _read_map(case: Case, job: Job) -> Row:
     result = RegionMap.from_json(job.said())
-    notes = ["stopped at the limit, short of its tolerance"] if result.status is Status.PARTIAL else []
-    if case.exact is not None and result.cover is None and (wrong := difference(case.exact, result)):
+    notes = (
+        ["stopped at the limit, short of its tolerance"] if result.status is Status.PARTIAL else []
+    )
+    if (
+        case.exact is not None
+        and result.cover is None
+        and (wrong := difference(case.exact, result))
+    ):
         raise PtmcadError(f"two exact maps of {case.slice.name} differ: {wrong}")
     if not case.known:
         notes.append(NO_MAP if case.exact is None else NO_WALLS)
@@ -120,17 +154,22 @@ def _read_map(case: Case, job: Job) -> Row:
         found = {case.slice.count.value: figures(share, share[1])}
     elif result.cover is None:
         right = figures((0.0, 0.0), 0.0, missed=0, faintest=(1.0, 1.0), distance=(0.0, 0.0))
-        found = {count: right | {"regions": len(truth.counts)} for count, truth in case.known.items()}
+        found = {
+            count: right | {"regions": len(truth.counts)} for count, truth in case.known.items()
+        }
     else:
         errors = {count: cover_error(truth, result, count) for count, truth in case.known.items()}
         found = {count: error for count, error in errors.items() if error is not None}
     window = result.slice.area
-    widest = max((high - low for low, high in area_by_count(result).values()), default=window) / window
+    widest = (
+        max((high - low for low, high in area_by_count(result).values()), default=window) / window
+    )
     return {"figures": found, "note": "; ".join(notes), "area_width": outward(0, widest)[1]}
 
 
 def difference(one: RegionMap, other: RegionMap) -> str:
-    """Where two maps of one slice have other counts, whatever their decompositions; empty when nowhere.
+    """Where two maps of one slice have other counts, whatever their decompositions; empty when
+    nowhere.
 
     Raises
     ------
@@ -140,16 +179,23 @@ def difference(one: RegionMap, other: RegionMap) -> str:
     changes = compare(one, other).changes
     if not changes:
         return ""
-    return f"other counts on {len(changes)} parts, the largest of area {float(changes[0].area[1]):.3g}"
+    return (
+        f"other counts on {len(changes)} parts, the largest of area {float(changes[0].area[1]):.3g}"
+    )
 
 
 def question(slice: Slice) -> str:
     """The slice as JSON for the grids, in floats."""
     parameters = {
-        name: [[[i, j, float(c)] for i, j, c in terms] for terms in (value.numerator, value.denominator)]
+        name: [
+            [[i, j, float(c)] for i, j, c in terms]
+            for terms in (value.numerator, value.denominator)
+        ]
         for name, value in slice.parameters.items()
     }
-    return json.dumps({"window": [[float(a.low), float(a.high)] for a in slice.axes], "parameters": parameters})
+    return json.dumps(
+        {"window": [[float(a.low), float(a.high)] for a in slice.axes], "parameters": parameters}
+    )
 
 
 def _start_grid(method: str, case: Case, setting: str) -> Asked:
@@ -165,7 +211,10 @@ def _read_grid(case: Case, job: Job) -> Row:
     assert job.answer is not None
     stable, total = np.load(job.answer).astype(np.int16)
     cells = case.exact.grid(len(stable)).cell.T
-    found = {count: grid_error(truth, cells, shown_count(stable, total, count)) for count, truth in case.known.items()}
+    found = {
+        count: grid_error(truth, cells, shown_count(stable, total, count))
+        for count, truth in case.known.items()
+    }
     return {"figures": found}
 
 
@@ -190,10 +239,12 @@ def measure(
     Parameters
     ----------
     record : the slice's own file.
-    verified : whether an independent check confirms a map, such as `ptmcad.verify`; the errors rest on it.
+    verified : whether an independent check confirms a map, such as `ptmcad.verify`; the errors rest
+        on it.
     rounds : runs of each job that takes no longer than `MAX_REPEATED_SECONDS`; others are run once.
     seed : of the order within a round.
-    time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
+    time_limit : seconds for each method's measured runs; settings that do not fit are left out,
+        with the reason.
     quick : fewer and coarser settings.
     warm_up : run the certified engine once before, because the first run on a machine compiles.
     report : called with what is being done.
@@ -236,13 +287,22 @@ def measure(
         "floor": floor.times,
         "measurements": (
             *measured,
-            *(measurement(method, "", reason=why) for method, why in found.items() if isinstance(why, str)),
+            *(
+                measurement(method, "", reason=why)
+                for method, why in found.items()
+                if isinstance(why, str)
+            ),
         ),
     }
 
 
 def _run_all(
-    ranked: Sequence[Sequence[Job]], floor: Job, rounds: int, seed: int, limit: float, report: Callable[[str], None]
+    ranked: Sequence[Sequence[Job]],
+    floor: Job,
+    rounds: int,
+    seed: int,
+    limit: float,
+    report: Callable[[str], None],
 ) -> None:
     """Run all jobs, so that those of a method have so many seconds together."""
     left = {asked[0].what: limit for asked in ranked}
@@ -276,7 +336,9 @@ def _measured(case: Case, job: Job) -> Row:
         job.what,
         job.setting,
         seconds=job.times,
-        computing=times([json.loads(job.said())["timings"]["total"]]) if job.said().startswith("{") else None,
+        computing=times([json.loads(job.said())["timings"]["total"]])
+        if job.said().startswith("{")
+        else None,
         peak=round(max(usage.peak_mebibytes for usage in job.usages), 1),
         **read(case, job),
     )

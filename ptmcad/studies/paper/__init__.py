@@ -1,4 +1,6 @@
-"""The paper of Wenger & Chablat, reproduced: its equations, its figures, and a verdict on every claim it makes.
+"""The paper of Wenger & Chablat, reproduced: its equations, its figures, and a verdict on every
+claim it makes.
 
-Guarantee: verdicts are computed. It is the only part of the package, beside the tests, that uses SymPy for mathematics.
+Guarantee: verdicts are computed. It is the only part of the package, beside the tests, that uses
+SymPy for mathematics.
 """

@@ -1,8 +1,10 @@
-"""Claims of the paper and what computation says of them, with the rule that turns what was computed into a verdict.
+"""Claims of the paper and what computation says of them, with the rule that turns what was computed
+into a verdict.
 
-Guarantee: a verdict is reached only through `judge`; a printed statement that fails is called corrected only when the
-right one was shown to hold, and refuted only with a witness. What no computation can decide says why. The claims are
-data, ``claims.yaml``, whose head says how they are written.
+Guarantee: a verdict is reached only through `judge`; a printed statement that fails is called
+corrected only when the right one was shown to hold, and refuted only with a witness. What no
+computation can decide says why. The claims are data, ``claims.yaml``, whose head says how they are
+written.
 """
 
 from __future__ import annotations
@@ -81,15 +83,17 @@ def judge(name: str, text: Text) -> Claim:
 
     Guarantee
     ---------
-    CONFIRMED if it holds as it is printed; else CORRECTED if the statement ``right`` was shown to hold in its place;
-    else REFUTED if there is a witness; else UNDECIDED.
+    CONFIRMED if it holds as it is printed; else CORRECTED if the statement ``right`` was shown to
+    hold in its place; else REFUTED if there is a witness; else UNDECIDED.
     """
     section = name.partition("-")[0]
     section = {"a": "abstract", "c": "conclusions"}.get(section, section)
     claim = partial(Claim, name, section, text["quotation"], text["statement"])
     extra = Extra[text["needs"]] if "needs" in text else None
     if extra is not None and find_spec(extra.package) is None:
-        return claim(verdict=Verdict.NOT_CHECKED, reason=f"it cannot be computed here: {extra.message}")
+        return claim(
+            verdict=Verdict.NOT_CHECKED, reason=f"it cannot be computed here: {extra.message}"
+        )
     facts = dict(_facts(text))
     printed, shown = (_hold(text, key, facts) for key in ("printed", "shown"))
     evidence, right = _sentences(text, "evidence", facts), "".join(_sentences(text, "right", facts))
@@ -100,7 +104,9 @@ def judge(name: str, text: Text) -> Claim:
     if printed:
         return claim(verdict=Verdict.CONFIRMED, evidence=evidence, facts=facts)
     if shown and right:
-        return claim(verdict=Verdict.CORRECTED, right=right, witness=witness, evidence=evidence, facts=facts)
+        return claim(
+            verdict=Verdict.CORRECTED, right=right, witness=witness, evidence=evidence, facts=facts
+        )
     if witness:
         return claim(verdict=Verdict.REFUTED, witness=witness, evidence=evidence, facts=facts)
     return claim(
@@ -115,7 +121,9 @@ def _facts(text: Text) -> Facts:
     if "check" not in text:
         return {}
     module, function = text["check"].split(".")
-    found: Facts = getattr(import_module(f"ptmcad.studies.paper.{module}"), function)(**text.get("with", {}))
+    found: Facts = getattr(import_module(f"ptmcad.studies.paper.{module}"), function)(
+        **text.get("with", {})
+    )
     return found
 
 
@@ -125,7 +133,8 @@ def _hold(text: Text, key: str, facts: dict[str, Any]) -> bool:
         if isinstance(statement, str):
             facts[statement] = holds(statement)
     return key in text and all(
-        facts[s] if isinstance(s, str) else _plain({name: facts[name] for name in s}) == s for s in text[key]
+        facts[s] if isinstance(s, str) else _plain({name: facts[name] for name in s}) == s
+        for s in text[key]
     )
 
 

@@ -1,8 +1,9 @@
-"""The paper's equations, corrected, as text and LaTeX, derived from the model and not from the paper.
+"""The paper's equations, corrected, as text and LaTeX, derived from the model and not from the
+paper.
 
-Guarantee: every expression is derived from the potential of the model by differentiation, substitution of half angles
-and elimination (`ptmcad.studies.paper.statements`), or is a curve of a computed discriminant variety. Which they are is
-data, ``expressions.yaml``.
+Guarantee: every expression is derived from the potential of the model by differentiation,
+substitution of half angles and elimination (`ptmcad.studies.paper.statements`), or is a curve of a
+computed discriminant variety. Which they are is data, ``expressions.yaml``.
 """
 
 from __future__ import annotations
@@ -14,7 +15,19 @@ from typing import NamedTuple
 import sympy as sp
 
 from ptmcad.studies.paper.maps import curves
-from ptmcad.studies.paper.statements import F3, F4, HORIZONTAL, TEXTS, Expr, c1, c2, expression, k, s1, s2
+from ptmcad.studies.paper.statements import (
+    F3,
+    F4,
+    HORIZONTAL,
+    TEXTS,
+    Expr,
+    c1,
+    c2,
+    expression,
+    k,
+    s1,
+    s2,
+)
 from ptmcad.studies.tables import page
 
 _OVER_K = {force: k * sp.Symbol(str(force).lower()) for force in (F3, F4, *HORIZONTAL)}
@@ -39,7 +52,10 @@ class Equation(NamedTuple):
 def equations() -> tuple[Equation, ...]:
     """The equations of the paper in their order, corrected."""
     # of the two curves of fig. 3 the one through the origin is first
-    found = sorted((c.polynomial for c in curves("fig3")), key=lambda p: any(i == j == 0 for i, j, _ in p.terms))
+    found = sorted(
+        (c.polynomial for c in curves("fig3")),
+        key=lambda p: any(i == j == 0 for i, j, _ in p.terms),
+    )
     boundaries = {f"curve {n}": p.to_sympy(("rho", "F4")) for n, p in enumerate(found)}
     result = []
     for entry in TEXTS["equations"]:
@@ -51,7 +67,9 @@ def equations() -> tuple[Equation, ...]:
             right = sp.expand(right.subs(_OVER_K))
         shown = _shown(right)
         latex = f"{_LATEX.get(left, sp.latex(sp.Symbol(left)))} = {sp.latex(shown, symbol_names=_NAMES)}"
-        result.append(Equation(number, entry["what"], f"{left} = {sp.sstr(shown).replace('**', '^')}", latex))
+        result.append(
+            Equation(number, entry["what"], f"{left} = {sp.sstr(shown).replace('**', '^')}", latex)
+        )
     return tuple(result)
 
 
@@ -70,7 +88,9 @@ def as_markdown() -> str:
 
 
 def as_latex() -> str:
-    """The equations as a LaTeX document; long ones are set by the breqn package, which breaks lines."""
+    """The equations as a LaTeX document; long ones are set by the breqn package, which breaks
+    lines.
+    """
     blocks = []
     for e in equations():
         title = f"{e.number}: {e.what}".replace("^", r"\textasciicircum{}").replace("_", r"\_")

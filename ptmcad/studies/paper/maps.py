@@ -1,8 +1,10 @@
-"""What the claims on figures 2 to 5 rest on: the exact maps of their slices, and ranges along lines in them.
+"""What the claims on figures 2 to 5 rest on: the exact maps of their slices, and ranges along lines
+in them.
 
-Guarantee: facts follow from the exact answers of `ptmcad.classify`, `ptmcad.solve` and `ptmcad.intervals`, and from
-the theorem that a Morse function on the torus has as many saddles as minima and maxima together. Signs of heights are
-those of boxes around equilibria; that they cannot change inside a cell is shown by statements of the claims.
+Guarantee: facts follow from the exact answers of `ptmcad.classify`, `ptmcad.solve` and
+`ptmcad.intervals`, and from the theorem that a Morse function on the torus has as many saddles as
+minima and maxima together. Signs of heights are those of boxes around equilibria; that they cannot
+change inside a cell is shown by statements of the claims.
 
 Figure 5 is two slices, because its text and its caption give different values.
 """
@@ -95,7 +97,9 @@ def seen_counts() -> frozenset[tuple[int, int]]:
 
 
 def counts() -> Facts:
-    """How many equilibria, and stable ones, there may be by theorem 1 where they are nondegenerate, and are."""
+    """How many equilibria, and stable ones, there may be by theorem 1 where they are nondegenerate,
+    and are.
+    """
     half = int(statements.expression("degree(sextic, t2)")) // 2
     # as many saddles as minima and maxima, of which there is one each at least
     allowed = [(2 * n, minima) for n in range(2, half + 1) for minima in range(1, n)]
@@ -108,13 +112,16 @@ def counts() -> Facts:
         "attained": seen[-1][0],
         "points": RANDOM_POINTS,
         "listed": "; ".join(
-            f"of {t} equilibria {s} stable, {t // 2} saddles, {t // 2 - s} of maximal energy" for t, s in allowed
+            f"of {t} equilibria {s} stable, {t // 2} saddles, {t // 2 - s} of maximal energy"
+            for t, s in allowed
         ),
     }
 
 
 def regions(figure: str) -> Facts:
-    """The stable counts of a figure's regions, and by cells the total ones and those by minima, saddles and maxima."""
+    """The stable counts of a figure's regions, and by cells the total ones and those by minima,
+    saddles and maxima.
+    """
     found = [(r.stable, r.total) for r in region_map(figure).regions]
     cells = region_map(figure).cells
     return {
@@ -127,7 +134,9 @@ def regions(figure: str) -> Facts:
 
 
 def cells() -> Facts:
-    """How the maps' cells were counted, and whether those parted by no change have the same indices."""
+    """How the maps' cells were counted, and whether those parted by no change have the same
+    indices.
+    """
     maps = {figure: region_map(figure) for figure in FIGURES}
     first = [c for figure in FIGURES[:3] for c in maps[figure].cells]
     return {
@@ -148,23 +157,36 @@ def cells() -> Facts:
 
 
 def curves_of(figures: Sequence[str], texts: Sequence[str] = ()) -> Facts:
-    """The curves of figures, and how many of them each of the polynomials that are given is, up to a factor."""
-    found = [(c.polynomial, slice_of(figure).axis_names) for figure in figures for c in curves(figure)]
-    wanted = [sp.sympify(text, locals={n: sp.Symbol(n) for n in slice_of(figures[0]).axis_names}) for text in texts]
+    """The curves of figures, and how many of them each of the polynomials that are given is, up to
+    a factor.
+    """
+    found = [
+        (c.polynomial, slice_of(figure).axis_names) for figure in figures for c in curves(figure)
+    ]
+    wanted = [
+        sp.sympify(text, locals={n: sp.Symbol(n) for n in slice_of(figures[0]).axis_names})
+        for text in texts
+    ]
     even = [[all(powers[n] % 2 == 0 for powers in p.terms) for n in (0, 1)] for p, _ in found]
     return {
         "curves": len(found),
         "degrees": [p.degrees for p, _ in found],
         "even": even,
         "terms": [len(p.terms) for p, _ in found],
-        "found": [(p.degrees, rho, len(p.terms)) for (p, _), (rho, _) in zip(found, even, strict=True)],
-        "matched": [sum(bool(sp.cancel(p.to_sympy(n) / w).is_number) for p, n in found) for w in wanted],
+        "found": [
+            (p.degrees, rho, len(p.terms)) for (p, _), (rho, _) in zip(found, even, strict=True)
+        ],
+        "matched": [
+            sum(bool(sp.cancel(p.to_sympy(n) / w).is_number) for p, n in found) for w in wanted
+        ],
         "listed": ", ".join(sorted(p.text(names) for p, names in found)),
     }
 
 
 def same_at(figure: str, axis: str, value: int, text: str) -> Facts:
-    """Whether a figure's curve at a value of an axis is a product, and its range along rho that of fig. 3."""
+    """Whether a figure's curve at a value of an axis is a product, and its range along rho that of
+    fig. 3.
+    """
     names = slice_of(figure).axis_names
     cut = curves(figure)[0].polynomial.to_sympy(names).subs(sp.Symbol(axis), value)
     ratio = sp.cancel(cut / sp.sympify(text, locals={"rho": sp.Symbol("rho")}))
@@ -192,8 +214,13 @@ def two_slices() -> Facts:
 
 
 def heights(solution: Solution) -> tuple[int, int]:
-    """The signs of y3 and y4 of an equilibrium, which are those of its sines; 0 where its box meets zero."""
-    first, second = ((s > solution.radius) - (s < -solution.radius) for s in (solution.center[1], solution.center[3]))
+    """The signs of y3 and y4 of an equilibrium, which are those of its sines; 0 where its box meets
+    zero.
+    """
+    first, second = (
+        (s > solution.radius) - (s < -solution.radius)
+        for s in (solution.center[1], solution.center[3])
+    )
     return first, second
 
 
@@ -221,7 +248,9 @@ def mirrored() -> Facts:
 
 
 def unloaded_widths(lengths: Sequence[str]) -> Facts:
-    """Whether the range without loads has the width min(L1, L2), or the same one at all lengths, at some L2."""
+    """Whether the range without loads has the width min(L1, L2), or the same one at all lengths, at
+    some L2.
+    """
     found = widths_at("fig2", lengths)
     return {
         "min(L1, L2)": all(
@@ -240,14 +269,20 @@ def falling(figure: str, values: Sequence[str], limit: Mapping[str, Any] | None 
     near = True
     if limit is not None:  # before the first value the range is that of another slice
         whole = operation(**limit).width
-        near = found[0].high < whole.low + FINE and found[0].low > Fraction(99, 100) and whole.center == 1
+        near = (
+            found[0].high < whole.low + FINE
+            and found[0].low > Fraction(99, 100)
+            and whole.center == 1
+        )
     listed = ", ".join(f"{x}: {float(w.center):.9f}" for x, w in zip(values, found, strict=True))
     return {"falls": fall(found), "near the limit": near, "widths": listed}
 
 
 @cache
 def over_length() -> OperationWidths:
-    """The operation range of fig. 4 over L2: `ptmcad range --over`, which proves where it is widest."""
+    """The operation range of fig. 4 over L2: `ptmcad range --over`, which proves where it is
+    widest.
+    """
     return operation_widths(slice_of("fig4"), "rho", rows=39)
 
 
@@ -257,11 +292,16 @@ def row_widths() -> dict[Fraction, Enclosure]:
 
 
 def widths_over_length() -> Facts:
-    """Where the range of fig. 4 is widest, and how it falls from there: from L2 = 1 on, and to 3/2 and to 1/2."""
+    """Where the range of fig. 4 is widest, and how it falls from there: from L2 = 1 on, and to 3/2
+    and to 1/2.
+    """
     found, maxima = row_widths(), over_length().maxima
     best = found[Fraction(1)]
     larger = [x for x, w in found.items() if w.low > best.high]
-    up, down, *near = (float(best.center - w.center) for w in widths_at("fig4", ["3/2", "1/2", "99/100", "101/100"]))
+    up, down, *near = (
+        float(best.center - w.center)
+        for w in widths_at("fig4", ["3/2", "1/2", "99/100", "101/100"])
+    )
     return {
         "places": [str(m.at.low) for m in maxima if m.at.low == m.at.high],
         "number": len(maxima),
@@ -279,4 +319,8 @@ def widths_over_length() -> Facts:
 
 def along_one() -> Facts:
     """The stable counts along L2 = 1 in fig. 4."""
-    return {"counts": [count for count, _ in groupby(i.stable for i in line("fig4", "rho", "1").intervals)]}
+    return {
+        "counts": [
+            count for count, _ in groupby(i.stable for i in line("fig4", "rho", "1").intervals)
+        ]
+    }

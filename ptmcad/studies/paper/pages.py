@@ -1,8 +1,10 @@
-"""The whole paper in one folder: equations, figures, region maps, and a verdict on every claim, as pages and JSON.
+"""The whole paper in one folder: equations, figures, region maps, and a verdict on every claim, as
+pages and JSON.
 
-Guarantee: verdicts and maps are computed in this run; nothing is read from a file of earlier results. All files are
-written together or none is. The HTML is self-contained (pictures are inside, nothing is loaded) and every text in it is
-escaped. What stands between the texts is data, ``pages.yaml``.
+Guarantee: verdicts and maps are computed in this run; nothing is read from a file of earlier
+results. All files are written together or none is. The HTML is self-contained (pictures are inside,
+nothing is loaded) and every text in it is escaped. What stands between the texts is data,
+``pages.yaml``.
 """
 
 from __future__ import annotations
@@ -49,7 +51,9 @@ NOT_AS_PRINTED = (Verdict.REFUTED, Verdict.CORRECTED, Verdict.UNDECIDED)
 def summary(claims: Sequence[Claim]) -> str:
     """The numbers of claims by verdict, in one line."""
     counts = Counter(claim.verdict for claim in claims)
-    return f"{len(claims)} claims: " + ", ".join(f"{counts[v]} {v.value}" for v in Verdict if counts[v])
+    return f"{len(claims)} claims: " + ", ".join(
+        f"{counts[v]} {v.value}" for v in Verdict if counts[v]
+    )
 
 
 def table(claims: Sequence[Claim], seconds: float) -> str:
@@ -63,7 +67,10 @@ def table(claims: Sequence[Claim], seconds: float) -> str:
 
 def claims_json(claims: Sequence[Claim]) -> str:
     """Claims as a JSON document; exact numbers that are not integers are text."""
-    entries = [{"number": number, **asdict(c), "verdict": c.verdict.value} for number, c in enumerate(claims, 1)]
+    entries = [
+        {"number": number, **asdict(c), "verdict": c.verdict.value}
+        for number, c in enumerate(claims, 1)
+    ]
     document = {"document": "ptmcad paper claims", "version": __version__, "claims": entries}
     return json.dumps(document, indent=1, ensure_ascii=False, default=str) + "\n"
 
@@ -93,7 +100,9 @@ def _written(claims: Sequence[Claim], form: str, text: Callable[[str], str]) -> 
             yield parts["claim"].format(
                 number=number,
                 said="".join(parts["said"].format(name, text(said)) for name, said in _said(c)),
-                evidence="".join(parts["evidence"].format(text(sentence)) for sentence in c.evidence),
+                evidence="".join(
+                    parts["evidence"].format(text(sentence)) for sentence in c.evidence
+                ),
                 **_fields(c, text),
             )
 
@@ -101,7 +110,11 @@ def _written(claims: Sequence[Claim], form: str, text: Callable[[str], str]) -> 
 def _fields(c: Claim, text: Callable[[str], str]) -> dict[str, str]:
     """What a claim and its verdict are called."""
     found = {name: text(getattr(c, name)) for name in ("name", "quotation", "statement")}
-    return found | {"verdict": c.verdict.value, "kind": c.verdict.value.replace(" ", "-"), "sign": _SIGNS[c.verdict]}
+    return found | {
+        "verdict": c.verdict.value,
+        "kind": c.verdict.value.replace(" ", "-"),
+        "sign": _SIGNS[c.verdict],
+    }
 
 
 def _title(section: str) -> str:
@@ -110,23 +123,36 @@ def _title(section: str) -> str:
 
 def _said(c: Claim) -> list[tuple[str, str]]:
     """What is said beside the evidence, with what it is."""
-    return [(name.capitalize(), text) for name in ("right", "witness", "reason") if (text := getattr(c, name))]
+    return [
+        (name.capitalize(), text)
+        for name in ("right", "witness", "reason")
+        if (text := getattr(c, name))
+    ]
 
 
 def _page(title: str, body: Iterable[str]) -> str:
     style = Path(__file__).with_suffix(".css").read_text(encoding="utf-8")
-    return str(FORMS["page"]).format(title=escape(title), style=style, paper=escape(PAPER), body="\n".join(body))
+    return str(FORMS["page"]).format(
+        title=escape(title), style=style, paper=escape(PAPER), body="\n".join(body)
+    )
 
 
-def index_html(claims: Sequence[Claim], figures: Sequence[str], formulas: Sequence[Equation]) -> str:
-    """The first page: what is in the folder, the verdicts that are not plain confirmations, figures and equations."""
+def index_html(
+    claims: Sequence[Claim], figures: Sequence[str], formulas: Sequence[Equation]
+) -> str:
+    """The first page: what is in the folder, the verdicts that are not plain confirmations, figures
+    and equations.
+    """
     rows = [
-        FORMS["row"].format(place=_title(c.section), said=escape(_said(c)[0][1]), **_fields(c, escape))
+        FORMS["row"].format(
+            place=_title(c.section), said=escape(_said(c)[0][1]), **_fields(c, escape)
+        )
         for c in claims
         if c.verdict in NOT_AS_PRINTED
     ]
     texts = [
-        FORMS["equation"].format(number=escape(e.number), what=escape(e.what), text=escape(e.text)) for e in formulas
+        FORMS["equation"].format(number=escape(e.number), what=escape(e.what), text=escape(e.text))
+        for e in formulas
     ]
     body = FORMS["index"].format(
         summary=escape(summary(claims)),
@@ -160,8 +186,11 @@ def figure_html(name: str, result: RegionMap, pictures: Mapping[str, bytes]) -> 
 # ---------------------------------------------------------------------------------------------------------- everything
 
 
-def reproduce(folder: Path, progress: Progress = lambda _part, _done, _total: None) -> tuple[tuple[Claim, ...], float]:
-    """Compute everything and write it into a folder, which is made if it is missing: the claims, and the seconds.
+def reproduce(
+    folder: Path, progress: Progress = lambda _part, _done, _total: None
+) -> tuple[tuple[Claim, ...], float]:
+    """Compute everything and write it into a folder, which is made if it is missing: the claims,
+    and the seconds.
 
     Raises
     ------
@@ -194,7 +223,9 @@ def reproduce(folder: Path, progress: Progress = lambda _part, _done, _total: No
 
 
 def _pictures(figure: str) -> dict[str, bytes]:
-    """Names, such as ``fig4.png`` (the map beside the stable poses) and ``fig4-poses.svg``, and contents."""
+    """Names, such as ``fig4.png`` (the map beside the stable poses) and ``fig4-poses.svg``, and
+    contents.
+    """
     from ptmcad.show.render.figure import draw_figure
     from ptmcad.show.render.poses import draw_poses
     from ptmcad.show.render.printing import content
@@ -202,5 +233,12 @@ def _pictures(figure: str) -> dict[str, bytes]:
     at: dict[str, Any] = dict(POINTS[figure][1])
     result, poses = region_map(figure), solve(figure, **at)
     first, second = (Fraction(at[name]) for name in result.slice.axis_names)
-    drawn = {figure: draw_figure(result, (first, second), poses), f"{figure}-poses": draw_poses(poses)}
-    return {f"{name}.{kind}": content(picture, kind) for name, picture in drawn.items() for kind in PICTURES}
+    drawn = {
+        figure: draw_figure(result, (first, second), poses),
+        f"{figure}-poses": draw_poses(poses),
+    }
+    return {
+        f"{name}.{kind}": content(picture, kind)
+        for name, picture in drawn.items()
+        for kind in PICTURES
+    }

@@ -1,13 +1,16 @@
-"""The equations of springs with a free length at one design, squared until no root is left, as section 5.2 does.
+"""The equations of springs with a free length at one design, squared until no root is left, as
+section 5.2 does.
 
-Guarantee: exact polynomials over Q up to a constant; a solution that is listed is one, with its signs, and of the
-simple roots of the eliminated polynomial none is left out that is not counted as unsettled. Of multiple roots, which
-are poses with a length of zero or, without loads, flat poses, nothing is said.
+Guarantee: exact polynomials over Q up to a constant; a solution that is listed is one, with its
+signs, and of the simple roots of the eliminated polynomial none is left out that is not counted as
+unsettled. Of multiple roots, which are poses with a length of zero or, without loads, flat poses,
+nothing is said.
 
-With a spring length l_i = sqrt(q_i) each equation is a + b/l + c/l3 = 0, l being that of the spring at its own rod.
-The product over the signs of the two roots is a polynomial in the tangents t1, t2 of the half angles, so a simple root
-t2 of the resultant belongs to one t1 and one choice of signs in each equation. It solves both, for some signs of the
-lengths, where they choose the same sign of l3; with all signs positive it is an equilibrium.
+With a spring length l_i = sqrt(q_i) each equation is a + b/l + c/l3 = 0, l being that of the spring
+at its own rod. The product over the signs of the two roots is a polynomial in the tangents t1, t2
+of the half angles, so a simple root t2 of the resultant belongs to one t1 and one choice of signs
+in each equation. It solves both, for some signs of the lengths, where they choose the same sign of
+l3; with all signs positive it is an equilibrium.
 """
 
 from __future__ import annotations
@@ -67,16 +70,26 @@ def squared(design: Design) -> Elimination:
     """The equations at a design, after two squarings and elimination."""
     numbers = [sp.Rational(x) for x in design]
     # all are lengths, loads over k too: scaling them leaves the angles as they are
-    at = dict(zip(NAMES, (x * sp.ilcm(*(x.q for x in numbers)) for x in numbers), strict=True)) | {k: 1}
+    at = dict(zip(NAMES, (x * sp.ilcm(*(x.q for x in numbers)) for x in numbers), strict=True)) | {
+        k: 1
+    }
     squares, whole = statements.squares(), _cleared(CLEAR, 1)
     equations = []
     for slope, own, other in zip(statements.gradient(), (1, 0), (t2, t1), strict=True):
         g = slope.subs(dict.fromkeys(HORIZONTAL, 0))
-        parts = (g.subs(l0, 0), g.coeff(LENGTHS[own], -1), g.coeff(LENGTHS[2], -1), squares[own], squares[2])
+        parts = (
+            g.subs(l0, 0),
+            g.coeff(LENGTHS[own], -1),
+            g.coeff(LENGTHS[2], -1),
+            squares[own],
+            squares[2],
+        )
         a, b, c, q, q3 = (_cleared(part.subs(at), CLEAR) for part in parts)
         inner = a**2 * q * q3 - whole * (b**2 * q3 + c**2 * q)
         # the angle that a and the own spring's length have not in common was cleared once too often
-        norm = (inner**2 - 4 * whole**2 * b**2 * c**2 * q * q3).exquo(_cleared((1 + other**2) ** 2, 1))
+        norm = (inner**2 - 4 * whole**2 * b**2 * c**2 * q * q3).exquo(
+            _cleared((1 + other**2) ** 2, 1)
+        )
         equations.append(PLANE.from_dict({powers: int(x) for powers, x in norm.terms()}))
     first, second = (coefficients_in(p, 0) for p in equations)
     polynomial = resultant(first, second)
@@ -134,24 +147,32 @@ def signed_solutions(design: Design) -> SignedSolutions:
     found, opposed, unsettled = [], 0, 0
     with ctx.workprec(BITS):
         values = dict(zip(map(str, NAMES), (ball_of(Fraction(x)) for x in design), strict=True))
-        values |= {f"{name}{n}": x for name, x in (("k", arb(1)), ("l0_", values["l0"])) for n in (1, 2, 3)}
+        values |= {
+            f"{name}{n}": x for name, x in (("k", arb(1)), ("l0_", values["l0"])) for n in (1, 2, 3)
+        }
         rows = [coefficients_in(p, 0) for p in system.equations]
         for t2 in _complex_roots(system.factors.get(1, fmpz_poly([1]))):
             t1 = _common_root(*([acb_poly(c)(t2) for c in row] for row in rows))
             zeros = [] if t1 is None else _vanishing(values, (t1, t2))
-            if t1 is None or any(len(signs) != 2 for signs in zeros):  # the other own length has either sign
+            if t1 is None or any(
+                len(signs) != 2 for signs in zeros
+            ):  # the other own length has either sign
                 unsettled += 1
                 if t2.imag == 0:
                     raise ArithmeticError("a real root is not settled")
             elif common := set.intersection(*zeros):
-                found.append((t1, t2, common.pop()))  # t1 is a rational function of t2, so it is real where t2 is
+                found.append(
+                    (t1, t2, common.pop())
+                )  # t1 is a rational function of t2, so it is real where t2 is
             else:
                 opposed += 1
     return SignedSolutions(tuple(found), opposed, unsettled)
 
 
 def _complex_roots(p: fmpz_poly) -> list[acb]:
-    """Disjoint balls around the roots, without multiplicities; the imaginary part of a real one is exactly 0."""
+    """Disjoint balls around the roots, without multiplicities; the imaginary part of a real one is
+    exactly 0.
+    """
     pairs: Any = p.complex_roots()  # FLINT's stub says otherwise
     return [root for root, _ in pairs]
 
@@ -174,7 +195,9 @@ def _vanishing(values: Mapping[str, Any], tangents: Sequence[acb]) -> list[set[S
     zeros: list[set[Signs]] = [set(), set()]
     for signs in product((1, -1), repeat=3):
         # any continuous choice of the roots serves: both signs are tried
-        for found, slope in zip(zeros, derivatives(values, circles, partial(_root, iter(signs)))[0], strict=True):
+        for found, slope in zip(
+            zeros, derivatives(values, circles, partial(_root, iter(signs)))[0], strict=True
+        ):
             if slope.contains(0):
                 found.add(signs)
     return zeros

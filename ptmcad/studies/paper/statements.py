@@ -1,19 +1,21 @@
-"""Statements about the mechanism as text, such as ``g1 = -L1*k*(L2*sin12 - 2*rho*s1 + F3/k*c1)``, and if they hold.
+"""Statements about the mechanism as text, such as ``g1 = -L1*k*(L2*sin12 - 2*rho*s1 + F3/k*c1)``,
+and if they hold.
 
-Guarantee: potential, gradient and Hessian follow from the description's points, springs and loads by differentiation;
-nothing of the paper enters them. An equation holds when both sides agree as functions of the angles and of all
-parameters; ``not`` before it says that they do not. Anything else is a comparison of numbers. Numbers of equilibria are
-those of `ptmcad.solve`.
+Guarantee: potential, gradient and Hessian follow from the description's points, springs and loads
+by differentiation; nothing of the paper enters them. An equation holds when both sides agree as
+functions of the angles and of all parameters; ``not`` before it says that they do not. Anything
+else is a comparison of numbers. Numbers of equilibria are those of `ptmcad.solve`.
 
-The symbols are the paper's: L1, L2, rho, k, F3, F4, F3x, F4x; c1, s1, c2, s2 for cosines and sines; t1, t2 for tangents
-of half angles; l1, l2, l3 for the springs' lengths and l0 for their free one. All stiffnesses are k here and all free
-lengths l0.
+The symbols are the paper's: L1, L2, rho, k, F3, F4, F3x, F4x; c1, s1, c2, s2 for cosines and sines;
+t1, t2 for tangents of half angles; l1, l2, l3 for the springs' lengths and l0 for their free one.
+All stiffnesses are k here and all free lengths l0.
 
-``U``, ``g1``, ``H11`` and so on are without horizontal loads and free lengths, those that end in ``_h`` with horizontal
-loads; ``E1`` and ``E2`` are the gradient in half angles, divided by L1 k and L2 k; ``q0`` to ``q6`` the coefficients of
-the ``sextic`` in t2 that elimination of t1 leaves; ``OTHER`` is t1 by t2 where the angles of equal rods under equal
-forces differ; ``COS1`` and ``COS2`` are cosines of the triangle with sides L1, L2 and 2 rho; ``eliminated_12`` is what
-remains of (11) where the angles differ.
+``U``, ``g1``, ``H11`` and so on are without horizontal loads and free lengths, those that end in
+``_h`` with horizontal loads; ``E1`` and ``E2`` are the gradient in half angles, divided by L1 k and
+L2 k; ``q0`` to ``q6`` the coefficients of the ``sextic`` in t2 that elimination of t1 leaves;
+``OTHER`` is t1 by t2 where the angles of equal rods under equal forces differ; ``COS1`` and
+``COS2`` are cosines of the triangle with sides L1, L2 and 2 rho; ``eliminated_12`` is what remains
+of (11) where the angles differ.
 """
 
 from __future__ import annotations
@@ -64,7 +66,9 @@ TEXTS = texts_beside(__file__, "expressions.yaml")
 @cache
 def points() -> Mapping[str, tuple[Expr, Expr]]:
     """The coordinates of A1, A2, A3 and A4."""
-    return {name: (evaluate(x, _RING), evaluate(y, _RING)) for name, (x, y) in _MECHANISM.points.items()}
+    return {
+        name: (evaluate(x, _RING), evaluate(y, _RING)) for name, (x, y) in _MECHANISM.points.items()
+    }
 
 
 @cache
@@ -78,7 +82,9 @@ def squares() -> tuple[Expr, ...]:
 @cache
 def potential() -> Expr:
     """Of springs and loads, with the free length; squares of the lengths are put in."""
-    total = sum(k / 2 * (square - 2 * l0 * x + l0**2) for x, square in zip(LENGTHS, squares(), strict=True))
+    total = sum(
+        k / 2 * (square - 2 * l0 * x + l0**2) for x, square in zip(LENGTHS, squares(), strict=True)
+    )
     for element in _MECHANISM.elements_with(_MECHANISM.points).values():
         if element.root is None:  # those that have one are the springs
             total += sum(evaluate(tree, _RING) for tree in element.energies)
@@ -134,7 +140,11 @@ def expression(text: str) -> Expr:
 def names() -> dict[str, Any]:
     """What names stand for."""
     known = SYMBOLS | FUNCTIONS
-    known |= {f"{name}{axis}": x for name, at in points().items() for axis, x in zip("xy", at, strict=True)}
+    known |= {
+        f"{name}{axis}": x
+        for name, at in points().items()
+        for axis, x in zip("xy", at, strict=True)
+    }
     found = (potential(), *gradient(), *hessian())
     derived = dict(zip(("U", "g1", "g2", "H11", "H12", "H22"), found, strict=True))
     known |= {f"{name}_l": e for name, e in derived.items()}
@@ -152,7 +162,9 @@ def names() -> dict[str, Any]:
 PLACES = {
     "unloaded": {F3: 0, F4: 0}, "symmetric": {L2: L1, F3: F4}, "same": {t1: t2}, "swapped": {t1: t2, t2: t1},
 }  # fmt: skip
-"""Without loads, for equal rods and forces, where both angles are the same, and with the angles exchanged."""
+"""Without loads, for equal rods and forces, where both angles are the same, and with the angles
+exchanged.
+"""
 
 
 def placed(values: dict[Expr, Expr], e: Expr) -> Expr:
@@ -162,7 +174,9 @@ def placed(values: dict[Expr, Expr], e: Expr) -> Expr:
 
 def at(e: Expr, **values: Expr) -> Expr:
     """The same, by names."""
-    return sp.sympify(e).subs({SYMBOLS[name]: value for name, value in values.items()}, simultaneous=True)
+    return sp.sympify(e).subs(
+        {SYMBOLS[name]: value for name, value in values.items()}, simultaneous=True
+    )
 
 
 def flat(e: Expr) -> Expr:
@@ -172,7 +186,9 @@ def flat(e: Expr) -> Expr:
 
 
 def triangle(e: Expr) -> Expr:
-    """Without loads in the poses of the triangle with the sides L1, L2 and 2 rho; ``height`` is L1 s1 = L2 s2."""
+    """Without loads in the poses of the triangle with the sides L1, L2 and 2 rho; ``height`` is L1
+    s1 = L2 s2.
+    """
     cosine, other = expression("COS1"), expression("COS2")
     there = placed({F3: 0, F4: 0, s1: height / L1, s2: height / L2, c1: cosine, c2: other}, e)
     return sp.factor(sp.rem(there, height**2 - L1**2 * (1 - cosine**2), height))
@@ -186,7 +202,9 @@ def squared(e: Expr) -> Expr:
 
 
 def numerator(e: Expr) -> Expr:
-    """Of what remains in half angles; zero exactly if an expression is, wherever c^2 + s^2 = 1 for both angles."""
+    """Of what remains in half angles; zero exactly if an expression is, wherever c^2 + s^2 = 1 for
+    both angles.
+    """
     return sp.expand(sp.numer(sp.together(half_angles(e))))
 
 
@@ -194,7 +212,9 @@ def numerator(e: Expr) -> Expr:
 
 
 def independent() -> int:
-    """How many numbers the nodes' positions depend on: the rank of their derivatives at a pose, which is the most."""
+    """How many numbers the nodes' positions depend on: the rank of their derivatives at a pose,
+    which is the most.
+    """
     places = [x for place in points().values() for x in place]
     derivatives = [[sp.diff(x, rho), by_angle(x, 1), by_angle(x, 2)] for x in places]
     pose = {L1: 1, L2: 2, t1: sp.Rational(1, 2), t2: sp.Rational(1, 3)}
@@ -210,7 +230,9 @@ def equilibria(**values: Expr) -> Poses:
 
 def flat_stable(e1: int = 0, e2: int = 0, **values: Expr) -> int:
     """How many flat equilibria are stable; of these, with the sign of a cosine, if it is given."""
-    flat = [p.cosines_sines[::2] for p in equilibria(**values).equilibria if p.stable is True and p.flat]
+    flat = [
+        p.cosines_sines[::2] for p in equilibria(**values).equilibria if p.stable is True and p.flat
+    ]
     return sum(a.center * int(e1) >= 0 and b.center * int(e2) >= 0 for a, b in flat)
 
 
@@ -221,11 +243,24 @@ def equal_angles(**values: Expr) -> int:
 
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {
-    f.__name__: f for f in (at, flat, triangle, squared, numerator, independent, flat_stable, equal_angles, half_angles)
+    f.__name__: f
+    for f in (
+        at,
+        flat,
+        triangle,
+        squared,
+        numerator,
+        independent,
+        flat_stable,
+        equal_angles,
+        half_angles,
+    )
 }
 FUNCTIONS |= {name: partial(placed, values) for name, values in PLACES.items()} | {
     # for equal rods and forces, by t2, where the angles differ
-    "unequal": lambda e: sp.factor(half_angles(placed(PLACES["symmetric"], e)).subs(t1, expression("OTHER"))),
+    "unequal": lambda e: sp.factor(
+        half_angles(placed(PLACES["symmetric"], e)).subs(t1, expression("OTHER"))
+    ),
     "degree": lambda e, unknown: int(sp.degree(numerator(e), unknown)),
     # in all symbols unless some are named
     "terms": lambda e, *unknowns: len(sp.Poly(e, *unknowns).terms()),

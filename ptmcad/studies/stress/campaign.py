@@ -1,12 +1,14 @@
-"""A run of stress cases: each put to ptmcad and to double precision, judged and timed; and random cases.
+"""A run of stress cases: each put to ptmcad and to double precision, judged and timed; and random
+cases.
 
-Guarantee: everything in a campaign but the seconds is the same in the next run with the same versions.
-A run that was stopped by a time limit says so and keeps the cases that were done. It is shown as a table for the
-terminal, a page, JSON and CSV; these two hold every figure, and a number that does not exist is null or empty, never 0.
+Guarantee: everything in a campaign but the seconds is the same in the next run with the same
+versions. A run that was stopped by a time limit says so and keeps the cases that were done. It is
+shown as a table for the terminal, a page, JSON and CSV; these two hold every figure, and a number
+that does not exist is null or empty, never 0.
 
-The same seed and number give the same random case, whose right answer is known by construction: a scaled or mirrored
-copy has the counts of its tame original, which come from the second method; points beside a fold or a cusp have those
-of the construction.
+The same seed and number give the same random case, whose right answer is known by construction: a
+scaled or mirrored copy has the counts of its tame original, which come from the second method;
+points beside a fold or a cusp have those of the construction.
 """
 
 from __future__ import annotations
@@ -41,7 +43,9 @@ PACKAGES = ("python-flint", "numpy", "numba")
 KINDS = ("scaled", "mirrored", "swapped", "fold", "cusp")
 MAX_EXPONENT = 30
 """Scales are 10^-30 to 10^30, distances from a fold 10^-30 to 10^-3."""
-CONSTRUCTED = "construction of a degenerate pose in rational numbers, and on which side of it two more exist"
+CONSTRUCTED = (
+    "construction of a degenerate pose in rational numbers, and on which side of it two more exist"
+)
 ORIGINAL = "symmetry of the equations: counts of the tame original, by the second method"
 TEN = Fraction(10)
 
@@ -92,7 +96,9 @@ def campaign(
 
 
 def run(case: Case, repeats: int) -> Row:
-    """Answer and judge a case: a row with the ``seconds`` of processor time that it takes, the median of its runs."""
+    """Answer and judge a case: a row with the ``seconds`` of processor time that it takes, the
+    median of its runs.
+    """
     verdict = judge(case, answer(case.question, case.name))
     return {
         "name": case.name, "family": case.family, "asked": case.question.kind,
@@ -107,7 +113,12 @@ def answer(question: Question, name: str = "case") -> Any:
 
     if not question.axes:
         return ptmcad.solve(None, DIGITS, None, **question.parameters)
-    record = {"name": name, "mechanism": "ptm", "parameters": question.parameters, "axes": question.axes}
+    record = {
+        "name": name,
+        "mechanism": "ptm",
+        "parameters": question.parameters,
+        "axes": question.axes,
+    }
     slice = ptmcad.slice_from_mapping(record)
     if question.along:
         return ptmcad.intervals(slice, question.along, question.fixed)
@@ -133,7 +144,14 @@ def random_case(seed: int, number: int) -> Case:
     if kind in ("fold", "cusp"):
         at, distance = _degenerate(dice, cusp=kind == "cusp"), TEN ** -dice.randint(3, MAX_EXPONENT)
         side, (total, stable) = dice.choice([(1, at.many), (-1, FEW)])
-        return Case(name, family, distance, Question(at.beside(side * distance)), CONSTRUCTED, f"{total}/{stable}")
+        return Case(
+            name,
+            family,
+            distance,
+            Question(at.beside(side * distance)),
+            CONSTRUCTED,
+            f"{total}/{stable}",
+        )
     original, expected = tame(dice)
     scale = TEN ** (dice.choice([-1, 1]) * dice.randint(3, MAX_EXPONENT))
     question = Question(scaled(changed(original, kind), scale, TEN ** dice.randint(-9, 9)))
@@ -142,12 +160,16 @@ def random_case(seed: int, number: int) -> Case:
 
 def scaled(p: Values, stiffness: Fraction, length: Fraction) -> Values:
     """Stiffnesses and lengths multiplied, and forces by both: the equilibria stay."""
-    factors = dict.fromkeys(_MECHANISM.stiffnesses, stiffness) | dict.fromkeys(_MECHANISM.forces, stiffness * length)
+    factors = dict.fromkeys(_MECHANISM.stiffnesses, stiffness) | dict.fromkeys(
+        _MECHANISM.forces, stiffness * length
+    )
     return {name: v * factors.get(name, length) for name, v in p.items()}
 
 
 def changed(p: Values, kind: str) -> Values:
-    """Vertical forces reversed (mirrored), which changes the angles' signs, or left and right exchanged (swapped)."""
+    """Vertical forces reversed (mirrored), which changes the angles' signs, or left and right
+    exchanged (swapped).
+    """
     symmetry = dict(zip(("swapped", "mirrored"), _MECHANISM.symmetries, strict=True)).get(kind, {})
     return {name: value_at(symmetry[name], p) if name in symmetry else v for name, v in p.items()}
 
@@ -157,7 +179,9 @@ def tame(dice: random.Random) -> tuple[Values, str]:
     while True:
         p = {name: Fraction(dice.randint(5, 30), 10) for name in ("L1", "L2", "rho")}
         equal = dice.random() < 1 / 2
-        springs = [Fraction(100)] * 3 if equal else [Fraction(dice.randint(50, 150)) for _ in range(3)]
+        springs = (
+            [Fraction(100)] * 3 if equal else [Fraction(dice.randint(50, 150)) for _ in range(3)]
+        )
         p |= dict(zip(_MECHANISM.stiffnesses, springs, strict=True))
         p |= {name: Fraction(dice.randint(-40, 40)) for name in ("F3", "F4")}
         sideways = dice.random() < 1 / 3
@@ -172,7 +196,9 @@ def tame(dice: random.Random) -> tuple[Values, str]:
 def _degenerate(dice: random.Random, *, cusp: bool) -> Degenerate:
     """A random fold or cusp."""
     while True:
-        tangents, lengths = ([Fraction(dice.randint(*ends), 10) for _ in range(2)] for ends in ((-30, 30), (5, 20)))
+        tangents, lengths = (
+            [Fraction(dice.randint(*ends), 10) for _ in range(2)] for ends in ((-30, 30), (5, 20))
+        )
         springs = [Fraction(dice.choice([50, 100, 100, 100, 150])) for _ in range(3)]
         rho = Fraction(dice.randint(2, 20), 10)
         try:
@@ -186,7 +212,9 @@ def _degenerate(dice: random.Random, *, cusp: bool) -> Degenerate:
 
 def cells(row: Row) -> tuple[str, ...]:
     """A row of the table, in the order of `HEADINGS`."""
-    numbers = ("-" if row[name] is None else f"{row[name]:.2g}" for name in ("double_error", "condition"))
+    numbers = (
+        "-" if row[name] is None else f"{row[name]:.2g}" for name in ("double_error", "condition")
+    )
     found = row["found"] + (" WRONG" if not row["right"] else "")
     double = row["double"] + (" wrong" if not row["double_right"] else "")
     return row["name"], row["expected"], found, double, *numbers, str(row["bits"] or "-")
@@ -199,7 +227,9 @@ def table(campaign: Row, wanted: int) -> str:
 
 
 def markdown(campaign: Row) -> str:
-    """The campaign as a Markdown page; times are left out, so that the same versions write the same page."""
+    """The campaign as a Markdown page; times are left out, so that the same versions write the same
+    page.
+    """
     rows = [(row["family"], *cells(row)) for row in campaign["cases"]]
     right, double, *_ = summary(campaign, len(rows))
     written = f"Written by `ptmcad stress` with seed {campaign['seed']}. {right}; {double}."
@@ -216,9 +246,13 @@ def summary(campaign: Row, wanted: int) -> list[str]:
     rows = campaign["cases"]
     wrong = [row for row in rows if not row["right"]]
     lines = [f"ptmcad is right in {len(rows) - len(wrong)} of {len(rows)} cases"]
-    lines.append(f"double precision is wrong in {sum(not row['double_right'] for row in rows)} of {len(rows)}")
+    lines.append(
+        f"double precision is wrong in {sum(not row['double_right'] for row in rows)} of {len(rows)}"
+    )
     lines += [f"wrong: {row['name']}: {'; '.join(row['remarks'])}" for row in wrong]
-    return lines + ([f"stopped: {wanted - len(rows)} cases were not run"] if wanted > len(rows) else [])
+    return lines + (
+        [f"stopped: {wanted - len(rows)} cases were not run"] if wanted > len(rows) else []
+    )
 
 
 def listing(cases: Sequence[Case]) -> str:
@@ -233,7 +267,10 @@ def to_json(campaign: Row) -> str:
 
 def to_csv(campaign: Row) -> str:
     """The same, one row for each case."""
-    text, rows = io.StringIO(), [{**row, "remarks": "; ".join(row["remarks"])} for row in campaign["cases"]]
+    text, rows = (
+        io.StringIO(),
+        [{**row, "remarks": "; ".join(row["remarks"])} for row in campaign["cases"]],
+    )
     if rows:
         writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         writer.writeheader()

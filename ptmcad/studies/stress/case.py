@@ -1,31 +1,37 @@
 """A stress case: a question with extreme numbers, and the answer with where it comes from.
 
-Guarantee: all numbers are exact. An expected answer says what is known beforehand; what it leaves open is empty. Names
-are unique. The named cases are data, ``cases.yaml``, whose head says how they are written. Their counts follow from a
-theorem or a construction named in ``source``, and do not come from the program. The theorems are those of the manual:
-without load two equilibria are stable, of six, exactly if |L2 - L1| < 2 rho < L1 + L2, else one of four; loads that are
-small (large) enough against k rho and k L change nothing else (leave four, one of them stable); equations stay the same
-when stiffnesses and forces, or lengths and force/stiffness, are scaled together. Areas are in the product of the axes'
-units.
+Guarantee: all numbers are exact. An expected answer says what is known beforehand; what it leaves
+open is empty. Names are unique. The named cases are data, ``cases.yaml``, whose head says how they
+are written. Their counts follow from a theorem or a construction named in ``source``, and do not
+come from the program. The theorems are those of the manual: without load two equilibria are stable,
+of six, exactly if |L2 - L1| < 2 rho < L1 + L2, else one of four; loads that are small (large)
+enough against k rho and k L change nothing else (leave four, one of them stable); equations stay
+the same when stiffnesses and forces, or lengths and force/stiffness, are scaled together. Areas are
+in the product of the axes' units.
 
-A degenerate equilibrium is constructed exactly: at the parameters a rational pose is an equilibrium with a singular
-Hessian, and the signs that distinguish the sides, of which one has more equilibria, are computed in rational numbers.
+A degenerate equilibrium is constructed exactly: at the parameters a rational pose is an equilibrium
+with a singular Hessian, and the signs that distinguish the sides, of which one has more equilibria,
+are computed in rational numbers.
 
-Derivation. The potential is phi_1(th1) + phi_2(th2) + G cos(th1 + th2), with G = k3 L1 L2 and phi_i a sine wave. So at
-an equilibrium, writing h_ij for the Hessian, c12 and s12 for cosine and sine of th1 + th2,
+Derivation. The potential is phi_1(th1) + phi_2(th2) + G cos(th1 + th2), with G = k3 L1 L2 and phi_i
+a sine wave. So at an equilibrium, writing h_ij for the Hessian, c12 and s12 for cosine and sine of
+th1 + th2,
 
     h12 = -G c12,    U_111 = U_222 = 0,    U_112 = U_122 = G s12,
     U_1111 = -h11,   U_2222 = -h22,        every mixed fourth derivative is -h12.
 
-*Fold.* With h11 h22 = h12^2, kernel v = (h12, -h11) and b = 3 G s12 v1 v2 (v1 + v2) not zero, a load that changes the
-gradient along v by a has two more equilibria near by on the side where a b < 0 (saddle-node). They are a minimum and a
-saddle if the other eigenvalue, whose sign is that of h11, is positive, and else a saddle and a maximum.
+*Fold.* With h11 h22 = h12^2, kernel v = (h12, -h11) and b = 3 G s12 v1 v2 (v1 + v2) not zero, a
+load that changes the gradient along v by a has two more equilibria near by on the side where a
+b < 0 (saddle-node). They are a minimum and a saddle if the other eigenvalue, whose sign is that of
+h11, is positive, and else a saddle and a maximum.
 
-*Cusp.* With h11 = h12 = h22 = h the kernel is v = (1, -1) and b = 0. The fourth derivative along the centre manifold is
-q = U(v, v, v, v) - 3 w.w / (2 h) with U(v, v, v, v) = 0 and w = -G s12 (1, 1), so q = -3 (G s12)^2 / h. Changing h22 by
-d while the pose stays an equilibrium gives d s^2 / 2 + q s^4 / 24 along v: three equilibria where d q < 0, else one.
+*Cusp.* With h11 = h12 = h22 = h the kernel is v = (1, -1) and b = 0. The fourth derivative along
+the centre manifold is q = U(v, v, v, v) - 3 w.w / (2 h) with U(v, v, v, v) = 0 and w = -G s12 (1,
+1), so q = -3 (G s12)^2 / h. Changing h22 by d while the pose stays an equilibrium gives
+d s^2 / 2 + q s^4 / 24 along v: three equilibria where d q < 0, else one.
 
-On the torus there are 4 or 6 equilibria in all (minima - saddles + maxima = 0), so the counts on both sides follow.
+On the torus there are 4 or 6 equilibria in all (minima - saddles + maxima = 0), so the counts on
+both sides follow.
 """
 
 from __future__ import annotations
@@ -58,12 +64,14 @@ FEW = (4, 1)
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What ptmcad is asked: without axes `ptmcad.solve`, with axes `ptmcad.classify` or, along one, `ptmcad.intervals`.
+    """What ptmcad is asked: without axes `ptmcad.solve`, with axes `ptmcad.classify` or, along one,
+    `ptmcad.intervals`.
 
     Attributes
     ----------
     parameters : of the paper's mechanism; of a point all of them but free lengths that are zero.
-    tolerance : the share of the window that the certified engine may leave undetermined; None for the exact engine.
+    tolerance : the share of the window that the certified engine may leave undetermined; None for
+        the exact engine.
     along, fixed : the axis that varies along a line, and the value of the other one.
     """
 
@@ -87,13 +95,14 @@ class Case:
 
     Attributes
     ----------
-    stiffness : what is extreme, as one positive number: a ratio of stiffnesses, lengths or forces, or the distance from
-        a fold; the plot's horizontal axis.
+    stiffness : what is extreme, as one positive number: a ratio of stiffnesses, lengths or forces,
+        or the distance from a fold; the plot's horizontal axis.
     source : where the expected answer comes from.
-    expected : as it is shown: 6/2 of a point (all and stable equilibria), 1 2 1 of maps and lines (stable counts, of
-        regions in increasing order, of intervals in theirs); empty where a second method alone knows it.
-    bounds : of a map, for the area where two equilibria are stable; of a line, for the ends between intervals of
-        different counts.
+    expected : as it is shown: 6/2 of a point (all and stable equilibria), 1 2 1 of maps and lines
+        (stable counts, of regions in increasing order, of intervals in theirs); empty where a
+        second method alone knows it.
+    bounds : of a map, for the area where two equilibria are stable; of a line, for the ends between
+        intervals of different counts.
     slow : whether it takes more than about a second.
     """
 
@@ -113,8 +122,18 @@ def free_lengths(parameters: Parameters) -> bool:
 
 
 def point(**given: Fraction | int | str) -> Question:
-    """A point of the paper's mechanism: L1 = 1, L2 = 3/2, rho = 7/10, k = 100 and no load unless given."""
-    values = {"L1": "1", "L2": "3/2", "rho": "7/10", "k": 100, "l0": 0, **dict.fromkeys(ptm().forces, 0), **given}
+    """A point of the paper's mechanism: L1 = 1, L2 = 3/2, rho = 7/10, k = 100 and no load unless
+    given.
+    """
+    values = {
+        "L1": "1",
+        "L2": "3/2",
+        "rho": "7/10",
+        "k": 100,
+        "l0": 0,
+        **dict.fromkeys(ptm().forces, 0),
+        **given,
+    }
     p = {name: Fraction(value) for name, value in values.items()}
     springs, free = dict.fromkeys(ptm().stiffnesses, p.pop("k")), p.pop("l0")
     lengths = dict.fromkeys(ptm().free_lengths, free) if free else {}
@@ -143,8 +162,8 @@ class Degenerate:
     def beside(self, distance: Fraction) -> Parameters:
         """The parameters at a distance; positive is towards more equilibria.
 
-        Of a fold F3 is changed by so many times the force k2 rho; of a cusp h22 by so many times k3 L2^2, while the
-        pose is kept an equilibrium.
+        Of a fold F3 is changed by so many times the force k2 rho; of a cusp h22 by so many times k3
+        L2^2, while the pose is kept an equilibrium.
         """
         p, (_, _, c2, s2) = self.parameters, self.pose
         change = self.side * distance
@@ -163,7 +182,8 @@ def degenerate(
     rho: Fraction = Fraction(7, 10),
     springs: Sequence[Fraction] = (Fraction(100),) * 3,
 ) -> Degenerate:
-    """Loads under which a pose, by its half angles' tangents, lies on a fold, with F3x zero, or at a cusp of the folds.
+    """Loads under which a pose, by its half angles' tangents, lies on a fold, with F3x zero, or at
+    a cusp of the folds.
 
     Raises
     ------
@@ -187,13 +207,17 @@ def degenerate(
     # (k2 + k3) rho + F3x = a1 and (k1 + k3) rho - F4x = a2
     a1, a2 = k3 * second * c2 + h11 * c1 / first, k3 * first * c1 + h12 * h12 / h11 * c2 / second
     parameters = {
-        **dict(zip(("L1", "L2", "rho", "k1", "k2", "k3"), (first, second, rho, *springs), strict=True)),
+        **dict(
+            zip(("L1", "L2", "rho", "k1", "k2", "k3"), (first, second, rho, *springs), strict=True)
+        ),
         "F3": s1 * (a1 - k3 * second * c2) / c1 - k3 * second * s2,
         "F4": (a2 * s2 - k3 * first * s12) / c2,
         "F3x": a1 - (k2 + k3) * rho,
         "F4x": (k1 + k3) * rho - a2,
     }
-    return Degenerate(parameters, (c1, s1, c2, s2), cusp, (6, 2) if h11 > 0 else (6, 1), 1 if towards > 0 else -1)
+    return Degenerate(
+        parameters, (c1, s1, c2, s2), cusp, (6, 2) if h11 > 0 else (6, 1), 1 if towards > 0 else -1
+    )
 
 
 NAMED = {

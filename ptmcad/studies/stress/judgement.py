@@ -1,12 +1,14 @@
-"""Whether an answer to a stress case is right, and what double precision makes of the same question.
+"""Whether an answer to a stress case is right, and what double precision makes of the same
+question.
 
-Guarantee: an answer is judged by what is known beforehand and by a second method; nothing of it is taken on trust.
-``right`` means that the counts are those expected, that the second method found the same, and that every enclosed angle
-contains the one to 100 digits.
+Guarantee: an answer is judged by what is known beforehand and by a second method; nothing of it is
+taken on trust. ``right`` means that the counts are those expected, that the second method found the
+same, and that every enclosed angle contains the one to 100 digits.
 
-The condition number of an equilibrium is S |H^-1|, the largest summand S of the gradient (a moment of a spring or a
-load about a joint) over the smallest modulus of an eigenvalue of the Hessian H: when every summand changes by a small
-share e, the pose turns by at most about 2 e S |H^-1| radians. A point's is the largest of its equilibria.
+The condition number of an equilibrium is S |H^-1|, the largest summand S of the gradient (a moment
+of a spring or a load about a joint) over the smallest modulus of an eigenvalue of the Hessian H:
+when every summand changes by a small share e, the pose turns by at most about 2 e S |H^-1| radians.
+A point's is the largest of its equilibria.
 """
 
 from __future__ import annotations
@@ -24,7 +26,13 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.studies.byhand import scale
 from ptmcad.studies.stress.case import Case, free_lengths
-from ptmcad.studies.stress.methods import IndexedPose, apart, double_poses, proved_poses, sextic_poses
+from ptmcad.studies.stress.methods import (
+    IndexedPose,
+    apart,
+    double_poses,
+    proved_poses,
+    sextic_poses,
+)
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.expressions import Expression, values_at
 
@@ -42,13 +50,14 @@ Row = dict[str, Any]
 """What came out of a case.
 
 - ``expected``, ``found``, ``double``: the answers as text.
-- ``right``: whether ptmcad's answer is, by all checks; a decided wrong one is as wrong as an undecided one.
+- ``right``: whether ptmcad's answer is, by all checks; a decided wrong one is as wrong as an
+  undecided one.
 - ``remarks``: what is not right of it.
 - ``double_right``: whether the double-precision method's answer is right.
-- ``error``: largest error of ptmcad's angles (the middles of its enclosures) in radians; for lines, of the ends
-  relative to the window. None where nothing is compared.
-- ``double_error``: the same of the double-precision method, over the poses that it has; for maps the share of the
-  grid's points with a wrong count.
+- ``error``: largest error of ptmcad's angles (the middles of its enclosures) in radians; for lines,
+  of the ends relative to the window. None where nothing is compared.
+- ``double_error``: the same of the double-precision method, over the poses that it has; for maps
+  the share of the grid's points with a wrong count.
 - ``condition``: see the module; None for maps and lines.
 - ``bits``: of precision that ptmcad needed; the largest over its stages.
 """
@@ -56,12 +65,17 @@ Row = dict[str, Any]
 
 def judge(case: Case, found: Any) -> Row:
     """The verdict on an answer to the case, without its cost."""
-    judgements: dict[str, Callable[[Case, Any], tuple[Checks, Row]]] = {"point": _point, "line": _line}
+    judgements: dict[str, Callable[[Case, Any], tuple[Checks, Row]]] = {
+        "point": _point,
+        "line": _line,
+    }
     with ctx.workprec(_BITS):
         checks, row = judgements.get(case.question.kind, _map)(case, found)
     remarks = [remark for holds, remark in checks if not holds]
     known: Row = {"expected": case.expected, "right": not remarks, "remarks": remarks}
-    numbers = {name: x if not isinstance(x, float) or isfinite(x) else None for name, x in row.items()}
+    numbers = {
+        name: x if not isinstance(x, float) or isfinite(x) else None for name, x in row.items()
+    }
     return {**known, "error": None, "condition": None, "bits": 0, **numbers}
 
 
@@ -91,18 +105,25 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
     double = double_poses(parameters)
     ours = [_boxed(pose) for pose in found.equilibria]
     if free_lengths(parameters):
-        known = proved_poses(parameters, [(pose.th1, pose.th2) for pose in (*(double or ()), *ours)])
+        known = proved_poses(
+            parameters, [(pose.th1, pose.th2) for pose in (*(double or ()), *ours)]
+        )
     else:
         known = sextic_poses(parameters)
     text, other, error = f"{len(ours)}/{found.stable}", _shown(known), _error(ours, known)
     checks = [
         (found.status in DECIDED, f"status {found.status.value}: {found.remark}"),
         (text == other, f"the second method finds {other}"),
-        (case.expected in ("", text), f"{text} equilibria and stable ones, but {case.expected} by construction"),
+        (
+            case.expected in ("", text),
+            f"{text} equilibria and stable ones, but {case.expected} by construction",
+        ),
         (error is not None, "an enclosure does not contain the reference to 100 digits"),
     ]
     errors = [min(float(apart(p, r).mid()) for r in known) for p in double or () if known]
-    smallest = min((abs(e.center) for p in found.equilibria for e in p.eigenvalues), default=Fraction(0))
+    smallest = min(
+        (abs(e.center) for p in found.equilibria for e in p.eigenvalues), default=Fraction(0)
+    )
     largest = Fraction(scale({name: float(value) for name, value in parameters.items()}))
     return checks, {
         "expected": case.expected or other,
@@ -123,7 +144,9 @@ def _boxed(pose: Pose) -> IndexedPose:
 
 
 def _error(found: Sequence[IndexedPose], reference: Sequence[IndexedPose]) -> Fraction | None:
-    """The largest error of an angle; None unless each pose encloses one of the references, with its index."""
+    """The largest error of an angle; None unless each pose encloses one of the references, with its
+    index.
+    """
     left, largest = list(reference), Fraction(0)
     for pose in found:
         inside = [r for r in left if r.index == pose.index and apart(pose, r).contains(0)]
@@ -153,7 +176,10 @@ def _map(case: Case, found: RegionMap) -> tuple[Checks, Row]:
     ]
     if tolerance is None:
         checks += [_confirmed(parameters, r.sample, r.stable) for r in found.regions]
-    places = [dict(zip(found.slice.axis_names, at, strict=True)) for at in product(_middles(a, b), _middles(c, d))]
+    places = [
+        dict(zip(found.slice.axis_names, at, strict=True))
+        for at in product(_middles(a, b), _middles(c, d))
+    ]
     pairs = [(_double(parameters, tuple(at.values())), found.locate(**at).stable) for at in places]
     decided = [count == truth for count, truth in pairs if truth is not None]
     seen = sorted({count for count, truth in pairs if truth is not None})
@@ -172,32 +198,48 @@ def _line(case: Case, found: CountIntervals) -> tuple[Checks, Row]:
     runs = [next(group) for _, group in groupby(found.intervals, lambda interval: interval.stable)]
     stable, ends = [i.stable for i in runs], [(lower(i.low), upper(i.low)) for i in runs[1:]]
     checks = [*_expected(case, stable, ends)]
-    checks += [_confirmed(parameters, (i.sample, Fraction(0)), i.stable, i.total) for i in found.intervals]
+    checks += [
+        _confirmed(parameters, (i.sample, Fraction(0)), i.stable, i.total) for i in found.intervals
+    ]
     counts = [(_double(parameters, (x, Fraction(0))), x) for x in _middles(low, high, STEPS)]
     changes = [next(group) for _, group in groupby(counts, lambda pair: pair[0])]
     double = [count for count, _ in changes]
     # a change is half a step before the first place behind it
     errors = [
-        abs(x - (high - low) / STEPS / 2 - (a + b) / 2) for (_, x), (a, b) in zip(changes[1:], ends, strict=False)
+        abs(x - (high - low) / STEPS / 2 - (a + b) / 2)
+        for (_, x), (a, b) in zip(changes[1:], ends, strict=False)
     ]
     return checks, {
         "found": _text(stable),
         "double": _text(double),
         "double_right": double == stable,
         "error": float(max(((b - a) / 2 for a, b in ends), default=Fraction(0)) / (high - low)),
-        "double_error": float(max(errors, default=Fraction(0)) / (high - low)) if len(double) == len(runs) else None,
+        "double_error": float(max(errors, default=Fraction(0)) / (high - low))
+        if len(double) == len(runs)
+        else None,
     }
 
 
-def _expected(case: Case, stable: Sequence[int | None], numbers: Sequence[Sequence[Fraction]]) -> Checks:
+def _expected(
+    case: Case, stable: Sequence[int | None], numbers: Sequence[Sequence[Fraction]]
+) -> Checks:
     """The counts and the enclosed numbers against those that are known."""
     met = len(numbers) == len(case.bounds) and all(
-        low <= most and high >= least for (low, high), (least, most) in zip(numbers, case.bounds, strict=True)
+        low <= most and high >= least
+        for (low, high), (least, most) in zip(numbers, case.bounds, strict=True)
     )
-    shown = "; ".join(f"{float(ball_of(low)):.10g} to {float(ball_of(high)):.10g}" for low, high in numbers)
+    shown = "; ".join(
+        f"{float(ball_of(low)):.10g} to {float(ball_of(high)):.10g}" for low, high in numbers
+    )
     return [
-        (_text(stable) == case.expected, f"stable counts {_text(stable)}, but {case.expected} are expected"),
-        (met, f"the ends, or the area on which two are stable, are not where they should be: {shown}"),
+        (
+            _text(stable) == case.expected,
+            f"stable counts {_text(stable)}, but {case.expected} are expected",
+        ),
+        (
+            met,
+            f"the ends, or the area on which two are stable, are not where they should be: {shown}",
+        ),
     ]
 
 

@@ -1,20 +1,22 @@
-"""The equilibria at a point: to a hundred digits with proof, and in double precision as they are computed in practice.
+"""The equilibria at a point: to a hundred digits with proof, and in double precision as they are
+computed in practice.
 
-Neither shares anything with `ptmcad.solve` but FLINT's numbers; both begin with the sextic in t = tan(th2/2)
-(`ptmcad.studies.byhand`) where no spring has a free length.
+Neither shares anything with `ptmcad.solve` but FLINT's numbers; both begin with the sextic in
+t = tan(th2/2) (`ptmcad.studies.byhand`) where no spring has a free length.
 
-Guarantee of `newton_pose`: a pose that it gives is the only zero of the gradient (`ptmcad.studies.byhand`) in its
-box, with a nonsingular Hessian.
+Guarantee of `newton_pose`: a pose that it gives is the only zero of the gradient
+(`ptmcad.studies.byhand`) in its box, with a nonsingular Hessian.
 
-Guarantee of `sextic_poses`: all equilibria are there, each proved and in the balls that are given. The real roots are
-isolated with proof; th2 = pi counts as a root for each degree that is missing. No more equilibria than its multiplicity
-belong to a root, and as many are proved as all roots have together.
+Guarantee of `sextic_poses`: all equilibria are there, each proved and in the balls that are given.
+The real roots are isolated with proof; th2 = pi counts as a root for each degree that is missing.
+No more equilibria than its multiplicity belong to a root, and as many are proved as all roots have
+together.
 
-`double_poses` guarantees nothing; it is the baseline that can be wrong (`ptmcad.studies.byhand`): companion matrices
-without free lengths, and Newton's method from a grid of starts with them.
+`double_poses` guarantees nothing; it is the baseline that can be wrong (`ptmcad.studies.byhand`):
+companion matrices without free lengths, and Newton's method from a grid of starts with them.
 
-References: Krawczyk, Computing 4 (1969); Neumaier, Interval Methods for Systems of Equations (1990), theorem 5.1.8;
-Rump, Acta Numerica 19 (2010), section 13.
+References: Krawczyk, Computing 4 (1969); Neumaier, Interval Methods for Systems of Equations
+(1990), theorem 5.1.8; Rump, Acta Numerica 19 (2010), section 13.
 """
 
 from __future__ import annotations
@@ -42,7 +44,9 @@ ROUNDS = 60
 
 @dataclass(frozen=True, slots=True)
 class IndexedPose:
-    """A pose that is, or is taken for, an equilibrium: its angles, and the Hessian's number of negative eigenvalues."""
+    """A pose that is, or is taken for, an equilibrium: its angles, and the Hessian's number of
+    negative eigenvalues.
+    """
 
     th1: Any
     th2: Any
@@ -51,14 +55,17 @@ class IndexedPose:
 
 def in_balls(parameters: Mapping[str, arb], angles: Sequence[arb]) -> tuple[arb_mat, arb_mat]:
     """Gradient and Hessian at a pose, or over a box of angles."""
-    (g1, g2), (h11, h12, h22) = derivatives(parameters, [(a.cos(), a.sin()) for a in angles], arb.sqrt)
+    (g1, g2), (h11, h12, h22) = derivatives(
+        parameters, [(a.cos(), a.sin()) for a in angles], arb.sqrt
+    )
     return arb_mat([[g1], [g2]]), arb_mat([[h11, h12], [h12, h22]])
 
 
 def newton_pose(
     parameters: Parameters, start: tuple[arb | float, arb | float], bits: int = BITS[0]
 ) -> IndexedPose | None:
-    """The equilibrium that Newton's method finds from a start, proved by Krawczyk's test; None when it finds none.
+    """The equilibrium that Newton's method finds from a start, proved by Krawczyk's test; None when
+    it finds none.
 
     Parameters
     ----------
@@ -98,9 +105,14 @@ def apart(first: IndexedPose, second: IndexedPose) -> arb:
 
 
 def proved_poses(
-    parameters: Parameters, starts: Iterable[tuple[Any, Any]], bits: int = BITS[0], most: float = np.inf
+    parameters: Parameters,
+    starts: Iterable[tuple[Any, Any]],
+    bits: int = BITS[0],
+    most: float = np.inf,
 ) -> tuple[IndexedPose, ...]:
-    """The different equilibria that Newton's method finds from starts, each proved; not more than are asked for."""
+    """The different equilibria that Newton's method finds from starts, each proved; not more than
+    are asked for.
+    """
     known: list[IndexedPose] = []
     for start in starts:
         pose = newton_pose(parameters, start, bits) if len(known) < most else None
@@ -114,16 +126,24 @@ def sextic_poses(parameters: Parameters) -> tuple[IndexedPose, ...]:
 
     Raises
     ------
-    ArithmeticError
-        When some equilibrium is degenerate, when N has no finite number of roots, or when the bits do not settle it.
+    ArithmeticError When some equilibrium is degenerate, when N has no finite number of roots, or
+        when the bits do not settle it.
     """
     p = {name: from_fraction(v) for name, v in parameters.items()}
     polynomial = fmpq_poly(list(sextic(p)[0]))
     missing = 6 - polynomial.degree()
     for bits in BITS if polynomial else ():
         with ctx.workprec(bits):
-            factors: Any = [(f.complex_roots(), multiplicity) for f, multiplicity in polynomial.numer().factor()[1]]
-            real = [(root.real, multiplicity) for roots, multiplicity in factors for root, _ in roots if root.imag == 0]
+            factors: Any = [
+                (f.complex_roots(), multiplicity)
+                for f, multiplicity in polynomial.numer().factor()[1]
+            ]
+            real = [
+                (root.real, multiplicity)
+                for roots, multiplicity in factors
+                for root, _ in roots
+                if root.imag == 0
+            ]
             seconds = [2 * t.atan() for t, _ in real] + [arb.pi()] * (missing > 0)
             number = sum(multiplicity for _, multiplicity in real) + missing
             starts = [_start(p, th2, side) for side in (1, -1) for th2 in seconds]
@@ -134,14 +154,21 @@ def sextic_poses(parameters: Parameters) -> tuple[IndexedPose, ...]:
 
 
 def _start(p: Mapping[str, fmpq], th2: arb, side: int) -> tuple[arb, arb]:
-    """A pose at which the first equation holds: th1 along (X, Y) times the sign of V W, for side -1 against it."""
-    v, w, x, y = (arb(e.mid()) for e in parts({name: arb(value) for name, value in p.items()}, th2.cos(), th2.sin()))
+    """A pose at which the first equation holds: th1 along (X, Y) times the sign of V W, for side -1
+    against it.
+    """
+    v, w, x, y = (
+        arb(e.mid())
+        for e in parts({name: arb(value) for name, value in p.items()}, th2.cos(), th2.sin())
+    )
     side = -side if v * w < 0 else side
     return arb.atan2(y * side, x * side), th2
 
 
 def double_poses(parameters: Parameters) -> tuple[IndexedPose, ...] | None:
-    """The equilibria in double precision; None when numbers overflow or the eigenvalue method fails."""
+    """The equilibria in double precision; None when numbers overflow or the eigenvalue method
+    fails.
+    """
     p = {name: np.array([float(value)]) for name, value in parameters.items()}
     try:
         with np.errstate(all="ignore"):
@@ -151,4 +178,11 @@ def double_poses(parameters: Parameters) -> tuple[IndexedPose, ...] | None:
             eigenvalues = np.linalg.eigvalsh(np.array([[h11, h12], [h12, h22]]).transpose(2, 0, 1))
     except np.linalg.LinAlgError:
         return None
-    return tuple(map(IndexedPose, th1[kept].tolist(), th2[kept].tolist(), (eigenvalues < 0).sum(axis=1).tolist()))
+    return tuple(
+        map(
+            IndexedPose,
+            th1[kept].tolist(),
+            th2[kept].tolist(),
+            (eigenvalues < 0).sum(axis=1).tolist(),
+        )
+    )

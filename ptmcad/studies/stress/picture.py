@@ -1,7 +1,8 @@
-"""The plot of a stress campaign: the error of double precision against what is extreme, family by family.
+"""The plot of a stress campaign: the error of double precision against what is extreme, family by
+family.
 
-Guarantee: every point that has an error is drawn; where the count of double precision is wrong it is drawn as such,
-also where no error exists.
+Guarantee: every point that has an error is drawn; where the count of double precision is wrong it
+is drawn as such, also where no error exists.
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ MARKS = (
     ("double precision, count wrong", "double_error", False, "X", "#c1440e"),
     ("ptmcad, middle of the enclosure", "error", None, "_", "#45917d"),
 )
-"""What is drawn: label, number, of which rows by whether the double's count is right, mark and colour."""
+"""What is drawn: label, number, of which rows by whether the double's count is right, mark and
+colour.
+"""
 
 
 def draw_stress(outcomes: Sequence[Row]) -> Figure:
@@ -36,9 +39,13 @@ def draw_stress(outcomes: Sequence[Row]) -> Figure:
     panels: dict[str, list[Curve]] = {o["family"]: [] for o in points}
     for family, curves in panels.items():
         for label, key, right, marker, color in MARKS:
-            drawn = [o for o in points if o["family"] == family and right in (None, o["double_right"])]
+            drawn = [
+                o for o in points if o["family"] == family and right in (None, o["double_right"])
+            ]
             places = [float(Fraction(o["stiffness"])) for o in drawn]
             heights = [NO_POSE if o[key] is None else max(o[key], MIN_DRAWN_ERROR) for o in drawn]
             marks = [Mark(x, y, x, x) for x, y in zip(places, heights, strict=True)]
-            curves.append(Curve(label, {"marker": marker, "color": color, "linestyle": "none"}, marks))
+            curves.append(
+                Curve(label, {"marker": marker, "color": color, "linestyle": "none"}, marks)
+            )
     return draw(TITLE, "", "error", panels, (NOTE, found))

@@ -1,7 +1,7 @@
 """Boxes of unknowns on circles and lines, in floats, and solutions of which each is alone in one.
 
-Guarantee: on circles boxes are compared with all whole turns between them; what is said to be so is so in spite of the
-floats' rounding.
+Guarantee: on circles boxes are compared with all whole turns between them; what is said to be so is
+so in spite of the floats' rounding.
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ Floats = tuple[float, ...]
 Box = tuple[Floats, Floats]
 """Middle and half widths."""
 MIN_HALF_WIDTH = 2.0**-34
-"""Share of the first boxes' widths below which one is not halved again, unless another one is asked for."""
+"""Share of the first boxes' widths below which one is not halved again, unless another one is asked
+for.
+"""
 
 
 class Unproved(Exception):
@@ -26,9 +28,11 @@ class Unproved(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Zero:
-    """The only solution within ``alone`` of ``center``, and it is within ``radii``; for each choice of parameters.
+    """The only solution within ``alone`` of ``center``, and it is within ``radii``; for each choice
+    of parameters.
 
-    ``signs`` are those of the Hessian's eigenvalues, positive ones first; empty where the equations are no gradient.
+    ``signs`` are those of the Hessian's eigenvalues, positive ones first; empty where the equations
+    are no gradient.
     """
 
     center: Floats
@@ -43,7 +47,9 @@ class Zero:
 
 
 def halves(box: Box, order: Sequence[int], smallest: Sequence[float]) -> tuple[Box, Box] | None:
-    """Two boxes that cover a box, halved in the first unknown in which it may be; None when it is too small."""
+    """Two boxes that cover a box, halved in the first unknown in which it may be; None when it is
+    too small.
+    """
     for k in order:
         m, r = box[0][k], box[1][k]
         half, low, high = r / 2, m - r / 2, m + r / 2
@@ -84,7 +90,9 @@ def inside(box: Box, zero: Zero, circles: Sequence[bool]) -> bool:
 def disjoint(one: Zero, two: Zero, circles: Sequence[bool]) -> bool:
     """Whether the boxes of two solutions are surely disjoint."""
     full = 2 * arb.pi()
-    for x, y, r, s, circle in zip(one.center, two.center, one.radii, two.radii, circles, strict=True):
+    for x, y, r, s, circle in zip(
+        one.center, two.center, one.radii, two.radii, circles, strict=True
+    ):
         difference, reach = difference_of(x, y, circle), arb(r) + arb(s)
         if all(abs(difference + k * full) > reach for k in ((-1, 0, 1) if circle else (0,))):
             return True

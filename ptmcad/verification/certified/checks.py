@@ -12,7 +12,12 @@ from ptmcad.verification.certified.counted import Places
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.sampling import check_boxes
-from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
+from ptmcad.verification.certified.structure import (
+    CertifiedClaims,
+    check_components,
+    check_form,
+    check_regions,
+)
 from ptmcad.verification.certified.system import check_potential
 from ptmcad.verification.claims import fingerprint
 from ptmcad.verification.parameters import check_text
@@ -21,7 +26,10 @@ from ptmcad.verification.report import Check, CheckProgress, VerifyReport, Viola
 BOXES = 16
 NOT_CHECKED = (
     ("plan", "what it says of curves and unknowns is no claim about the regions"),
-    ("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),
+    (
+        "provenance",
+        "name, title, reference, versions, precision, timings: no claims about the regions",
+    ),
 )
 
 
@@ -80,9 +88,11 @@ def verify_certified(
 
 
 def contradiction(result: RegionMap) -> str:
-    """What in a stored map contradicts the rest of it, by checks that take no time; empty when nothing does.
+    """What in a stored map contradicts the rest of it, by checks that take no time; empty when
+    nothing does.
 
-    It does not show whether the counts are right, nor whether rectangles are missing that no other entry points to.
+    It does not show whether the counts are right, nor whether rectangles are missing that no other
+    entry points to.
     """
     claims = CertifiedClaims(result)
     for check in (check_form, check_components, check_regions):
@@ -95,6 +105,11 @@ def contradiction(result: RegionMap) -> str:
 
 def _claims_of(result: RegionMap) -> Iterator[str]:
     """What a certified map says of its window, its cells and its cover."""
-    yield from (f"{axis.name}: {text_of(axis.low)} to {text_of(axis.high)}" for axis in result.slice.axes)
-    yield from (f"{text_of(c.sample[0])}, {text_of(c.sample[1])}: {c.stable} {c.total}" for c in result.cells)
+    yield from (
+        f"{axis.name}: {text_of(axis.low)} to {text_of(axis.high)}" for axis in result.slice.axes
+    )
+    yield from (
+        f"{text_of(c.sample[0])}, {text_of(c.sample[1])}: {c.stable} {c.total}"
+        for c in result.cells
+    )
     yield repr(result.cover)

@@ -75,7 +75,9 @@ def differs(cell: Cell, true: CellCounts) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class CountedPoint:
-    """All solutions at a point, or all minima and perhaps others where no more is asked for, and their counts."""
+    """All solutions at a point, or all minima and perhaps others where no more is asked for, and
+    their counts.
+    """
 
     counts: CellCounts
     found: Sequence[Any]
@@ -88,8 +90,8 @@ class Where:
 
     Attributes
     ----------
-    boxes : for each choice of sides of springs on one line each, in the order of `kinks.sides`; they may be looked for
-        when they are asked for.
+    boxes : for each choice of sides of springs on one line each, in the order of `kinks.sides`;
+        they may be looked for when they are asked for.
     whole : half the width of all configurations, in each unknown.
     """
 
@@ -98,4 +100,6 @@ class Where:
 
 
 Places = Callable[[tuple[Fraction, Fraction], tuple[Fraction, Fraction]], Where | None]
-"""Where the solutions may be over a rectangle of the window, in lattice steps; None where nothing is told of it."""
+"""Where the solutions may be over a rectangle of the window, in lattice steps; None where nothing
+is told of it.
+"""

@@ -8,7 +8,8 @@ from __future__ import annotations
 import re
 
 _DECIMAL = re.compile(
-    r"(?<![A-Za-z0-9_.])([0-9]{1,60})(?:\.([0-9]{1,60}))?(?:e([+-]?[0-9]{1,3}))?(?![A-Za-z0-9_.])", re.ASCII
+    r"(?<![A-Za-z0-9_.])([0-9]{1,60})(?:\.([0-9]{1,60}))?(?:e([+-]?[0-9]{1,3}))?(?![A-Za-z0-9_.])",
+    re.ASCII,
 )
 
 

@@ -1,12 +1,15 @@
-"""The equations of any model and their Jacobian in balls of Arb, over boxes of the unknowns and of the parameters.
+"""The equations of any model and their Jacobian in balls of Arb, over boxes of the unknowns and of
+the parameters.
 
-Guarantee: every ball contains the exact value at each configuration and for all parameters in the balls given. Where a
-spring with a free length may have no length, its direction is any unit vector, and nothing is said of the Jacobian.
+Guarantee: every ball contains the exact value at each configuration and for all parameters in the
+balls given. Where a spring with a free length may have no length, its direction is any unit vector,
+and nothing is said of the Jacobian.
 
-What is evaluated are the formulas of `equations`. With u = d/|d|, slopes g_i of d by the unknowns, second derivatives
-g_ij, and c_i = u x g_i, a spring's part of the equations is -K u.g_i and of the Hessian -K (c_i c_j/|d| + u.g_ij). With
-closed loops other vectors w_i are in the place of the g_i: of the equations -K u.w_i, and
--K ((u x w_i) c_j/|d| + u.w_ij). Where u is on a line that turns by n_j with the unknowns, c_j/|d| is n_j.
+What is evaluated are the formulas of `equations`. With u = d/|d|, slopes g_i of d by the unknowns,
+second derivatives g_ij, and c_i = u x g_i, a spring's part of the equations is -K u.g_i and of the
+Hessian -K (c_i c_j/|d| + u.g_ij). With closed loops other vectors w_i are in the place of the g_i:
+of the equations -K u.w_i, and -K ((u x w_i) c_j/|d| + u.w_ij). Where u is on a line that turns by
+n_j with the unknowns, c_j/|d| is n_j.
 """
 
 from __future__ import annotations
@@ -45,7 +48,9 @@ from ptmcad.verification.terms import ball, power, square
 Matrix = list[list[arb]]
 _ZERO, _ANY = arb(0), arb(0, 1)
 _POWER = LENGTH + 1
-"""A power: as a product of balls that have nothing to do with one another it would be enclosed poorly."""
+"""A power: as a product of balls that have nothing to do with one another it would be enclosed
+poorly.
+"""
 _Step = tuple[int, Callable[[arb, arb], arb], int, int]
 """The number of a value, and of what operands."""
 
@@ -89,24 +94,32 @@ class _PowerFormulas(Formulas):
 
 
 class _FormFormulas:
-    """The formulas of a form with springs on one line each on some sides, by their numbers in one list.
+    """The formulas of a form with springs on one line each on some sides, by their numbers in one
+    list.
 
     Attributes
     ----------
     squared : of each spring |d|^2.
-    bends : negative where the Hessian has a negative eigenvalue, wherever a short spring has a length.
+    bends : negative where the Hessian has a negative eigenvalue, wherever a short spring has a
+        length.
     steady : the operations in which no unknown is.
     """
 
     def __init__(self, form: Form, names: Sequence[str], sides: Sides):
         f = self.list = _PowerFormulas()
-        m = self.model = Equations(form, f, {name: f.variable(MAX_VARIABLES + k) for k, name in enumerate(names)})
+        m = self.model = Equations(
+            form, f, {name: f.variable(MAX_VARIABLES + k) for k, name in enumerate(names)}
+        )
         m.sides = sides
         directions = m.directions()
         self.equations = m.equations(directions)
         rows = m.hessian(directions)
         self.jacobian = [entry for row in rows for entry in row]
-        self.determinant = [f.determinant([[row[k] for k in form.closing] for row in rows])] if form.closing else []
+        self.determinant = (
+            [f.determinant([[row[k] for k in form.closing] for row in rows])]
+            if form.closing
+            else []
+        )
         self.squared = [f.dot(s.vector, s.vector) for s in m.cones]
         self.balances = [m.balances(k) for k in range(len(m.cones))]
         has_bends = form.is_gradient and form.size > 1
@@ -121,9 +134,13 @@ class _FormFormulas:
         }
         self._moving = set[int]()
         for n, (code, a, b) in enumerate(f.rows):
-            if (code == VARIABLE and a < MAX_VARIABLES) or (code > VARIABLE and not self._moving.isdisjoint((a, b))):
+            if (code == VARIABLE and a < MAX_VARIABLES) or (
+                code > VARIABLE and not self._moving.isdisjoint((a, b))
+            ):
                 self._moving.add(n)
-        self.steady = self._in_order({n for n, (code, *_) in enumerate(f.rows) if code > VARIABLE} - self._moving)
+        self.steady = self._in_order(
+            {n for n, (code, *_) in enumerate(f.rows) if code > VARIABLE} - self._moving
+        )
         self._first = f.needed([*self.equations, *self.squared])
         self.first = self._in_order(self._first & self._moving)
         self._known: dict[tuple[int, ...], list[_Step]] = {}
@@ -132,7 +149,9 @@ class _FormFormulas:
         """The operations that some values need besides the first ones."""
         key = (*numbers,)
         if key not in self._known:
-            self._known[key] = self._in_order((self.list.needed(numbers) - self._first) & self._moving)
+            self._known[key] = self._in_order(
+                (self.list.needed(numbers) - self._first) & self._moving
+            )
         return self._known[key]
 
     def _in_order(self, numbers: Collection[int]) -> list[_Step]:
@@ -153,7 +172,9 @@ def _formulas_of(
     form: Form, names: tuple[str, ...], sides: tuple[tuple[str, int], ...], pulling: tuple[str, ...]
 ) -> _FormFormulas:
     """Those with some of the springs."""
-    return _FormFormulas(replace(form, cones=tuple(c for c in form.cones if c.name in pulling)), names, dict(sides))
+    return _FormFormulas(
+        replace(form, cones=tuple(c for c in form.cones if c.name in pulling)), names, dict(sides)
+    )
 
 
 def _run(steps: Iterable[_Step], known: list[arb]) -> None:
@@ -163,13 +184,15 @@ def _run(steps: Iterable[_Step], known: list[arb]) -> None:
 
 @dataclass(frozen=True)
 class BallJet:
-    """The equations at all configurations in a box, and what is told of these besides when it is asked for.
+    """The equations at all configurations in a box, and what is told of these besides when it is
+    asked for.
 
     Attributes
     ----------
     values : zero at solutions.
     conditions : what is positive at solutions that count.
-    short : the numbers of the springs that may have no length; if there are any, the Jacobian is not known.
+    short : the numbers of the springs that may have no length; if there are any, the Jacobian is
+        not known.
     """
 
     values: list[arb]
@@ -210,7 +233,9 @@ class BallJet:
         return self.known[self.formulas.model.cones[k].pull]
 
     def balances(self, k: int) -> list[arb]:
-        """Numbers that are zero at every solution, whatever the direction of a spring (`Equations.balances`)."""
+        """Numbers that are zero at every solution, whatever the direction of a spring
+        (`Equations.balances`).
+        """
         return self.evaluated(self.formulas.balances[k])
 
     def bends_down(self, k: int) -> bool:
@@ -225,9 +250,11 @@ class BallEquations:
     ----------
     values : a ball for each parameter; no pull of a spring is negative.
     conditions : the attributes of the form with the conditions that are asked for.
-    with_determinant : whether that of the Jacobian is a further condition, with its columns as `Form.closing` has them.
-    sides : of springs on one line each, on which side of length zero solutions are looked for. There every one of these
-        has its direction, also where it is short, and a further condition, which comes before all others.
+    with_determinant : whether that of the Jacobian is a further condition, with its columns as
+        `Form.closing` has them.
+    sides : of springs on one line each, on which side of length zero solutions are looked for.
+        There every one of these has its direction, also where it is short, and a further condition,
+        which comes before all others.
 
     Raises
     ------
@@ -243,12 +270,21 @@ class BallEquations:
         with_determinant: bool = False,
         sides: Sides = MappingProxyType({}),
     ):
-        self.form, self.values, self.sides, self._with_determinant = form, dict(values), sides, with_determinant
-        # one that pulls nothing at a point has its sides there, too, as all other choices of them have
+        self.form, self.values, self.sides, self._with_determinant = (
+            form,
+            dict(values),
+            sides,
+            with_determinant,
+        )
+        # one that pulls nothing at a point has its sides there, too, as all other choices of them
+        # have
         pulling = [c.name for c in form.cones if c.name in sides or not (ball(c.pull, values) == 0)]  # noqa: SIM201
         for cone in form.cones:
             line = cone.line if cone.name in sides else None
-            if line is not None and not sum((square(ball(p, values)) for p in line.vector), _ZERO) > 0:
+            if (
+                line is not None
+                and not sum((square(ball(p, values)) for p in line.vector), _ZERO) > 0
+            ):
                 raise Unproved(f"the line of spring {cone.name} may have no direction")
         of = self._formulas = _formulas_of(form, (*values,), (*sides.items(),), (*pulling,))
         self._conditions = [n for name in ("ahead", *conditions) for n in of.conditions[name]]
@@ -262,9 +298,14 @@ class BallEquations:
 
     @property
     def circles(self) -> tuple[bool, ...]:
-        """Of each unknown, whether the equations are the same after a full turn: not where half of it turns a line."""
+        """Of each unknown, whether the equations are the same after a full turn: not where half of
+        it turns a line.
+        """
         lines = [s.line for s in self._formulas.model.cones if s.name in self.sides]
-        return tuple(c and not any(line.twice[k] % 2 for line in lines) for k, c in enumerate(self.form.is_circle))
+        return tuple(
+            c and not any(line.twice[k] % 2 for line in lines)
+            for k, c in enumerate(self.form.is_circle)
+        )
 
     def __call__(self, at: Sequence[arb]) -> BallJet:
         """At all configurations in a box."""
@@ -273,7 +314,9 @@ class BallEquations:
             known[n] = value
         _run(self._steps, known)
         short = [k for k in of.may_be_short if not known[of.squared[k]] > 0]
-        jet = BallJet([known[n] for n in of.equations], [known[n] for n in self._conditions], short, of, known)
+        jet = BallJet(
+            [known[n] for n in of.equations], [known[n] for n in self._conditions], short, of, known
+        )
         if self._with_determinant:
             jet.conditions.extend([arb(0, inf)] if short else jet.evaluated(of.determinant))
         return jet

@@ -1,4 +1,5 @@
-"""Formulas as lists of operations on numbered values, which are evaluated in balls or by compiled code.
+"""Formulas as lists of operations on numbered values, which are evaluated in balls or by compiled
+code.
 
 Guarantee: exact; equal operations are written once, and those of rational numbers are carried out.
 """
@@ -9,11 +10,26 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
-CONSTANT, VARIABLE, ADD, SUBTRACT, MULTIPLY, SQUARE, DIVIDE, COSINE, SINE, DIRECTION, INVERSE_LENGTH, LENGTH = range(12)
-"""Operations. DIRECTION, INVERSE_LENGTH and LENGTH of the vector (a, b): a/|(a, b)|, 1/|(a, b)| and |(a, b)|."""
+(
+    CONSTANT,
+    VARIABLE,
+    ADD,
+    SUBTRACT,
+    MULTIPLY,
+    SQUARE,
+    DIVIDE,
+    COSINE,
+    SINE,
+    DIRECTION,
+    INVERSE_LENGTH,
+    LENGTH,
+) = range(12)
+"""Operations. DIRECTION, INVERSE_LENGTH and LENGTH of the vector (a, b): a/|(a, b)|, 1/|(a, b)| and
+|(a, b)|.
+"""
 MAX_VARIABLES = 6
-"""Both axes, three unknowns, and the direction of a spring; even, as sums over them take two at once. Parameters that
-are variables come after them."""
+"""Both axes, three unknowns, and the direction of a spring; even, as sums over them take two at
+once. Parameters that are variables come after them."""
 
 
 class Formulas:
@@ -21,7 +37,8 @@ class Formulas:
 
     Attributes
     ----------
-    rows : of each value the operation and the numbers of its operands; of a variable its own number.
+    rows : of each value the operation and the numbers of its operands; of a variable its own
+        number.
     numbers : those that are rational.
     """
 
@@ -140,7 +157,9 @@ class Formulas:
             return rows[0][0]
         total = self.number(0)
         for k, entry in enumerate(rows[0]):
-            part = self.multiply(entry, self.determinant([[*row[:k], *row[k + 1 :]] for row in rows[1:]]))
+            part = self.multiply(
+                entry, self.determinant([[*row[:k], *row[k + 1 :]] for row in rows[1:]])
+            )
             total = self.subtract(total, part) if k % 2 else self.add(total, part)
         return total
 

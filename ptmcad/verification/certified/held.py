@@ -1,16 +1,17 @@
 """Bounds of lengths that springs hold together, by diagonal dominance.
 
-Guarantee: for all parameters and all values of the other unknowns in the balls, no solution has one of the lengths
-beyond its bound.
+Guarantee: for all parameters and all values of the other unknowns in the balls, no solution has one
+of the lengths beyond its bound.
 
-Let equations be A s + b = sum of K_c (u_c . w_ci), with unit vectors u_c. For any matrix V let M = V A and Q be upper
-bounds of |I - M|, g positive upper bounds of |V b| + sum of K_c |sum_j V_ij w_cj|. As s = V (A s) + (I - M) s,
+Let equations be A s + b = sum of K_c (u_c . w_ci), with unit vectors u_c. For any matrix V let
+M = V A and Q be upper bounds of |I - M|, g positive upper bounds of |V b| + sum of K_c |sum_j V_ij
+w_cj|. As s = V (A s) + (I - M) s,
 
     |s| <= g + Q |s|,  so that with  t = max |s_i|/g_i  and  q = max (Q g)_i/g_i  is  t <= 1 + q t,
 
-and |s_i| <= g_i/(1 - q) if q < 1: M, with columns times g_j, has a dominant diagonal then (Gershgorin). V is about the
-inverse of A's middle, as balls without a radius have it; that it is any matrix is enough. The second engine solves by
-Cramer's rule, exactly.
+and |s_i| <= g_i/(1 - q) if q < 1: M, with columns times g_j, has a dominant diagonal then
+(Gershgorin). V is about the inverse of A's middle, as balls without a radius have it; that it is
+any matrix is enough. The second engine solves by Cramer's rule, exactly.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ _MIN_SIZE = 2.0**-60
 Row = Sequence[arb]
 
 
-def bounds_of(matrix: Sequence[Row], rest: Row, springs: Sequence[tuple[arb, Row, Row]]) -> list[arb] | None:
+def bounds_of(
+    matrix: Sequence[Row], rest: Row, springs: Sequence[tuple[arb, Row, Row]]
+) -> list[arb] | None:
     """Of each length, exact numbers; None where no dominant diagonal is found.
 
     Parameters
@@ -53,7 +56,9 @@ def bounds_of(matrix: Sequence[Row], rest: Row, springs: Sequence[tuple[arb, Row
 
 
 def _reach(factors: Row, rest: Row, springs: Sequence[tuple[arb, Row, Row]]) -> arb:
-    """A positive upper bound of the rest and the springs' parts, where the equations are summed up with factors."""
+    """A positive upper bound of the rest and the springs' parts, where the equations are summed up
+    with factors.
+    """
     total = abs(_dot(factors, rest)) + _MIN_SIZE
     for pull, across, up in springs:
         total = total + pull * size(_dot(factors, across), _dot(factors, up))

@@ -1,11 +1,11 @@
-"""Springs whose vectors stay on one line, which may turn with angles: which they are, and on which side of length zero
-a configuration has them.
+"""Springs whose vectors stay on one line, which may turn with angles: which they are, and on which
+side of length zero a configuration has them.
 
-Guarantee: exact. Where d = s e with a fixed e, or one that is turned by a sum of angles, a spring's direction is e/|e|
-or -e/|e| wherever it has a length, so that solutions are those of the equations with either one, at which s is positive
-or negative. Springs without length are no solutions. Where half an angle is in that sum, a full turn of the angle
-changes sides: each side has its own part of any box of the angles, and one configuration is on both sides at the box's
-two ends.
+Guarantee: exact. Where d = s e with a fixed e, or one that is turned by a sum of angles, a spring's
+direction is e/|e| or -e/|e| wherever it has a length, so that solutions are those of the equations
+with either one, at which s is positive or negative. Springs without length are no solutions. Where
+half an angle is in that sum, a full turn of the angle changes sides: each side has its own part of
+any box of the angles, and one configuration is on both sides at the box's two ends.
 """
 
 from __future__ import annotations

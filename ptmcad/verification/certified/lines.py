@@ -1,7 +1,8 @@
 """The line along which the vector of a spring stays, which may turn with angles.
 
-Guarantee: exact, on the slice: what is asked of polynomials in the parameters holds of them as functions of the axes,
-so that a cosine and a sine that are parameters of their own may be told by their values.
+Guarantee: exact, on the slice: what is asked of polynomials in the parameters holds of them as
+functions of the axes, so that a cosine and a sine that are parameters of their own may be told by
+their values.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ class _Complex(NamedTuple):
 
     def times(self, other: _Complex) -> _Complex:
         return _Complex(
-            self.real * other.real - self.imag * other.imag, self.real * other.imag + self.imag * other.real
+            self.real * other.real - self.imag * other.imag,
+            self.real * other.imag + self.imag * other.real,
         )
 
     @property
@@ -54,7 +56,9 @@ class _Complex(NamedTuple):
 
 def line_of(vector: tuple[Coordinate, Coordinate], vanishes: Vanishes) -> SpringLine | None:
     """The line along which a vector stays at all points of a slice, if there is one."""
-    parts = {key: part for key, part in _exponentials(vector).items() if not part.vanishes(vanishes)}
+    parts = {
+        key: part for key, part in _exponentials(vector).items() if not part.vanishes(vanishes)
+    }
     if not parts:
         return None
     first, last = min(turned for turned, _ in parts), max(turned for turned, _ in parts)
@@ -65,7 +69,8 @@ def line_of(vector: tuple[Coordinate, Coordinate], vanishes: Vanishes) -> Spring
         if other is None:
             return None
         paired.append((part, other))
-    # with d = s e^(i n.q) e a pair is z e and z* e: their sum is along e, or zero, and then i times one of them is
+    # with d = s e^(i n.q) e a pair is z e and z* e: their sum is along e, or zero, and then i times
+    # one of them is
     part, other = paired[0]
     e = part.plus(other)
     if e.vanishes(vanishes):
@@ -88,7 +93,11 @@ def _exponentials(vector: tuple[Coordinate, Coordinate]) -> dict[tuple[Multi, Mu
                 part = _turned(c, turn)
                 key = tuple(sign * m for m in turned), raised
                 found[key] = found[key].plus(part) if key in found else part
-    return {key: part for key, part in found.items() if not (part.real.is_zero() and part.imag.is_zero())}
+    return {
+        key: part
+        for key, part in found.items()
+        if not (part.real.is_zero() and part.imag.is_zero())
+    }
 
 
 def _turned(c: fmpq_mpoly, quarters: int) -> _Complex:
@@ -98,7 +107,9 @@ def _turned(c: fmpq_mpoly, quarters: int) -> _Complex:
 
 
 def _simplest(p: fmpq_mpoly, q: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
-    """A vector in the same direction, or against it, without what both coordinates have in common, if that is all."""
+    """A vector in the same direction, or against it, without what both coordinates have in common,
+    if that is all.
+    """
     one = p.context().constant(1)
     if p.is_zero() or q.is_zero():
         return (p, one) if p.is_zero() else (one, q)

@@ -1,7 +1,7 @@
 """The solutions of any model at a point of the window, or over a box of it, counted with proof.
 
-Guarantee: counts that are returned are true, at the point or at every point of the box; what is not proved raises
-`Unproved`. Springs without length are no solutions.
+Guarantee: counts that are returned are true, at the point or at every point of the box; what is not
+proved raises `Unproved`. Springs without length are no solutions.
 """
 
 from __future__ import annotations
@@ -36,10 +36,14 @@ from ptmcad.verification.report import Violation
 from ptmcad.verification.terms import evaluated
 
 PRECISIONS = ((53, MIN_HALF_WIDTH), (128, 2.0**-80))
-"""Bits, and the share of all configurations below which boxes are not halved: a spring may be as short as that."""
+"""Bits, and the share of all configurations below which boxes are not halved: a spring may be as
+short as that.
+"""
 _BOX_PRECISION = 128
 BUDGETS = (20_000, 40_000, 60_000)
-"""Boxes of the unknowns for one point, by their number; one more unknown makes each of them dearer, too."""
+"""Boxes of the unknowns for one point, by their number; one more unknown makes each of them dearer,
+too.
+"""
 BOX_BUDGET_SHARE = 4
 """For a box of parameters so many times fewer."""
 _HALVINGS = 60
@@ -55,7 +59,9 @@ class ModelCounting:
 
     form: Form
 
-    def at(self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None) -> CountedPoint:
+    def at(
+        self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None
+    ) -> CountedPoint:
         """At a point of the window."""
         values, count = _values_at(claims, self.form, x, y), claims.result.slice.count
         reason: Unproved | None = None
@@ -71,7 +77,11 @@ class ModelCounting:
         raise reason
 
     def _at(
-        self, values: Mapping[str, Fraction], count: Count, where: Where | None = None, smallest: float = MIN_HALF_WIDTH
+        self,
+        values: Mapping[str, Fraction],
+        count: Count,
+        where: Where | None = None,
+        smallest: float = MIN_HALF_WIDTH,
     ) -> CountedPoint:
         """At the context's precision."""
         numbers = _balls(values)
@@ -96,14 +106,22 @@ class ModelCounting:
         budget = self._budget // (1 if there is None else BOX_BUDGET_SHARE)
         for k, side in enumerate(sides(self.form)):
             field = _field(self.form, values, count, side)
-            start, whole = ([_start(field)], None) if where is None else (where.boxes[k], where.whole)
+            start, whole = (
+                ([_start(field)], None) if where is None else (where.boxes[k], where.whole)
+            )
             known = [zero for zero in near if _may_be_on_side(field, zero)]
-            on_side, _ = zeros(field, _only_minima(self.form, count), start, budget, smallest, known, whole)
+            on_side, _ = zeros(
+                field, _only_minima(self.form, count), start, budget, smallest, known, whole
+            )
             counted = _counted(field, on_side, count)
             if count is Count.TOTAL and self.form.conditions_for_stability:
-                counted = _with_signs(_field(self.form, values, Count.STABLE, side), self.form, counted)
+                counted = _with_signs(
+                    _field(self.form, values, Count.STABLE, side), self.form, counted
+                )
             # at both ends of a box of angles one may be there on two sides
-            found += [zero for zero in counted if not any(self.same(zero, other) for other in found)]
+            found += [
+                zero for zero in counted if not any(self.same(zero, other) for other in found)
+            ]
         return found
 
     def _counts(self, values: Mapping[str, arb], found: Sequence[Zero], count: Count) -> CellCounts:
@@ -122,24 +140,40 @@ class ModelCounting:
         number = sum(_has_margins(field, zero, kind.undecided) for zero in stable)
         return replace(counts, further={count.value: number})
 
-    def within(self, values: Mapping[str, Fraction], boxes: Sequence[Solution], first: int = 0) -> list[Zero]:
-        """The only solution in each of the stored boxes at parameters; the first box's number is given."""
+    def within(
+        self, values: Mapping[str, Fraction], boxes: Sequence[Solution], first: int = 0
+    ) -> list[Zero]:
+        """The only solution in each of the stored boxes at parameters; the first box's number is
+        given.
+        """
         with ctx.workprec(_BOX_PRECISION):
             fields = [_field(self.form, _balls(values), None, side) for side in sides(self.form)]
-            return [self._in_box(fields, values, solution, k) for k, solution in enumerate(boxes, first)]
+            return [
+                self._in_box(fields, values, solution, k) for k, solution in enumerate(boxes, first)
+            ]
 
     def _in_box(
-        self, fields: Sequence[BallEquations], values: Mapping[str, Fraction], solution: Solution, k: int
+        self,
+        fields: Sequence[BallEquations],
+        values: Mapping[str, Fraction],
+        solution: Solution,
+        k: int,
     ) -> Zero:
         _check_box(self.form, solution, k)
         # where it may be on several sides of springs' lines, it has to be searched on each of them
         box = [ball_of(x) + arb(0, ball_of(solution.radius)) for x in solution.center]
         possible = [field for field in fields if not any(c < 0 for c in _ahead(field, box))]
-        narrow = _narrow(self.form, values, possible[0].sides, solution, k) if len(possible) == 1 else None
+        narrow = (
+            _narrow(self.form, values, possible[0].sides, solution, k)
+            if len(possible) == 1
+            else None
+        )
         return narrow or _only(fields, solution, k, self._budget)
 
     def in_box(self, claims: Claims, at: Point, solution: Solution, k: int) -> Zero:
-        """The only solution in a stored box at a point of the window; the box's number is told where there is none."""
+        """The only solution in a stored box at a point of the window; the box's number is told
+        where there is none.
+        """
         values = _values_at(claims, self.form, *at)
         (found,) = self.within(values, [solution], k)
         return found
@@ -154,7 +188,9 @@ class ModelCounting:
         """
         return is_same(one, two, self.form.is_circle)
 
-    def over(self, slice: Slice, x: arb, y: arb, there: CountedPoint, where: Where | None = None) -> CellCounts:
+    def over(
+        self, slice: Slice, x: arb, y: arb, there: CountedPoint, where: Where | None = None
+    ) -> CellCounts:
         """At all points of a box."""
         values = values_over(slice, x, y)
         for name, value in values.items():
@@ -186,8 +222,12 @@ def _ahead(field: BallEquations, box: Sequence[arb]) -> Sequence[arb]:
     return field(box).conditions[: len(field.sides)]
 
 
-def _field(form: Form, values: Mapping[str, arb], count: Count | None, side: Sides) -> BallEquations:
-    """The equations with what is positive at the solutions that are counted, and at no others, if a count is given."""
+def _field(
+    form: Form, values: Mapping[str, arb], count: Count | None, side: Sides
+) -> BallEquations:
+    """The equations with what is positive at the solutions that are counted, and at no others, if a
+    count is given.
+    """
     if count is None:
         return BallEquations(form, values, sides=side)
     stable = kind_of(count).is_of_stable
@@ -196,7 +236,8 @@ def _field(form: Form, values: Mapping[str, arb], count: Count | None, side: Sid
 
 
 def _counted(field: BallEquations, found: Sequence[Zero], count: Count) -> list[Zero]:
-    """The solutions at which all conditions of the field are positive; stable ones have the signs of those for it.
+    """The solutions at which all conditions of the field are positive; stable ones have the signs
+    of those for it.
 
     Raises
     ------
@@ -218,10 +259,14 @@ def _counted(field: BallEquations, found: Sequence[Zero], count: Count) -> list[
 
 
 def _apart(field: BallEquations, zero: Zero) -> Zero:
-    """A solution alone where every spring on one line is on its side: so it is alone among those of all sides, too."""
+    """A solution alone where every spring on one line is on its side: so it is alone among those of
+    all sides, too.
+    """
     for k in range(_HALVINGS if field.sides else 0):
         alone = tuple(max(r, a / 2**k) for r, a in zip(zero.radii, zero.alone, strict=True))
-        if all(c > 0 for c in field(tuple(map(arb, zero.center, alone))).conditions[: len(field.sides)]):
+        if all(
+            c > 0 for c in field(tuple(map(arb, zero.center, alone))).conditions[: len(field.sides)]
+        ):
             return replace(zero, alone=alone)
     if field.sides:
         raise Unproved("a solution may be where a spring on one line has no length")
@@ -234,13 +279,19 @@ def _with_signs(field: BallEquations, form: Form, found: Sequence[Zero]) -> list
     for zero in found:
         conditions = field(zero.within).conditions[len(field.sides) + len(form.inequalities) :]
         certain = all(c > 0 or c < 0 for c in conditions)
-        kept.append(replace(zero, signs="".join("+" if c > 0 else "-" for c in conditions) if certain else ""))
+        kept.append(
+            replace(
+                zero, signs="".join("+" if c > 0 else "-" for c in conditions) if certain else ""
+            )
+        )
     return kept
 
 
 def _is_in_domain(model: Model, name: str, value: Any) -> bool:
     """Whether a parameter, a number or a ball, surely is what its kind asks for."""
-    return bool(value > 0 if name in model.positive else value >= 0 if name in model.nonnegative else True)
+    return bool(
+        value > 0 if name in model.positive else value >= 0 if name in model.nonnegative else True
+    )
 
 
 def _values_at(claims: Claims, form: Form, x: Fraction, y: Fraction) -> dict[str, Fraction]:
@@ -283,7 +334,8 @@ def _has_margins(field: BallEquations, zero: Zero, undecided: str) -> bool:
 
 
 def counts_of(form: Form, found: Sequence[Zero], count: Count) -> CellCounts:
-    """The counts that follow from the solutions and their signs; Euler's sum is checked where it holds.
+    """The counts that follow from the solutions and their signs; Euler's sum is checked where it
+    holds.
 
     Raises
     ------
@@ -292,18 +344,26 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> CellCounts:
     """
     if not form.is_gradient:
         number = len(found)
-        return CellCounts(stable=number) if kind_of(count).is_of_stable else CellCounts(total=number)
+        return (
+            CellCounts(stable=number) if kind_of(count).is_of_stable else CellCounts(total=number)
+        )
     negative = Counter(zero.signs.count("-") for zero in found)
     index = tuple(negative[k] for k in range(form.size + 1))
     if kind_of(count).is_of_stable:
         return CellCounts(stable=index[0])
     if form.is_smooth_on_a_torus and euler_sum(index):
-        raise Violation(f"critical points of a function on the torus by index {index} contradict Euler's sum")
+        raise Violation(
+            f"critical points of a function on the torus by index {index} contradict Euler's sum"
+        )
     return CellCounts(len(found), index[0], index)
 
 
-def _narrow(form: Form, values: Mapping[str, Fraction], side: Sides, solution: Solution, k: int) -> Zero | None:
-    """The one solution in a stored box that is narrow, and on one side; None where a search has to tell."""
+def _narrow(
+    form: Form, values: Mapping[str, Fraction], side: Sides, solution: Solution, k: int
+) -> Zero | None:
+    """The one solution in a stored box that is narrow, and on one side; None where a search has to
+    tell.
+    """
 
     def function() -> Function:
         field = _field(form, _balls(values), None, side)
@@ -327,9 +387,13 @@ def _narrow(form: Form, values: Mapping[str, Fraction], side: Sides, solution: S
 def _check_box(form: Form, solution: Solution, k: int) -> None:
     """Refuse what is no box within the bounds of unknowns."""
     circles = form.is_circle
-    if len(solution.center) != len(circles) or not 0 < solution.radius <= (1 if any(circles) else MAX_REAL):
+    if len(solution.center) != len(circles) or not 0 < solution.radius <= (
+        1 if any(circles) else MAX_REAL
+    ):
         raise Violation(f"box {k} of the solutions is not a box of {len(circles)} unknowns")
-    if any(circle and abs(x) > MAX_ANGLE for circle, x in zip(circles, solution.center, strict=True)):
+    if any(
+        circle and abs(x) > MAX_ANGLE for circle, x in zip(circles, solution.center, strict=True)
+    ):
         raise Violation(f"box {k} of the solutions is too many turns away")
     if any(abs(x) > MAX_REAL for x in solution.center):
         raise Violation(f"box {k} of the solutions is beyond all bounds of unknowns")
@@ -338,8 +402,11 @@ def _check_box(form: Form, solution: Solution, k: int) -> None:
 def _only(fields: Sequence[BallEquations], solution: Solution, k: int, budget: int) -> Zero:
     """The one solution in a stored box, on whichever side it is."""
     center = tuple(float(x) for x in solution.center)
-    # floats have the centers and radii of stored boxes exactly, or nearly: then the box is made a little larger
-    radii = tuple(float(solution.radius) * (1 + 2.0**-40) + 2.0**-50 * max(1.0, abs(x)) for x in center)
+    # floats have the centers and radii of stored boxes exactly, or nearly: then the box is made a
+    # little larger
+    radii = tuple(
+        float(solution.radius) * (1 + 2.0**-40) + 2.0**-50 * max(1.0, abs(x)) for x in center
+    )
     inside = list[Zero]()
     for field in fields:
         found, _ = zeros(field, False, [(center, radii)], budget)

@@ -1,11 +1,14 @@
-"""Boxes that are too narrow for doubles: whether one has a solution, by one test in balls of as many digits as it asks.
+"""Boxes that are too narrow for doubles: whether one has a solution, by one test in balls of as
+many digits as it asks.
 
-Guarantee: a box that is said to have one solution has exactly one, and it is in the enclosure; one that is said to have
-none has none. A solution on the box's edge, to nearly all digits, or a degenerate one leaves it open.
+Guarantee: a box that is said to have one solution has exactly one, and it is in the enclosure; one
+that is said to have none has none. A solution on the box's edge, to nearly all digits, or a
+degenerate one leaves it open.
 
-The test is Krawczyk's (`ptmcad.verification.certified.krawczyk`) of the stored box itself, without doubles on the way:
-in a box of half width r the Jacobian hardly varies, so that the image is nearly the point m - C f(m), which either is
-within r of m or is not. A search by halving gains nothing there, and rounding a middle to doubles loses the box.
+The test is Krawczyk's (`ptmcad.verification.certified.krawczyk`) of the stored box itself, without
+doubles on the way: in a box of half width r the Jacobian hardly varies, so that the image is nearly
+the point m - C f(m), which either is within r of m or is not. A search by halving gains nothing
+there, and rounding a middle to doubles loses the box.
 """
 
 from __future__ import annotations
@@ -36,7 +39,9 @@ Function = Callable[[Sequence[arb]], tuple[Sequence[arb], Matrix] | None]
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """What a test shows of a box: whether it has a solution, and then where, with the derivatives all over the box."""
+    """What a test shows of a box: whether it has a solution, and then where, with the derivatives
+    all over the box.
+    """
 
     holds: bool
     within: tuple[arb, ...] = ()
@@ -50,7 +55,8 @@ class Judgement:
 
 
 def judged(function_at: Callable[[], Function], solution: Solution) -> Judgement | None:
-    """What one test shows of a stored box with as many digits as it has, and then more; None where nothing.
+    """What one test shows of a stored box with as many digits as it has, and then more; None where
+    nothing.
 
     Parameters
     ----------
@@ -89,9 +95,13 @@ def only(found: Sequence[Zero], solution: Solution, k: int) -> Zero:
     outside = sum(any(d > radius for d in off) for off in away)
     near = ", ".join(f"{float(x):.6g}" for x in solution.center)
     if len(held) < 2 and len(held) + outside < len(found):
-        raise Unproved(f"a solution may be in box {k} of the solutions, around ({near}), or beside it")
+        raise Unproved(
+            f"a solution may be in box {k} of the solutions, around ({near}), or beside it"
+        )
     if len(held) != 1:
-        raise Violation(f"box {k} of the solutions, around ({near}), has {len(held)} equilibria, not one")
+        raise Violation(
+            f"box {k} of the solutions, around ({near}), has {len(held)} equilibria, not one"
+        )
     return held[0]
 
 
@@ -105,7 +115,8 @@ def tested(function: Function, solution: Solution) -> Judgement | None:
     found = _image(function, middle, [outer] * len(middle))
     if found is not None and any(abs(s) > outer for s in found[0]):
         return Judgement(False)
-    # next to an edge the image of a box may cross it: that of one twice as wide is narrowed until it does not
+    # next to an edge the image of a box may cross it: that of one twice as wide is narrowed until
+    # it does not
     wide = [2 * outer] * len(middle)
     found = _image(function, middle, wide)
     if found is None or not all(abs(s) < w for s, w in zip(found[0], wide, strict=True)):
@@ -130,12 +141,18 @@ def narrowed(function: Function, found: Judgement) -> Judgement:
     new = _image(function, [x.mid() for x in found.within], [x.rad() for x in found.within])
     if new is None:
         return found
-    within = tuple((x.mid() + step).intersection(x) for x, step in zip(found.within, new[0], strict=True))
+    within = tuple(
+        (x.mid() + step).intersection(x) for x, step in zip(found.within, new[0], strict=True)
+    )
     return Judgement(True, within, new[1])
 
 
-def _image(function: Function, middle: list[arb], reach: list[arb]) -> tuple[list[arb], Matrix] | None:
-    """Krawczyk's image of a box, less its middle, and the derivatives over the box; None where they are singular."""
+def _image(
+    function: Function, middle: list[arb], reach: list[arb]
+) -> tuple[list[arb], Matrix] | None:
+    """Krawczyk's image of a box, less its middle, and the derivatives over the box; None where they
+    are singular.
+    """
     at, over = function(middle), function([arb(m, r) for m, r in zip(middle, reach, strict=True)])
     found = None if at is None or over is None else image(at[0], over[1], reach)
     return None if found is None or over is None else (found, over[1])

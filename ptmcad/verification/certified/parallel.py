@@ -1,6 +1,8 @@
-"""Springs side by side in a slice: where vectors are parallel at every point of it, and how long they are together.
+"""Springs side by side in a slice: where vectors are parallel at every point of it, and how long
+they are together.
 
-Guarantee: exact; factors are polynomials over Q in the parameters that are proved to be positive in the open window.
+Guarantee: exact; factors are polynomials over Q in the parameters that are proved to be positive in
+the open window.
 """
 
 from __future__ import annotations
@@ -21,7 +23,8 @@ Coordinate = Mapping[Any, fmpq_mpoly]
 
 
 class Parameters:
-    """A slice's parameters as variables of polynomials: which are numbers, or the same as others, and their signs.
+    """A slice's parameters as variables of polynomials: which are numbers, or the same as others,
+    and their signs.
 
     Parameters
     ----------
@@ -29,14 +32,21 @@ class Parameters:
     context : the ring, whose variables are the parameters.
     """
 
-    def __init__(self, values: Iterable[tuple[str, Expression]], axes: tuple[Axis, Axis], context: fmpq_mpoly_ctx):
+    def __init__(
+        self,
+        values: Iterable[tuple[str, Expression]],
+        axes: tuple[Axis, Axis],
+        context: fmpq_mpoly_ctx,
+    ):
         self.context, known = context, dict(values)
         self.values = [known.get(name, constant(0)) for name in context.names()]
         across, up = ((from_fraction(axis.low), from_fraction(axis.high)) for axis in axes)
         self.window: Window = (across, up)
 
     def valued(self, f: Coordinate) -> dict[Any, fmpq_mpoly]:
-        """The same at every point of the slice, with numbers in place of parameters, and one name for equal ones."""
+        """The same at every point of the slice, with numbers in place of parameters, and one name
+        for equal ones.
+        """
         found = {key: self._valued(p) for key, p in f.items()}
         return {key: p for key, p in found.items() if not p.is_zero()}
 
@@ -57,7 +67,9 @@ class Parameters:
         value = self._expression(p)
         if has_no_pole(value, self.window) is not Sign.PROVED:
             return None
-        signs = (sign for sign in (1, -1) if is_in_domain(sign * value, self.window, True) is Sign.PROVED)
+        signs = (
+            sign for sign in (1, -1) if is_in_domain(sign * value, self.window, True) is Sign.PROVED
+        )
         sign = next(signs, None)
         return None if sign is None else p * sign
 
@@ -75,8 +87,11 @@ class Parameters:
         total: Expression = constant(0) + evaluated(p, known)
         return total
 
-    def shares(self, d: Sequence[Coordinate], other: Sequence[Coordinate]) -> tuple[fmpq_mpoly, fmpq_mpoly] | None:
-        """Positive f and g for which d/f and other/g, or its negative, are the same polynomials; None without a proof.
+    def shares(
+        self, d: Sequence[Coordinate], other: Sequence[Coordinate]
+    ) -> tuple[fmpq_mpoly, fmpq_mpoly] | None:
+        """Positive f and g for which d/f and other/g, or its negative, are the same polynomials;
+        None without a proof.
 
         Parameters
         ----------

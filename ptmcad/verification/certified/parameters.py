@@ -1,4 +1,5 @@
-"""The signs of a slice's parameters in the whole window, and their values over a box of it, in balls.
+"""The signs of a slice's parameters in the whole window, and their values over a box of it, in
+balls.
 
 Guarantee: what is said to be proved of signs is; a ball has the values at all points of the box.
 """
@@ -24,9 +25,11 @@ from ptmcad.verification.terms import ball, evaluated, monomials
 
 
 def check_domain(claims: Claims) -> str:
-    """Every parameter is in the whole open window what the geometry and the engines' proofs ask for.
+    """Every parameter is in the whole open window what the geometry and the engines' proofs ask
+    for.
 
-    So are k and l0 where others are only written with them: a record is refused for their signs too.
+    So are k and l0 where others are only written with them: a record is refused for their signs
+    too.
 
     Returns
     -------
@@ -46,7 +49,9 @@ def check_domain(claims: Claims) -> str:
             strict = kind.is_positive or (kind is Kind.BASE and bool(expression.numerator))
             sign = is_in_domain(expression, here, strict)
             if sign is Sign.WRONG:
-                raise Violation(f"{name} is {'not positive' if strict else 'negative'} somewhere in the window")
+                raise Violation(
+                    f"{name} is {'not positive' if strict else 'negative'} somewhere in the window"
+                )
         if Sign.UNCHECKED in (pole, sign):
             unchecked.append(name)
     unchecked += _undecided_polynomials(claims, here)
@@ -58,15 +63,22 @@ def check_domain(claims: Claims) -> str:
 
 
 def _undecided_polynomials(claims: Claims, window: Window) -> list[str]:
-    """The stiffnesses and free lengths written in springs of which it could not be decided that they make sense.
+    """The stiffnesses and free lengths written in springs of which it could not be decided that
+    they make sense.
 
-    So of stiffness times free length where it pulls: if that is negative, a spring without length is a minimum that is
-    not smooth, and is not counted.
+    So of stiffness times free length where it pulls: if that is negative, a spring without length
+    is a minimum that is not smooth, and is not counted.
     """
     undecided, zero, slice = [], 0 * axis(0), claims.result.slice
     model, true = slice.model, derivation_of(slice.model)
-    known, names = {name: zero for name in model.free_lengths} | dict(slice.parameters), true.ring.names
-    right = {strict: [*model.positive, *(() if strict else model.nonnegative)] for strict in (True, False)}
+    known, names = (
+        {name: zero for name in model.free_lengths} | dict(slice.parameters),
+        true.ring.names,
+    )
+    right = {
+        strict: [*model.positive, *(() if strict else model.nonnegative)]
+        for strict in (True, False)
+    }
     asked = [
         (what, p, names, strict)
         for what, p, strict in true.required
@@ -74,22 +86,33 @@ def _undecided_polynomials(claims: Claims, window: Window) -> list[str]:
         if list(monomials(p, names)) not in [[(fmpq(1), [(name, 1)])] for name in right[strict]]
     ]
     if claims.result.cover is not None:
-        asked += [(f"stiffness times free length of spring {c.name}", c.pull, (), False) for c in form_of(slice).cones]
+        asked += [
+            (f"stiffness times free length of spring {c.name}", c.pull, (), False)
+            for c in form_of(slice).cones
+        ]
     for what, p, variables, strict in asked:
         try:
             sign = is_in_domain(evaluated(p, known, variables) + zero, window, strict)
         except ExpressionError:  # too long to be multiplied out
             sign = Sign.UNCHECKED
         if sign is Sign.WRONG:
-            raise Violation(f"{what} is {'not positive' if strict else 'negative'} somewhere in the window")
+            raise Violation(
+                f"{what} is {'not positive' if strict else 'negative'} somewhere in the window"
+            )
         if sign is Sign.UNCHECKED:
             undecided.append(what)
     return undecided
 
 
 def _expressions(slice: Slice) -> dict[str, Expression]:
-    """The parameters, and k or l0 (or a free length that is zero) where only an axis or a text mentions it."""
-    named = {name: axis(index) for index, name in enumerate(slice.axis_names) if name in auxiliary(slice.model)}
+    """The parameters, and k or l0 (or a free length that is zero) where only an axis or a text
+    mentions it.
+    """
+    named = {
+        name: axis(index)
+        for index, name in enumerate(slice.axis_names)
+        if name in auxiliary(slice.model)
+    }
     return {**named, **written(slice), **slice.parameters}
 
 
@@ -114,7 +137,9 @@ def over(expression: Expression, x: arb, y: arb) -> arb:
         When it may have a pole there.
     """
     at = dict(zip(PLANE.names(), (x, y), strict=True))
-    numerator, denominator = (ball(polynomial(terms), at) for terms in (expression.numerator, expression.denominator))
+    numerator, denominator = (
+        ball(polynomial(terms), at) for terms in (expression.numerator, expression.denominator)
+    )
     if denominator.contains(0):
         raise Unproved("a parameter may have a pole")
     return numerator / denominator

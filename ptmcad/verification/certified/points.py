@@ -1,7 +1,7 @@
 """Checks of the counts of a certified map: at every cell's sample, proved once more.
 
-Guarantee: exact at the samples. That the counts hold in the whole cells rests on the cover, of which
-`ptmcad.verification.certified.sampling` tries points.
+Guarantee: exact at the samples. That the counts hold in the whole cells rests on the cover, of
+which `ptmcad.verification.certified.sampling` tries points.
 """
 
 from __future__ import annotations
@@ -28,15 +28,21 @@ MAX_NEAR = 2
 
 
 _PLACES = ((3, 2), (-2, 3), (2, -1), (-1, -3))
-"""Where points beside a sample are, in quarters of a square around it: on no line with it through two of them."""
+"""Where points beside a sample are, in quarters of a square around it: on no line with it through
+two of them.
+"""
 _PARTS = 8
-"""Of the window's width, half the width of the largest such square: what is nearly degenerate takes many boxes ..."""
+"""Of the window's width, half the width of the largest such square: what is nearly degenerate takes
+many boxes ...
+"""
 _MIN_PARTS = 2**60
 """... and of the smallest one."""
 
 
 class _InBoxes(Unproved):
-    """The counts are true, but not that each stored box holds one solution: other cells' counts tell more."""
+    """The counts are true, but not that each stored box holds one solution: other cells' counts
+    tell more.
+    """
 
 
 def check_points(
@@ -71,7 +77,9 @@ def check_points(
     samples = len(claims.result.cells)
     if undecided:
         most = " or more" if uncounted == HOPELESS else ""
-        return Unchecked(f"{len(undecided)}{most} of {samples} samples were not decided, the first one {undecided[0]}")
+        return Unchecked(
+            f"{len(undecided)}{most} of {samples} samples were not decided, the first one {undecided[0]}"
+        )
     return f"{samples} samples, {number} equilibria"
 
 
@@ -80,7 +88,9 @@ def counting_of(claims: Claims) -> ModelCounting:
     return ModelCounting(form_of(claims.result.slice))
 
 
-def check_cell(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, places: Places | None = None) -> int:
+def check_cell(
+    claims: CertifiedClaims, counting: ModelCounting, cell: Cell, places: Places | None = None
+) -> int:
     """Counts and stored solutions of one cell; how many these are.
 
     Raises
@@ -93,7 +103,11 @@ def check_cell(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, pla
         return _check_beside(claims, counting, cell, reason, places)
     if differs(cell, there.counts):
         raise Violation(f"said to have {stored(cell)}; there are {there.counts}")
-    kept = [e for e in there.found if not kind_of(claims.result.slice.count).is_of_stable or "-" not in e.signs]
+    kept = [
+        e
+        for e in there.found
+        if not kind_of(claims.result.slice.count).is_of_stable or "-" not in e.signs
+    ]
     if len(cell.solutions) != len(kept):
         raise Violation(f"{len(cell.solutions)} boxes of solutions for {len(kept)} equilibria")
     try:
@@ -104,10 +118,16 @@ def check_cell(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, pla
 
 
 def _near(claims: CertifiedClaims, cell: Cell) -> list[tuple[Fraction, Fraction]]:
-    """Points of a sample's cell near the sample; none where it is very near to a rectangle of the cover."""
+    """Points of a sample's cell near the sample; none where it is very near to a rectangle of the
+    cover.
+    """
     u, v = claims.on_lattice(*cell.sample)
-    half = claims.room(u, v, Fraction(claims.sweep.steps, _PARTS), Fraction(claims.sweep.steps, _MIN_PARTS))
-    return [claims.off_lattice(u + half * i / 4, v + half * j / 4) for i, j in (_PLACES if half else ())]
+    half = claims.room(
+        u, v, Fraction(claims.sweep.steps, _PARTS), Fraction(claims.sweep.steps, _MIN_PARTS)
+    )
+    return [
+        claims.off_lattice(u + half * i / 4, v + half * j / 4) for i, j in (_PLACES if half else ())
+    ]
 
 
 def _counted_at(
@@ -120,7 +140,8 @@ def _counted_at(
 def _decided(
     claims: CertifiedClaims, counting: ModelCounting, cell: Cell, places: Places | None
 ) -> tuple[tuple[Fraction, Fraction], CountedPoint] | None:
-    """The first point beside an undecided sample at which the counts are decided, and what is counted there.
+    """The first point beside an undecided sample at which the counts are decided, and what is
+    counted there.
 
     Raises
     ------
@@ -140,7 +161,9 @@ def _decided(
     return None
 
 
-def _check_boxes(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, there: CountedPoint) -> None:
+def _check_boxes(
+    claims: CertifiedClaims, counting: ModelCounting, cell: Cell, there: CountedPoint
+) -> None:
     """Each stored box holds one solution, each another one, and these are those that are kept.
 
     Raises
@@ -148,7 +171,9 @@ def _check_boxes(claims: CertifiedClaims, counting: ModelCounting, cell: Cell, t
     Violation, Unproved
     """
     taken, kept = set[int](), there.found
-    for k, (solution, e) in enumerate(zip(cell.solutions, counting.within(there.values, cell.solutions), strict=True)):
+    for k, (solution, e) in enumerate(
+        zip(cell.solutions, counting.within(there.values, cell.solutions), strict=True)
+    ):
         match = [i for i, other in enumerate(kept) if counting.same(e, other)]
         if len(match) != 1 or match[0] in taken:
             near = ", ".join(f"{x:.6g}" for x in e.center)
@@ -174,14 +199,19 @@ def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
 
 
 def _check_beside(
-    claims: CertifiedClaims, counting: ModelCounting, cell: Cell, reason: Unproved, places: Places | None
+    claims: CertifiedClaims,
+    counting: ModelCounting,
+    cell: Cell,
+    reason: Unproved,
+    places: Places | None,
 ) -> int:
-    """The counts are those at a point beside the sample, and each stored box holds one solution, each another one.
+    """The counts are those at a point beside the sample, and each stored box holds one solution,
+    each another one.
 
     Raises
     ------
-    Unproved
-        When nothing beside the sample is decided, then for the reason given, or not what is in the boxes.
+    Unproved When nothing beside the sample is decided, then for the reason given, or not what is in
+        the boxes.
     Violation
     """
     said = cell.stable if cell.total is None else cell.total
@@ -189,7 +219,9 @@ def _check_beside(
         raise Violation(f"{len(cell.solutions)} boxes of solutions for {said} that are counted")
     negative = Counter(solution.signs.count("-") for solution in cell.solutions)
     if cell.index is not None and any(negative[k] != number for k, number in enumerate(cell.index)):
-        raise Violation(f"the signs of the listed solutions are not those of the index {cell.index}")
+        raise Violation(
+            f"the signs of the listed solutions are not those of the index {cell.index}"
+        )
     in_boxes = _listed(claims, counting, cell)
     if (found := _decided(claims, counting, cell, places)) is None:
         raise reason
@@ -199,7 +231,8 @@ def _check_beside(
 
 
 def check_listed(claims: CertifiedClaims, counting: ModelCounting, cell: Cell) -> int:
-    """Each stored box holds one solution of its signs at the sample, each another one; how many these are.
+    """Each stored box holds one solution of its signs at the sample, each another one; how many
+    these are.
 
     Raises
     ------
@@ -211,7 +244,8 @@ def check_listed(claims: CertifiedClaims, counting: ModelCounting, cell: Cell) -
 
 
 def _listed(claims: CertifiedClaims, counting: ModelCounting, cell: Cell) -> Unproved | None:
-    """Why it is not decided of a stored box that it holds one solution of its signs; None where all do.
+    """Why it is not decided of a stored box that it holds one solution of its signs; None where all
+    do.
 
     Raises
     ------

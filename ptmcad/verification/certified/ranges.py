@@ -1,15 +1,17 @@
-"""Bounds of the real unknowns at given parameters, beyond which a model has no solution that counts.
+"""Bounds of the real unknowns at given parameters, beyond which a model has no solution that
+counts.
 
-Guarantee: for all parameters in the balls no solution at which no inequality is violated has a real unknown beyond its
-bound.
+Guarantee: for all parameters in the balls no solution at which no inequality is violated has a real
+unknown beyond its bound.
 
-What is zero at solutions is a polynomial in the unknown h, and in those of which no bound is known yet. Put a number
-that is not negative for each of these, and R and such a number for h: if all coefficients have one sign, and the
-constant one is not zero, there is no solution from R on. All signs of unknowns are tried. Coefficients are balls over
-all angles and all other real unknowns as far as they are bounded; the part of a spring with a free length is at most
-its pull times the slope, of either sign. Where unknowns bound one another, x_j = t_j g^w_j with |t_j| at most 1, and
-the same is tried for g; where springs hold several, `ptmcad.verification.certified.held` is. The second
-engine evaluates by Horner's rule on unbounded intervals.
+What is zero at solutions is a polynomial in the unknown h, and in those of which no bound is known
+yet. Put a number that is not negative for each of these, and R and such a number for h: if all
+coefficients have one sign, and the constant one is not zero, there is no solution from R on. All
+signs of unknowns are tried. Coefficients are balls over all angles and all other real unknowns as
+far as they are bounded; the part of a spring with a free length is at most its pull times the
+slope, of either sign. Where unknowns bound one another, x_j = t_j g^w_j with |t_j| at most 1, and
+the same is tried for g; where springs hold several, `ptmcad.verification.certified.held` is. The
+second engine evaluates by Horner's rule on unbounded intervals.
 """
 
 from __future__ import annotations
@@ -49,7 +51,8 @@ _ZERO, _ANY = arb(0), arb(0, 1)
 
 @dataclass(frozen=True, slots=True)
 class _RangeChart:
-    """Each unknown as a factor times a power of a number that is not negative and not bounded, or a factor alone.
+    """Each unknown as a factor times a power of a number that is not negative and not bounded, or a
+    factor alone.
 
     Attributes
     ----------
@@ -67,7 +70,9 @@ class _RangeChart:
         total: Monomials = {}
         for (turned, raised, sine), c in row.items():
             term, angle, powers = c, _ZERO, [0] * (len(self.factors) + 1)
-            for j, (x, variable, weight) in enumerate(zip(self.factors, self.variables, self.weights, strict=True)):
+            for j, (x, variable, weight) in enumerate(
+                zip(self.factors, self.variables, self.weights, strict=True)
+            ):
                 if turned[j]:
                     angle = angle + turned[j] * x
                 if raised[j]:
@@ -80,7 +85,9 @@ class _RangeChart:
         return total
 
     def halves(self, whole: _RangeChart) -> tuple[_RangeChart, _RangeChart] | None:
-        """Two charts, halved in the factor that is largest as a share of the whole one's; None where there is none."""
+        """Two charts, halved in the factor that is largest as a share of the whole one's; None
+        where there is none.
+        """
         shares = {
             j: float((x.rad() / y.rad()).mid())
             for j, (x, y) in enumerate(zip(self.factors, whole.factors, strict=True))
@@ -94,7 +101,9 @@ class _RangeChart:
         return self._with(widest, one), self._with(widest, two)
 
     def _with(self, k: int, x: arb) -> _RangeChart:
-        return _RangeChart((*self.factors[:k], x, *self.factors[k + 1 :]), self.variables, self.weights, self.lead)
+        return _RangeChart(
+            (*self.factors[:k], x, *self.factors[k + 1 :]), self.variables, self.weights, self.lead
+        )
 
 
 class _Equation(NamedTuple):
@@ -115,7 +124,9 @@ class _Equation(NamedTuple):
 
 
 class _Bounds:
-    """What is known of the solutions: what is zero, what is positive, and the unknowns' bounds so far."""
+    """What is known of the solutions: what is zero, what is positive, and the unknowns' bounds so
+    far.
+    """
 
     def __init__(self, form: Form, values: Mapping[str, arb], with_products: bool):
         def row(waves: Waves) -> Row:
@@ -131,13 +142,22 @@ class _Bounds:
         if rigid:
             more = [row(waves) for waves in form.multiples]
             if with_products:
-                more += [_times(f, k) for f in rigid for k in range(form.size) if not form.is_circle[k]]
+                more += [
+                    _times(f, k) for f in rigid for k in range(form.size) if not form.is_circle[k]
+                ]
             self.equations += [_Equation(f) for f in (*more, *_combined([*rigid, *more]))]
         self.has_polynomials = bool(rigid)
         self.inequalities = [row(waves) for waves in form.inequalities]
-        unit = [(((0,) * form.size, tuple(int(j == k) for j in range(form.size)), 0), k) for k in range(form.size)]
-        self.positive = {k for key, k in unit for f in self.inequalities if f.keys() == {key} and f[key] > 0}
-        self.found: list[float | None] = [HALF_TURN if circle else None for circle in form.is_circle]
+        unit = [
+            (((0,) * form.size, tuple(int(j == k) for j in range(form.size)), 0), k)
+            for k in range(form.size)
+        ]
+        self.positive = {
+            k for key, k in unit for f in self.inequalities if f.keys() == {key} and f[key] > 0
+        }
+        self.found: list[float | None] = [
+            HALF_TURN if circle else None for circle in form.is_circle
+        ]
 
     def _factor(self, k: int) -> arb:
         """A ball for a bounded unknown."""
@@ -156,7 +176,9 @@ class _Bounds:
         """Bounds of some unknowns that bound one another."""
         if not self.has_polynomials:
             return None
-        for weights in sorted(product(range(1, MAX_WEIGHT + 1), repeat=len(chosen)), key=lambda w: (max(w), sum(w))):
+        for weights in sorted(
+            product(range(1, MAX_WEIGHT + 1), repeat=len(chosen)), key=lambda w: (max(w), sum(w))
+        ):
             of = dict(zip(chosen, weights, strict=True))
             bound = self._bound(list(self._faces(of)), ())
             if bound is not None:
@@ -164,8 +186,12 @@ class _Bounds:
         return None
 
     def held(self, chosen: Sequence[int]) -> dict[int, float] | None:
-        """Bounds of some unknowns in which their equations are linear, but for the directions of springs."""
-        factors = tuple(arb(1) if half is None else self._factor(k) for k, half in enumerate(self.found))
+        """Bounds of some unknowns in which their equations are linear, but for the directions of
+        springs.
+        """
+        factors = tuple(
+            arb(1) if half is None else self._factor(k) for k, half in enumerate(self.found)
+        )
         variables = tuple(k if half is None else None for k, half in enumerate(self.found))
         whole = _RangeChart(factors, variables, (1,) * len(factors), 0)
         waiting, most = [whole], [arb(0)] * len(chosen)
@@ -187,14 +213,20 @@ class _Bounds:
         return {k: nextafter(float(bound), inf) for k, bound in zip(chosen, most, strict=True)}
 
     def _linear(self, chart: _RangeChart, chosen: Sequence[int]) -> _Linear | None:
-        """The equations of some unknowns; None where other unknowns without a bound, or squares of these, are in."""
+        """The equations of some unknowns; None where other unknowns without a bound, or squares of
+        these, are in.
+        """
         none = (0,) * (len(chart.factors) + 1)
         units = [tuple(int(j == k) for j in range(len(none))) for k in chosen]
         matrix, rest, parts = [], [], []
         for equation in (self.equations[k] for k in chosen):
             terms = chart.monomials(equation.smooth)
-            slopes = [(chart.monomials(across), chart.monomials(up)) for _, across, up in equation.cones]
-            if not _present(terms) <= {none, *units} or any(not _present(f) <= {none} for pair in slopes for f in pair):
+            slopes = [
+                (chart.monomials(across), chart.monomials(up)) for _, across, up in equation.cones
+            ]
+            if not _present(terms) <= {none, *units} or any(
+                not _present(f) <= {none} for pair in slopes for f in pair
+            ):
                 return None
             matrix.append([terms.get(unit, _ZERO) for unit in units])
             rest.append(terms.get(none, _ZERO))
@@ -211,9 +243,14 @@ class _Bounds:
         for largest in weights:
             for side, *signs in product(self._signs(largest), *map(self._signs, free)):
                 of = dict(zip(free, signs, strict=True))
-                shares = {j: arb(0.5, 0.5) if j in self.positive else _ANY for j in weights} | {largest: arb(side)}
+                shares = {j: arb(0.5, 0.5) if j in self.positive else _ANY for j in weights} | {
+                    largest: arb(side)
+                }
                 yield _RangeChart(
-                    tuple(shares[j] if j in shares else arb(of[j]) if j in of else self._factor(j) for j in everything),
+                    tuple(
+                        shares[j] if j in shares else arb(of[j]) if j in of else self._factor(j)
+                        for j in everything
+                    ),
                     tuple(lead if j in shares else j if j in of else None for j in everything),
                     tuple(weights.get(j, 1) for j in everything),
                     lead,
@@ -228,7 +265,9 @@ class _Bounds:
         for parts, exponents in ((1, powers), (MAX_PARTS, FINE_POWERS)):
             # what does not hold far away holds nowhere
             if exponents and holds(exponents[-1], parts):
-                return float(2.0 ** next(e for e in exponents if e == exponents[-1] or holds(e, parts)))
+                return float(
+                    2.0 ** next(e for e in exponents if e == exponents[-1] or holds(e, parts))
+                )
         return None
 
     def _is_empty(self, chart: _RangeChart, bound: arb, parts: int) -> bool:
@@ -237,7 +276,9 @@ class _Bounds:
         while waiting:
             part = waiting.pop()
             treated += 1
-            if any(_is_positive(part.monomials(f), part.lead, bound, -1) for f in self.inequalities) or any(
+            if any(
+                _is_positive(part.monomials(f), part.lead, bound, -1) for f in self.inequalities
+            ) or any(
                 _is_positive(terms, part.lead, bound, sign)
                 for terms in (e.monomials(part) for e in self.equations)
                 for sign in (1, -1)
@@ -263,12 +304,15 @@ def _is_positive(terms: Monomials, lead: int, bound: arb, sign: int) -> bool:
         for j in range(i + 1):
             lower = (*powers[:lead], j, *powers[lead + 1 :])
             shifted[lower] = shifted.get(lower, _ZERO) + sign * c * comb(i, j) * bound ** (i - j)
-    return all(c >= 0 if any(powers) else c > 0 for powers, c in shifted.items()) and not all(map(any, shifted))
+    return all(c >= 0 if any(powers) else c > 0 for powers, c in shifted.items()) and not all(
+        map(any, shifted)
+    )
 
 
 def _times(f: Row, k: int) -> Row:
     return {
-        (turned, (*raised[:k], raised[k] + 1, *raised[k + 1 :]), sine): c for (turned, raised, sine), c in f.items()
+        (turned, (*raised[:k], raised[k] + 1, *raised[k + 1 :]), sine): c
+        for (turned, raised, sine), c in f.items()
     }
 
 
@@ -279,7 +323,9 @@ def _combined(rows: Sequence[Row]) -> list[Row]:
         for f, g in combinations((*rows, *found), 2):
             for key in f.keys() & g.keys():
                 others = (f.keys() | g.keys()) - {key}
-                both = {k: f.get(k, _ZERO) * g[key] - g.get(k, _ZERO) * f[key] for k in sorted(others)}
+                both = {
+                    k: f.get(k, _ZERO) * g[key] - g.get(k, _ZERO) * f[key] for k in sorted(others)
+                }
                 both = {k: c for k, c in both.items() if not (c == 0)}  # noqa: SIM201 (a ball that is not exactly zero)
                 if both and len(both) <= max(len(f), len(g)) and len(found) < _MAX_COMBINED:
                     found.append(both)

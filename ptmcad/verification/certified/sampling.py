@@ -1,15 +1,17 @@
-"""Checks of the free area of a certified map: at random points, that counts are what they should be and stay so nearby.
+"""Checks of the free area of a certified map: at random points, that counts are what they should be
+and stay so nearby.
 
-Guarantee: over each box that is counted as proved, every equilibrium that the map counts persists with nonzero
-determinant of its Hessian, and there are no others; so no curve at which the count changes enters the box. A point
-where this was not proved is counted apart, and never as proved.
+Guarantee: over each box that is counted as proved, every equilibrium that the map counts persists
+with nonzero determinant of its Hessian, and there are no others; so no curve at which the count
+changes enters the box. A point where this was not proved is counted apart, and never as proved.
 
-Points are drawn by area, whatever the rectangles are: the window is a grid of squares (in lattice steps), and each has
-one, uniform in what of its area is in cells. A part of the window with false counts and the share s_i of the i-th
-square's cells escapes with probability prod(1 - s_i), at most (1 - mean)^n. Further points are beside rectangles,
-spread over the same squares, and within one over the length of the rectangles' edges, so that many small rectangles
-draw no more of them than a few large ones. Half of the boxes are at points of either kind; at the other points it is
-the count alone that is looked at, which costs less. The boxes do not meet the cover.
+Points are drawn by area, whatever the rectangles are: the window is a grid of squares (in lattice
+steps), and each has one, uniform in what of its area is in cells. A part of the window with false
+counts and the share s_i of the i-th square's cells escapes with probability prod(1 - s_i), at most
+(1 - mean)^n. Further points are beside rectangles, spread over the same squares, and within one
+over the length of the rectangles' edges, so that many small rectangles draw no more of them than a
+few large ones. Half of the boxes are at points of either kind; at the other points it is the count
+alone that is looked at, which costs less. The boxes do not meet the cover.
 """
 
 from __future__ import annotations
@@ -37,7 +39,9 @@ ATTEMPTS = 9
 POINTS_PER_BOX = Fraction(32, 5)
 """Points by area for each box that is asked for."""
 MIN_WINDOW_PARTS = 2**30
-"""Parts of the window's width in which points are drawn, at least: a cover may have a coarse lattice."""
+"""Parts of the window's width in which points are drawn, at least: a cover may have a coarse
+lattice.
+"""
 _MAX_TRIALS = 400
 """Random points looked at for one that is free."""
 _FIRST_TRIALS = 40
@@ -45,13 +49,16 @@ PLACES_ON_TUBES = 4
 """Beside which points are tried, for each tube."""
 """The same for points beside rectangles, of which others will do."""
 Edge = tuple[Fraction | int, Fraction | int, Fraction | int, Fraction | int]
-"""A side of a rectangle within a square: left, right, bottom, top, one pair of them equal; in lattice steps times the
-number of squares side by side, in which squares begin and end at whole numbers."""
+"""A side of a rectangle within a square: left, right, bottom, top, one pair of them equal; in
+lattice steps times the number of squares side by side, in which squares begin and end at whole
+numbers."""
 
 
 @dataclass(frozen=True, slots=True)
 class SampleBox:
-    """A box in lattice steps, within one cell: its middle and half its width (0 where there is no room)."""
+    """A box in lattice steps, within one cell: its middle and half its width (0 where there is no
+    room).
+    """
 
     u: Fraction
     v: Fraction
@@ -66,11 +73,13 @@ def check_boxes(
     places: Places | None = None,
     report: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> str:
-    """Try so many random boxes, and more points; what was found, and for how many points nothing was proved.
+    """Try so many random boxes, and more points; what was found, and for how many points nothing
+    was proved.
 
     Parameters
     ----------
-    places : tells where solutions may be, which saves balls the search; without, all configurations are searched.
+    places : tells where solutions may be, which saves balls the search; without, all configurations
+        are searched.
     report : called with the numbers of points that are done, and of all.
     """
     if not claims.result.cells:
@@ -85,7 +94,9 @@ def check_boxes(
     far = min(len(by_area), number - near)
     proved = points = missing = 0
     area = Fraction(0)
-    tried = [(box, k < far) for k, box in enumerate(by_area)] + [(p, k < near) for k, p in enumerate(beside)]
+    tried = [(box, k < far) for k, box in enumerate(by_area)] + [
+        (p, k < near) for k, p in enumerate(beside)
+    ]
     for k, (box, with_box) in enumerate(tried):
         report(k, len(tried))
         if not points and missing == HOPELESS:
@@ -104,7 +115,9 @@ def check_boxes(
         # where constancy is not proved, a change of the count would show in a corner
         for side1 in (-1, 1):
             for side2 in (-1, 1):
-                check_point(claims, box.cell, box.u + side1 * box.half, box.v + side2 * box.half, places)
+                check_point(
+                    claims, box.cell, box.u + side1 * box.half, box.v + side2 * box.half, places
+                )
         missing += 1
     text = f"{proved} boxes, {100 * float(area):.2g} % of the window, {points} points; seed {seed}"
     if missing:
@@ -119,8 +132,12 @@ def _side(number: int) -> int:
     return isqrt(ceil(POINTS_PER_BOX * number) - 1) + 1
 
 
-def _by_area(claims: CertifiedClaims, rng: random.Random, number: int) -> tuple[list[SampleBox], int]:
-    """A point in each square of the grid, in random order; and the number of squares in which none was met with."""
+def _by_area(
+    claims: CertifiedClaims, rng: random.Random, number: int
+) -> tuple[list[SampleBox], int]:
+    """A point in each square of the grid, in random order; and the number of squares in which none
+    was met with.
+    """
     found, without = [], 0
     side = _side(number)
     width = Fraction(claims.sweep.steps, side)
@@ -138,14 +155,19 @@ def _by_area(claims: CertifiedClaims, rng: random.Random, number: int) -> tuple[
 
 
 def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[SampleBox]:
-    """Points beside rectangles, as many as boxes: from one square of the grid after the other, in random order."""
+    """Points beside rectangles, as many as boxes: from one square of the grid after the other, in
+    random order.
+    """
     cover = claims.cover
     edges = _edges(cover.rectangles, claims.sweep.steps, _side(number))
     for square, places in _along_tubes(cover, _side(number), rng).items():
         edges.setdefault(square, []).extend(places)
     order = sorted(edges)
     rng.shuffle(order)
-    totals = {k: list(accumulate(right - left + top - bottom for left, right, bottom, top in edges[k])) for k in order}
+    totals = {
+        k: list(accumulate(right - left + top - bottom for left, right, bottom, top in edges[k]))
+        for k in order
+    }
     found: list[SampleBox] = []
     while order and len(found) < number:
         for k in list(order):
@@ -164,7 +186,9 @@ def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[Sa
     return found
 
 
-def _edges(rectangles: tuple[Rectangle, ...], steps: int, side: int) -> dict[tuple[int, int], list[Edge]]:
+def _edges(
+    rectangles: tuple[Rectangle, ...], steps: int, side: int
+) -> dict[tuple[int, int], list[Edge]]:
     """The rectangles' sides, cut by the squares of the grid."""
     found: dict[tuple[int, int], list[Edge]] = {}
     for rectangle in rectangles:
@@ -206,7 +230,9 @@ def _cut(low: int, high: int, width: int) -> Iterator[tuple[int, int, int]]:
 
 
 def _off(edge: Edge, width: int, rng: random.Random) -> tuple[Fraction, Fraction]:
-    """A point off a rectangle's side, on either side of it, and as likely twice as far away as half as far."""
+    """A point off a rectangle's side, on either side of it, and as likely twice as far away as half
+    as far.
+    """
     left, right, bottom, top = edge
     away = width * Fraction(2 ** rng.uniform(-14, 0)) * rng.choice((-1, 1))
     u, v = left + (right - left) * _uniform(rng), bottom + (top - bottom) * _uniform(rng)
@@ -219,7 +245,9 @@ def _uniform(rng: random.Random) -> Fraction:
 
 
 def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None:
-    """The box around a point, or one next to it that is shorter to write; None when it is not in a cell."""
+    """The box around a point, or one next to it that is shorter to write; None when it is not in a
+    cell.
+    """
     steps = claims.sweep.steps
     scale = max(1, MIN_WINDOW_PARTS // steps)
     u, v = Fraction(round(u * scale), scale), Fraction(round(v * scale), scale)
@@ -230,7 +258,12 @@ def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None
 
 
 def check_point(
-    claims: CertifiedClaims, number: int, u: Fraction, v: Fraction, places: Places | None = None, reason: str = ""
+    claims: CertifiedClaims,
+    number: int,
+    u: Fraction,
+    v: Fraction,
+    places: Places | None = None,
+    reason: str = "",
 ) -> CountedPoint | None:
     """The counts at a point are those of the cell; its equilibria, None if they were not proved.
 
@@ -274,7 +307,13 @@ def _constant_over(
     return None
 
 
-def _prove(claims: CertifiedClaims, places: Places | None, box: SampleBox, half: Fraction, there: CountedPoint) -> None:
+def _prove(
+    claims: CertifiedClaims,
+    places: Places | None,
+    box: SampleBox,
+    half: Fraction,
+    there: CountedPoint,
+) -> None:
     """Prove the cell's counts for every point of the box.
 
     Raises
@@ -283,5 +322,9 @@ def _prove(claims: CertifiedClaims, places: Places | None, box: SampleBox, half:
         When the box is too large, or the counts change in it.
     """
     u, v = (box.u - half, box.u + half), (box.v - half, box.v + half)
-    true = counting_of(claims).over(claims.result.slice, *claims.balls(u, v), there, places and places(u, v))
-    assert not differs(claims.result.cells[box.cell], true), "the box holds its middle, whose counts are the cell's"
+    true = counting_of(claims).over(
+        claims.result.slice, *claims.balls(u, v), there, places and places(u, v)
+    )
+    assert not differs(claims.result.cells[box.cell], true), (
+        "the box holds its middle, whose counts are the cell's"
+    )

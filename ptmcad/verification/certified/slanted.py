@@ -1,8 +1,9 @@
 """A slanted piece of a cover: the parts that its tubes leave of its frame.
 
-Guarantee: bounds of areas hold, and parts of sides that are said to be open are so. Tubes are polynomials in powers
-here, which are put together from the controls' differences; that they are in order and pass the sides of their frames
-once is proved by Sturm sequences, where the engine looks at the controls.
+Guarantee: bounds of areas hold, and parts of sides that are said to be open are so. Tubes are
+polynomials in powers here, which are put together from the controls' differences; that they are in
+order and pass the sides of their frames once is proved by Sturm sequences, where the engine looks
+at the controls.
 """
 
 from __future__ import annotations
@@ -46,10 +47,17 @@ class SlantedFrame:
         if not patch.tubes or min(self.halves) <= 0:
             raise Violation(f"{self.name} has no tube, or one without width")
         for below, above in pairwise(range(len(self.centers))):
-            gap = self.centers[above] - self.centers[below] - (self.halves[above] + self.halves[below])
+            gap = (
+                self.centers[above]
+                - self.centers[below]
+                - (self.halves[above] + self.halves[below])
+            )
             if not _positive(gap):
                 raise Violation(f"tubes of {self.name} are not ascending and disjoint")
-        self.turns = [self._direction(center, half) for center, half in zip(self.centers, self.halves, strict=True)]
+        self.turns = [
+            self._direction(center, half)
+            for center, half in zip(self.centers, self.halves, strict=True)
+        ]
 
     def _direction(self, center: fmpq_poly, half: int) -> int:
         """1 or -1 where the tube ascends or descends, 0 where it stays within the frame.
@@ -62,7 +70,11 @@ class SlantedFrame:
         if _positive(center - half - self.bottom) and _positive(self.top - center - half):
             return 0
         slope = center.derivative()
-        if slope.degree() < 0 or roots_between(slope.numer(), fmpq(0), ONE) or slope(fmpq(1, 2)) == 0:
+        if (
+            slope.degree() < 0
+            or roots_between(slope.numer(), fmpq(0), ONE)
+            or slope(fmpq(1, 2)) == 0
+        ):
             raise Violation(f"a tube of {self.name} passes a side of its frame, and turns back")
         return 1 if slope(fmpq(1, 2)) > 0 else -1
 
@@ -75,15 +87,21 @@ class SlantedFrame:
                 return k if away < -half else None
         return len(self.centers)
 
-    def side(self, axis: int, end: int) -> Sequence[tuple[Fraction | int, Fraction | int, bool, int]]:
-        """The parts of a side across an axis, the lower (0) or the upper (1) one; numbers of parts or of tubes."""
+    def side(
+        self, axis: int, end: int
+    ) -> Sequence[tuple[Fraction | int, Fraction | int, bool, int]]:
+        """The parts of a side across an axis, the lower (0) or the upper (1) one; numbers of parts
+        or of tubes.
+        """
         key = (axis, end)
         if key not in self._sides:
             self._sides[key] = list(self._end(end) if axis == self.patch.along else self._long(end))
         return self._sides[key]
 
     @cached_property
-    def _sides(self) -> dict[tuple[int, int], Sequence[tuple[Fraction | int, Fraction | int, bool, int]]]:
+    def _sides(
+        self,
+    ) -> dict[tuple[int, int], Sequence[tuple[Fraction | int, Fraction | int, bool, int]]]:
         return {}
 
     def _end(self, end: int) -> Iterator[Part]:
@@ -91,7 +109,10 @@ class SlantedFrame:
         number = 0
         for k, (center, half) in enumerate(zip(self.centers, self.halves, strict=True)):
             value = center(fmpq(end))
-            first, last = to_fraction(value - half).__floor__(), to_fraction(value + half).__ceil__()
+            first, last = (
+                to_fraction(value - half).__floor__(),
+                to_fraction(value + half).__ceil__(),
+            )
             if last < self.bottom:
                 number = k + 1
                 continue
@@ -129,11 +150,16 @@ class SlantedFrame:
         ends = sorted(self._reached(k, height - sign * turn * self.halves[k]) for sign in (1, -1))
         if ends[1] < self.low or ends[0] > self.high:
             return None
-        first, last = Fraction(ends[0].__floor__()), Fraction((ends[1] + Fraction(1, _FINER)).__ceil__())
+        first, last = (
+            Fraction(ends[0].__floor__()),
+            Fraction((ends[1] + Fraction(1, _FINER)).__ceil__()),
+        )
         return max(first, Fraction(self.low)), min(last, Fraction(self.high))
 
     def _reached(self, k: int, level: int) -> Fraction:
-        """Where a center that ascends or descends reaches a level, at most 1/_FINER more; beyond the frame if not."""
+        """Where a center that ascends or descends reaches a level, at most 1/_FINER more; beyond
+        the frame if not.
+        """
         center, turn = self.centers[k], self.turns[k]
         width = self.high - self.low
         if turn * (center(fmpq(0)) - level) > 0:
@@ -172,7 +198,9 @@ class SlantedFrame:
             marks.append(min(max((at - self.low) / width, Fraction(0)), Fraction(1)))
         marks.append(Fraction(1))
         before, after = (self.bottom, self.top)[::turn]
-        middle = to_fraction(primitive(from_fraction(marks[2])) - primitive(from_fraction(marks[1])))
+        middle = to_fraction(
+            primitive(from_fraction(marks[2])) - primitive(from_fraction(marks[1]))
+        )
         total = width * (before * marks[1] + middle + after * (1 - marks[2]))
         # outside of the frame, or from one end of it to the other, nothing was rounded
         rounded = not {marks[1], marks[2]} <= {Fraction(0), Fraction(1)}
@@ -187,14 +215,17 @@ class SlantedFrame:
         s = arb(from_fraction((start + end) / 2), arb(from_fraction((end - start) / 2)).upper())
         for center, half in zip(self.centers, self.halves, strict=True):
             value = arb_poly(center)(s)
-            if not (value - half > arb(from_fraction(high[1 - a])) or value + half < arb(from_fraction(low[1 - a]))):
+            if not (
+                value - half > arb(from_fraction(high[1 - a]))
+                or value + half < arb(from_fraction(low[1 - a]))
+            ):
                 return False
         return True
 
 
 def _in_powers(controls: Sequence[int]) -> fmpq_poly:
-    """The polynomial with these coefficients in Bernstein's basis: its j-th power has binomial(n, j) times the j-th
-    forward difference."""
+    """The polynomial with these coefficients in Bernstein's basis: its j-th power has binomial(n,
+    j) times the j-th forward difference."""
     n, coefficients, differences = len(controls) - 1, [], list(controls)
     for j in range(n + 1):
         coefficients.append(comb(n, j) * differences[0])

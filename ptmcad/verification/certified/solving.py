@@ -1,9 +1,10 @@
-"""All solutions of any model in a box, for all parameters in balls at once: exclusion, Krawczyk's test, halving.
+"""All solutions of any model in a box, for all parameters in balls at once: exclusion, Krawczyk's
+test, halving.
 
-Guarantee: for every choice of the parameters in the balls of the `Field`, each of the solutions that are returned
-exists, exactly once in its box, and there is no further one in the boxes of the start at which no condition of the
-field is violated; when only minima are asked for, none that is a minimum or degenerate without a negative eigenvalue.
-What cannot be proved raises `Unproved`.
+Guarantee: for every choice of the parameters in the balls of the `Field`, each of the solutions
+that are returned exists, exactly once in its box, and there is no further one in the boxes of the
+start at which no condition of the field is violated; when only minima are asked for, none that is a
+minimum or degenerate without a negative eigenvalue. What cannot be proved raises `Unproved`.
 
 `krawczyk` has the test.
 """
@@ -33,7 +34,9 @@ from ptmcad.verification.certified.krawczyk import image_of, newton, proved
 from ptmcad.verification.inertia import is_no_minimum
 
 _NEAR = 4.0
-"""Balances are looked at where a spring may be shorter than so many times what it changes by in the box."""
+"""Balances are looked at where a spring may be shorter than so many times what it changes by in the
+box.
+"""
 _PROMISING = 1.0
 """The width of Krawczyk's image, as a share of the box's, below which Newton's method is tried."""
 _FIRST_SHARE = 2.0**-5
@@ -61,11 +64,12 @@ def zeros(
     ----------
     minima : whether only minima of a potential are asked for; others may then be missing.
     budget : number of boxes after which the search gives up.
-    smallest : share of the first boxes' widths below which one is not halved again: in an unknown in which those near
-        are closely alone, less.
-    near : solutions for one choice of the parameters; those near them are proved first, before any box of the start is
-        asked for, which saves a hopeless search.
-    whole : half the width of the box that those of the start are parts of; of the first of these where it is None.
+    smallest : share of the first boxes' widths below which one is not halved again: in an unknown
+        in which those near are closely alone, less.
+    near : solutions for one choice of the parameters; those near them are proved first, before any
+        box of the start is asked for, which saves a hopeless search.
+    whole : half the width of the box that those of the start are parts of; of the first of these
+        where it is None.
 
     Raises
     ------
@@ -132,7 +136,9 @@ def _excluded(jet: BallJet, box: Box, minima: bool) -> bool:
 
 
 def _contracts(box: Box, image: Sequence[arb]) -> bool:
-    """Whether Krawczyk's image of a box is not much wider, so that it is worth looking for a solution in it."""
+    """Whether Krawczyk's image of a box is not much wider, so that it is worth looking for a
+    solution in it.
+    """
     return all(step.rad() < _PROMISING * r for step, r in zip(image, box[1], strict=True))
 
 
@@ -154,7 +160,9 @@ def _met(box: Box, image: Sequence[arb]) -> Box | None:
 
 
 def _settled(field: BallEquations, box: Box, found: Sequence[Zero], whole: Floats) -> Zero | None:
-    """A solution that Newton's method reaches from the box's middle, proved to be one; None when none is."""
+    """A solution that Newton's method reaches from the box's middle, proved to be one; None when
+    none is.
+    """
     center = newton(field, box)
     if center is None or any(within(center, z.center, z.alone, field.circles) for z in found):
         return None
@@ -171,19 +179,27 @@ def _persisting(field: BallEquations, zero: Zero, whole: Floats) -> Zero:
 
 
 def _shapes(radii: Floats, whole: Floats) -> tuple[Floats, Floats]:
-    """Half widths of boxes that are tried around a solution: of the start's shape, which a box in it need not have."""
+    """Half widths of boxes that are tried around a solution: of the start's shape, which a box in
+    it need not have.
+    """
     share = max(_FIRST_SHARE, *(r / w for r, w in zip(radii, whole, strict=True)))
     return tuple(share * w for w in whole), radii
 
 
 def _units(found: Sequence[Zero], whole: Floats) -> list[float]:
-    """Widths to compare those of boxes with: shares of the whole, as different as where known solutions are alone."""
+    """Widths to compare those of boxes with: shares of the whole, as different as where known
+    solutions are alone.
+    """
     shares = [[r / w for r, w in zip(zero.alone, whole, strict=True)] for zero in found]
-    return [w * min((some[k] / max(some) for some in shares), default=1.0) for k, w in enumerate(whole)]
+    return [
+        w * min((some[k] / max(some) for some in shares), default=1.0) for k, w in enumerate(whole)
+    ]
 
 
 def _widest(jet: BallJet, box: Box, units: Sequence[float]) -> list[int]:
-    """The unknowns in the order in which halving is worth most: those first that the equations vary with most."""
+    """The unknowns in the order in which halving is worth most: those first that the equations vary
+    with most.
+    """
 
     slopes = {n: jet.slopes(n) for n in jet.short}
 
@@ -198,4 +214,6 @@ def _widest(jet: BallJet, box: Box, units: Sequence[float]) -> list[int]:
     shares = [r / unit for r, unit in zip(box[1], units, strict=True)]
     largest = max(shares)
     # no unknown is left behind by far
-    return sorted(range(len(units)), key=lambda k: (shares[k] * 64 > largest, weights[k]), reverse=True)
+    return sorted(
+        range(len(units)), key=lambda k: (shares[k] * 64 > largest, weights[k]), reverse=True
+    )

@@ -1,6 +1,7 @@
 """Checks of a certified map's form: cover, cells and regions, and what there must not be.
 
-Guarantee: exact; the components of the cover's complement are found by `ptmcad.verification.certified.sweep`.
+Guarantee: exact; the components of the cover's complement are found by
+`ptmcad.verification.certified.sweep`.
 """
 
 from __future__ import annotations
@@ -27,7 +28,8 @@ from ptmcad.verification.report import Violation
 MAX_STEPS = 2**40
 MAX_UNKNOWNS = 3
 SLACK = 4
-"""Columns and rows of lattice squares of a frame that rounding may concern, for each of its parts."""
+"""Columns and rows of lattice squares of a frame that rounding may concern, for each of its parts.
+"""
 
 
 class CertifiedClaims(Claims):
@@ -89,7 +91,9 @@ class CertifiedClaims(Claims):
         return None if component is None else self.cell_of.get(component)
 
     def room(self, u: Fraction, v: Fraction, half: Fraction, least: Fraction) -> Fraction:
-        """Half the width of a free square around a point, halved until there is one; 0 where none is wide enough."""
+        """Half the width of a free square around a point, halved until there is one; 0 where none
+        is wide enough.
+        """
         while not self.sweep.free_around(u, v, half):
             half /= 2
             if half < least:
@@ -124,7 +128,9 @@ class CertifiedClaims(Claims):
             if component is None:
                 raise Violation(f"the sample of cell {n} is in a rectangle of the cover")
             if component in found:
-                raise Violation(f"the samples of cells {found[component]} and {n} are not parted by the cover")
+                raise Violation(
+                    f"the samples of cells {found[component]} and {n} are not parted by the cover"
+                )
             found[component] = n
         return found
 
@@ -133,7 +139,9 @@ def check_form(claims: CertifiedClaims) -> str:
     """The entries that a certified map has, and those that it has not."""
     r = claims.result
     if r.cover is None or r.status not in (Status.CERTIFIED, Status.PARTIAL):
-        raise Violation(f"the status is {r.status.value!r}, and there is {'no' if r.cover is None else 'a'} cover")
+        raise Violation(
+            f"the status is {r.status.value!r}, and there is {'no' if r.cover is None else 'a'} cover"
+        )
     _check_model(r.slice)
     if any(axis.low >= axis.high for axis in r.slice.axes):
         raise Violation("the window is empty")
@@ -155,7 +163,9 @@ def check_form(claims: CertifiedClaims) -> str:
         raise Violation("the slanted pieces are not sorted")
     for patch in r.cover.patches:
         left, right, bottom, top = patch.frame
-        if not (0 <= left < right <= steps and 0 <= bottom < top <= steps and patch.along in (0, 1)):
+        if not (
+            0 <= left < right <= steps and 0 <= bottom < top <= steps and patch.along in (0, 1)
+        ):
             raise Violation(f"{patch.frame} is not a frame of the lattice")
         if any(len(tube.controls) < 2 for tube in patch.tubes):
             raise Violation(f"a slanted piece in {patch.frame} has no polynomial")
@@ -163,7 +173,9 @@ def check_form(claims: CertifiedClaims) -> str:
     for what, items in (("cell", r.cells), ("region", r.regions)):
         for n, item in enumerate(items):
             if (present := set(numbers_in(item))) != needed:
-                raise Violation(f"{what} {n} has the counts {sorted(present)}, not {sorted(needed)}")
+                raise Violation(
+                    f"{what} {n} has the counts {sorted(present)}, not {sorted(needed)}"
+                )
     for n, cell in enumerate(r.cells):
         if cell.stack is not None:
             raise Violation(f"cell {n} of a certified map has a stack")
@@ -179,7 +191,9 @@ def _check_model(slice: Slice) -> None:
     model = slice.model
     needed, known = set(model.without_free_lengths), {*shorthands_of(model), *model.variables}
     if not needed <= set(slice.parameters) <= known:
-        raise Violation(f"the mechanism {slice.mechanism!r} is not known, or its parameters are others")
+        raise Violation(
+            f"the mechanism {slice.mechanism!r} is not known, or its parameters are others"
+        )
     if not 1 <= len(model.unknowns) <= MAX_UNKNOWNS:
         raise Violation(f"no certified map is of {len(model.unknowns)} unknowns")
     if not kind_of(slice.count).is_of(model):
@@ -187,15 +201,23 @@ def _check_model(slice: Slice) -> None:
 
 
 def check_components(claims: CertifiedClaims) -> str:
-    """Every cell is a component of the cover's complement; the undetermined share is what the cells leave."""
+    """Every cell is a component of the cover's complement; the undetermined share is what the cells
+    leave.
+    """
     r, found = claims.result, claims.sweep
     cells = claims.cell_of
     larger = Counter[Fraction | int](found.areas.values())
     for component, n in cells.items():
         area, level = found.areas[component], r.cells[n].level
         before = sum(number for other, number in larger.items() if other > area + claims.slack)
-        if not before <= level < sum(number for other, number in larger.items() if other >= area - claims.slack):
-            raise Violation(f"cell {n} is said to be component {level} by area, but {before} are larger")
+        if (
+            not before
+            <= level
+            < sum(number for other, number in larger.items() if other >= area - claims.slack)
+        ):
+            raise Violation(
+                f"cell {n} is said to be component {level} by area, but {before} are larger"
+            )
     levels = [cell.level for cell in r.cells]
     if len(set(levels)) != len(levels):
         raise Violation("two cells are said to be the same component")
@@ -209,7 +231,9 @@ def check_components(claims: CertifiedClaims) -> str:
 
 
 def check_regions(claims: CertifiedClaims) -> str:
-    """Regions part the cells; each has its cells' counts, a cell's sample, and area bounds that hold."""
+    """Regions part the cells; each has its cells' counts, a cell's sample, and area bounds that
+    hold.
+    """
     r, found = claims.result, claims.sweep
     component_of = {n: component for component, n in claims.cell_of.items()}
     for number, region in enumerate(r.regions):
@@ -217,7 +241,9 @@ def check_regions(claims: CertifiedClaims) -> str:
         if not members or members != region.cells:
             raise Violation(f"region {number} is said to have cells {region.cells}, not {members}")
         if len(members) > 1:
-            raise Violation(f"region {number} joins cells {members}, which are not proved to be connected")
+            raise Violation(
+                f"region {number} joins cells {members}, which are not proved to be connected"
+            )
         check_region(r, number, members)
         component = component_of[members[0]]
         reach, least = _reach(claims, component), found.areas[component]
@@ -239,9 +265,11 @@ def check_regions(claims: CertifiedClaims) -> str:
 
 
 def _reach(claims: CertifiedClaims, component: int) -> int | Fraction:
-    """The area that a region, which is a cell, has if all that is undetermined beside it belongs to it, in squares.
+    """The area that a region, which is a cell, has if all that is undetermined beside it belongs to
+    it, in squares.
 
-    Not its neighbours' cells, but components without a cell that only undetermined rectangles part from it.
+    Not its neighbours' cells, but components without a cell that only undetermined rectangles part
+    from it.
     """
     found, cells = claims.sweep, claims.cell_of
     beside, around = claims.neighbours

@@ -1,10 +1,12 @@
-"""What a cover leaves free, found by a sweep: gaps, blocks and frames of slanted pieces, strip by strip.
+"""What a cover leaves free, found by a sweep: gaps, blocks and frames of slanted pieces, strip by
+strip.
 
-Guarantee: what is said to be connected is so, and bounds of areas hold; without slanted pieces they are exact. All
-coordinates are integers or rationals.
+Guarantee: what is said to be connected is so, and bounds of areas hold; without slanted pieces they
+are exact. All coordinates are integers or rationals.
 
-From strip to strip gaps and blocks go on, but in zones in which rectangles begin or end, with what touches these: what
-is new there is joined with what was there. Beside frames all begin anew, as frames' sides change with the height.
+From strip to strip gaps and blocks go on, but in zones in which rectangles begin or end, with what
+touches these: what is new there is joined with what was there. Beside frames all begin anew, as
+frames' sides change with the height.
 
 The engine finds the same by subdivision of the window.
 """
@@ -45,8 +47,8 @@ class CoverSweep:
     Attributes
     ----------
     lines : heights of the edges; strip k lies between lines k and k + 1.
-    component_of : of each node its component or, of closed ones, its cluster: what closed blocks that meet are
-        together.
+    component_of : of each node its component or, of closed ones, its cluster: what closed blocks
+        that meet are together.
     first_part : of each frame the node of the part below its tubes.
     areas : of components, at most; cluster_areas : at least.
     touching : pairs (component, cluster) that share boundary points.
@@ -63,7 +65,9 @@ class CoverSweep:
     touching: frozenset[tuple[int, int]]
 
     def locate(self, u: Fraction, v: Fraction) -> int | None:
-        """The component of a point of the open window; None where it is in the cover, or on a frame's side."""
+        """The component of a point of the open window; None where it is in the cover, or on a
+        frame's side.
+        """
         found = {self._at(item, u, v) for item in self._items((u, v), (u, v))}
         return found.pop() if len(found) == 1 else None
 
@@ -84,7 +88,9 @@ class CoverSweep:
             for item in self._items(low, high)
         )
 
-    def _items(self, low: tuple[Fraction, Fraction], high: tuple[Fraction, Fraction]) -> Iterator[Item]:
+    def _items(
+        self, low: tuple[Fraction, Fraction], high: tuple[Fraction, Fraction]
+    ) -> Iterator[Item]:
         """What of the strips a closed rectangle meets."""
         first, last = bisect_left(self.lines, low[1]) - 1, bisect_right(self.lines, high[1])
         for row in self.rows[max(first, 0) : max(last, 0)]:
@@ -100,7 +106,9 @@ def _right(item: Item) -> Any:
 
 @dataclass(slots=True)
 class _Sets:
-    """Disjoint sets of gaps or of blocks, which grow together, with what is known of their areas so far."""
+    """Disjoint sets of gaps or of blocks, which grow together, with what is known of their areas so
+    far.
+    """
 
     parent: list[int]
     free: list[bool]
@@ -128,7 +136,8 @@ def sweep(cover: Cover) -> CoverSweep:
 
     Parameters
     ----------
-    cover : whose rectangles lie in the window (`ptmcad.verification.certified.structure` checks it).
+    cover : whose rectangles lie in the window (`ptmcad.verification.certified.structure` checks
+        it).
 
     Raises
     ------
@@ -138,7 +147,9 @@ def sweep(cover: Cover) -> CoverSweep:
     frames = tuple(SlantedFrame(patch, k) for k, patch in enumerate(cover.patches))
     begin: dict[int, list[Entry]] = defaultdict(list)
     end: dict[int, list[Entry]] = defaultdict(list)
-    pieces = [(r, -1) for r in cover.rectangles] + [(patch.frame, k) for k, patch in enumerate(cover.patches)]
+    pieces = [(r, -1) for r in cover.rectangles] + [
+        (patch.frame, k) for k, patch in enumerate(cover.patches)
+    ]
     for (left, right, bottom, top), number in pieces:
         begin[bottom].append((left, right, number))
         end[top].append((left, right, number))
@@ -152,7 +163,8 @@ def sweep(cover: Cover) -> CoverSweep:
         first_tube.append(len(sets.free))
         rest = (frame.high - frame.low) * (frame.top - frame.bottom) - sum(frame.parts)
         for k in range(len(frame.centers)):
-            # all of what no part has is the first one's: where tubes are not in one cluster the rest is at least 0
+            # all of what no part has is the first one's: where tubes are not in one cluster the
+            # rest is at least 0
             sets.add(False, max(rest, 0) if k == 0 and len(frame.centers) == 1 else 0)
     pairs = {
         (part, tube + k)
@@ -162,7 +174,9 @@ def sweep(cover: Cover) -> CoverSweep:
         if sets.areas[part] >= 1
     }
 
-    def meet(below: Sequence[Part], above: Sequence[Part], low: Fraction | int, high: Fraction | int) -> None:
+    def meet(
+        below: Sequence[Part], above: Sequence[Part], low: Fraction | int, high: Fraction | int
+    ) -> None:
         for a, b, open_one, one in below:
             for c, d, open_two, two in above:
                 start, stop = max(a, c, low), min(b, d, high)
@@ -198,27 +212,47 @@ def sweep(cover: Cover) -> CoverSweep:
         for entry in begin[low]:
             insort(active, entry)
         # from the right, so that the numbers of what is left of a zone stay
-        for first, last in [(0, len(row))] if frames or not row else reversed(_zones([*end[low], *begin[low]], row)):
+        for first, last in (
+            [(0, len(row))]
+            if frames or not row
+            else reversed(_zones([*end[low], *begin[low]], row))
+        ):
             old = row[first:last]
             bottom, top = (old[0].left, old[-1].right) if old else (0, cover.steps)
             inner = active[bisect_left(active, (bottom,)) : bisect_left(active, (top,))]
             new = [
-                Item(left, right, free, -1 if number >= 0 else sets.add(free, -(right - left) * low), number)
+                Item(
+                    left,
+                    right,
+                    free,
+                    -1 if number >= 0 else sets.add(free, -(right - left) * low),
+                    number,
+                )
                 for left, right, free, number in _row(inner, bottom, top)
             ]
             grow(old, low)
-            for one, two in pairwise([*row[max(first - 1, 0) : first], *new, *row[last : last + 1]]):
+            for one, two in pairwise(
+                [*row[max(first - 1, 0) : first], *new, *row[last : last + 1]]
+            ):
                 meet(parts(one, 0, 1, (low, high)), parts(two, 0, 0, (low, high)), low, high)
             for one, two in _touching(old, new):
-                # what a frame that goes on across the line meets there, it meets along its upright sides in one strip
+                # what a frame that goes on across the line meets there, it meets along its upright
+                # sides in one strip
                 if _ends(one, frames, low, 3) and _ends(two, frames, low, 2):
                     span = max(one.left, two.left), min(one.right, two.right)
-                    meet(parts(one, 1, 1, (one.left, one.right)), parts(two, 1, 0, (two.left, two.right)), *span)
+                    meet(
+                        parts(one, 1, 1, (one.left, one.right)),
+                        parts(two, 1, 0, (two.left, two.right)),
+                        *span,
+                    )
             row[first:last] = new
         rows.append(tuple(row))
     grow(row, cover.steps)
     component_of = tuple(map(sets.top, sets.parent))
-    found: tuple[dict[int, Fraction], dict[int, Fraction]] = defaultdict(Fraction), defaultdict(Fraction)
+    found: tuple[dict[int, Fraction], dict[int, Fraction]] = (
+        defaultdict(Fraction),
+        defaultdict(Fraction),
+    )
     for n, is_free in enumerate(sets.free):
         found[not is_free][component_of[n]] += sets.areas[n]
     return CoverSweep(
@@ -235,9 +269,14 @@ def sweep(cover: Cover) -> CoverSweep:
 
 
 def _zones(changed: Sequence[Entry], row: Sequence[Item]) -> list[tuple[int, int]]:
-    """The items of a strip that changes meet, as disjoint parts: from which one to before which one, from the left."""
+    """The items of a strip that changes meet, as disjoint parts: from which one to before which
+    one, from the left.
+    """
     found: list[tuple[int, int]] = []
-    met = ((bisect_left(row, left, key=_right), bisect_right(row, right, key=_left)) for left, right, _ in changed)
+    met = (
+        (bisect_left(row, left, key=_right), bisect_right(row, right, key=_left))
+        for left, right, _ in changed
+    )
     for zone in sorted(met):
         before = found.pop() if found and zone[0] <= found[-1][1] else zone
         found.append((before[0], max(before[1], zone[1])))
@@ -254,7 +293,8 @@ def _ends(item: Item, frames: Sequence[SlantedFrame], line: int, side: int) -> b
 
 
 def _row(active: list[Entry], bottom: int, top: int) -> Iterator[tuple[int, int, bool, int]]:
-    """Gaps, blocks and frames of a part of a strip: left, right, whether it is free, the frame's number or -1.
+    """Gaps, blocks and frames of a part of a strip: left, right, whether it is free, the frame's
+    number or -1.
 
     Raises
     ------

@@ -1,12 +1,14 @@
 """Check of the stored equations of a certified map, as polynomials in the springs' lengths.
 
-Guarantee: exact. The text equals the energy, or the equations, that follow from the description, as a function of all
-parameters and all unknowns: both are polynomials over Q in the parameters, real unknowns, cosines, sines and lengths
-l_i, modulo cos^2 + sin^2 = 1 and l_i^2 = q_i, and their normal forms are the same. A root is read only where it is a
-length. An angle stands outside of cosines and sines only where a moment works on it.
+Guarantee: exact. The text equals the energy, or the equations, that follow from the description, as
+a function of all parameters and all unknowns: both are polynomials over Q in the parameters, real
+unknowns, cosines, sines and lengths l_i, modulo cos^2 + sin^2 = 1 and l_i^2 = q_i, and their normal
+forms are the same. A root is read only where it is a length. An angle stands outside of cosines and
+sines only where a moment works on it.
 
-Values at points would not do: what agrees at points of any number and precision may still be wrong elsewhere, be it
-sqrt(F3^2) for F3, a high power of a number below one, or a product that vanishes at the points.
+Values at points would not do: what agrees at points of any number and precision may still be wrong
+elsewhere, be it sqrt(F3^2) for F3, a high power of a number below one, or a product that vanishes
+at the points.
 """
 
 from __future__ import annotations
@@ -29,11 +31,13 @@ _LARGE_TEXT = 100_000
 """Letters beyond which a text is not checked."""
 _SIGNS = re.compile(r"[A-Za-z0-9_ ()^*/+-]*", re.ASCII)
 _WRONG = re.compile(r"\*\*|(?<![A-Za-z0-9_])(?:_|[0-9]+[A-Za-z_])", re.ASCII)
-"""Integers, names and signs: no comments, lines, decimals, or other things that are Python. Each takes linear time;
-possessive quantifiers, which would do, are wrong in Python before 3.11.5."""
+"""Integers, names and signs: no comments, lines, decimals, or other things that are Python. Each
+takes linear time; possessive quantifiers, which would do, are wrong in Python before 3.11.5."""
 _NAME = re.compile(r"(?<![A-Za-z0-9_])[A-Za-z]", re.ASCII)
 _MAX_TERMS, _MAX_DEGREE, _MAX_BITS = 2_000, 60, 2_000
-"""Of what a part of the text stands for, so that no text takes long; the energy has some 30 terms of degree 5."""
+"""Of what a part of the text stands for, so that no text takes long; the energy has some 30 terms
+of degree 5.
+"""
 
 
 class _TooLarge(Violation):
@@ -51,16 +55,24 @@ def check_potential(claims: Claims) -> str:
         raise Violation(f"there are {len(true.equations)} equations for {len(unknowns)} unknowns")
     closed = bool(form_of(slice).closing) and slice.has_free_lengths
     if closed and len(system.relations) != len(true.closing):
-        raise Violation(f"there are {len(true.closing)} loops that are closed, and {len(system.relations)} relations")
+        raise Violation(
+            f"there are {len(true.closing)} loops that are closed, and {len(system.relations)} relations"
+        )
     stated = true.energy is not None and (true.from_energy or closed)
     if (system.relations and not closed) or system.hessian or (stated and system.gradient):
-        raise Violation("a certified map has no relations, and its gradient and Hessian follow from the potential")
+        raise Violation(
+            "a certified map has no relations, and its gradient and Hessian follow from the potential"
+        )
     if system.moments and not (stated and true.apart):
-        raise Violation("moments are stated beside the potential where one depends on another unknown only")
+        raise Violation(
+            "moments are stated beside the potential where one depends on another unknown only"
+        )
     if not stated and (system.potential or len(system.gradient) != len(true.equations)):
         raise Violation(f"there are {len(true.equations)} equations and no potential")
     text = _Text(true, stated)
-    reasons = [_compared(text, "potential", system.potential, text.energy, text.work)] if stated else []
+    reasons = (
+        [_compared(text, "potential", system.potential, text.energy, text.work)] if stated else []
+    )
     moments = [true.moments[unknown] for unknown in unknowns] if stated and true.apart else []
     parts: list[tuple[str, Sequence[str], Sequence[fmpq_mpoly]]] = [
         ("equation", system.gradient, () if stated else true.equations),
@@ -74,16 +86,27 @@ def check_potential(claims: Claims) -> str:
             raise Violation(f"there are {len(polynomials)} of the kind {what}, not {len(stored)}")
         named = zip(stored, polynomials, strict=True)
         reasons += [
-            _compared(text, f"{what} {k}", one, text.ring.taken(p, true.ring)) for k, (one, p) in enumerate(named)
+            _compared(text, f"{what} {k}", one, text.ring.taken(p, true.ring))
+            for k, (one, p) in enumerate(named)
         ]
     if any(reasons):
         return Unchecked(next(filter(None, reasons)))
-    what = "the equations" if not stated else "the potential and the moments" if true.apart else "the potential"
+    what = (
+        "the equations"
+        if not stated
+        else "the potential and the moments"
+        if true.apart
+        else "the potential"
+    )
     return f"{what} in {len(unknowns)} unknowns and {len(slice.model.variables)} parameters"
 
 
 def _compared(
-    text: _Text, what: str, stored: str, true: fmpq_mpoly, moments: Mapping[str, fmpq_mpoly] | None = None
+    text: _Text,
+    what: str,
+    stored: str,
+    true: fmpq_mpoly,
+    moments: Mapping[str, fmpq_mpoly] | None = None,
 ) -> str:
     """Why a text was not compared with what it has to be; empty when they are equal.
 
@@ -107,7 +130,9 @@ def _compared(
     else:
         differs = bool(fault_in_work(text.ring, -difference, moments))
     if differs:
-        raise Violation(f"the stored {what} differs from the mechanism's by {text.ring.text(difference)}")
+        raise Violation(
+            f"the stored {what} differs from the mechanism's by {text.ring.text(difference)}"
+        )
     return ""
 
 
@@ -116,10 +141,13 @@ class _Text:
 
     Attributes
     ----------
-    ring : with a variable for each spring's length, and one for each angle outside of cosines and sines.
-    names, outside : of parameters and unknowns what they stand for; and which may stand outside of cosines and sines.
+    ring : with a variable for each spring's length, and one for each angle outside of cosines and
+        sines.
+    names, outside : of parameters and unknowns what they stand for; and which may stand outside of
+        cosines and sines.
     energy : with the springs' free lengths, where it is stated.
-    work : the moments by the unknown on which they work, where their work is stated with the energy.
+    work : the moments by the unknown on which they work, where their work is stated with the
+        energy.
     squares : the squares of the springs' lengths in normal form, each once.
     """
 
@@ -131,10 +159,18 @@ class _Text:
         self.names = {name: self.ring.elements[name] for name in (*parameters, *true.unknowns)}
         moved = true.moved and not true.apart
         self.outside = self.names.keys() - (() if moved else true.ring.angles)
-        self.lengths, self.squares = [self.ring.elements[name] for name in first], list[fmpq_mpoly]()
+        self.lengths, self.squares = (
+            [self.ring.elements[name] for name in first],
+            list[fmpq_mpoly](),
+        )
         nothing = self.ring.context.constant(0)
-        self.work = {u: nothing if true.apart else self.ring.taken(true.moments[u], true.ring) for u in true.unknowns}
-        self.energy = self.reduced(true.stretched(self.ring, self._new_length)) if stated else nothing
+        self.work = {
+            u: nothing if true.apart else self.ring.taken(true.moments[u], true.ring)
+            for u in true.unknowns
+        }
+        self.energy = (
+            self.reduced(true.stretched(self.ring, self._new_length)) if stated else nothing
+        )
 
     def _new_length(self, square: fmpq_mpoly) -> fmpq_mpoly:
         normal = self.ring.normal(square)
@@ -173,7 +209,8 @@ class _Text:
         return self._value(_parsed(what, text))
 
     def _value(self, node: ast.expr, inside: bool = False) -> fmpq_mpoly:
-        """What sums, products, small powers, quotients by numbers, lengths, sines and cosines stand for.
+        """What sums, products, small powers, quotients by numbers, lengths, sines and cosines stand
+        for.
 
         Parameters
         ----------
@@ -272,5 +309,7 @@ def _bounded(p: fmpq_mpoly) -> fmpq_mpoly:
     """A polynomial that is not too large to go on with."""
     bits = max((max(int(c.p).bit_length(), int(c.q).bit_length()) for c in p.coeffs()), default=0)
     if len(p) > _MAX_TERMS or p.total_degree() > _MAX_DEGREE or bits > _MAX_BITS:
-        raise _TooLarge("the stored potential has a part of too many terms, too high a degree or too long numbers")
+        raise _TooLarge(
+            "the stored potential has a part of too many terms, too high a degree or too long numbers"
+        )
     return p

@@ -1,7 +1,9 @@
-"""The equations of any model as sums of waves, from its description: Fourier's normal form in the unknown angles.
+"""The equations of any model as sums of waves, from its description: Fourier's normal form in the
+unknown angles.
 
-Guarantee: exact; polynomials over Q in the parameters. Angles are read as exponentials, and a real number is a sum of
-products of one wave, a cosine or a sine of a sum of whole multiples of angles, with powers of the real unknowns.
+Guarantee: exact; polynomials over Q in the parameters. Angles are read as exponentials, and a real
+number is a sum of products of one wave, a cosine or a sine of a sum of whole multiples of angles,
+with powers of the real unknowns.
 """
 
 from __future__ import annotations
@@ -28,24 +30,27 @@ Multi = tuple[int, ...]
 Key = tuple[Multi, Multi, int]
 """The multiples, the powers, and 0 for the cosine or 1 for the sine."""
 Waves = Mapping[Key, fmpq_mpoly]
-"""Factors of the waves, polynomials in the parameters; the first multiple that is not zero is positive, and there is no
-sine of nothing."""
+"""Factors of the waves, polynomials in the parameters; the first multiple that is not zero is
+positive, and there is no sine of nothing."""
 Vector = tuple[Waves, Waves]
 _Side = tuple[str, Waves, Vector, Vector | None]
-"""Springs side by side: their names, and the pull and the vector, with its derivative along loops, of the one that they
-are together."""
+"""Springs side by side: their names, and the pull and the vector, with its derivative along loops,
+of the one that they are together."""
 
 
 class SpringCone(NamedTuple):
-    """A spring with a free length, or several side by side, which take K times a vector's length off the potential.
+    """A spring with a free length, or several side by side, which take K times a vector's length
+    off the potential.
 
     Attributes
     ----------
     name : of the spring, or of each.
-    pull : K, the stiffness times the free length; of several the sum, each by how much longer it is than the vector.
+    pull : K, the stiffness times the free length; of several the sum, each by how much longer it is
+        than the vector.
     vector : between the spring's ends; of several one in the same direction.
-    weights : for each equation the vector whose product with the spring's direction, times K, it lacks: the vector's
-        derivative by the unknown, but with closed loops that along them in the last equation, and nothing in others.
+    weights : for each equation the vector whose product with the spring's direction, times K, it
+        lacks: the vector's derivative by the unknown, but with closed loops that along them in the
+        last equation, and nothing in others.
     line : along which the vector stays all over the slice, if there is one.
     """
 
@@ -78,15 +83,17 @@ class Form:
     Attributes
     ----------
     is_circle : of each unknown, whether it is an angle.
-    is_gradient : whether the equations are the derivatives of a potential, so that the Jacobian is a Hessian.
-    equations : without the parts of the cones; divided by powers of real unknowns that are not zero where a solution
-        counts.
+    is_gradient : whether the equations are the derivatives of a potential, so that the Jacobian is
+        a Hessian.
+    equations : without the parts of the cones; divided by powers of real unknowns that are not zero
+        where a solution counts.
     inequalities, stability : positive at solutions that count, and at stable ones.
     multiples : of the equations, before they were divided.
     margins : what a kind of count asks of stable solutions besides.
-    closing : with closed loops and cones the numbers of the unknowns, angles first: the first equations say that the
-        loops are closed, no cone is in them, and a solution is stable where the determinant of the Jacobian, its
-        columns in this order, is positive; there is no other condition for stability then. Empty otherwise.
+    closing : with closed loops and cones the numbers of the unknowns, angles first: the first
+        equations say that the loops are closed, no cone is in them, and a solution is stable where
+        the determinant of the Jacobian, its columns in this order, is positive; there is no other
+        condition for stability then. Empty otherwise.
     """
 
     unknowns: tuple[str, ...]
@@ -117,12 +124,15 @@ class Form:
 
     @property
     def is_smooth_on_a_torus(self) -> bool:
-        """Whether the alternating sum of the index is zero (Poincare and Hopf; moments do not matter)."""
+        """Whether the alternating sum of the index is zero (Poincare and Hopf; moments do not
+        matter).
+        """
         return self.is_gradient and all(self.is_circle) and not (self.cones or self.inequalities)
 
 
 class _Exponentials:
-    """Polynomials in the parameters, the real unknowns, the imaginary unit and the exponentials of the angles.
+    """Polynomials in the parameters, the real unknowns, the imaginary unit and the exponentials of
+    the angles.
 
     Parameters
     ----------
@@ -134,7 +144,9 @@ class _Exponentials:
         parameters = tuple(model.variables) or ("no parameter",)  # a ring has a variable
         turns = [f"{way} {angle}" for angle in model.angles for way in ("exp", "inverse")]
         names = [*parameters, *model.reals, "imaginary unit", *turns]
-        self.context: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(tuple(f"x{k}" for k in range(len(names))), Ordering.lex)
+        self.context: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(
+            tuple(f"x{k}" for k in range(len(names))), Ordering.lex
+        )
         places = {name: k for k, name in enumerate(names)}
         known = dict(zip(names, self.context.gens(), strict=True))
         half, i = fmpq(1, 2), known["imaginary unit"]
@@ -142,7 +154,9 @@ class _Exponentials:
         for angle in model.angles:
             e, f = known[f"exp {angle}"], known[f"inverse {angle}"]
             self.squares.append(e * f - 1)
-            known |= dict(zip(circle_names(angle), ((e + f) * half, -i * (e - f) * half), strict=True))
+            known |= dict(
+                zip(circle_names(angle), ((e + f) * half, -i * (e - f) * half), strict=True)
+            )
         self.images = [known[name] for name in ring.names]
         self.reals = {n: places[n] for n in model.reals}
         self.turns = {a: (places[f"exp {a}"], places[f"inverse {a}"]) for a in model.angles}
@@ -206,7 +220,9 @@ def form_of(slice: Slice) -> Form:
 
 
 @lru_cache(maxsize=8)
-def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis], count: Count) -> Form:
+def _form(
+    model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis], count: Count
+) -> Form:
     true = derivation_of(model)
     ring = _Exponentials(model, true.ring)
     unknowns = ring.unknowns
@@ -215,10 +231,15 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[
     def says_something(condition: Waves) -> bool:
         """Of others nothing is stored: they are positive numbers all over the slice."""
         [*terms] = condition.items()
-        return len(terms) != 1 or any(map(any, terms[0][0][:2])) or not parameters.is_positive_number(terms[0][1])
+        return (
+            len(terms) != 1
+            or any(map(any, terms[0][0][:2]))
+            or not parameters.is_positive_number(terms[0][1])
+        )
 
     inequalities, stability = (
-        list(filter(says_something, map(ring.waves, some))) for some in (true.inequalities, true.stability)
+        list(filter(says_something, map(ring.waves, some)))
+        for some in (true.inequalities, true.stability)
     )
     multiples: list[Waves] = []
     if true.from_energy:
@@ -250,18 +271,26 @@ def _margins(ring: _Exponentials, margins: Iterable[CheckedMargin]) -> Iterable[
     nothing = ring.numbers.constant(0)
     for value, spring in margins:
         free = nothing if spring is None else next(iter(ring.waves(spring.free).values()), nothing)
-        yield Margin(ring.waves(value), None if spring is None else ring.vector(spring.vector), free)
+        yield Margin(
+            ring.waves(value), None if spring is None else ring.vector(spring.vector), free
+        )
 
 
 def _divided(f: Waves, inequalities: Iterable[Waves]) -> Waves:
-    """An equation without the factors h of which it is known that h = 0 makes some inequality's polynomial zero."""
+    """An equation without the factors h of which it is known that h = 0 makes some inequality's
+    polynomial zero.
+    """
     found = dict(f)
     for c in inequalities:
         for k in range(len(next(iter(c))[1]) if c else 0):
             power = min((raised[k] for _, raised, _ in found), default=0)
             if power and all(raised[k] for _, raised, _ in c):
                 found = {
-                    (turned, tuple(e - power * (j == k) for j, e in enumerate(raised)), sine): factor
+                    (
+                        turned,
+                        tuple(e - power * (j == k) for j, e in enumerate(raised)),
+                        sine,
+                    ): factor
                     for (turned, raised, sine), factor in found.items()
                 }
     return found
@@ -274,10 +303,14 @@ def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Ite
     for spring in true.pulling:
         pull = ring.waves(spring.pull)
         vector = ring.vector(spring.vector)
-        if all(map(parameters.vanishes, pull.values())) or not any(by(d, k) for d in vector for k in everything):
+        if all(map(parameters.vanishes, pull.values())) or not any(
+            by(d, k) for d in vector for k in everything
+        ):
             continue
         across, up = spring.vector
-        along = ring.vector((true.along_loops(across), true.along_loops(up))) if true.closing else None
+        along = (
+            ring.vector((true.along_loops(across), true.along_loops(up))) if true.closing else None
+        )
         new = (spring.name, pull, vector, along)
         for k, side in enumerate(sides):
             if joined := _joined(side, new, parameters):
@@ -290,13 +323,18 @@ def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Ite
         if along is not None:
             weights = [*[({}, {})] * (len(weights) - 1), along]
         ((_, strength),) = pull.items()
-        yield SpringCone(name, strength, vector, tuple(weights), line_of(vector, parameters.vanishes))
+        yield SpringCone(
+            name, strength, vector, tuple(weights), line_of(vector, parameters.vanishes)
+        )
 
 
 def _joined(one: _Side, other: _Side, parameters: Parameters) -> _Side | None:
     """Two as one, if their vectors are f e and g e at every point of the slice: K |f e| + K' |g e|."""
     (name, pull, vector, along), (also, more, parallel, _) = one, other
-    for look in (dict, parameters.valued):  # where parameters may stay, they do: they are factors of equations
+    for look in (
+        dict,
+        parameters.valued,
+    ):  # where parameters may stay, they do: they are factors of equations
         ours, theirs = ([look(f) for f in some] for some in (vector, parallel))
         if any(ours) and (factors := parameters.shares(ours, theirs)):
             f, g = factors

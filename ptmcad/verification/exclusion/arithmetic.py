@@ -1,9 +1,10 @@
 """Intervals of doubles in compiled code, rounded outward.
 
-Guarantee: intervals hold the exact values. An operation on doubles is rounded to nearest, so that its error is at most
-2^-53 of the result or 2^-1075, and each end is moved outward by 2^-52 of it and 1e-300. What is not finite, or beyond
-1e150, becomes the whole line, which nothing is ever concluded from. The sine and the cosine of a double are taken from
-the C library, with an error of at most 2^-50.
+Guarantee: intervals hold the exact values. An operation on doubles is rounded to nearest, so that
+its error is at most 2^-53 of the result or 2^-1075, and each end is moved outward by 2^-52 of it
+and 1e-300. What is not finite, or beyond 1e150, becomes the whole line, which nothing is ever
+concluded from. The sine and the cosine of a double are taken from the C library, with an error of
+at most 2^-50.
 """
 
 # ruff: noqa: PLW3301
@@ -72,7 +73,9 @@ def over(a: float, b: float, c: float, d: float) -> Any:
 
 @compiled
 def wave(a: float, b: float, top: float) -> Any:
-    """The cosine's values on [a, b] (top 0) or the sine's (top pi/2): the function is 1 at top and at whole turns."""
+    """The cosine's values on [a, b] (top 0) or the sine's (top pi/2): the function is 1 at top and
+    at whole turns.
+    """
     if not (b - a < _TURN and abs(a) < 1e3):
         return -1.0, 1.0
     p, q = (cos(a), cos(b)) if top == 0.0 else (sin(a), sin(b))

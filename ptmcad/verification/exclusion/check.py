@@ -1,7 +1,8 @@
-"""The check of the free area: how much of it is proved free of critical curves, and where that could not be done.
+"""The check of the free area: how much of it is proved free of critical curves, and where that
+could not be done.
 
-Guarantee: of the free area, which is what the map's cells are, at least the share that is told has no critical point
-over it. A violation is a point of a cell with other counts than the cell's.
+Guarantee: of the free area, which is what the map's cells are, at least the share that is told has
+no critical point over it. A violation is a point of a cell with other counts than the cell's.
 """
 
 from __future__ import annotations
@@ -18,14 +19,16 @@ from ptmcad.verification.report import Unchecked
 
 EFFORT, MAX_EFFORT = 2, 10
 BOXES_AT_FIRST, GROWTH = 10_000, 4
-"""Boxes of the first effort, and how many times more each further one has; the last one has no limit."""
+"""Boxes of the first effort, and how many times more each further one has; the last one has no
+limit.
+"""
 MIN_BOX = 2.0**-20
 """Share of the window: boxes over less are not halved ..."""
 FINER = 2.0**-28
 """... but for those that are left then, in a further search of some boxes more."""
 BESIDE_AT_FIRST, BESIDE = 8, 2
-"""A strip of 2^-(8 + 2 effort) of the window is left out on each side of a slanted piece. Such a piece is much thinner
-than what first derivatives say of a curve, which is bent."""
+"""A strip of 2^-(8 + 2 effort) of the window is left out on each side of a slanted piece. Such a
+piece is much thinner than what first derivatives say of a curve, which is bent."""
 _FINER_BOXES = 20_000
 _PLACES = 12
 _STEPS_AWAY = (4, 64)
@@ -35,9 +38,12 @@ NUMBA_NEEDED = "compiled code is needed for it: install numba (ptmcad[certified]
 
 
 def check_free_area(
-    effort: int, claims: CertifiedClaims, report: Callable[[int, int], None] = lambda _done, _total: None
+    effort: int,
+    claims: CertifiedClaims,
+    report: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> str:
-    """Exclude critical points over the free area; what share of it is proved, and where nothing was.
+    """Exclude critical points over the free area; what share of it is proved, and where nothing
+    was.
 
     Parameters
     ----------
@@ -68,7 +74,9 @@ def check_free_area(
     wider = claims.sweep.steps >> (BESIDE_AT_FIRST + BESIDE * effort)
     pieces, left, looked = pieces_of(claims, wider), [], 0
     beside = widened(claims, wider)
-    budget = BOXES_AT_FIRST * GROWTH ** (effort - 1) // len(systems) if effort < MAX_EFFORT else 2**62
+    budget = (
+        BOXES_AT_FIRST * GROWTH ** (effort - 1) // len(systems) if effort < MAX_EFFORT else 2**62
+    )
     for k, system in enumerate(systems):
 
         def progress(share: float, k: int = k) -> None:
@@ -100,13 +108,17 @@ def check_free_area(
 
 
 def _check_is_numba(missing: ModuleNotFoundError) -> None:
-    """Raise it again where it is a part of numba that is missing, or a package that it needs itself."""
+    """Raise it again where it is a part of numba that is missing, or a package that it needs
+    itself.
+    """
     if missing.name != "numba":
         raise missing
 
 
 def places_of(claims: CertifiedClaims) -> Places | None:
-    """What tells where a map's solutions may be; None without compiled code, or where their equations are not known."""
+    """What tells where a map's solutions may be; None without compiled code, or where their
+    equations are not known.
+    """
     try:
         from ptmcad.verification.exclusion.places import SolutionPlaces as Isolated
     except ModuleNotFoundError as missing:
@@ -157,8 +169,8 @@ def _refute(claims: CertifiedClaims, boxes: Any) -> None:
 def _places(boxes: Any, steps: int) -> Iterator[tuple[Fraction, Fraction, Fraction]]:
     """Boxes in the midst of some squares: a point, and the box's width.
 
-    Half of the squares are those with most boxes, and the others are from all over the rest: many boxes are also left
-    along lines at which nothing changes.
+    Half of the squares are those with most boxes, and the others are from all over the rest: many
+    boxes are also left along lines at which nothing changes.
     """
     squares: dict[tuple[int, int], list[Any]] = {}
     for box in boxes:

@@ -1,8 +1,9 @@
-"""How the loops of the exclusion are compiled, without any licence to change floating-point arithmetic.
+"""How the loops of the exclusion are compiled, without any licence to change floating-point
+arithmetic.
 
-Guarantee: each operation is rounded once, to nearest; none is fused or reordered. Compiled code is kept on disk under
-a name that follows from the text of this package, as it may call what stands in another of its files, and of the
-module that has the operations' numbers.
+Guarantee: each operation is rounded once, to nearest; none is fused or reordered. Compiled code is
+kept on disk under a name that follows from the text of this package, as it may call what stands in
+another of its files, and of the module that has the operations' numbers.
 """
 
 from __future__ import annotations

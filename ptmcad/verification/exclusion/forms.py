@@ -1,14 +1,18 @@
-"""Affine forms of formulas over a box, in compiled code: a value in the middle, slopes by the variables, and an error.
+"""Affine forms of formulas over a box, in compiled code: a value in the middle, slopes by the
+variables, and an error.
 
-Guarantee: over a box with the middle m and half widths r, a value at the point m + r e, with each |e_j| at most 1, is
-within ``error`` of center + sum of slopes_j e_j, and it lies in [low, high]. An error that is infinite claims nothing.
-The error of each operation's own linearisation is a bound of its second derivative times half the square of how far its
-operands are from their centers; rounding adds 2^-49 of all numbers that were added up.
+Guarantee: over a box with the middle m and half widths r, a value at the point m + r e, with each
+|e_j| at most 1, is within ``error`` of center + sum of slopes_j e_j, and it lies in [low, high]. An
+error that is infinite claims nothing. The error of each operation's own linearisation is a bound of
+its second derivative times half the square of how far its operands are from their centers; rounding
+adds 2^-49 of all numbers that were added up.
 
-A form is a row of as many slopes as there may be variables, those of variables that are not there being zero: loops of
-a fixed length become a few instructions for several numbers at once, in a quarter of the time.
+A form is a row of as many slopes as there may be variables, those of variables that are not there
+being zero: loops of a fixed length become a few instructions for several numbers at once, in a
+quarter of the time.
 
-(J. Stolfi and L. H. de Figueiredo, Self-Validated Numerical Methods and Applications, 1997, chapter 3.)
+(J. Stolfi and L. H. de Figueiredo, Self-Validated Numerical Methods and Applications, 1997, chapter
+3.)
 """
 
 from __future__ import annotations
@@ -37,7 +41,9 @@ CENTER, ERROR, LOW, HIGH, WIDTH = range(MAX_VARIABLES, MAX_VARIABLES + 5)
 """Columns of a form after those of the slopes, and their number."""
 _ROUNDING = 2.0**-49
 _BENT = 0.58
-"""More than half of 2/sqrt(3): |h|^2/l^2 times that is the most of the second derivative of a unit vector along h."""
+"""More than half of 2/sqrt(3): |h|^2/l^2 times that is the most of the second derivative of a unit
+vector along h.
+"""
 
 
 @compiled
@@ -110,7 +116,9 @@ def radius(f: Any, n: int) -> float:
 
 @inlined
 def _settle(f: Any, n: int) -> None:
-    """Make the interval as narrow as the form says; drop the form where the interval alone is narrower."""
+    """Make the interval as narrow as the form says; drop the form where the interval alone is
+    narrower.
+    """
     center, error = f[n, CENTER], f[n, ERROR]
     total = _slopes(f, n) + error
     size = abs(center) + total
@@ -151,7 +159,9 @@ def _product(f: Any, n: int, p: int, q: int) -> None:
 
 
 @inlined
-def _linear(f: Any, n: int, p: int, value: float, slope: float, least: float, most: float, lost: float) -> None:
+def _linear(
+    f: Any, n: int, p: int, value: float, slope: float, least: float, most: float, lost: float
+) -> None:
     """value + slope (p - center) + what is between least and most, and rounding of so much more."""
     size = abs(value) + abs(slope) * radius(f, p) + abs(least) + abs(most) + lost
     for k in range(MAX_VARIABLES):
@@ -169,7 +179,8 @@ def _unary(code: int, f: Any, n: int, p: int) -> None:
         if not f[p, LOW] <= at <= f[p, HIGH]:  # what is between has to be in the interval
             _flat(f, n)
             return
-        # the second derivative is the function itself with the other sign, and [low, high] has all its values
+        # the second derivative is the function itself with the other sign, and [low, high] has all
+        # its values
         least, most, lost = min(0.0, -f[n, HIGH] * half), max(0.0, -f[n, LOW] * half), 1 + r
         value, slope = (cos(at), -sin(at)) if code == COSINE else (sin(at), cos(at))
     _linear(f, n, p, value, slope, least, most, lost)
@@ -192,7 +203,9 @@ def _quotient(f: Any, n: int, p: int, q: int) -> None:
 
 @compiled
 def _of_vector(code: int, f: Any, n: int, p: int, q: int) -> None:
-    """Direction, inverse length and length of a vector, about the length and direction in the middle."""
+    """Direction, inverse length and length of a vector, about the length and direction in the
+    middle.
+    """
     least, _ = reach(f[p, LOW], f[p, HIGH], f[q, LOW], f[q, HIGH])
     x, y = f[p, CENTER], f[q, CENTER]
     length = sqrt(x * x + y * y)
@@ -218,7 +231,9 @@ def _of_vector(code: int, f: Any, n: int, p: int, q: int) -> None:
         f[n, k] = by_x * f[p, k] + by_y * f[q, k]
     f[n, CENTER] = value + 0.5 * (below + above)
     f[n, ERROR] = abs(by_x) * f[p, ERROR] + abs(by_y) * f[q, ERROR] + 0.5 * (above - below)
-    f[n, ERROR] += 2 * _ROUNDING * (abs(value) + abs(by_x) * r + abs(by_y) * s + abs(below) + abs(above))
+    f[n, ERROR] += (
+        2 * _ROUNDING * (abs(value) + abs(by_x) * r + abs(by_y) * s + abs(below) + abs(above))
+    )
 
 
 __all__ = ["CENTER", "ERROR", "HIGH", "LOW", "WIDTH", "evaluate", "radius"]

@@ -1,9 +1,10 @@
 """Whether pieces of the window hold a strip: compiled code.
 
-A strip is what of a rectangle lies near a line: over u in [a, b], v is within [low, high] of middle + slope (u - from).
-The rectangle is cut along all sides of frames that pass through it. Then each frame has all of a part or nothing of it,
-and within a part a piece has all points whose v less the line lies between two numbers; these intervals together have
-to hold that of the strip. Frames' sides are whole numbers, so cutting is exact.
+A strip is what of a rectangle lies near a line: over u in [a, b], v is within [low, high] of
+middle + slope (u - from). The rectangle is cut along all sides of frames that pass through it. Then
+each frame has all of a part or nothing of it, and within a part a piece has all points whose v less
+the line lies between two numbers; these intervals together have to hold that of the strip. Frames'
+sides are whole numbers, so cutting is exact.
 """
 
 from __future__ import annotations
@@ -106,7 +107,9 @@ def _near(pieces: Any, along: int, strip: Any, near: Any) -> int:
 
 @compiled
 def _edge(pieces: Any, side: int, near: Any, number: int, a: float, b: float) -> float:
-    """The side of a frame nearest to the middle of an interval; infinite where no side is inside of it."""
+    """The side of a frame nearest to the middle of an interval; infinite where no side is inside of
+    it.
+    """
     at, away = inf, inf
     for m in range(number):
         for end in (0, 1):
@@ -129,7 +132,12 @@ def _part(pieces: Any, along: int, near: Any, number: int, strip: Any, part: Any
         n = near[m]
         low[m], high[m] = inf, -inf
         f = pieces.frames[n]
-        if f[2 * along] > a or f[2 * along + 1] < b or f[2 - 2 * along] > least or f[3 - 2 * along] < most:
+        if (
+            f[2 * along] > a
+            or f[2 * along + 1] < b
+            or f[2 - 2 * along] > least
+            or f[3 - 2 * along] < most
+        ):
             continue
         straight = pieces.lower[n, 1] == 0 and pieces.upper[n, 1] == 0
         if straight or (pieces.along[n] != along and _between(pieces, n, least, most, a, b)):
@@ -158,22 +166,33 @@ def _between(pieces: Any, n: int, a: float, b: float, least: float, most: float)
     """Whether a piece has all of a rectangle, [a, b] along its own axis, between its polynomials."""
     slack = SLACK * pieces.steps
     p, q = _shares(pieces.spans[n], a, b)
-    if pieces.lower[n, 1] and _off(pieces.controls, pieces.lower[n], p, q, least, least, 1) > -slack:
+    if (
+        pieces.lower[n, 1]
+        and _off(pieces.controls, pieces.lower[n], p, q, least, least, 1) > -slack
+    ):
         return False
-    return not (pieces.upper[n, 1] and _off(pieces.controls, pieces.upper[n], p, q, most, most, -1) < slack)
+    return not (
+        pieces.upper[n, 1] and _off(pieces.controls, pieces.upper[n], p, q, most, most, -1) < slack
+    )
 
 
 @compiled
 def _shares(span: Any, a: float, b: float) -> Any:
-    """Where a and b are, as shares of an interval; a little outside of it where the frame was made wider."""
+    """Where a and b are, as shares of an interval; a little outside of it where the frame was made
+    wider.
+    """
     return (a - span[0]) / (span[1] - span[0]), (b - span[0]) / (span[1] - span[0])
 
 
 @compiled
-def _off(controls: Any, bound: Any, p: float, q: float, line_a: float, line_b: float, sign: int) -> float:
-    """The most (sign 1) or the least (-1) that a polynomial is above a line, between p and q of its frame.
+def _off(
+    controls: Any, bound: Any, p: float, q: float, line_a: float, line_b: float, sign: int
+) -> float:
+    """The most (sign 1) or the least (-1) that a polynomial is above a line, between p and q of its
+    frame.
 
-    By de Casteljau's rule it has controls for this part; the line's own are evenly spaced between its ends.
+    By de Casteljau's rule it has controls for this part; the line's own are evenly spaced between
+    its ends.
     """
     start, number = bound[0], bound[1]
     if not (-_OUTSIDE <= p < 1 and q <= 1 + _OUTSIDE):

@@ -1,7 +1,8 @@
-"""What need not be free of critical curves, as pieces of the window: rectangles, tubes, and components without a cell.
+"""What need not be free of critical curves, as pieces of the window: rectangles, tubes, and
+components without a cell.
 
-Guarantee: what is said to be held by the pieces is so; bounds are rounded by `SLACK`. A piece is what of a closed
-rectangle lies between the graphs of two polynomials, or between one and a side.
+Guarantee: what is said to be held by the pieces is so; bounds are rounded by `SLACK`. A piece is
+what of a closed rectangle lies between the graphs of two polynomials, or between one and a side.
 """
 
 from __future__ import annotations
@@ -18,14 +19,18 @@ from ptmcad.verification.certified.sweep import CoverSweep
 Bound = tuple[int, tuple[int, ...]] | None
 """A polynomial by its controls, and what is added to them."""
 SLACK = 2.0**-44
-"""Share of the window's lattice by which bounds are narrower than they are: far more than what is lost in rounding."""
+"""Share of the window's lattice by which bounds are narrower than they are: far more than what is
+lost in rounding.
+"""
 MAX_BINS = 512
 MAX_CONTROLS = 64
 """Of a polynomial: pieces with more hold nothing."""
 
 
 class PieceRow(NamedTuple):
-    """A piece: its frame, its polynomials and their axis, and by how much the frame is wider than their interval."""
+    """A piece: its frame, its polynomials and their axis, and by how much the frame is wider than
+    their interval.
+    """
 
     frame: Rectangle
     along: int = 0
@@ -44,7 +49,8 @@ class Pieces(NamedTuple):
     along : the axis over which the polynomials are.
     lower, upper : place and number of controls of each bound; none at all where there is no bound.
     controls : all controls, with what is added.
-    bins : the window is a grid of so many squares a side; starts and members: the pieces that meet each.
+    bins : the window is a grid of so many squares a side; starts and members: the pieces that meet
+        each.
     """
 
     steps: float
@@ -64,7 +70,8 @@ def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
 
     Parameters
     ----------
-    wider : lattice steps by which tubes and their frames are made wider on all sides; what this adds is not proved.
+    wider : lattice steps by which tubes and their frames are made wider on all sides; what this
+        adds is not proved.
     """
     cover = claims.cover
     rows: list[PieceRow] = [PieceRow(r) for r in cover.rectangles]
@@ -72,7 +79,13 @@ def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
         left, right, bottom, top = patch.frame
         frame = left - wider, right + wider, bottom - wider, top + wider
         rows += [
-            PieceRow(frame, patch.along, (-t.half - wider, t.controls), (t.half + wider, t.controls), wider)
+            PieceRow(
+                frame,
+                patch.along,
+                (-t.half - wider, t.controls),
+                (t.half + wider, t.controls),
+                wider,
+            )
             for t in patch.tubes
             if len(t.controls) <= MAX_CONTROLS
         ]
@@ -111,13 +124,18 @@ def _open_in_frames(found: CoverSweep, cells: dict[int, int]) -> list[PieceRow]:
     for frame, first in zip(found.frames, found.first_part, strict=True):
         patch = frame.patch
         for k in range(len(patch.tubes) + 1):
-            if found.component_of[first + k] not in cells and len(patch.tubes[0].controls) <= MAX_CONTROLS:
+            if (
+                found.component_of[first + k] not in cells
+                and len(patch.tubes[0].controls) <= MAX_CONTROLS
+            ):
                 rows.append(PieceRow(patch.frame, patch.along, *_between(patch, k)))
     return rows
 
 
 def _between(patch: Patch, k: int) -> tuple[Bound, Bound]:
-    """What bounds the part of a frame that has so many tubes below it, together with the tubes beside it."""
+    """What bounds the part of a frame that has so many tubes below it, together with the tubes
+    beside it.
+    """
     below, above = patch.tubes[k - 1 : k], patch.tubes[k : k + 1]
     return (
         (-below[0].half, below[0].controls) if k else None,

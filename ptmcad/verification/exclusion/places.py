@@ -1,7 +1,8 @@
-"""Where the solutions over a point or a box of the window may be, by compiled code: where balls begin to look.
+"""Where the solutions over a point or a box of the window may be, by compiled code: where balls
+begin to look.
 
-Guarantee: all solutions that the map counts are in the boxes. Nothing else is claimed: which of the boxes have one is
-proved elsewhere.
+Guarantee: all solutions that the map counts are in the boxes. Nothing else is claimed: which of the
+boxes have one is proved elsewhere.
 """
 
 from __future__ import annotations
@@ -29,9 +30,13 @@ MAX_LEFT = 512
 MIN_WIDTH = 2.0**-24
 """Share of all configurations' width: boxes that are narrower are not halved."""
 PER_SHARE = 2.0
-"""The same for each share of the window's width that the rectangle has: solutions are in boxes of such a width."""
+"""The same for each share of the window's width that the rectangle has: solutions are in boxes of
+such a width.
+"""
 _ROOM = 2.0**-16
-"""Of the same, at least half the width of a box that is left: balls prove nothing in one that is nearly a point."""
+"""Of the same, at least half the width of a box that is left: balls prove nothing in one that is
+nearly a point.
+"""
 _ROUNDED_UP = 1 + 2.0**-50
 
 Range = tuple[Fraction, Fraction]
@@ -40,7 +45,8 @@ Range = tuple[Fraction, Fraction]
 class SolutionPlaces:
     """The boxes of a map's solutions.
 
-    Real unknowns may have bounds that are proved over the window; where they have not, each place has its own.
+    Real unknowns may have bounds that are proved over the window; where they have not, each place
+    has its own.
 
     Raises
     ------
@@ -58,7 +64,9 @@ class SolutionPlaces:
         self._pieces = no_pieces(self._steps)
 
     def __call__(self, u: Range, v: Range) -> Where | None:
-        """Over a rectangle of the window, in lattice steps; None where no bound of a real unknown is proved."""
+        """Over a rectangle of the window, in lattice steps; None where no bound of a real unknown
+        is proved.
+        """
         systems = self._systems
         if self._halves is None:
             try:
@@ -70,12 +78,16 @@ class SolutionPlaces:
         share = max(high - low for low, high in (u, v)) / self._steps
         smallest = max(MIN_WIDTH, PER_SHARE * float(share))
         rectangle = [(enclosing(low)[0], enclosing(high)[1]) for low, high in (u, v)]
-        return Where([_Isolated(system, rectangle, smallest, self._pieces) for system in systems], whole)
+        return Where(
+            [_Isolated(system, rectangle, smallest, self._pieces) for system in systems], whole
+        )
 
 
 @dataclass(frozen=True)
 class _Isolated:
-    """The boxes of one system's solutions over a rectangle, which are looked for when they are asked for."""
+    """The boxes of one system's solutions over a rectangle, which are looked for when they are
+    asked for.
+    """
 
     system: CriticalSystem
     rectangle: Sequence[tuple[float, float]]
@@ -91,14 +103,20 @@ class _Isolated:
         boxes[0] = self.system.start
         boxes[0, :2] = self.rectangle
         left = isolate(
-            self.system.compiled(self.smallest, over_place=True), self.system.tape, self.pieces, boxes, BUDGET
+            self.system.compiled(self.smallest, over_place=True),
+            self.system.tape,
+            self.pieces,
+            boxes,
+            BUDGET,
         )
         whole = tuple(self.system.start[2:, 1].tolist())
         return [_box(rows, whole) for rows in boxes[:left, 2:].tolist()]
 
 
 def _box(rows: list[list[float]], whole: Floats) -> Box:
-    """A box by its middle and half widths, which are made larger than some share of all configurations."""
+    """A box by its middle and half widths, which are made larger than some share of all
+    configurations.
+    """
     middle = tuple(0.5 * (low + high) for low, high in rows)
     halves = (
         max((high - m) * _ROUNDED_UP, (m - low) * _ROUNDED_UP, w * _ROOM)

@@ -1,6 +1,7 @@
 """The search for critical points in the free area: boxes in generations, and what is left of them.
 
-Guarantee: each critical point over the window that no piece of the cover holds is in one of the boxes that are left.
+Guarantee: each critical point over the window that no piece of the cover holds is in one of the
+boxes that are left.
 """
 
 from __future__ import annotations
@@ -83,19 +84,25 @@ def search(
 
 
 class _Choice:
-    """A system with those of its formulas that have lately excluded boxes: most of them hardly ever do.
+    """A system with those of its formulas that have lately excluded boxes: most of them hardly ever
+    do.
 
-    All of them are evaluated over the first boxes, over some of all others, which tells what is worth it, and over
-    those that would not be halved any more.
+    All of them are evaluated over the first boxes, over some of all others, which tells what is
+    worth it, and over those that would not be halved any more.
     """
 
     def __init__(self, system: CriticalSystem, pieces: Pieces, smallest: float):
         self._all, self._pieces, self._smallest = system, pieces, smallest
-        self._some, self._chosen = system, np.ones(len(system.zero) + len(system.not_negative), dtype=bool)
+        self._some, self._chosen = (
+            system,
+            np.ones(len(system.zero) + len(system.not_negative), dtype=bool),
+        )
         self._told, self._looked = np.zeros(len(self._chosen)), 0
 
     def look(self, boxes: Any) -> tuple[Any, Any, Any]:
-        """Boxes in another order, what becomes of them, and the second halves, as `search.look` has them."""
+        """Boxes in another order, what becomes of them, and the second halves, as `search.look` has
+        them.
+        """
         parts = 1 if self._looked < LEARNT_FROM else SAMPLE
         boxes = boxes[np.argsort(np.arange(len(boxes)) % parts, kind="stable")]
         outcome, other = np.full(len(boxes), GONE), np.empty_like(boxes)
@@ -113,10 +120,14 @@ class _Choice:
             self._chosen, self._some = chosen, self._all.with_some(chosen)
         return boxes, outcome, other
 
-    def _look(self, system: CriticalSystem, boxes: Any, outcome: Any, other: Any, told: Any = None) -> None:
+    def _look(
+        self, system: CriticalSystem, boxes: Any, outcome: Any, other: Any, told: Any = None
+    ) -> None:
         if told is None:
             told = np.zeros(len(system.zero) + len(system.not_negative))
-        look(system.compiled(self._smallest), system.tape, self._pieces, boxes, outcome, other, told)
+        look(
+            system.compiled(self._smallest), system.tape, self._pieces, boxes, outcome, other, told
+        )
 
 
 def _volumes(boxes: Any) -> Any:

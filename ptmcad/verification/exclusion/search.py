@@ -1,10 +1,12 @@
-"""Boxes of the window and of configurations: which of them have no zero of a system outside of the pieces. Compiled.
+"""Boxes of the window and of configurations: which of them have no zero of a system outside of the
+pieces. Compiled.
 
-Guarantee: a box that is called `GONE` has none: no critical point, or no solution, as the system has it. What is tried,
-in this order: the formulas' values; the mean value theorem; the linearised equations, multiplied by a matrix that
-solves them in the middle of the box, of which each leaves an interval for the variable that it is solved for (Hansen
-and Sengupta); whether the pieces hold the rectangle around what is left; and whether they hold the strip that the row
-of one axis leaves next to the other axis.
+Guarantee: a box that is called `GONE` has none: no critical point, or no solution, as the system
+has it. What is tried, in this order: the formulas' values; the mean value theorem; the linearised
+equations, multiplied by a matrix that solves them in the middle of the box, of which each leaves an
+interval for the variable that it is solved for (Hansen and Sengupta); whether the pieces hold the
+rectangle around what is left; and whether they hold the strip that the row of one axis leaves next
+to the other axis.
 """
 
 from __future__ import annotations
@@ -18,17 +20,21 @@ from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH,
 from ptmcad.verification.exclusion.holding import holds
 
 GONE, HALVED, STUCK = range(3)
-"""Of a box: it has no critical point outside of the pieces; its halves are to be looked at; it is as small as is asked
-for."""
+"""Of a box: it has no critical point outside of the pieces; its halves are to be looked at; it is
+as small as is asked for."""
 _ROUNDS = 3
 _WORTHWHILE = 0.75
 """Another round is made where a side of the box became smaller than this share of it."""
 _MAX_SLOPE = 1e100
 _ROUNDING = 2.0**-49
 _WIDTH_WEIGHT = 0.6
-"""How much a side's width counts, against what the equations change along it, when it is chosen what is halved."""
+"""How much a side's width counts, against what the equations change along it, when it is chosen
+what is halved.
+"""
 _FLAT = 2.0**-60
-"""Share of the window: a rectangle that is flatter, as those that are drawn to the window's edge, is not halved."""
+"""Share of the window: a rectangle that is flatter, as those that are drawn to the window's edge,
+is not halved.
+"""
 _MIN_RATIO = 0.5
 """Of a slope to the error of its row: rows with less are not solved."""
 _MIN_SHARE = 0.1
@@ -36,16 +42,19 @@ _MIN_SHARE = 0.1
 
 
 @compiled
-def look(system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any, told: Any) -> None:
+def look(
+    system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any, told: Any
+) -> None:
     """Treat boxes one by one.
 
     Parameters
     ----------
     system : `ptmcad.verification.exclusion.systems.Compiled`.
     boxes : (number, variables, 2), made smaller; outcome : (number,), as above.
-    rest : (number, variables, 2), the second halves of those that are `HALVED`; `boxes` has the first ones.
-    told : (formulas), those that are zero and then those that are not negative: how many boxes each of them
-        has excluded is added.
+    rest : (number, variables, 2), the second halves of those that are `HALVED`; `boxes` has the
+        first ones.
+    told : (formulas), those that are zero and then those that are not negative: how many boxes each
+        of them has excluded is added.
     """
     forms, rows, solved_for = _room(system, tape, boxes.shape[1])
     for n in range(len(boxes)):
@@ -63,9 +72,15 @@ def look(system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: An
 
 @compiled
 def _room(system: Any, tape: Any, nv: int) -> Any:
-    """Arrays for the forms of all operations, the rows of those that are asked for, and what these are solved for."""
+    """Arrays for the forms of all operations, the rows of those that are asked for, and what these
+    are solved for.
+    """
     number = len(system.zero) + len(system.not_negative)
-    return np.empty((len(tape.code), WIDTH)), np.empty((number, nv + 2)), np.empty(number, dtype=np.int64)
+    return (
+        np.empty((len(tape.code), WIDTH)),
+        np.empty((number, nv + 2)),
+        np.empty(number, dtype=np.int64),
+    )
 
 
 @compiled
@@ -78,11 +93,13 @@ def _halving(system: Any, forms: Any, box: Any) -> Any:
 
 @compiled
 def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int:
-    """Look at one box and its parts, the youngest first, until none waits or so many were looked at.
+    """Look at one box and its parts, the youngest first, until none waits or so many were looked
+    at.
 
     Parameters
     ----------
-    boxes : (most, variables, 2), of which the first one is the box; at the end those that are left come first.
+    boxes : (most, variables, 2), of which the first one is the box; at the end those that are left
+        come first.
 
     Returns
     -------
@@ -91,7 +108,11 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
     most, nv = boxes.shape[0], boxes.shape[1]
     forms, rows, solved_for = _room(system, tape, nv)
     told = np.zeros(len(rows))
-    box, stuck, waiting = np.empty((nv, 2)), 0, 1  # those that are stuck come first, then those that wait
+    box, stuck, waiting = (
+        np.empty((nv, 2)),
+        0,
+        1,
+    )  # those that are stuck come first, then those that wait
     for _ in range(budget):
         if waiting == 0 or stuck + waiting == most:
             break
@@ -114,7 +135,9 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
 
 
 @compiled
-def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: Any, solved_for: Any, told: Any) -> int:
+def _look_at(
+    system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: Any, solved_for: Any, told: Any
+) -> int:
     """What becomes of one box."""
     nv = box.shape[0]
     before = np.empty((nv, 2))
@@ -140,9 +163,14 @@ def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: An
     if _rectangle_held(pieces, box):
         return GONE
     for row in range(len(system.zero)):
-        if 0 <= solved_for[row] < 2 and _strip_held(pieces, box, before, rows[row], solved_for[row]):
+        if 0 <= solved_for[row] < 2 and _strip_held(
+            pieces, box, before, rows[row], solved_for[row]
+        ):
             return GONE
-    if system.halved == 0 and min(box[0, 1] - box[0, 0], box[1, 1] - box[1, 0]) < _FLAT * pieces.steps:
+    if (
+        system.halved == 0
+        and min(box[0, 1] - box[0, 0], box[1, 1] - box[1, 0]) < _FLAT * pieces.steps
+    ):
         return STUCK
     for j in range(nv):
         if not box[j, 1] - box[j, 0] < system.least[j]:
@@ -152,7 +180,9 @@ def _look_at(system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: An
 
 @compiled
 def _excluding(which: Any, forms: Any, above: bool) -> int:
-    """The first of some formulas that is not zero, or that is negative where it may be ``above``; -1 where none is."""
+    """The first of some formulas that is not zero, or that is negative where it may be ``above``;
+    -1 where none is.
+    """
     for k in range(len(which)):
         n = which[k]
         if forms[n, HIGH] < 0 or (not above and forms[n, LOW] > 0):
@@ -162,10 +192,12 @@ def _excluding(which: Any, forms: Any, above: bool) -> int:
 
 @compiled
 def _eliminated(system: Any, forms: Any, nv: int, rows: Any, solved_for: Any) -> int:
-    """Gauss and Jordan's elimination of the affine forms: of those that are zero first, of all others with them.
+    """Gauss and Jordan's elimination of the affine forms: of those that are zero first, of all
+    others with them.
 
-    At a critical point a form is zero for some error, and so is any combination of forms for some combination of the
-    errors. The next row is the one with the largest slope as a share of its error. Rounding is added to errors.
+    At a critical point a form is zero for some error, and so is any combination of forms for some
+    combination of the errors. The next row is the one with the largest slope as a share of its
+    error. Rounding is added to errors.
 
     Returns
     -------
@@ -217,7 +249,8 @@ def _narrowed(system: Any, number: int, box: Any, before: Any, rows: Any, solved
             return -1.0
         for j in range(nv):
             slope = rows[k, j]
-            # what the others can do at most; where this variable alone can do as much, nothing is gained
+            # what the others can do at most; where this variable alone can do as much, nothing is
+            # gained
             rest = total - abs(slope)
             if not abs(slope) > _MIN_SHARE * total:
                 continue
@@ -251,7 +284,9 @@ def _middle_of(side: Any) -> Any:
 @compiled
 def _rectangle_held(pieces: Any, box: Any) -> bool:
     (left, right), (bottom, top) = box[0], box[1]
-    return bool(holds(pieces, 0, np.array((left, right, left, bottom, 0.0, 0.0, top - bottom, bottom, top))))
+    return bool(
+        holds(pieces, 0, np.array((left, right, left, bottom, 0.0, 0.0, top - bottom, bottom, top)))
+    )
 
 
 @compiled
@@ -276,7 +311,9 @@ def _strip_held(pieces: Any, box: Any, before: Any, row: Any, v: int) -> bool:
 
 @compiled
 def _widest(system: Any, forms: Any, box: Any) -> int:
-    """The variable whose side changes the equations most, as a share; -1 where no side can be halved."""
+    """The variable whose side changes the equations most, as a share; -1 where no side can be
+    halved.
+    """
     nv, m = box.shape[0], len(system.measured)
     shares = np.zeros(nv)
     for n in system.measured:
@@ -288,7 +325,9 @@ def _widest(system: Any, forms: Any, box: Any) -> int:
                 shares[j] += abs(forms[n, j]) / total
     best, most = -1, 0.0
     for j in range(system.halved, nv):
-        share = (1 - _WIDTH_WEIGHT) * shares[j] / m + _WIDTH_WEIGHT * (box[j, 1] - box[j, 0]) / system.units[j]
+        share = (1 - _WIDTH_WEIGHT) * shares[j] / m + _WIDTH_WEIGHT * (
+            box[j, 1] - box[j, 0]
+        ) / system.units[j]
         if share > most:
             best, most = j, share
     return best
@@ -300,7 +339,14 @@ def spread(boxes: Any, steps: float, grid: Any) -> None:
     side = grid.shape[0]
     scale = side / steps
     for n in range(len(boxes)):
-        a, b, c, d = boxes[n, 0, 0] * scale, boxes[n, 0, 1] * scale, boxes[n, 1, 0] * scale, boxes[n, 1, 1] * scale
+        a, b, c, d = (
+            boxes[n, 0, 0] * scale,
+            boxes[n, 0, 1] * scale,
+            boxes[n, 1, 0] * scale,
+            boxes[n, 1, 1] * scale,
+        )
         for i in range(int(max(a, 0.0)), int(min(b, side - 1.0)) + 1):
             for j in range(int(max(c, 0.0)), int(min(d, side - 1.0)) + 1):
-                grid[i, j] += max(0.0, min(b, i + 1.0) - max(a, i)) * max(0.0, min(d, j + 1.0) - max(c, j))
+                grid[i, j] += max(0.0, min(b, i + 1.0) - max(a, i)) * max(
+                    0.0, min(d, j + 1.0) - max(c, j)
+                )

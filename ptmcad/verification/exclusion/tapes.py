@@ -20,7 +20,8 @@ class IntervalTape(NamedTuple):
 
     Attributes
     ----------
-    code, first, second : of each value the operation and the numbers of its operands (of a variable its own number).
+    code, first, second : of each value the operation and the numbers of its operands (of a variable
+        its own number).
     low, high : enclosures of constants.
     """
 
@@ -31,7 +32,9 @@ class IntervalTape(NamedTuple):
     high: Any
 
 
-def tape_of(formulas: Formulas, first: Sequence[int], wanted: Sequence[int]) -> tuple[IntervalTape, int, list[int]]:
+def tape_of(
+    formulas: Formulas, first: Sequence[int], wanted: Sequence[int]
+) -> tuple[IntervalTape, int, list[int]]:
     """The operations that some values need, those of the first of them first.
 
     Returns
@@ -57,7 +60,9 @@ def tape_of(formulas: Formulas, first: Sequence[int], wanted: Sequence[int]) -> 
 
 
 def enclosing(value: Fraction) -> tuple[float, float]:
-    """Floats that a rational number lies between, or is equal to; infinite ones where there are no others."""
+    """Floats that a rational number lies between, or is equal to; infinite ones where there are no
+    others.
+    """
     try:
         near = float(value)
     except OverflowError:

@@ -1,7 +1,8 @@
-"""A campaign: ``PYTHONPATH=.. python -m forger [--places N] [--kinds NAME,...] MAP...`` in tests/verification/.
+"""A campaign: ``PYTHONPATH=.. python -m forger [--places N] [--kinds NAME,...] MAP...`` in
+tests/verification/.
 
-A map is the name of a shipped slice, with savings to switch off after a plus sign (``fig2+sign-curve``), or the number
-of a random one (``17``). The figures follow as text.
+A map is the name of a shipped slice, with savings to switch off after a plus sign
+(``fig2+sign-curve``), or the number of a random one (``17``). The figures follow as text.
 """
 
 from __future__ import annotations
@@ -31,7 +32,9 @@ def main() -> None:
             (rearrangements.KINDS, False, true),
         ):
             chosen = [kind for kind in kinds if not asked or kind.__name__ in asked]
-            judge(name, r, chosen, wrong, options.places, tally, lambda text: print(text, flush=True))
+            judge(
+                name, r, chosen, wrong, options.places, tally, lambda text: print(text, flush=True)
+            )
         print(f"{name}: {len(r.cells)} cells, {time.perf_counter() - start:.0f} s", flush=True)
     for what, tally in (("false", false), ("true", true)):
         print(f"{what}: {len(tally.tried)} kinds, {sum(tally.places.values())} places, {sum(tally.tried.values())} "

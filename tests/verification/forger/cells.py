@@ -1,4 +1,6 @@
-"""False claims about cells: their counts, the boxes of their solutions, their adjacencies, and why some are not."""
+"""False claims about cells: their counts, the boxes of their solutions, their adjacencies, and why
+some are not.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,11 @@ CIRCLES = tuple((Fraction(a, c), Fraction(b, c)) for a, b, c in (
 def fake(r: RegionMap, k: int) -> tuple[Fraction, ...]:
     """A configuration that is no solution but by an accident that did not happen, by a number."""
     model = r.slice.model
-    turned = [x for i, _ in enumerate(model.angles) for x in CIRCLES[(k // (1 + 3 * i) + 3 * i) % len(CIRCLES)]]
+    turned = [
+        x
+        for i, _ in enumerate(model.angles)
+        for x in CIRCLES[(k // (1 + 3 * i) + 3 * i) % len(CIRCLES)]
+    ]
     return (*turned, *(Fraction(7 + k, 3) for _ in model.reals))
 
 
@@ -50,16 +56,23 @@ def _recounted(r: RegionMap, cells: tuple[int, ...], by: tuple[int, ...], boxes:
         for negative, more in enumerate(by) if boxes else ():
             signs = signs_of(len(by), negative)
             for _ in range(max(0, more)):
-                solutions = (*solutions, Solution(fake(r, len(solutions)), Fraction(1, 2**60), signs))
+                solutions = (
+                    *solutions,
+                    Solution(fake(r, len(solutions)), Fraction(1, 2**60), signs),
+                )
             for _ in range(max(0, -more)):
                 k = max(k for k, s in enumerate(solutions) if s.signs == signs)
                 solutions = drop(solutions, k)
-        found[n] = replace(found[n], index=index, total=sum(index), stable=index[0], solutions=solutions)
+        found[n] = replace(
+            found[n], index=index, total=sum(index), stable=index[0], solutions=solutions
+        )
     return settled(replace(r, cells=tuple(found)))
 
 
 def _possible(r: RegionMap, cells: tuple[int, ...], by: tuple[int, ...]) -> bool:
-    return all(all(old + b >= 0 for old, b in zip(r.cells[n].index or (), by, strict=True)) for n in cells)
+    return all(
+        all(old + b >= 0 for old, b in zip(r.cells[n].index or (), by, strict=True)) for n in cells
+    )
 
 
 PAIRS = ((1, 1, 0), (0, 1, 1), (-1, -1, 0), (0, -1, -1))
@@ -71,7 +84,11 @@ def _fitting(r: RegionMap, changes: tuple[tuple[int, ...], ...]) -> list[tuple[i
     size = len(r.cells[0].index or ())
     if not size:
         return []
-    return [(*by, *(0 for _ in range(size - len(by)))) for by in dict.fromkeys(by[:size] for by in changes) if any(by)]
+    return [
+        (*by, *(0 for _ in range(size - len(by))))
+        for by in dict.fromkeys(by[:size] for by in changes)
+        if any(by)
+    ]
 
 
 def counts_of_a_cell(r: RegionMap) -> Iterator[Alteration]:
@@ -144,7 +161,9 @@ def box_stored_twice(r: RegionMap) -> Iterator[Alteration]:
         for j, k in permutations(range(len(cell.solutions)), 2):
             s = cell.solutions[j]
             for radius in (s.radius, s.radius * Fraction(9, 10)):
-                yield partial(_with_solutions, r, n, put(cell.solutions, k, center=s.center, radius=radius))
+                yield partial(
+                    _with_solutions, r, n, put(cell.solutions, k, center=s.center, radius=radius)
+                )
 
 
 def boxes_that_meet(r: RegionMap) -> Iterator[Alteration]:
@@ -179,15 +198,21 @@ def sign_of_a_solution(r: RegionMap) -> Iterator[Alteration]:
         for k, s in enumerate(cell.solutions):
             size = len(cell.index or ())
             other = {"-": "+", "+": "-"}.get(s.signs[:1], "+") + s.signs[1:]
-            for signs in (*(signs_of(size, negative) for negative in range(size)), "") if size else (other,):
+            for signs in (
+                (*(signs_of(size, negative) for negative in range(size)), "") if size else (other,)
+            ):
                 if signs == s.signs:
                     continue
                 solutions = put(cell.solutions, k, signs=signs)
                 yield partial(_with_solutions, r, n, solutions)
                 if not size:
                     continue
-                index = tuple(sum(x.signs == signs_of(size, m) for x in solutions) for m in range(size))
-                new = put(r.cells, n, solutions=solutions, index=index, total=sum(index), stable=index[0])
+                index = tuple(
+                    sum(x.signs == signs_of(size, m) for x in solutions) for m in range(size)
+                )
+                new = put(
+                    r.cells, n, solutions=solutions, index=index, total=sum(index), stable=index[0]
+                )
                 yield partial(changed, r, cells=new)
 
 
@@ -237,7 +262,9 @@ def adjacency_twice(r: RegionMap) -> Iterator[Alteration]:
 
 
 def adjacency_invented(r: RegionMap) -> Iterator[Alteration]:
-    """Of cells of neighbouring stacks, with the segment of another pair, or of one stack or of distant ones."""
+    """Of cells of neighbouring stacks, with the segment of another pair, or of one stack or of
+    distant ones.
+    """
     known = {(a.first, a.second) for a in r.adjacencies}
     for _, a in _across(r):
         first, second = (r.stacks[r.cells[n].stack or 0].cells for n in (a.first, a.second))
@@ -253,7 +280,10 @@ def adjacency_invented(r: RegionMap) -> Iterator[Alteration]:
     for stack in r.stacks:
         for i, j in permutations(stack.cells, 2):
             if (i, j) not in known:
-                more = (*r.adjacencies, Adjacency(i, j, stack.walls[0].component, None, Merge.PROVEN))
+                more = (
+                    *r.adjacencies,
+                    Adjacency(i, j, stack.walls[0].component, None, Merge.PROVEN),
+                )
                 yield partial(changed, r, adjacencies=more)
 
 
@@ -270,7 +300,9 @@ def adjacency_with_other_ends(r: RegionMap) -> Iterator[Alteration]:
 
 
 def segment_elsewhere(r: RegionMap) -> Iterator[Alteration]:
-    """Short of the critical value, at the height of another pair, beyond the stacks, or outside of the window."""
+    """Short of the critical value, at the height of another pair, beyond the stacks, or outside of
+    the window.
+    """
     axis, other = r.slice.axes[r.base], r.slice.axes[1 - r.base]
     for k, a in _across(r):
         assert a.segment is not None
@@ -315,7 +347,9 @@ def non_adjacency_twice(r: RegionMap) -> Iterator[Alteration]:
 def non_adjacency_invented(r: RegionMap) -> Iterator[Alteration]:
     """Of a pair that is stored as adjacent, whose adjacency is there or dropped."""
     for k, a in _across(r):
-        record = NonAdjacency(r.cells[a.first].stack or 0, (a.first,), (a.second,), None, None, Reason.POINT)
+        record = NonAdjacency(
+            r.cells[a.first].stack or 0, (a.first,), (a.second,), None, None, Reason.POINT
+        )
         yield partial(replace, r, non_adjacencies=(*r.non_adjacencies, record))
         yield partial(_with_records, r, drop(r.adjacencies, k), (*r.non_adjacencies, record))
 
@@ -327,7 +361,10 @@ def non_adjacency_reason(r: RegionMap) -> Iterator[Alteration]:
     """
     for k, a in enumerate(r.non_adjacencies):
         branches, edges = len(a.left) + len(a.right) - 2, (a.below is None) + (a.above is None)
-        for reason, holds in ((Reason.PAIR, branches == 2 and not edges), (Reason.EDGE, branches == 1 and edges == 1)):
+        for reason, holds in (
+            (Reason.PAIR, branches == 2 and not edges),
+            (Reason.EDGE, branches == 1 and edges == 1),
+        ):
             if not holds:
                 yield partial(replace, r, non_adjacencies=put(r.non_adjacencies, k, reason=reason))
 
@@ -367,13 +404,17 @@ def critical_value_dropped(r: RegionMap) -> Iterator[Alteration]:
 def _without_stack(r: RegionMap, s: int) -> RegionMap:
     gone = set(r.stacks[s].cells)
     more = composed(r, s - 1, s + 1, s) if s + 1 < len(r.stacks) else []
-    left = replace(r, adjacencies=(*r.adjacencies, *more), critical_values=drop(r.critical_values, s - 1))
+    left = replace(
+        r, adjacencies=(*r.adjacencies, *more), critical_values=drop(r.critical_values, s - 1)
+    )
     cells = [n for n in range(len(r.cells)) if n not in gone]
     return settled(renumbered_cells(left, drop(r.stacks, s), cells))
 
 
 def regions_merged(r: RegionMap) -> Iterator[Alteration]:
-    """Two regions are said to be one, or one is said to be another's part; adjacencies stay as they are."""
+    """Two regions are said to be one, or one is said to be another's part; adjacencies stay as they
+    are.
+    """
     for i, j in combinations(range(len(r.regions)), 2):
         labels = [c.region - (c.region > j) if c.region != j else i for c in r.cells]
         yield partial(with_regions, r, labels)
@@ -419,7 +460,9 @@ def region_dropped(r: RegionMap) -> Iterator[Alteration]:
         yield partial(replace, r, regions=drop(r.regions, k))
 
 
-def _with_records(r: RegionMap, adjacencies: tuple[Adjacency, ...], records: tuple[NonAdjacency, ...]) -> RegionMap:
+def _with_records(
+    r: RegionMap, adjacencies: tuple[Adjacency, ...], records: tuple[NonAdjacency, ...]
+) -> RegionMap:
     return replace(changed(r, adjacencies=adjacencies), non_adjacencies=records)
 
 
@@ -433,7 +476,9 @@ def records_of_all_gaps_without_pairs(r: RegionMap) -> Iterator[Alteration]:
     for s in range(len(r.stacks) - 1):
         left = tuple(a for a in r.adjacencies if a.segment is None or r.cells[a.first].stack != s)
         for reason in Reason:
-            records = (NonAdjacency(s, r.stacks[s].cells, r.stacks[s + 1].cells, None, None, reason),)
+            records = (
+                NonAdjacency(s, r.stacks[s].cells, r.stacks[s + 1].cells, None, None, reason),
+            )
             others = tuple(a for a in r.non_adjacencies if a.critical_value != s)
             yield partial(_with_records, r, left, (*others, *records))
 

@@ -1,10 +1,12 @@
-"""Alterations of certified maps, false ones and true ones: cover, cells, counts, boxes, areas, slice.
+"""Alterations of certified maps, false ones and true ones: cover, cells, counts, boxes, areas,
+slice.
 
-A map with another cover is settled when its cells are those whose samples the cover leaves free and parts from each
-other, with their levels, areas and the undetermined share as the cover asks for. An upper bound is the window's area.
+A map with another cover is settled when its cells are those whose samples the cover leaves free and
+parts from each other, with their levels, areas and the undetermined share as the cover asks for. An
+upper bound is the window's area.
 
-Not among the false ones is a single rectangle that is missing without joining two cells: only random places may find
-that, and it need not be false.
+Not among the false ones is a single rectangle that is missing without joining two cells: only
+random places may find that, and it need not be false.
 """
 
 from __future__ import annotations
@@ -49,7 +51,12 @@ def covered(r: RegionMap, rectangles: Sequence[Rectangle], steps: int | None = N
         bounds = (areas[k] * claims.square, window_area(r))
         regions.append(replace(r.regions[cell.region], area=bounds, cells=(n,), sample=cell.sample))
     known = sum(areas[k] for k in component)
-    return replace(other, cells=tuple(cells), regions=tuple(regions), undetermined=1 - Fraction(known, found.steps**2))
+    return replace(
+        other,
+        cells=tuple(cells),
+        regions=tuple(regions),
+        undetermined=1 - Fraction(known, found.steps**2),
+    )
 
 
 def with_counts(r: RegionMap, n: int, **counts: Any) -> RegionMap:
@@ -106,7 +113,9 @@ def boxes(r: RegionMap) -> Iterator[Alteration]:
 
 
 def cover_with_a_gap(r: RegionMap) -> Iterator[Alteration]:
-    """Rectangles over a stretch of an axis are gone, so that cells run together; the cells stay as they were."""
+    """Rectangles over a stretch of an axis are gone, so that cells run together; the cells stay as
+    they were.
+    """
     cover = cover_of(r)
     for axis in (0, 2):
         for k in range(16):
@@ -118,7 +127,9 @@ def cover_with_a_gap(r: RegionMap) -> Iterator[Alteration]:
 
 
 def cover_left_out(r: RegionMap) -> Iterator[Alteration]:
-    """No rectangle is left, and one cell; all else agrees, so only places in the free area can tell."""
+    """No rectangle is left, and one cell; all else agrees, so only places in the free area can
+    tell.
+    """
     for n in range(len(r.cells)):
         yield partial(covered, replace(r, cells=r.cells[n : n + 1]), ())
 
@@ -137,7 +148,12 @@ def cover_not_normal(r: RegionMap) -> Iterator[Alteration]:
 
 def shares_and_levels(r: RegionMap) -> Iterator[Alteration]:
     """The undetermined share; a cell's number among the components."""
-    for share in (r.undetermined * Fraction(99, 100), Fraction(0), r.undetermined + Fraction(1, 10**9), Fraction(1)):
+    for share in (
+        r.undetermined * Fraction(99, 100),
+        Fraction(0),
+        r.undetermined + Fraction(1, 10**9),
+        Fraction(1),
+    ):
         yield partial(replace, r, undetermined=share)
     for n, cell in enumerate(r.cells):
         for level in (cell.level + 1, cell.level + 1000, -1):
@@ -175,8 +191,12 @@ def partition(r: RegionMap) -> Iterator[Alteration]:
     """Regions merged, dropped, with other cells; cells without a region."""
     for j, k in combinations(range(len(r.regions)), 2):
         both = tuple(sorted(r.regions[j].cells + r.regions[k].cells))
-        regions = drop(put(r.regions, j, cells=both, area=(r.regions[j].area[0], window_area(r))), k)
-        cells = tuple(replace(c, region=j if c.region == k else c.region - (c.region > k)) for c in r.cells)
+        regions = drop(
+            put(r.regions, j, cells=both, area=(r.regions[j].area[0], window_area(r))), k
+        )
+        cells = tuple(
+            replace(c, region=j if c.region == k else c.region - (c.region > k)) for c in r.cells
+        )
         yield partial(replace, r, cells=cells, regions=regions)
         yield partial(replace, r, regions=put(r.regions, j, cells=both))
         same = {n: getattr(r.regions[j], n) for n in ("total", "stable", "index", "admissible")}
@@ -197,7 +217,9 @@ def frame(r: RegionMap) -> Iterator[Alteration]:
     yield partial(replace, r, slice=replace(r.slice, model=known_of("other")))
     yield partial(replace, r, slice=replace(r.slice, axes=r.slice.axes[::-1]))
     x = r.slice.axes[0]
-    yield partial(replace, r, slice=replace(r.slice, axes=put(r.slice.axes, 0, low=x.high, high=x.low)))
+    yield partial(
+        replace, r, slice=replace(r.slice, axes=put(r.slice.axes, 0, low=x.high, high=x.low))
+    )
     for name, e in r.slice.parameters.items():
         if name not in r.slice.axis_names and name != "k":
             text = {**r.slice.text, name: "7/9"}
@@ -211,12 +233,16 @@ def frame(r: RegionMap) -> Iterator[Alteration]:
             yield partial(replace, r, slice=changed)
     for right, wrong in (("1/2*k1", "1/2*k2"), (" - F3*", " + F3*"), ("1/2*k3", "1/3*k3"),
                          (" - F3*", " - sqrt(F3^2)*"), (" - F4*", f" - F3/{10**45} - F4*")):  # fmt: skip
-        yield partial(replace, r, system=replace(r.system, potential=r.system.potential.replace(right, wrong)))
+        yield partial(
+            replace, r, system=replace(r.system, potential=r.system.potential.replace(right, wrong))
+        )
     yield partial(replace, r, system=replace(r.system, unknowns=swapped(r.system.unknowns, 0, 1)))
 
 
 def potentials(r: RegionMap) -> Iterator[Alteration]:
-    """Potentials that agree with the true one where all parameters are small and positive, or nearly everywhere."""
+    """Potentials that agree with the true one where all parameters are small and positive, or
+    nearly everywhere.
+    """
     true = r.system.potential
     tower = "(" * 6 + "(F3/4)" + "^9)" * 6
     for text in (
@@ -233,7 +259,9 @@ def true_covers(r: RegionMap) -> Iterator[Alteration]:
     cover = cover_of(r)
     double = [(2 * a, 2 * b, 2 * c, 2 * d) for a, b, c, d in cover.rectangles]
     yield partial(covered, r, double, 2 * cover.steps)
-    halves = [half for a, b, c, d in double for half in ((a, (a + b) // 2, c, d), ((a + b) // 2, b, c, d))]
+    halves = [
+        half for a, b, c, d in double for half in ((a, (a + b) // 2, c, d), ((a + b) // 2, b, c, d))
+    ]
     yield partial(covered, r, halves, 2 * cover.steps)
     eighth = cover.steps // 8
     for corner in ((0, eighth, 0, eighth), (3 * eighth, 4 * eighth, 5 * eighth, 6 * eighth)):
@@ -243,7 +271,9 @@ def true_covers(r: RegionMap) -> Iterator[Alteration]:
 
 
 def true_words(r: RegionMap) -> Iterator[Alteration]:
-    """Another order of regions, wider areas, another title, a partial status, boxes in another order."""
+    """Another order of regions, wider areas, another title, a partial status, boxes in another
+    order.
+    """
     last = len(r.regions) - 1
     turned = tuple(replace(c, region=last - c.region) for c in r.cells)
     yield partial(replace, r, cells=turned, regions=r.regions[::-1])

@@ -1,8 +1,9 @@
-"""What follows from the claims of an exact map: merges, regions, records of cells that are not adjacent, and the plan.
+"""What follows from the claims of an exact map: merges, regions, records of cells that are not
+adjacent, and the plan.
 
-An altered map is *settled* when all of these follow from its cells, walls, adjacencies and components, be they true or
-not. The area of a region that the true map does not have is said to be between nothing and the window's, which no
-check of areas can refute.
+An altered map is *settled* when all of these follow from its cells, walls, adjacencies and
+components, be they true or not. The area of a region that the true map does not have is said to be
+between nothing and the window's, which no check of areas can refute.
 """
 
 from __future__ import annotations
@@ -13,7 +14,17 @@ from fractions import Fraction
 from itertools import count, pairwise
 from typing import Any
 
-from ptmcad.answer.regionmap import Adjacency, Cell, Merge, NonAdjacency, PlanStep, Reason, Region, RegionMap, Stack
+from ptmcad.answer.regionmap import (
+    Adjacency,
+    Cell,
+    Merge,
+    NonAdjacency,
+    PlanStep,
+    Reason,
+    Region,
+    RegionMap,
+    Stack,
+)
 from ptmcad.exact.plan import plan_of
 from ptmcad.question.slice import Count
 
@@ -48,7 +59,9 @@ def window_area(r: RegionMap) -> Fraction:
 
 
 def settled(r: RegionMap) -> RegionMap:
-    """The map with merges, regions, separating components, non-adjacencies and plan as the rest asks for."""
+    """The map with merges, regions, separating components, non-adjacencies and plan as the rest
+    asks for.
+    """
     return with_plan(with_regions(with_merges(with_non_adjacencies(r))))
 
 
@@ -63,7 +76,9 @@ def with_merges(r: RegionMap) -> RegionMap:
     found, separating = [], set()
     for a in r.adjacencies:
         equal = getattr(r.cells[a.first], key) == getattr(r.cells[a.second], key)
-        kind = Merge.PROVEN if a.component is None else Merge.EQUAL_COUNT if equal else Merge.SEPARATED
+        kind = (
+            Merge.PROVEN if a.component is None else Merge.EQUAL_COUNT if equal else Merge.SEPARATED
+        )
         if kind is Merge.SEPARATED:
             separating.add(a.component)
         found.append(replace(a, merge=kind))
@@ -89,15 +104,22 @@ def labels_of(r: RegionMap) -> list[int]:
 
 
 def with_regions(r: RegionMap, labels: Sequence[int] | None = None) -> RegionMap:
-    """The partition that the adjacencies make, or a given one, with its counts; known areas for known regions."""
+    """The partition that the adjacencies make, or a given one, with its counts; known areas for
+    known regions.
+    """
     labels = labels_of(r) if labels is None else labels
-    areas = {frozenset(tuple(r.cells[n].sample) for n in g.cells if n < len(r.cells)): g.area for g in r.regions}
+    areas = {
+        frozenset(tuple(r.cells[n].sample) for n in g.cells if n < len(r.cells)): g.area
+        for g in r.regions
+    }
     regions = []
     for number in range(max(labels) + 1):
         cells = tuple(n for n, label in enumerate(labels) if label == number)
         members = [r.cells[n] for n in cells]
         key = frozenset(tuple(c.sample) for c in members)
-        common: dict[str, Any] = {name: _common(members, name) for name in ("stable", "total", "index")}
+        common: dict[str, Any] = {
+            name: _common(members, name) for name in ("stable", "total", "index")
+        }
         area = areas.get(key, (Fraction(0), window_area(r)))
         if NO_AREAS in r.plan:
             area = (Fraction(0), window_area(r))
@@ -112,7 +134,9 @@ def _common(members: Sequence[Cell], name: str) -> Any:
 
 
 def with_non_adjacencies(r: RegionMap) -> RegionMap:
-    """The records that the stored pairs ask for: those that are there, and new ones with the reason that fits best."""
+    """The records that the stored pairs ask for: those that are there, and new ones with the reason
+    that fits best.
+    """
     known = {(a.critical_value, a.left, a.right): a for a in r.non_adjacencies}
     found = []
     for s in range(len(r.stacks) - 1):
@@ -138,11 +162,17 @@ def with_non_adjacencies(r: RegionMap) -> RegionMap:
 def with_plan(r: RegionMap) -> RegionMap:
     """The plan that goes with slice and components; the reason for the base axis is the true map's."""
     steps = plan_of(r.slice, r.components, r.base, (1, 2), frozenset(), NO_AREAS not in r.plan)
-    old = next((step.reason for step in r.plan if "predicted" in step.reason), "predicted cost 1 against 2")
-    return replace(r, plan=tuple(replace(s, reason=old) if "predicted" in s.reason else s for s in steps))
+    old = next(
+        (step.reason for step in r.plan if "predicted" in step.reason), "predicted cost 1 against 2"
+    )
+    return replace(
+        r, plan=tuple(replace(s, reason=old) if "predicted" in s.reason else s for s in steps)
+    )
 
 
-def renumbered_cells(r: RegionMap, stacks: Sequence[Stack], kept_cells: Sequence[int | Cell]) -> RegionMap:
+def renumbered_cells(
+    r: RegionMap, stacks: Sequence[Stack], kept_cells: Sequence[int | Cell]
+) -> RegionMap:
     """The map with other stacks and cells, given as old numbers or new cells in the new order.
 
     Adjacencies between cells that are gone are gone; those of new cells have to be added.
@@ -152,7 +182,9 @@ def renumbered_cells(r: RegionMap, stacks: Sequence[Stack], kept_cells: Sequence
     for s, stack in enumerate(stacks):
         own = tuple(next(numbers) for _ in range(len(stack.walls) + 1))
         last = len(stacks) - 1
-        fresh.append(replace(stack, cells=own, left=s - 1 if s else None, right=s if s < last else None))
+        fresh.append(
+            replace(stack, cells=own, left=s - 1 if s else None, right=s if s < last else None)
+        )
         for level, n in enumerate(own):
             source = kept_cells[n]
             cell = r.cells[source] if isinstance(source, int) else source
@@ -162,7 +194,9 @@ def renumbered_cells(r: RegionMap, stacks: Sequence[Stack], kept_cells: Sequence
         for a in r.adjacencies
         if a.first in new_of and a.second in new_of
     )
-    return replace(r, stacks=tuple(fresh), cells=tuple(cells), adjacencies=adjacencies, non_adjacencies=())
+    return replace(
+        r, stacks=tuple(fresh), cells=tuple(cells), adjacencies=adjacencies, non_adjacencies=()
+    )
 
 
 def renumbered_components(r: RegionMap, order: Sequence[int]) -> RegionMap:
@@ -171,12 +205,16 @@ def renumbered_components(r: RegionMap, order: Sequence[int]) -> RegionMap:
     return replace(
         r,
         components=tuple(r.components[old] for old in order),
-        critical_values=tuple(replace(v, origin=_renamed(v.origin, new_of)) for v in r.critical_values),
+        critical_values=tuple(
+            replace(v, origin=_renamed(v.origin, new_of)) for v in r.critical_values
+        ),
         stacks=tuple(
-            replace(s, walls=tuple(replace(w, component=new_of[w.component]) for w in s.walls)) for s in r.stacks
+            replace(s, walls=tuple(replace(w, component=new_of[w.component]) for w in s.walls))
+            for s in r.stacks
         ),
         adjacencies=tuple(
-            a if a.component is None else replace(a, component=new_of[a.component]) for a in r.adjacencies
+            a if a.component is None else replace(a, component=new_of[a.component])
+            for a in r.adjacencies
         ),
     )
 
@@ -193,12 +231,18 @@ def _renamed(origin: str, new_of: Mapping[int, int]) -> str:
 
 
 def composed(r: RegionMap, one: int, three: int, two: int) -> list[Adjacency]:
-    """Pairs of cells of stacks one and three that have a neighbour in stack two, which is to go, in common."""
+    """Pairs of cells of stacks one and three that have a neighbour in stack two, which is to go, in
+    common.
+    """
     found: dict[tuple[int, int], Adjacency] = {}
     across = [a for a in r.adjacencies if a.segment is not None]
     for a in across:
         for b in across:
-            if r.cells[a.first].stack == one and r.cells[b.second].stack == three and a.second == b.first:
+            if (
+                r.cells[a.first].stack == one
+                and r.cells[b.second].stack == three
+                and a.second == b.first
+            ):
                 assert a.segment is not None
                 assert b.segment is not None
                 assert r.cells[a.second].stack == two

@@ -1,4 +1,6 @@
-"""False claims about the variety and the decomposition: components, critical values, stacks and walls."""
+"""False claims about the variety and the decomposition: components, critical values, stacks and
+walls.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +52,9 @@ def component_dropped(r: RegionMap) -> Iterator[Alteration]:
 
 
 def _lines(r: RegionMap) -> Iterator[PlanePolynomial]:
-    """Lines through the window's middle, across either axis and along its diagonal, and one outside."""
+    """Lines through the window's middle, across either axis and along its diagonal, and one
+    outside.
+    """
     x, y = r.slice.axes
     u, v = (x.low + x.high) / 2, (y.low + y.high) / 2
     yield PlanePolynomial.of([(1, 0, u.denominator), (0, 0, -u.numerator)])
@@ -61,7 +65,9 @@ def _lines(r: RegionMap) -> Iterator[PlanePolynomial]:
 
 
 def component_invented(r: RegionMap) -> Iterator[Alteration]:
-    """A line or conic that separates nothing, of any kind; left out where it has no point in the window."""
+    """A line or conic that separates nothing, of any kind; left out where it has no point in the
+    window.
+    """
     known = {c.polynomial for c in r.components}
     for n, p in enumerate(_lines(r)):
         for kind in Kind if p not in known else ():
@@ -106,10 +112,13 @@ def components_multiplied(r: RegionMap) -> Iterator[Alteration]:
         one, two = r.components[j], r.components[k]
         if one.left_out == two.left_out:
             both = replace(one, polynomial=_times(one.polynomial, two.polynomial))
-            # no decomposition ends over a line on which a curve is zero that is not said to be a line
+            # no decomposition ends over a line on which a curve is zero that is not said to be a
+            # line
             lines = any(c.polynomial.degrees[1 - r.base] == 0 for c in (one, two))
             if one.left_out or lines:
-                yield partial(with_plan, replace(r, components=(*drop(drop(r.components, k), j), both)))
+                yield partial(
+                    with_plan, replace(r, components=(*drop(drop(r.components, k), j), both))
+                )
             else:
                 yield partial(decomposed, r, (*drop(drop(r.components, k), j), both))
 
@@ -129,14 +138,20 @@ def component_that_is_constant(r: RegionMap) -> Iterator[Alteration]:
 
 
 def component_left_out(r: RegionMap) -> Iterator[Alteration]:
-    """One with points in the window, as one without or as harmless; or for a reason that does not exist."""
+    """One with points in the window, as one without or as harmless; or for a reason that does not
+    exist.
+    """
     for k, c in enumerate(r.components):
         if not c.left_out:
             yield partial(decomposed, r, put(r.components, k, left_out=NO_POINT, separates=False))
         for reason in (HARMLESS, "it separates nothing"):
             if reason == c.left_out:
                 continue
-            if reason == HARMLESS and c.kind is Kind.INFINITY and (c.left_out == NO_POINT or not c.separates):
+            if (
+                reason == HARMLESS
+                and c.kind is Kind.INFINITY
+                and (c.left_out == NO_POINT or not c.separates)
+            ):
                 continue  # it may be harmless as well
             yield partial(decomposed, r, put(r.components, k, left_out=reason, separates=False))
 
@@ -171,7 +186,9 @@ def critical_polynomial(r: RegionMap) -> Iterator[Alteration]:
         wrong = [tuple(2 * c for c in p), tuple(-c for c in p), (p[0] + 1, *p[1:]), (1,),
                  tuple(a - b for a, b in zip(shifted, (*p, 0), strict=True))]  # fmt: skip
         for polynomial in wrong:
-            yield partial(replace, r, critical_values=put(r.critical_values, k, polynomial=polynomial))
+            yield partial(
+                replace, r, critical_values=put(r.critical_values, k, polynomial=polynomial)
+            )
 
 
 def critical_values_exchanged(r: RegionMap) -> Iterator[Alteration]:
@@ -182,16 +199,22 @@ def critical_values_exchanged(r: RegionMap) -> Iterator[Alteration]:
 def critical_value_twice(r: RegionMap) -> Iterator[Alteration]:
     """With a stack between that has a copy of its neighbour's cells, or none."""
     for s, v in enumerate(r.critical_values):
-        yield partial(_with_stack, r, s, (*r.critical_values[: s + 1], v, *r.critical_values[s + 1 :]))
+        yield partial(
+            _with_stack, r, s, (*r.critical_values[: s + 1], v, *r.critical_values[s + 1 :])
+        )
 
 
 def critical_value_invented(r: RegionMap) -> Iterator[Alteration]:
-    """A number in the middle of a stack's part left of its sample, where nothing happens; the stack is stored twice."""
+    """A number in the middle of a stack's part left of its sample, where nothing happens; the stack
+    is stored twice.
+    """
     axis = r.slice.axes[r.base]
     for s, stack in enumerate(r.stacks):
         low = axis.low if s == 0 else r.critical_values[s - 1].high
         q = (low + stack.sample) / 2
-        new = CriticalValue((-q.numerator, q.denominator), q, q, "component 0: turning or singular point")
+        new = CriticalValue(
+            (-q.numerator, q.denominator), q, q, "component 0: turning or singular point"
+        )
         yield partial(_split, r, s, new, (low + q) / 2)
 
 
@@ -201,13 +224,20 @@ def _with_stack(r: RegionMap, s: int, values: tuple[CriticalValue, ...]) -> Regi
     after = r.stacks[s].cells[-1] + 1
     copies: list[int | Cell] = [r.cells[n] for n in r.stacks[s].cells]
     stacks = (*r.stacks[: s + 1], r.stacks[s], *r.stacks[s + 1 :])
-    return settled(replace(renumbered_cells(r, stacks, cells[:after] + copies + cells[after:]), critical_values=values))
+    return settled(
+        replace(
+            renumbered_cells(r, stacks, cells[:after] + copies + cells[after:]),
+            critical_values=values,
+        )
+    )
 
 
 def _split(r: RegionMap, s: int, value: CriticalValue, sample: Fraction) -> RegionMap:
-    """The map with stack s parted at a value left of its sample; the left part has a sample and cells of its own.
+    """The map with stack s parted at a value left of its sample; the left part has a sample and
+    cells of its own.
 
-    Only where the walls leave the old heights free over the new sample is every claim but the value true.
+    Only where the walls leave the old heights free over the new sample is every claim but the value
+    true.
     """
     old = r.stacks[s]
     heights = [r.cells[n].sample[1 - r.base] for n in old.cells]
@@ -224,7 +254,11 @@ def _split(r: RegionMap, s: int, value: CriticalValue, sample: Fraction) -> Regi
     size = len(old.cells)
     for a in found.adjacencies:
         # pairs across the stack's left end are now those of the copy
-        if a.segment is not None and found.cells[a.second].stack == s + 1 and found.cells[a.first].stack == s - 1:
+        if (
+            a.segment is not None
+            and found.cells[a.second].stack == s + 1
+            and found.cells[a.first].stack == s - 1
+        ):
             more.append(replace(a, second=a.second - size))
         elif a.segment is None and found.cells[a.first].stack == s + 1:
             more += [a, replace(a, first=a.first - size, second=a.second - size)]
@@ -236,7 +270,13 @@ def _split(r: RegionMap, s: int, value: CriticalValue, sample: Fraction) -> Regi
         if template is not None or r.adjacencies:
             a = template or r.adjacencies[0]
             more.append(
-                replace(a, first=first, second=first + size, component=None, segment=(sample, old.sample, height))
+                replace(
+                    a,
+                    first=first,
+                    second=first + size,
+                    component=None,
+                    segment=(sample, old.sample, height),
+                )
             )
     return settled(replace(found, critical_values=values, adjacencies=tuple(more)))
 
@@ -244,12 +284,19 @@ def _split(r: RegionMap, s: int, value: CriticalValue, sample: Fraction) -> Regi
 def origin_of_a_critical_value(r: RegionMap) -> Iterator[Alteration]:
     """An origin that no critical value can have."""
     for k in range(len(r.critical_values)):
-        for origin in ("a guess", "", "component 99: turning or singular point", "components 0 and 0 meet"):
+        for origin in (
+            "a guess",
+            "",
+            "component 99: turning or singular point",
+            "components 0 and 0 meet",
+        ):
             yield partial(replace, r, critical_values=put(r.critical_values, k, origin=origin))
 
 
 def stack_dropped(r: RegionMap) -> Iterator[Alteration]:
-    """With the critical value on its left, or the one on its right; what its neighbours have in common stays."""
+    """With the critical value on its left, or the one on its right; what its neighbours have in
+    common stays.
+    """
     for s in range(len(r.stacks) - 1):
         yield partial(_without, r, s)
 
@@ -257,8 +304,12 @@ def stack_dropped(r: RegionMap) -> Iterator[Alteration]:
 def _without(r: RegionMap, s: int) -> RegionMap:
     gone = set(r.stacks[s].cells)
     more = composed(r, s - 1, s + 1, s) if s else []
-    left = replace(r, adjacencies=(*r.adjacencies, *more), critical_values=drop(r.critical_values, s))
-    return settled(renumbered_cells(left, drop(r.stacks, s), [n for n in range(len(r.cells)) if n not in gone]))
+    left = replace(
+        r, adjacencies=(*r.adjacencies, *more), critical_values=drop(r.critical_values, s)
+    )
+    return settled(
+        renumbered_cells(left, drop(r.stacks, s), [n for n in range(len(r.cells)) if n not in gone])
+    )
 
 
 def sample_of_a_stack(r: RegionMap) -> Iterator[Alteration]:
@@ -301,7 +352,11 @@ def component_of_a_wall(r: RegionMap) -> Iterator[Alteration]:
             if n != wall.component:
                 other = _with_walls(r, s, put(r.stacks[s].walls, w, component=n))
                 first = r.stacks[s].cells[w]
-                k = next(k for k, a in enumerate(r.adjacencies) if (a.first, a.second) == (first, first + 1))
+                k = next(
+                    k
+                    for k, a in enumerate(r.adjacencies)
+                    if (a.first, a.second) == (first, first + 1)
+                )
                 if 0 <= n < len(r.components):
                     yield partial(changed, other, adjacencies=put(r.adjacencies, k, component=n))
                 else:
@@ -345,7 +400,9 @@ def _without_wall(r: RegionMap, s: int, w: int, side: int) -> RegionMap:
             moved.append(replace(a, first=ends[0], second=ends[1]))
     stack = replace(r.stacks[s], walls=drop(r.stacks[s].walls, w))
     cells = [n for n in range(len(r.cells)) if n != gone]
-    return settled(renumbered_cells(replace(r, adjacencies=tuple(moved)), put_stack(r.stacks, s, stack), cells))
+    return settled(
+        renumbered_cells(replace(r, adjacencies=tuple(moved)), put_stack(r.stacks, s, stack), cells)
+    )
 
 
 def put_stack(stacks: Sequence[Stack], s: int, stack: Stack) -> tuple[Stack, ...]:

@@ -1,7 +1,8 @@
-"""A map over components that may be false: decomposed, counted and assembled as the engine does with true ones.
+"""A map over components that may be false: decomposed, counted and assembled as the engine does
+with true ones.
 
-Where the counts then contradict each other, since a curve is missing between them, every cell is given the first one's;
-so is a cell whose sample lies on a missing curve.
+Where the counts then contradict each other, since a curve is missing between them, every cell is
+given the first one's; so is a cell whose sample lies on a missing curve.
 """
 
 from __future__ import annotations
@@ -24,7 +25,9 @@ from ptmcad.text.flint_numbers import from_fraction
 def decomposed(r: RegionMap, components: Sequence[Component]) -> RegionMap:
     """The map with these components, over the same base, and with all that follows from them."""
     problem = problem_of(r.slice)
-    cut = cut_along(problem.window, seen_from(components, r.base, r.complex_solutions)._replace(costs=(1, 2)))
+    cut = cut_along(
+        problem.window, seen_from(components, r.base, r.complex_solutions)._replace(costs=(1, 2))
+    )
     known = [_equilibria(problem, at) for at in cut.points]
     some = next((e for e in known if e is not None), None) or _equilibria(problem, _inside(r))
     assert some is not None
@@ -37,7 +40,9 @@ def decomposed(r: RegionMap, components: Sequence[Component]) -> RegionMap:
         neighbours = neighbours_of(cut, counts.keys, crossings)
     options = Options(areas=NO_AREAS not in r.plan)
     cells = Cells(cut, counts, neighbours)
-    found = replace(assemble(problem, options, PartialMap(cut.variety, cells)), plan=r.plan, system=r.system)
+    found = replace(
+        assemble(problem, options, PartialMap(cut.variety, cells)), plan=r.plan, system=r.system
+    )
     found = with_plan(found)
     areas = {frozenset(tuple(r.cells[n].sample) for n in g.cells): g.area for g in r.regions}
     whole = (Fraction(0), found.regions[0].area[1])
@@ -48,12 +53,21 @@ def decomposed(r: RegionMap, components: Sequence[Component]) -> RegionMap:
         for g in found.regions
     )
     return settled(
-        replace(found, regions=regions, status=r.status, versions=r.versions, precision=r.precision, timings=r.timings)
+        replace(
+            found,
+            regions=regions,
+            status=r.status,
+            versions=r.versions,
+            precision=r.precision,
+            timings=r.timings,
+        )
     )
 
 
 def _equilibria(problem: SliceProblem, at: Sample) -> Equilibria | None:
-    """The equilibria at a sample; None on a curve of the variety, which may be missing, or outside of the domain."""
+    """The equilibria at a sample; None on a curve of the variety, which may be missing, or outside
+    of the domain.
+    """
     try:
         return problem.solved_at(at)
     except HypothesisError:

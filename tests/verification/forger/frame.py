@@ -1,4 +1,6 @@
-"""False claims about the rest: slice, window, equations, areas, plan, status, and how tables refer to each other."""
+"""False claims about the rest: slice, window, equations, areas, plan, status, and how tables refer
+to each other.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,9 @@ def area_known_exactly(r: RegionMap) -> Iterator[Alteration]:
         off = g.area[0] + (g.area[1] - g.area[0]) / 3
         if len(r.regions) > 1:
             yield partial(replace, r, regions=put(r.regions, k, area=(off, off)))
-            yield partial(replace, r, regions=put(r.regions, k, area=(off, off * (1 + Fraction(1, 10**90)))))
+            yield partial(
+                replace, r, regions=put(r.regions, k, area=(off, off * (1 + Fraction(1, 10**90))))
+            )
 
 
 def area_out_of_order(r: RegionMap) -> Iterator[Alteration]:
@@ -73,7 +77,9 @@ def area_moved_between_regions(r: RegionMap) -> Iterator[Alteration]:
 
 
 def window_moved(r: RegionMap) -> Iterator[Alteration]:
-    """One of its edges further out or in by a quarter of its width, or both by its width; it may be empty."""
+    """One of its edges further out or in by a quarter of its width, or both by its width; it may be
+    empty.
+    """
     for k in (0, 1):
         axis = r.slice.axes[k]
         width = axis.high - axis.low
@@ -84,8 +90,12 @@ def window_moved(r: RegionMap) -> Iterator[Alteration]:
             yield partial(replace, r, slice=replace(r.slice, axes=axes))
 
 
-def _with_parameters(r: RegionMap, parameters: Mapping[str, Expression], text: Mapping[str, str]) -> RegionMap:
-    return with_plan(replace(r, slice=replace(r.slice, parameters=dict(parameters), text=dict(text))))
+def _with_parameters(
+    r: RegionMap, parameters: Mapping[str, Expression], text: Mapping[str, str]
+) -> RegionMap:
+    return with_plan(
+        replace(r, slice=replace(r.slice, parameters=dict(parameters), text=dict(text)))
+    )
 
 
 def parameter_changed(r: RegionMap) -> Iterator[Alteration]:
@@ -110,11 +120,19 @@ def text_of_a_parameter(r: RegionMap) -> Iterator[Alteration]:
             yield partial(replace, r, slice=replace(r.slice, text={**r.slice.text, name: new}))
         fewer = {n: t for n, t in r.slice.text.items() if n != name}
         yield partial(replace, r, slice=replace(r.slice, text=fewer))
-    more = replace(r.slice, text={**r.slice.text, "L9": "1"}, parameters={**r.slice.parameters, "L9": constant(1)})
+    more = replace(
+        r.slice,
+        text={**r.slice.text, "L9": "1"},
+        parameters={**r.slice.parameters, "L9": constant(1)},
+    )
     yield partial(replace, r, slice=more)
-    if "k" not in r.slice.parameters or not any("k" in t for n, t in r.slice.text.items() if n != "k"):
+    if "k" not in r.slice.parameters or not any(
+        "k" in t for n, t in r.slice.text.items() if n != "k"
+    ):
         unused = {**r.slice.parameters, "k": constant(7)}
-        yield partial(replace, r, slice=replace(r.slice, parameters=unused, text={**r.slice.text, "k": "7"}))
+        yield partial(
+            replace, r, slice=replace(r.slice, parameters=unused, text={**r.slice.text, "k": "7"})
+        )
 
 
 def parameters_exchanged(r: RegionMap) -> Iterator[Alteration]:
@@ -123,14 +141,22 @@ def parameters_exchanged(r: RegionMap) -> Iterator[Alteration]:
         a, b = r.slice.parameters[one], r.slice.parameters[two]
         if (a - b).numerator and not {one, two} & set(r.slice.axis_names):
             parameters = {**r.slice.parameters, one: b, two: a}
-            text = {**r.slice.text, one: b.to_text(r.slice.axis_names), two: a.to_text(r.slice.axis_names)}
+            text = {
+                **r.slice.text,
+                one: b.to_text(r.slice.axis_names),
+                two: a.to_text(r.slice.axis_names),
+            }
             yield partial(_with_parameters, r, parameters, text)
 
 
 def axes_exchanged(r: RegionMap) -> Iterator[Alteration]:
     """The axes' names, or the axes, with all else as it was."""
     x, y = r.slice.axes
-    for axes in ((replace(x, name=y.name), replace(y, name=x.name)), (y, x), (x, replace(y, name=x.name))):
+    for axes in (
+        (replace(x, name=y.name), replace(y, name=x.name)),
+        (y, x),
+        (x, replace(y, name=x.name)),
+    ):
         yield partial(replace, r, slice=replace(r.slice, axes=axes))
 
 
@@ -255,7 +281,9 @@ def areas_not_asked_for(r: RegionMap) -> Iterator[Alteration]:
 
 
 def status_and_shares(r: RegionMap) -> Iterator[Alteration]:
-    """Another status, an undetermined share, another number of complex solutions, another base axis."""
+    """Another status, an undetermined share, another number of complex solutions, another base
+    axis.
+    """
     for status in (Status.CERTIFIED, Status.UNDECIDED, Status.ON_VARIETY, Status.OUTSIDE):
         yield partial(replace, r, status=status)
     for share in (Fraction(1, 10**9), Fraction(1)):
@@ -267,7 +295,9 @@ def status_and_shares(r: RegionMap) -> Iterator[Alteration]:
 
 
 def tables_left_out(r: RegionMap) -> Iterator[Alteration]:
-    """An empty map that is said to be exact, one that is not empty, and tables that are too short or too long."""
+    """An empty map that is said to be exact, one that is not empty, and tables that are too short
+    or too long.
+    """
     nothing: dict[str, Any] = {"critical_values": (), "stacks": (), "cells": (), "adjacencies": (),
                                "non_adjacencies": (), "regions": ()}  # fmt: skip
     none = tuple(replace(c, separates=False) for c in r.components)
@@ -292,7 +322,12 @@ def references(r: RegionMap) -> Iterator[Alteration]:
             if any(getattr(stack, name) != value for name, value in changes.items()):
                 yield partial(replace, r, stacks=put(r.stacks, s, **changes))
     for n, cell in enumerate(r.cells):
-        for more in ({"stack": None}, {"stack": (cell.stack or 0) + 1}, {"level": cell.level + 1}, {"region": -1}):
+        for more in (
+            {"stack": None},
+            {"stack": (cell.stack or 0) + 1},
+            {"level": cell.level + 1},
+            {"region": -1},
+        ):
             yield partial(replace, r, cells=put(r.cells, n, **more))
 
 

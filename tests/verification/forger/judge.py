@@ -17,7 +17,9 @@ from ptmcad.verification.report import Violation
 
 @dataclass(slots=True)
 class Tally:
-    """Numbers of alterations of each kind: places that there are, tried ones, and the wrongly judged ones."""
+    """Numbers of alterations of each kind: places that there are, tried ones, and the wrongly
+    judged ones.
+    """
 
     places: dict[str, int] = field(default_factory=dict)
     tried: dict[str, int] = field(default_factory=dict)
@@ -32,15 +34,15 @@ MALFORMED = (IndexError, KeyError, ValueError, TypeError, AttributeError, Arithm
 
 
 BEFORE = {"variety complete": ("irreducible components",), "areas": ("walls and samples",)}
-"""Checks that another one rests on: without them it need not end. Where a wall is not there, its panels are halved for
-hours."""
+"""Checks that another one rests on: without them it need not end. Where a wall is not there, its
+panels are halved for hours."""
 
 
 def violation(r: RegionMap, likely: str = "") -> tuple[str, str] | None:
     """The check that rejects a map and its words; None when every check accepts.
 
-    As `ptmcad.verify` stops at the first violated claim, a map is rejected by it exactly when it is by some check. So
-    the check that is likely to reject it is tried first.
+    As `ptmcad.verify` stops at the first violated claim, a map is rejected by it exactly when it is
+    by some check. So the check that is likely to reject it is tried first.
     """
     claims = Claims(r)
     checks = {name: check for name, _, check in checks_of(r, None)}
@@ -60,10 +62,16 @@ def violation(r: RegionMap, likely: str = "") -> tuple[str, str] | None:
     return None
 
 
-def places_of(kind: Kind, r: RegionMap, number: int | None, seed: str) -> tuple[int, list[tuple[int, Alteration]]]:
+def places_of(
+    kind: Kind, r: RegionMap, number: int | None, seed: str
+) -> tuple[int, list[tuple[int, Alteration]]]:
     """How many places there are for a kind, and so many of them at random, or all."""
     places = list(enumerate(kind(r)))
-    chosen = places if number is None or number >= len(places) else random.Random(seed).sample(places, number)
+    chosen = (
+        places
+        if number is None or number >= len(places)
+        else random.Random(seed).sample(places, number)
+    )
     return len(places), chosen
 
 
@@ -102,7 +110,8 @@ LIKELY = {
     "wall": "walls and samples", "plan": "plan", "non_adjacency": "non-adjacencies", "area": "areas",
     "region": "regions", "equations": "equations", "text": "parameters as written",
 }  # fmt: skip
-"""The check that is tried first, by how a kind's name begins: it makes tests faster, and no weaker."""
+"""The check that is tried first, by how a kind's name begins: it makes tests faster, and no weaker.
+"""
 
 
 def judged(name: str, r: RegionMap, number: int | None, true: int | None = None) -> Tally:

@@ -57,7 +57,9 @@ def other_segments(r: RegionMap) -> Iterator[Alteration]:
         value = r.critical_values[r.cells[a.first].stack or 0]
         width = min(abs(value.low - a.segment[0]), abs(a.segment[1] - value.high)) / 4
         low, high = (
-            bracket(value, from_fraction(width)) if width else (from_fraction(value.low), from_fraction(value.high))
+            bracket(value, from_fraction(width))
+            if width
+            else (from_fraction(value.low), from_fraction(value.high))
         )
         u, w = (to_fraction(low) + a.segment[0]) / 2, (to_fraction(high) + a.segment[1]) / 2
         yield partial(replace, r, adjacencies=put(r.adjacencies, k, segment=(u, w, a.segment[2])))
@@ -89,7 +91,9 @@ def _sampled(r: RegionMap, s: int) -> RegionMap:
 
 
 def _sampled_regions(r: RegionMap) -> RegionMap:
-    return replace(r, regions=tuple(replace(g, sample=r.cells[g.cells[-1]].sample) for g in r.regions))
+    return replace(
+        r, regions=tuple(replace(g, sample=r.cells[g.cells[-1]].sample) for g in r.regions)
+    )
 
 
 def samples_of_other_cells(r: RegionMap) -> Iterator[Alteration]:
@@ -123,7 +127,8 @@ def wider_areas(r: RegionMap) -> Iterator[Alteration]:
         return
     for share in (Fraction(1, 1000), Fraction(1, 3), Fraction(1)):
         wide = tuple(
-            replace(g, area=(g.area[0] * (1 - share), g.area[1] + (whole - g.area[1]) * share)) for g in r.regions
+            replace(g, area=(g.area[0] * (1 - share), g.area[1] + (whole - g.area[1]) * share))
+            for g in r.regions
         )
         yield partial(replace, r, regions=wide)
 
@@ -145,7 +150,9 @@ def partial_status(r: RegionMap) -> Iterator[Alteration]:
 
 
 def another_question(r: RegionMap) -> Iterator[Alteration]:
-    """The map by another count; the areas of regions that were not there before are said to be unknown."""
+    """The map by another count; the areas of regions that were not there before are said to be
+    unknown.
+    """
     for kind in (Count.STABLE, Count.TOTAL, Count.INDEX):
         yield partial(changed, replace(r, slice=replace(r.slice, count=kind)))
 
@@ -162,7 +169,9 @@ def other_units_of_force(r: RegionMap) -> Iterator[Alteration]:
 
 def other_words(r: RegionMap) -> Iterator[Alteration]:
     yield partial(replace, r, slice=replace(r.slice, title="another title", name="another"))
-    yield partial(replace, r, slice=replace(r.slice, text={n: f"({t})" for n, t in r.slice.text.items()}))
+    yield partial(
+        replace, r, slice=replace(r.slice, text={n: f"({t})" for n, t in r.slice.text.items()})
+    )
     s = r.system
     yield partial(replace, r, system=replace(s, gradient=tuple(_turned(g) for g in s.gradient)))
     yield partial(replace, r, versions={}, precision={}, timings={})

@@ -37,7 +37,11 @@ from ptmcad.text.expressions import axis, constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
+from ptmcad.verification.adjacency import (
+    check_adjacencies,
+    check_no_adjacency_missing,
+    check_non_adjacencies,
+)
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.branches import PanelEffort, _along
 from ptmcad.verification.claims import Claims
@@ -124,7 +128,10 @@ def height_on_the_way(r: RegionMap) -> RegionMap:
             low, high = (r.cells[n].sample[r.base] for n in (a.first, a.second))
             for step in range(1, 40):
                 v = other.low + (other.high - other.low) * Fraction(step, 40)
-                if claims.free(from_fraction(low), from_fraction(high), from_fraction(v)) is not None:
+                if (
+                    claims.free(from_fraction(low), from_fraction(high), from_fraction(v))
+                    is not None
+                ):
                     return replace(r, adjacencies=put(r.adjacencies, k, segment=(low, high, v)))
     raise AssertionError("no curve runs to a critical value")
 
@@ -139,7 +146,9 @@ def more_components(*more: Component) -> Change:
 
 def first(r: RegionMap, **what: Any) -> int:
     """The number of the first component with these entries."""
-    return next(k for k, c in enumerate(r.components) if all(getattr(c, n) == v for n, v in what.items()))
+    return next(
+        k for k, c in enumerate(r.components) if all(getattr(c, n) == v for n, v in what.items())
+    )
 
 
 def bare(r: RegionMap) -> RegionMap:
@@ -156,7 +165,9 @@ def walled(r: RegionMap) -> int:
 
 
 def joined(r: RegionMap) -> RegionMap:
-    """The cells of the second region are in the first one, and it is said to have them; so as many are stored."""
+    """The cells of the second region are in the first one, and it is said to have them; so as many
+    are stored.
+    """
     cells = tuple(replace(c, region=0 if c.region == 1 else c.region) for c in r.cells)
     members = tuple(n for n, c in enumerate(cells) if c.region == 0)
     return replace(r, cells=cells, regions=put(put(r.regions, 0, cells=members), 1, cells=()))
@@ -180,7 +191,9 @@ def diagonal() -> RegionMap:
         for n, v in enumerate((Fraction(1, 4), Fraction(3, 4)))
     )
     bounds = (half - Fraction(1, 1000), half + Fraction(1, 1000))
-    regions = tuple(Region(c.stable, c.total, c.index, bounds, (n,), c.sample) for n, c in enumerate(cells))
+    regions = tuple(
+        Region(c.stable, c.total, c.index, bounds, (n,), c.sample) for n, c in enumerate(cells)
+    )
     return replace(
         r, slice=replace(r.slice, axes=axes), base=0, components=(Component(DIAGONAL, Kind.CRITICAL, "", True),),
         critical_values=(), stacks=(Stack(None, None, half, (Wall(0, 0),), (0, 1)),), cells=cells, regions=regions,
@@ -189,7 +202,9 @@ def diagonal() -> RegionMap:
 
 
 def halves() -> RegionMap:
-    """The unit square, parted into a left and a right half by a line over a critical value: no wall is integrated."""
+    """The unit square, parted into a left and a right half by a line over a critical value: no wall
+    is integrated.
+    """
     r = diagonal()
     value = CriticalValue((-1, 2), HALF, HALF, "")
     return replace(
@@ -389,13 +404,17 @@ def rejected(check: Check, r: RegionMap, words: str) -> None:
         check(Claims(r))
 
 
-@pytest.mark.parametrize(("name", "change", "words"), SHAPE, ids=lambda x: x[:40] if isinstance(x, str) else None)
+@pytest.mark.parametrize(
+    ("name", "change", "words"), SHAPE, ids=lambda x: x[:40] if isinstance(x, str) else None
+)
 def test_references_of_tables_to_each_other(name: str, change: Change, words: str) -> None:
     rejected(check_shape, change(the(name)), words)
 
 
 @pytest.mark.parametrize(
-    ("check", "name", "change", "words"), OTHERS, ids=lambda x: x[:40] if isinstance(x, str) else None
+    ("check", "name", "change", "words"),
+    OTHERS,
+    ids=lambda x: x[:40] if isinstance(x, str) else None,
 )
 def test_rejecting_branches(check: Check, name: str, change: Change, words: str) -> None:
     true = diagonal() if name == "diagonal" else the(name)
@@ -411,15 +430,23 @@ def test_rejecting_branches(check: Check, name: str, change: Change, words: str)
         (halves, area(1, HALF - NEAR, HALF)),
     ],
 )
-def test_bounds_of_areas_may_be_at_the_very_edge(made: Callable[[], RegionMap], change: Change) -> None:
-    """At nothing, at the window's area with its rounding, and at the region's own area where it is found exactly."""
+def test_bounds_of_areas_may_be_at_the_very_edge(
+    made: Callable[[], RegionMap], change: Change
+) -> None:
+    """At nothing, at the window's area with its rounding, and at the region's own area where it is
+    found exactly.
+    """
     assert check_areas(Claims(change(made()))).startswith("2 enclosures within the stored bounds")
 
 
 def test_a_box_may_be_as_wide_as_a_circle() -> None:
-    """It has one solution as long as no other box meets it: of radius 1 about one of six, the others far away."""
+    """It has one solution as long as no other box meets it: of radius 1 about one of six, the
+    others far away.
+    """
     r = the("fig3")
-    check_solutions(Claims(of("cells", 0, solutions=put(r.cells[0].solutions, 0, radius=Fraction(1)))(r)))
+    check_solutions(
+        Claims(of("cells", 0, solutions=put(r.cells[0].solutions, 0, radius=Fraction(1)))(r))
+    )
 
 
 @pytest.mark.parametrize("above", [Fraction(1, 10**90), Fraction(1, 1000)])
@@ -433,7 +460,14 @@ def test_a_base_that_is_the_second_axis_is_no_fault() -> None:
 
 
 def test_the_diagonal_is_true_where_it_is_used() -> None:
-    for check in (check_stacks, check_areas, check_adjacencies, check_merges, check_regions, check_irreducible):
+    for check in (
+        check_stacks,
+        check_areas,
+        check_adjacencies,
+        check_merges,
+        check_regions,
+        check_irreducible,
+    ):
         check(Claims(diagonal()))
 
 
@@ -445,7 +479,9 @@ def test_a_point_at_a_pole() -> None:
         Claims(with_slice(parameters=parameters)(r)).fibre_at(Fraction(0), Fraction(1))
 
 
-def test_counts_without_a_zero_euler_sum_are_a_fault_of_the_check(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_counts_without_a_zero_euler_sum_are_a_fault_of_the_check(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(FibreAlgebra, "counts", lambda self: Counts(3, 2, (2, 1, 0)))
     rejected(check_counts, the("fig3"), "the Euler sum of")
 
@@ -456,14 +492,20 @@ def test_a_degenerate_sample(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_branches_that_are_not_told_apart_ask_for_more_precision() -> None:
-    """Of (v - 1)^2 = u^2 + d^2: where the slope by v is zero, halfway between them; and on one that rounding blurs."""
+    """Of (v - 1)^2 = u^2 + d^2: where the slope by v is zero, halfway between them; and on one that
+    rounding blurs.
+    """
     distance = arb(2) ** -20
     rows = [arb_poly([1 - distance * distance, 0, -1]), arb_poly([-2]), arb_poly([1])]
     blurred = [rows[0] + arb(0, 2.0**-40), *rows[1:]]
-    effort = PanelEffort(arb(2) ** -20, fmpq(1, 8), fmpq(1, 2**20), (fmpq(0), fmpq(2)), (2,), (fmpq(0), fmpq(1)))
+    effort = PanelEffort(
+        arb(2) ** -20, fmpq(1, 8), fmpq(1, 2**20), (fmpq(0), fmpq(2)), (2,), (fmpq(0), fmpq(1))
+    )
     with ctx.workprec(64):
         with pytest.raises(BallsTooWide):
             _series(rows, arb_series([arb(1)], prec=3), 3)
         with pytest.raises(BallsTooWide):
             _along(blurred, fmpq(1, 8), 1 + distance, 2, effort)
-        assert _along(rows, fmpq(1, 8), 1 + distance, 2, effort) is None  # but not where it is known well
+        assert (
+            _along(rows, fmpq(1, 8), 1 + distance, 2, effort) is None
+        )  # but not where it is known well

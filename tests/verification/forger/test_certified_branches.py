@@ -1,7 +1,8 @@
 """Every branch by which a check of a certified map rejects it is reached, and says what is wrong.
 
-The maps are made here by hand, each of two cells that a strip of the cover parts in a window without a curve: so they
-need no compiled code, and there is one on every place that a proof stops at.
+The maps are made here by hand, each of two cells that a strip of the cover parts in a window
+without a curve: so they need no compiled code, and there is one on every place that a proof stops
+at.
 """
 
 from __future__ import annotations
@@ -50,7 +51,12 @@ from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import check_points, counting_of
 from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.solving import zeros
-from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
+from ptmcad.verification.certified.structure import (
+    CertifiedClaims,
+    check_components,
+    check_form,
+    check_regions,
+)
 from ptmcad.verification.certified.system import check_potential
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.report import Unchecked, Violation
@@ -66,7 +72,9 @@ POTENTIAL = (
 )
 STEPS = 8
 UNEQUAL: tuple[Rectangle, ...] = ((2, 4, 0, STEPS),)
-"""A strip from the window's lower to its upper edge, left of the middle: the first cell is the one on the right."""
+"""A strip from the window's lower to its upper edge, left of the middle: the first cell is the one
+on the right.
+"""
 EQUAL: tuple[Rectangle, ...] = ((3, 5, 0, STEPS),)
 WHERE: dict[str, tuple[str, str, dict[str, str]]] = {
     "springs": ("5/4", "1", {"L1": "1", "k": "100", "F3": "-10", "F4": "-10", "l0": "1/5"}),
@@ -74,13 +82,19 @@ WHERE: dict[str, tuple[str, str, dict[str, str]]] = {
     # with spring 3 of length 3, the others of length 5, no load and no pull
     "slack": ("3", "4", {"L1": "4", "k": "1", "l0_1": "5", "l0_2": "5", "l0_3": "3"}),
     "crease": ("1", "1", {"L1": "3/2", "k": "1", "l0": "1/5", "F3": "-1/10", "F4": "-5"}),
-    "other-crease": ("1", "3/2", {"L1": "1.00075", "k": "1", "l0": "1/5", "F3": "-1/10", "F4": "-1/10"}),
+    "other-crease": (
+        "1",
+        "3/2",
+        {"L1": "1.00075", "k": "1", "l0": "1/5", "F3": "-1/10", "F4": "-1/10"},
+    ),
 }
 """The lower left corner of the window, which has a width of a thousandth, and the parameters."""
 
 
 @cache
-def made(name: str, count: str = "stable", rectangles: tuple[Rectangle, ...] = UNEQUAL) -> RegionMap:
+def made(
+    name: str, count: str = "stable", rectangles: tuple[Rectangle, ...] = UNEQUAL
+) -> RegionMap:
     """A map near a place, with the counts and boxes that `ptmcad.verification` finds."""
     x, y, parameters = WHERE[name]
     sides = [[str(Fraction(c)), str(Fraction(c) + Fraction(1, 1000))] for c in (x, y)]
@@ -104,7 +118,11 @@ def made(name: str, count: str = "stable", rectangles: tuple[Rectangle, ...] = U
         boxes = tuple(Solution((Fraction(e.center[0]), Fraction(e.center[1])), Fraction(1, 2**20), e.signs)
                       for e in found if slice.count in (Count.TOTAL, Count.INDEX) or e.signs == "++")  # fmt: skip
         cells.append(Cell(None, n, sample, n, c.total, c.stable, c.index, boxes, further))
-        regions.append(Region(c.stable, c.total, c.index, (window * width / STEPS, window), (n,), sample, further))
+        regions.append(
+            Region(
+                c.stable, c.total, c.index, (window * width / STEPS, window), (n,), sample, further
+            )
+        )
     return replace(r, cells=tuple(cells), regions=tuple(regions))
 
 
@@ -143,11 +161,15 @@ def with_slice(**changes: Any) -> Change:
 
 
 def with_axis(k: int, low: int, high: int) -> Change:
-    return lambda r: with_slice(axes=put(r.slice.axes, k, low=Fraction(low), high=Fraction(high)))(r)
+    return lambda r: with_slice(axes=put(r.slice.axes, k, low=Fraction(low), high=Fraction(high)))(
+        r
+    )
 
 
 def without(name: str) -> Change:
-    return lambda r: with_slice(parameters={n: e for n, e in r.slice.parameters.items() if n != name})(r)
+    return lambda r: with_slice(
+        parameters={n: e for n, e in r.slice.parameters.items() if n != name}
+    )(r)
 
 
 def with_parameter(name: str, text: str) -> Change:
@@ -159,7 +181,11 @@ def sample_at(n: int, u: Fraction | int, v: Fraction | int) -> Change:
     """A cell's sample at a place in lattice steps."""
 
     def change(r: RegionMap) -> RegionMap:
-        return of("cells", n, sample=Point(("rho", "L2"), *CertifiedClaims(r).off_lattice(Fraction(u), Fraction(v))))(r)
+        return of(
+            "cells",
+            n,
+            sample=Point(("rho", "L2"), *CertifiedClaims(r).off_lattice(Fraction(u), Fraction(v))),
+        )(r)
 
     return change
 
@@ -190,7 +216,9 @@ def beside(r: RegionMap) -> RegionMap:
 
 
 def reaching(r: RegionMap) -> RegionMap:
-    """The box of one equilibrium reaches to another one, and nobody can say whether this one is in it."""
+    """The box of one equilibrium reaches to another one, and nobody can say whether this one is in
+    it.
+    """
     for j, one in enumerate(r.cells[0].solutions):
         for other in r.cells[0].solutions:
             far = max(abs(a - b) for a, b in zip(one.center, other.center, strict=True))
@@ -316,7 +344,8 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (check_points, springs, with_parameter("rho", "-1"), "cell 0, at rho=.*: rho is negative"),
     (check_points, springs, with_parameter("l0_2", "-1"), "cell 0, at rho=.*: l0_2 is negative"),
     (check_points, springs, lambda r: with_parameter("F3", f"1/(rho - {r.cells[0].sample[0]})")(r), "zero|pole"),
-    # on a crease, where the counts are those beside the sample, and the boxes are those of another one
+    # on a crease, where the counts are those beside the sample, and the boxes are those of another
+    # one
     (check_points, partial(made, "crease", "total"), sample_at(0, 6, 6), "has 0 equilibria, not one"),
     (check_points, partial(made, "other-crease", "total"), sample_at(0, 6, 3), "has 0 equilibria, not one"),
     # and at a pitchfork, where nothing else is decided
@@ -325,7 +354,11 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (partial(check_boxes, seed="branches", number=1), total, both(0, total=7), "in cell 0, which is said to have"),
 ]  # fmt: skip
 UNDECIDED = [
-    (pitchfork, reaching, r"a solution may be in box [0-9] of the solutions, around \(.*\), or beside it"),
+    (
+        pitchfork,
+        reaching,
+        r"a solution may be in box [0-9] of the solutions, around \(.*\), or beside it",
+    ),
 ]
 """The last one is searched in ever smaller boxes before it is given up."""
 
@@ -355,14 +388,20 @@ def test_a_spring_as_long_as_its_free_length_is_not_told() -> None:
 
 
 @pytest.mark.parametrize(("make", "change", "words"), UNDECIDED)
-def test_samples_that_are_not_decided(make: Callable[[], RegionMap], change: Change, words: str) -> None:
+def test_samples_that_are_not_decided(
+    make: Callable[[], RegionMap], change: Change, words: str
+) -> None:
     found = check_points(CertifiedClaims(change(make())))
     assert isinstance(found, Unchecked)
     assert re.search(words, found)
 
 
-@pytest.mark.parametrize(("check", "make", "change", "words"), ROWS, ids=lambda x: x[:40] if isinstance(x, str) else "")
-def test_rejecting_branches(check: Check, make: Callable[[], RegionMap], change: Change, words: str) -> None:
+@pytest.mark.parametrize(
+    ("check", "make", "change", "words"), ROWS, ids=lambda x: x[:40] if isinstance(x, str) else ""
+)
+def test_rejecting_branches(
+    check: Check, make: Callable[[], RegionMap], change: Change, words: str
+) -> None:
     with pytest.raises(Violation, match=words):
         check(CertifiedClaims(change(make())))
 
@@ -397,7 +436,8 @@ DEGENERATE: Box = ((0.0, 0.0), (2.0**-20, 2.0**-20))
 def test_a_search_that_gives_up(options: dict[str, Any], words: str) -> None:
     given = {n: Fraction(int(n in ("L1", "L2", "rho", "k1", "k2", "k3"))) for n in NAMES}
     field = BallEquations(
-        form_of(claims_of(given, Count.TOTAL).result.slice), {n: ball_of(v) for n, v in given.items()}
+        form_of(claims_of(given, Count.TOTAL).result.slice),
+        {n: ball_of(v) for n, v in given.items()},
     )
     whole: dict[str, Any] = {"start": [((0.0, 0.0), (3.2, 3.2))], "budget": 1000}
     with ctx.workprec(53), pytest.raises(Unproved, match=words):

@@ -1,7 +1,7 @@
 """Every false alteration of a map is rejected, every true one is accepted.
 
-The fast tests take one place of each kind on one map; the slow ones `PLACES` places of each kind on every shipped
-slice, and `RANDOM_PLACES` on a hundred random ones.
+The fast tests take one place of each kind on one map; the slow ones `PLACES` places of each kind on
+every shipped slice, and `RANDOM_PLACES` on a hundred random ones.
 """
 
 from __future__ import annotations
@@ -49,7 +49,9 @@ def test_one_place_of_each_kind(shipped: Callable[..., RegionMap]) -> None:
 
 @pytest.mark.parametrize("name", ["fig3", pytest.param("fig4", marks=pytest.mark.slow)])
 def test_no_adjacency_can_be_dropped(name: str, shipped: Callable[..., RegionMap]) -> None:
-    """Nor all of a critical value: regions, areas and records follow, so that nothing else is false."""
+    """Nor all of a critical value: regions, areas and records follow, so that nothing else is
+    false.
+    """
     r = shipped(name)
     for kind in (cells.adjacency_across_dropped, cells.all_adjacencies_across_dropped):
         for place, make in places_of(kind, r, None, "")[1]:
@@ -74,12 +76,18 @@ def test_areas_within_rounding_of_one_of_their_bounds_are_confirmed() -> None:
 
 
 def test_stacks_without_walls_need_a_pair(shipped: Callable[..., RegionMap]) -> None:
-    """Where no half-branch runs to the line over a critical value there is one pair, whatever parity says."""
+    """Where no half-branch runs to the line over a critical value there is one pair, whatever
+    parity says.
+    """
     r = shipped("fig3")
-    bare = [s for s in range(len(r.stacks) - 1) if not r.stacks[s].walls and not r.stacks[s + 1].walls]
+    bare = [
+        s for s in range(len(r.stacks) - 1) if not r.stacks[s].walls and not r.stacks[s + 1].walls
+    ]
     assert bare
     for s in bare[:1]:
-        k = next(k for k, a in enumerate(r.adjacencies) if a.segment and r.cells[a.first].stack == s)
+        k = next(
+            k for k, a in enumerate(r.adjacencies) if a.segment and r.cells[a.first].stack == s
+        )
         forged = settled(replace(r, adjacencies=drop(r.adjacencies, k)))
         assert len(forged.regions) > len(r.regions)
         report = ptmcad.verify(forged)
@@ -90,7 +98,9 @@ def test_stacks_without_walls_need_a_pair(shipped: Callable[..., RegionMap]) -> 
 def test_areas_are_not_tried_over_walls_that_are_not_there(
     shipped: Callable[..., RegionMap], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`ptmcad.verify` never does, and what comes first here must not: in a window above all walls it would not end."""
+    """`ptmcad.verify` never does, and what comes first here must not: in a window above all walls
+    it would not end.
+    """
 
     def endless(*_: object) -> None:
         raise AssertionError("integrated a wall that is not in the window")
@@ -118,7 +128,8 @@ def test_an_exact_map_has_no_admissible_counts(shipped: Callable[..., RegionMap]
     r = shipped("fig2")
     report = ptmcad.verify(replace(r, slice=replace(r.slice, count=Count.ADMISSIBLE)))
     assert (
-        report.violation == "shape: an exact map has no admissible counts by which its regions could be distinguished"
+        report.violation
+        == "shape: an exact map has no admissible counts by which its regions could be distinguished"
     )
 
 
@@ -145,13 +156,16 @@ def certified_map_of(count: str) -> RegionMap:
         "parameters": {"L1": "1", "k": "100", "F3": "-10", "F4": "-10", "l0": "1/5"},
         "axes": {"rho": ["1", "3/2"], "L2": ["3/4", "5/4"]},
     }  # fmt: skip
-    return certified_map(ptmcad.slice_from_mapping(record), Options(tolerance=Fraction(1, 50), jobs=1))
+    return certified_map(
+        ptmcad.slice_from_mapping(record), Options(tolerance=Fraction(1, 50), jobs=1)
+    )
 
 
 BOXES = 40
 """Random places where a missing curve has to be found."""
 CERTIFIED_PLACES = 24
-"""Of each kind: there are nine for each box of a solution, and to reject one takes about a second."""
+"""Of each kind: there are nine for each box of a solution, and to reject one takes about a second.
+"""
 
 
 @pytest.mark.slow
@@ -163,7 +177,9 @@ def test_places_on_certified_maps(count: str) -> None:
     for kind in certified.FALSE:
         boxes = BOXES if kind is certified.cover_left_out else 0
         _, chosen = places_of(kind, r, CERTIFIED_PLACES, f"{count} {kind.__name__}")
-        wrong += [(kind.__name__, k, None) for k, make in chosen if ptmcad.verify(make(), boxes=boxes).ok]
+        wrong += [
+            (kind.__name__, k, None) for k, make in chosen if ptmcad.verify(make(), boxes=boxes).ok
+        ]
     for kind in certified.TRUE:
         for k, make in enumerate(kind(r)):
             report = ptmcad.verify(make(), boxes=2)

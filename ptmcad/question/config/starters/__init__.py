@@ -1,7 +1,7 @@
 """Records to start from, commented and ready to run, and the mechanisms in them by name.
 
-Guarantee: each is a record that `ptmcad classify` maps as it is; a record that says ``mechanism: NAME`` means the same
-mechanism as the starter of that name.
+Guarantee: each is a record that `ptmcad classify` maps as it is; a record that says ``mechanism:
+NAME`` means the same mechanism as the starter of that name.
 """
 
 from __future__ import annotations
