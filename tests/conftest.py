@@ -201,7 +201,7 @@ def quick_pictures(request: pytest.FixtureRequest) -> None:
     """Most of a quick picture's time went to the nearness of its curves, so they are coarse where a
     test does not say that it is of that: in the rooms of pictures and of commands. Slow tests draw
     as the program does."""
-    rooms = {"behaviour", "cli", "explore", "show", "sweeping", "tests"}
+    rooms = {"behaviour", "cli", "show", "tests", "workbench"}
     marked = request.node.get_closest_marker
     if request.path.parent.name in rooms and not marked("slow") and not marked("fine"):
         request.getfixturevalue("coarse")

@@ -30,8 +30,7 @@ from ptmcad.answer.poses import Pose
 from ptmcad.ask.branches import Sample, SolutionsOnLine, values_between
 from ptmcad.ask.fields.course import Course
 from ptmcad.ask.fields.descent import descent
-from ptmcad.ask.fields.equations import Floats, apart
-from ptmcad.ask.fields.field import unknowns_of
+from ptmcad.ask.fields.equations import Floats, apart, unknowns_of
 from ptmcad.ask.fields.track import Track, followed
 from ptmcad.ask.quantities import open_chain
 from ptmcad.certified.intervals import certified_intervals

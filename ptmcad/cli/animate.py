@@ -108,7 +108,7 @@ def command(
         stem = f"{result.slice.name}-motion" if name is None else file_name(name, "--name")
         names = tuple(f"{stem}.{kind}" for kind in formats)
         check_writable(out, names)
-        from ptmcad.ask.fields.motion import motion_of
+        from ptmcad.workbench.fields.posemotion import motion_of
 
         with stored_in(asked.config if stored else None):
             motion = motion_of(result, path, pose, frames, progress)

@@ -131,7 +131,7 @@ def command(
         with clock_stopped(
             limits.timeout
         ):  # the time that the import takes is not the computation's
-            from ptmcad.ask.designs import TOLERANCE, design
+            from ptmcad.workbench.designs.bestdesign import TOLERANCE, design
         with ProgressBar() as progress:
             found = design(
                 question,

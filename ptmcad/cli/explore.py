@@ -59,10 +59,10 @@ def command(
     require(Extra.explore)
     record = asked.record(free)
     with held(limits):
-        from ptmcad.explore.panel import panel_of
+        from ptmcad.workbench.explore.panel import panel_of
 
         panel = panel_of(record, sliders)
-        from ptmcad.explore.server import serve
+        from ptmcad.workbench.explore.server import serve
 
         def announce(address: str) -> None:
             click.echo(f"explore   {address}\n          works once, in one browser; Ctrl-C ends it")

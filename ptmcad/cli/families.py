@@ -86,7 +86,7 @@ def family_to_files(
             members.append(found)
         surface = None
         if drawn and changes is not None:
-            from ptmcad.ask.boundarysurface import surface_of
+            from ptmcad.workbench.boundarymesh import surface_of
 
             left = None if ends is None else max(ends - time.monotonic(), 0.01)
             surface = surface_of(

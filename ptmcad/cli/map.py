@@ -110,7 +110,7 @@ def command(
     names = tuple(f"{stem}.{kind}" for kind in formats)
     check_writable(out, names)
     with held(limits), ProgressBar() as progress:
-        from ptmcad.ask.fields.field import expect_somewhere, field_of, request_of
+        from ptmcad.workbench.fields.quantityfield import expect_somewhere, field_of, request_of
 
         request = request_of(
             slice, value, pose

@@ -149,7 +149,7 @@ def _plot_family(
 
 def _surface(family: FamilyMap, file: Path) -> BoundarySurface:
     """The boundary surface of a stored family, from members that are computed for it."""
-    from ptmcad.ask.boundarysurface import boundary_surface
+    from ptmcad.workbench.boundarymesh import boundary_surface
 
     with blamed(file=file), ProgressBar() as progress:
         return boundary_surface(family, progress=progress)

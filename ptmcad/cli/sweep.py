@@ -58,8 +58,8 @@ class MemberOptions:
         ConfigError
             For options that do not fit the slices, or one another.
         """
-        from ptmcad.sweeping.member import Wanted
-        from ptmcad.sweeping.run import axes_of, checked
+        from ptmcad.workbench.sweeps.member import Wanted
+        from ptmcad.workbench.sweeps.run import axes_of, checked
 
         if self.no_ranges and self.along is not None:
             raise ConfigError(
@@ -151,7 +151,7 @@ def command(
     folder = Path(f"{question.name}-sweep") if out is None else out
     wanted_files = tuple(f"{question.name}.{kind}" for kind in formats)
     with held(limits), ProgressBar() as progress:
-        from ptmcad.sweeping.run import sweep
+        from ptmcad.workbench.sweeps.run import sweep
 
         wanted = asked.wanted(question)
         check_writable(folder, wanted_files)
@@ -178,8 +178,8 @@ def _table(sweep: Sweep, path: Path) -> None:
 
 def _atlas(sweep: Sweep, jobs: int | None, progress: ProgressBar, path: Path) -> None:
     from ptmcad.show.report.atlas import atlas, chosen, frame_of
-    from ptmcad.sweeping.index import members
-    from ptmcad.sweeping.sketches import sketches
+    from ptmcad.workbench.sweeps.index import members
+    from ptmcad.workbench.sweeps.sketches import sketches
 
     shown = list(members(sweep, chosen(sweep)))
     done = [member.number for member in shown if member.state is State.DONE]

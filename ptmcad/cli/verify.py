@@ -203,10 +203,10 @@ def _meet(one: Bounds | None, other: Bounds | None) -> bool:
 def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) -> VerifyReport:
     """Each member's map, and what the index holds of it."""
     from ptmcad.answer.widths import Attainment
-    from ptmcad.sweeping.index import member_map, members, read_sweep
-    from ptmcad.sweeping.member import Wanted, summary_of
     from ptmcad.verification import VerifyReport, verify
     from ptmcad.verification.report import CheckProgress, Unchecked, Violation, checked
+    from ptmcad.workbench.sweeps.index import member_map, members, read_sweep
+    from ptmcad.workbench.sweeps.member import Wanted, summary_of
 
     sweep = read_sweep(folder)
     found = list(members(sweep))
@@ -275,10 +275,10 @@ def _verified_design(
     found: BestDesign, versions: Any, seed: int | None, progress: Progress
 ) -> VerifyReport:
     """The best design, and where ranges are longest by exact critical values."""
-    from ptmcad.ask.designing.proof import exact_maximum
     from ptmcad.question.config.designs import design_from
     from ptmcad.show.document.design import extremes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_design
+    from ptmcad.workbench.designs.proof import exact_maximum
 
     report = verify_design(found, seed, progress)
     if not report.ok or not found.maxima:

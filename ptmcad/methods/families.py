@@ -90,7 +90,7 @@ def _family_boundary_surface(
     ConfigError
         When the changes are not known, and for a tolerance that is not between 0 and 1.
     """
-    from ptmcad.ask.boundarysurface import boundary_surface
+    from ptmcad.workbench.boundarymesh import boundary_surface
 
     return boundary_surface(
         self, tolerance, max_members=max_members, timeout=timeout, progress=progress
@@ -185,13 +185,13 @@ def _design_repr_html(self: BestDesign) -> str:
 
 
 def _sweep_iter(self: Sweep) -> Iterator[Member]:
-    from ptmcad.sweeping.index import members
+    from ptmcad.workbench.sweeps.index import members
 
     return members(self)
 
 
 def _sweep_getitem(self: Sweep, number: int) -> Member:
-    from ptmcad.sweeping.index import members
+    from ptmcad.workbench.sweeps.index import members
 
     return next(members(self, [number]))
 
@@ -211,7 +211,7 @@ def _sweep_result(self: Sweep, number: int) -> RegionMap:
     ConfigError
         When there is none.
     """
-    from ptmcad.sweeping.index import member_map
+    from ptmcad.workbench.sweeps.index import member_map
 
     return member_map(self, self[number])
 

@@ -140,7 +140,7 @@ def _map_field(
     >>> [round(float(v), 3) for v in result.field("length:k3", "stable:1", 3, 1).values[0]]
     [0.333, 1.0, 2.0]
     """
-    from ptmcad.ask.fields.field import field_of, request_of
+    from ptmcad.workbench.fields.quantityfield import field_of, request_of
 
     return field_of(self, request_of(self.slice, value, pose), columns, rows)
 
@@ -169,7 +169,7 @@ def _map_animate(self: RegionMap, path: Any, pose: str = "stable:1", frames: int
     >>> result.animate("L2=3/2:1/2,rho=1", "stable:2", frames=20)
     <Motion of stable:2 over slice-L2-rho: 20 steps, 0 falls>
     """
-    from ptmcad.ask.fields.motion import motion_of
+    from ptmcad.workbench.fields.posemotion import motion_of
 
     return motion_of(self, path, pose, frames)
 
@@ -187,8 +187,8 @@ def _map_explore(self: RegionMap) -> Explorer:
     ConfigError
         When anywidget is not installed, or the map contradicts itself so that it cannot be drawn.
     """
-    from ptmcad.ask.fields.field import exact_at
     from ptmcad.extras import Extra, require
+    from ptmcad.workbench.fields.quantityfield import exact_at
 
     require(Extra.notebook)
     from ptmcad.show.widget import Explorer
