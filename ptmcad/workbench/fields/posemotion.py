@@ -59,21 +59,31 @@ def motion_of(
     frames: int = FRAMES,
     progress: Progress | None = None,
 ) -> Motion:
-    """The motion of a pose along a path.
+    """The motion of one pose along a path of the map, through the folds where it vanishes, in
+    floating point.
+
+    Every step is one of as many equilibria as the map counts there; steps of a fall, by steepest
+    descent of the energy, say that they are none. `Motion.save` writes it as a GIF or, with ffmpeg,
+    as MP4.
 
     Parameters
     ----------
-    path : as `corners_of` takes it.
-    pose : of those at the path's start, as `choice_of` takes it.
-    frames : number of steps along the path, beside those of falls, which are a third of that each.
-    progress : called as progress("motion: step", done, total).
+    path : corners, as ``"rho=3/4:6/5,L2=3/2"`` or ``{"rho": ["3/4", "6/5"], "L2": "3/2"}``.
+    pose : at its start, as of `field`.
+    frames : number of steps along the path, besides those of falls, which are a third of that each.
 
     Raises
     ------
-    ConfigError For a path or pose that has no meaning here, a number of frames that is none, or a
-        map without cells.
+    ConfigError
+        For a path or pose that has no meaning here, a number of frames that is none, or a map
+        without cells.
     LostError
         Where the map has the pose and it was not found.
+
+    >>> import ptmcad
+    >>> result = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))
+    >>> result.animate("L2=3/2:1/2,rho=1", "stable:2", frames=20)
+    <Motion of stable:2 over slice-L2-rho: 20 steps, 0 falls>
     """
     expect(path, (str, Mapping), "path", f"corners, as '{FIRST}=3/4:6/5,{SECOND}=3/2'")
     expect(pose, str, "pose", "one of the poses as text, such as stable:1")
