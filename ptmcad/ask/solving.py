@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
-from ptmcad.answer.regionmap import Status
-from ptmcad.ask.manyangles import poses_by_search, work_by_msolve, work_for
+from ptmcad.ask.manyangles import poses_by_search, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.model import Model, ptm
 from ptmcad.process.memory import loading
@@ -77,8 +76,7 @@ def poses_at(model: Model, parameters: Numbers, digits: int) -> Poses:
     """All solutions of a model; only the engine that is used is loaded.
 
     Of a mechanism with more than three angles whose basis grows too large it is the certified one,
-    see `manyangles`; where that leaves the point undecided, the exact one with a basis by msolve,
-    if it is installed.
+    see `manyangles`.
 
     Parameters
     ----------
@@ -103,12 +101,7 @@ def poses_at(model: Model, parameters: Numbers, digits: int) -> Poses:
     except LimitReached:
         if most is None:
             raise
-    found = poses_by_search(model, parameters, digits)
-    more = work_by_msolve() if found.status is Status.UNDECIDED else None
-    try:
-        return found if more is None else exact_poses(model, given, digits, more)
-    except LimitReached:
-        return found
+    return poses_by_search(model, parameters, digits)
 
 
 def needs_intervals(model: Model, parameters: Numbers) -> bool:
