@@ -15,7 +15,7 @@ FILE = re.compile(rf"`((?:ptmcad|tests|docs|configs|scripts|{ROOMS})/[\w./-]+)`"
 NAME = re.compile(r"`(ptmcad(?:\.[a-z_]\w*)+)")
 PROSE = [
     *(ROOT / name for name in ("README.md", "CONTRIBUTING.md")),
-    *(p for p in sorted((ROOT / "docs").rglob("*.md")) if p.name != "history.md"),
+    *sorted((ROOT / "docs").rglob("*.md")),
     *sorted((ROOT / "ptmcad").rglob("*.py")),
     *sorted((ROOT / "tests").rglob("*.py")),
 ]
