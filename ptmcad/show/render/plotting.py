@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.transforms import Affine2D
 
@@ -23,7 +24,7 @@ from ptmcad.show.render.poses import describe
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import MapDrawing, description, whole_title
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.style import LegendPlace, PictureStyle, styled
+from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, styled
 
 
 def plot(
@@ -114,9 +115,21 @@ def draw_with_poses(
     OSError
         When the file cannot be written.
     """
+    figure, missing = with_poses(result, points, dpi, style, overlay)
+    save(figure, path, dpi=dpi, style=style)
+    return missing
+
+
+def with_poses(
+    result: RegionMap,
+    points: Sequence[PointPoses],
+    dpi: int = 150,
+    style: PictureStyle = DEFAULT,
+    overlay: Overlay = (),
+) -> tuple[Figure, tuple[str, ...]]:
+    """What `draw_with_poses` writes, and what had no room, in words."""
     told = " ".join(f"At point {n}: {describe(poses)}" for n, (_, poses) in enumerate(points, 1))
     with settings(style):
         figure, missing = draw_around(MapDrawing(result, style, dpi, overlay=overlay), points)
     figure.set_label(f"{whole_title(result)}\n{description(result)} {told}")
-    save(figure, path, dpi=dpi, style=style)
-    return missing
+    return figure, missing

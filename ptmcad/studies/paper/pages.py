@@ -226,7 +226,7 @@ def _pictures(figure: str) -> dict[str, bytes]:
     """Names, such as ``fig4.png`` (the map beside the stable poses) and ``fig4-poses.svg``, and
     contents.
     """
-    from ptmcad.show.render.figure import draw_figure
+    from ptmcad.show.render.plotting import with_poses
     from ptmcad.show.render.poses import draw_poses
     from ptmcad.show.render.printing import content
 
@@ -234,7 +234,7 @@ def _pictures(figure: str) -> dict[str, bytes]:
     result, poses = region_map(figure), solve(figure, **at)
     first, second = (Fraction(at[name]) for name in result.slice.axis_names)
     drawn = {
-        figure: draw_figure(result, (first, second), poses),
+        figure: with_poses(result, [((first, second), poses)])[0],
         f"{figure}-poses": draw_poses(poses),
     }
     return {
