@@ -179,7 +179,7 @@ def _table(sweep: Sweep, path: Path) -> None:
 def _atlas(sweep: Sweep, jobs: int | None, progress: ProgressBar, path: Path) -> None:
     from ptmcad.show.report.atlas import atlas, chosen, frame_of
     from ptmcad.workbench.sweeps.index import members
-    from ptmcad.workbench.sweeps.sketches import sketches
+    from ptmcad.workbench.sweeps.run import sketches
 
     shown = list(members(sweep, chosen(sweep)))
     done = [member.number for member in shown if member.state is State.DONE]
