@@ -14,7 +14,7 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.options import Options
 from ptmcad.question.config import load, record_from_options, slice_from_mapping
-from ptmcad.question.config.options import Typed
+from ptmcad.question.config.typed import Typed
 from ptmcad.text.entry import plain_data
 from ptmcad.text.yamltree import read_text
 from ptmcad.workbench.explore.jobs import Tasks

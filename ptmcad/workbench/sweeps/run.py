@@ -26,10 +26,9 @@ from ptmcad.ask.classification import prepare
 from ptmcad.errors import ConfigError, LimitReached, OutputError, PtmcadError
 from ptmcad.extras import Extra, require
 from ptmcad.options import Progress
-from ptmcad.question.config.sweeps import Sweeping, sweep_from
+from ptmcad.question.config.sweeps import Sweeping, Values, sweep_from
 from ptmcad.question.shipped import RecordSource
 from ptmcad.question.slice import Slice
-from ptmcad.question.sweep import Values
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import share_for
 from ptmcad.version import __version__
