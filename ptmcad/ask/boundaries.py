@@ -25,7 +25,7 @@ from ptmcad.cover.slanted import shown
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.chains import WallPolyline, chains, critical_shares
 from ptmcad.exact.cad.curves import lines_of
-from ptmcad.question.doubles import within_doubles
+from ptmcad.question.slice import within_doubles
 from ptmcad.text.parsing import share_for
 
 TOLERANCE = Fraction(1, 1000)

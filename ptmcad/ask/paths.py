@@ -37,9 +37,8 @@ from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.landing import landing, line_formulas, merger
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism
-from ptmcad.question.doubles import within_doubles
 from ptmcad.question.line import varying_axis
-from ptmcad.question.slice import Slice, moved
+from ptmcad.question.slice import Slice, moved, within_doubles
 from ptmcad.text.enclosure import Enclosure
 
 DIGITS = 12

@@ -21,7 +21,7 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.curves import by_component, curves_of, lines_of
-from ptmcad.question.doubles import within_doubles
+from ptmcad.question.slice import within_doubles
 from ptmcad.text.flint_numbers import from_fraction, interval_of
 
 MAX_PIXELS = 10**8

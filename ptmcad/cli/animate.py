@@ -12,22 +12,18 @@ import click
 
 from ptmcad.answer.motion import Fall, Motion
 from ptmcad.answer.words import assignments
-from ptmcad.cli.formats import Formats, format_option
-from ptmcad.cli.gathering import gathered
+from ptmcad.cli.commonoptions import Formats, format_option, gathered, name_option, out_option
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.maps import made_map, stored_map, tolerance_option
-from ptmcad.cli.paths import name_option, out_option
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.question import question_of
-from ptmcad.cli.slices import SliceOptions, slice_options
-from ptmcad.cli.stored import stored_in
+from ptmcad.cli.slices import SliceOptions, question_of, slice_options
+from ptmcad.cli.storedresults import made_map, stored_in, stored_map, tolerance_option
 from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
 from ptmcad.options import Options
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import file_name
-from ptmcad.question.examples import FIRST, SECOND
+from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.question.slice import Slice
 from ptmcad.show import render
 from ptmcad.show.drawable import no_drawing

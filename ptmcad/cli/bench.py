@@ -8,11 +8,10 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.gathering import reading
-from ptmcad.cli.paths import PATH, out_option
+from ptmcad.cli.commonoptions import PATH, out_option, reading
 from ptmcad.cli.pictures import report_written
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.values import files
+from ptmcad.cli.proposals import files
 from ptmcad.errors import ConfigError
 from ptmcad.extras import Extra, require
 from ptmcad.process.output import check_writable
@@ -85,8 +84,8 @@ def command(
     slices = _slices(configs)
     for extra in (Extra.bench, Extra.data):
         require(extra, key="bench")
-    from ptmcad.studies.bench.report import PAGE, SUFFIXES, save, save_page, terminal
     from ptmcad.studies.bench.study import RIVALS, measure
+    from ptmcad.studies.bench.studyreport import PAGE, SUFFIXES, save, save_page, terminal
     from ptmcad.verification import verify
 
     check_writable(

@@ -13,15 +13,27 @@ import click
 
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.timings import with_compilation
+from ptmcad.cli.commonoptions import (
+    Idle,
+    file_option,
+    gathered,
+    idle_drawing,
+    out_option,
+    reading,
+    report_idle,
+)
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Output, drawing_options, names_of, share_of
-from ptmcad.cli.gathering import gathered, reading
-from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
-from ptmcad.cli.paths import file_option, out_option
 from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.question import question_in, question_of
-from ptmcad.cli.slices import SliceOptions, Third, engine_option, slice_options
+from ptmcad.cli.slices import (
+    SliceOptions,
+    Third,
+    engine_option,
+    question_in,
+    question_of,
+    slice_options,
+)
 from ptmcad.errors import ConfigError, LimitReached, blamed
 from ptmcad.model import ptm
 from ptmcad.options import Options
@@ -239,7 +251,7 @@ def _idle(slice: Slice, options: Options) -> tuple[Idle, ...]:
 def _resumed(slice: Slice, path: Path) -> Any:
     """The stored map from which to go on."""
     from ptmcad.ask.classification import check_resumable
-    from ptmcad.cli.stored import read_result
+    from ptmcad.cli.storedresults import read_result
 
     earlier = read_result(path, whole=False)  # of which its cover alone is taken
     with blamed("--resume", path):
@@ -263,7 +275,7 @@ def _classify_family(
 ) -> None:
     """Classify and draw the members of a family."""
     # with what stores and draws families, which a slice does without
-    from ptmcad.cli.families import family_to_files, names_of_family
+    from ptmcad.cli.familyfiles import family_to_files, names_of_family
 
     report_idle((
         ("resume", resume is not None, "the members of a family are classified anew"),

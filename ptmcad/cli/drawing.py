@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from ptmcad.cli.formats import Formats, format_option
-from ptmcad.cli.gathering import F, gathered, reading
+from ptmcad.cli.commonoptions import F, Formats, format_option, gathered, reading
 from ptmcad.cli.pictures import picture
-from ptmcad.cli.values import palettes
+from ptmcad.cli.proposals import palettes
 from ptmcad.errors import ConfigError, blamed
 from ptmcad.process.output import Writer, text_writer
 from ptmcad.show import render

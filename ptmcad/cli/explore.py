@@ -10,8 +10,8 @@ from tempfile import TemporaryDirectory
 
 import click
 
+from ptmcad.cli.commonoptions import out_option
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import out_option
 from ptmcad.cli.slices import SliceOptions, slice_options
 from ptmcad.extras import Extra, require
 from ptmcad.process.handover import Topic, send

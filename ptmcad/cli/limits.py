@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import click
 
-from ptmcad.cli.gathering import F, gathered, reading
+from ptmcad.cli.commonoptions import F, gathered, reading
 from ptmcad.errors import ConfigError
 from ptmcad.options import Progress
 from ptmcad.process.handover import Topic, send, watched

@@ -14,18 +14,14 @@ import click
 
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.field import Field
+from ptmcad.cli.commonoptions import Formats, format_option, idle_style, out_option, report_idle
 from ptmcad.cli.drawing import pixels_of, style_options
-from ptmcad.cli.formats import Formats, format_option
-from ptmcad.cli.idle import idle_style, report_idle
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.maps import made_map, stored_map, tolerance_option
-from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import figure, picture
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.question import question_of
-from ptmcad.cli.slices import SliceOptions, slice_options
-from ptmcad.cli.stored import stored_in
-from ptmcad.cli.values import poses, quantity_names
+from ptmcad.cli.proposals import poses, quantity_names
+from ptmcad.cli.slices import SliceOptions, question_of, slice_options
+from ptmcad.cli.storedresults import made_map, stored_in, stored_map, tolerance_option
 from ptmcad.errors import ConfigError, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import check_writable, text_writer, write_files

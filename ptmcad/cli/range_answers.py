@@ -13,7 +13,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.question import question_of
+from ptmcad.cli.slices import question_of
 from ptmcad.question.slice import Slice
 from ptmcad.show import render
 

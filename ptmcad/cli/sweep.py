@@ -14,16 +14,13 @@ import click
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import State, Sweep
+from ptmcad.cli.commonoptions import PATH, Formats, format_option, gathered, record_argument
 from ptmcad.cli.drawing import share_of
-from ptmcad.cli.formats import Formats, format_option
-from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import PATH, record_argument
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.question import question_in
-from ptmcad.cli.slices import engine_option
-from ptmcad.cli.values import names
+from ptmcad.cli.proposals import names
+from ptmcad.cli.slices import engine_option, question_in
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.extras import Extra, require, require_ffmpeg
 from ptmcad.process.handover import Topic, send
@@ -179,7 +176,7 @@ def _table(sweep: Sweep, path: Path) -> None:
 def _atlas(sweep: Sweep, jobs: int | None, progress: ProgressBar, path: Path) -> None:
     from ptmcad.show.report.atlas import atlas, chosen, frame_of
     from ptmcad.workbench.sweeps.index import members
-    from ptmcad.workbench.sweeps.sketches import sketches
+    from ptmcad.workbench.sweeps.run import sketches
 
     shown = list(members(sweep, chosen(sweep)))
     done = [member.number for member in shown if member.state is State.DONE]

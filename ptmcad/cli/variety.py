@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.commonoptions import PATH
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import PATH
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import SliceOptions, slice_options
 from ptmcad.errors import shown_path

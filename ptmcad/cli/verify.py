@@ -22,12 +22,11 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import Bounds, Member, Summary
-from ptmcad.cli.families import read_family_file
-from ptmcad.cli.idle import report_idle
+from ptmcad.cli.commonoptions import report_idle, result_argument
+from ptmcad.cli.familyfiles import read_family_file
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import result_argument
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.stored import MAX_BYTES, kind_of, read_other, read_result
+from ptmcad.cli.storedresults import MAX_BYTES, kind_of, read_other, read_result
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options, Progress
 from ptmcad.question.config import member_like

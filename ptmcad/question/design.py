@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError
-from ptmcad.question.examples import FIRST, SECOND
+from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.text.syntax import parse, unknown_name
 from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret, names_of
 

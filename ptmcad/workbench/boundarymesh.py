@@ -24,7 +24,7 @@ from ptmcad.ask.members import Common, Restored, in_common
 from ptmcad.errors import ConfigError
 from ptmcad.exact.strips import BoundaryStrips
 from ptmcad.options import DEFAULTS, Options, Progress
-from ptmcad.question.doubles import within_doubles
+from ptmcad.question.slice import within_doubles
 from ptmcad.text.flint_numbers import simplest_fraction
 from ptmcad.text.parsing import share_for
 from ptmcad.workbench.triangulation import Joined, mesh_of

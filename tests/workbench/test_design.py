@@ -10,7 +10,7 @@ import pytest
 
 import ptmcad
 from ptmcad.errors import ConfigError
-from ptmcad.workbench.designs.branchandbound import Bounded, Lengths
+from ptmcad.workbench.designs.designbounds import Bounded, Lengths
 
 BALL = "u^2 - 1 + (x - a)^2 + (a - 1)^2 + (b - 1/2)^2"
 """Two solutions where |x - a| < sqrt(1 - (a - 1)^2 - (b - 1/2)^2)."""

@@ -9,8 +9,8 @@ import numpy as np
 from flint import fmpq
 
 from ptmcad.algebra.bernstein import halves, over, sign, table_of
-from ptmcad.workbench.designs.branchandbound import Lengths
-from ptmcad.workbench.designs.linebounds import longest_on_line
+from ptmcad.workbench.designs.designbounds import Lengths
+from ptmcad.workbench.designs.designspace import longest_on_line
 from ptmcad.workbench.designs.subdivision import (
     Space,
     certain,

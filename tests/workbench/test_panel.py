@@ -14,7 +14,7 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.options import Options
 from ptmcad.question.config import load, record_from_options, slice_from_mapping
-from ptmcad.question.config.options import Typed
+from ptmcad.question.config.typed import Typed
 from ptmcad.text.entry import plain_data
 from ptmcad.text.yamltree import read_text
 from ptmcad.workbench.explore.jobs import Tasks
@@ -129,7 +129,7 @@ def test_a_family_is_computed_once_for_all_values_of_its_free_parameter() -> Non
 
 
 def tasks(name: str, folder: Path = Path()) -> Tasks:
-    return Tasks(panel(name), lambda: None, folder)
+    return Tasks(panel(name), folder)
 
 
 @pytest.mark.parametrize(
@@ -145,7 +145,7 @@ def test_maps_are_those_of_classify(name: str, values: dict[str, str]) -> None:
     task = tasks(name)
     alone = ptmcad.classify(task.panel.slice(task.panel.values(values)), areas=False)
     for fine in (False, True) if name == "fig4" else (False,):
-        shown = task.answer({"kind": "map", "values": values, "fine": fine, "framed": True})
+        shown = task.found({"kind": "map", "values": values, "fine": fine, "framed": True})
         assert shown["digest"] == [[r.stable, r.total, len(r.cells)] for r in alone.regions]
         assert shown["frame"]["svg"].startswith("<rect") and not shown["certified"]
         areas = [region["area"] for region in shown["regions"]]
@@ -161,8 +161,8 @@ def test_the_record_and_the_commands_make_the_figure(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     task = tasks("families/equal-loads")
-    shown = task.answer({"kind": "map", "values": values, "fine": False, "framed": False})
-    made = task.answer({"kind": "record", "values": values})
+    shown = task.found({"kind": "map", "values": values, "fine": False, "framed": False})
+    made = task.found({"kind": "record", "values": values})
     monkeypatch.chdir(tmp_path)
     Path(f"{made['name']}.yaml").write_text(made["record"], encoding="utf-8")
     assert "mechanism: ptm\n" in made["record"]
@@ -181,7 +181,7 @@ def test_the_record_and_the_commands_make_the_figure(
 def test_saved_files_are_a_whole_set_and_nothing_is_written_over(tmp_path: Path) -> None:
     task = tasks("families/equal-loads", tmp_path)
     job = {"kind": "save", "values": {"F": "-5"}, "name": "mine", "formats": ["svg", "exe"]}
-    assert task.answer(job)["files"] == ["mine.yaml", "mine.svg", "mine.json"]
+    assert task.found(job)["files"] == ["mine.yaml", "mine.svg", "mine.json"]
     result = ptmcad.RegionMap.from_json((tmp_path / "mine.json").read_text(encoding="utf-8"))
     assert all(cell.solutions for cell in result.cells)  # it proves what any result does
     assert (
@@ -189,17 +189,17 @@ def test_saved_files_are_a_whole_set_and_nothing_is_written_over(tmp_path: Path)
         and load(tmp_path / "mine.yaml").parameters == result.slice.parameters
     )
     with pytest.raises(ConfigError, match=r"mine.yaml is there already"):
-        task.answer(job)
+        task.found(job)
     for name in ("../mine", "a/b", "", ".", "..", "CON", "a\\b", "-x", "a" * 101):
         with pytest.raises(ConfigError):
-            task.answer({**job, "name": name})
+            task.found({**job, "name": name})
     assert len(list(tmp_path.iterdir())) == 3
 
 
 def test_points_are_solved_and_those_beyond_are_refused() -> None:
     task = tasks("families/equal-loads")
     job = {"kind": "point", "values": {"F": "-10"}, "at": {"rho": "0.7", "L2": "1.5"}}
-    found = task.answer(job)
+    found = task.found(job)
     poses = ptmcad.solve(rho="0.7", L2="1.5", F3=-10, F4=-10)
     assert (found["total"], found["stable"]) == (len(poses.equilibria), poses.stable) == (6, 2)
     assert [pose["energy"] for pose in found["equilibria"]] == [
@@ -212,9 +212,9 @@ def test_points_are_solved_and_those_beyond_are_refused() -> None:
         {"rho": "1", "L2": "x"},
     ):
         with pytest.raises(ConfigError):
-            task.answer({**job, "at": at})
+            task.found({**job, "at": at})
     with pytest.raises(ConfigError, match="L2 is 0 there"):
-        task.answer({**job, "at": {"rho": "1", "L2": "0"}})
+        task.found({**job, "at": {"rho": "1", "L2": "0"}})
 
 
 def test_without_aiohttp_the_message_names_the_extra(

@@ -19,8 +19,7 @@ from ptmcad.answer.poses import Pose
 from ptmcad.formulas.doubles import Doubles
 from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled
-from ptmcad.question.doubles import within_doubles
-from ptmcad.question.slice import Slice
+from ptmcad.question.slice import Slice, within_doubles
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

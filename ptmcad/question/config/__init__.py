@@ -28,21 +28,22 @@ from ptmcad.question.config.family import (
 )
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, tree_of
-from ptmcad.question.config.options import Typed, ranges_of, settings_of, with_axes
-from ptmcad.question.config.points import (
+from ptmcad.question.config.record import COUNT, Record, record_of, with_place
+from ptmcad.question.config.resolution import checked_slice, slice_of
+from ptmcad.question.config.scalars import check_axis_name, file_name, portable_file
+from ptmcad.question.config.typed import (
+    Typed,
     point_from,
     point_from_mapping,
     point_from_options,
+    ranges_of,
+    settings_of,
     units_of,
+    with_axes,
 )
-from ptmcad.question.config.record import COUNT, Record, record_of, with_place
-from ptmcad.question.config.resolution import checked_slice, slice_of
-from ptmcad.question.config.scalars import file_name, portable_file
-from ptmcad.question.config.windows import check_axis_name
 from ptmcad.question.counts import Count
 from ptmcad.question.domain import MAX_DEGREE
-from ptmcad.question.examples import FIRST, SECOND
-from ptmcad.question.shipped import RecordSource, record_tree
+from ptmcad.question.shipped import FIRST, SECOND, RecordSource, record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar, Sequence, Written
 from ptmcad.text.node import Node

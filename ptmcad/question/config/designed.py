@@ -17,7 +17,7 @@ from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.family import Family, family_of
 from ptmcad.question.config.record import Record
 from ptmcad.question.config.resolution import axis_of, point_of, slice_of
-from ptmcad.question.config.windows import Window
+from ptmcad.question.config.scalars import Window
 from ptmcad.question.design import Bounds, Inequality, named
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.entry import Scalar

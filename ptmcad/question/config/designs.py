@@ -15,20 +15,20 @@ from ptmcad.errors import ConfigError, ExpressionError, Place
 from ptmcad.model.reading import NUMBER, two
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain, tree_of
-from ptmcad.question.config.options import ranges_of
 from ptmcad.question.config.record import Record
 from ptmcad.question.config.resolution import axis_of, described_record, note_values
-from ptmcad.question.config.scalars import number_of, number_text
-from ptmcad.question.config.windows import (
+from ptmcad.question.config.scalars import (
     AXIS_NAME,
     Window,
     check_axis_name,
+    number_of,
+    number_text,
     window_of,
     with_ranges,
 )
+from ptmcad.question.config.typed import ranges_of
 from ptmcad.question.design import Inequality, condition_of, named
-from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
-from ptmcad.question.shipped import RecordSource, record_tree
+from ptmcad.question.shipped import A_DESIGN, FIRST, SECOND, RecordSource, record_tree
 from ptmcad.question.slice import Axis
 from ptmcad.text.codec import Codec, part, reading, record
 from ptmcad.text.entry import Scalar, Tree, Written, from_python

@@ -24,8 +24,7 @@ from ptmcad.question.config.resolution import (
     slice_of,
     written_in,
 )
-from ptmcad.question.config.scalars import number_of
-from ptmcad.question.config.windows import MAX_MEMBERS, Window, check_members
+from ptmcad.question.config.scalars import MAX_MEMBERS, Window, check_members, number_of
 from ptmcad.question.slice import Axes, Axis, Slice
 from ptmcad.text.entry import Scalar, Sequence, Tree, Written
 from ptmcad.text.expressions import Expression, Expressions, axis, constant

@@ -15,23 +15,21 @@ from ptmcad.model import Model, ptm
 from ptmcad.model.reading import MAX_TITLE, NUMBER, VALUE, text_in, title_in, two
 from ptmcad.question.config.model import Described, described_in
 from ptmcad.question.config.scalars import (
-    MAX_NAME,
-    name_in,
-    name_of_file,
-    names_in_scalar,
-    number_text,
-)
-from ptmcad.question.config.windows import (
     AXIS_NAME,
+    MAX_FILE_NAME,
     MAX_MEMBERS,
     MAX_VALUES,
     Window,
     axes_in,
     check_members,
     free_in,
+    name_in,
+    name_of_file,
+    names_in_scalar,
+    number_text,
 )
 from ptmcad.question.counts import USUAL, Count, phrases
-from ptmcad.question.examples import A_DESIGN, A_SWEEP, FORCE, SECOND, THIRD
+from ptmcad.question.shipped import A_DESIGN, A_SWEEP, FORCE, SECOND, THIRD
 from ptmcad.question.slice import MAX_UNIT, QUANTITIES
 from ptmcad.text.codec import Codec, Key, choice, named, part, reading, record
 from ptmcad.text.entry import Scalar, Sequence, Tree, Written, plain_data
@@ -176,7 +174,7 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
                 name_in,
                 type="string",
                 pattern="^[A-Za-z0-9]([A-Za-z0-9._-]*[A-Za-z0-9_-])?$",
-                maxLength=MAX_NAME,
+                maxLength=MAX_FILE_NAME,
             ),
             "Start of the names of the files that are written; by default the record's own file name.",
             "",

@@ -28,7 +28,7 @@ from ptmcad.studies.paper.statements import (
     s1,
     s2,
 )
-from ptmcad.studies.tables import page
+from ptmcad.studies.texts import page
 
 _OVER_K = {force: k * sp.Symbol(str(force).lower()) for force in (F3, F4, *HORIZONTAL)}
 _THETA1, _THETA2 = sp.symbols("theta_1 theta_2", real=True)

@@ -30,8 +30,7 @@ from ptmcad.studies.paper import equations
 from ptmcad.studies.paper.claim import Claim, Verdict, judge, texts
 from ptmcad.studies.paper.equations import INTRODUCTION, Equation
 from ptmcad.studies.paper.maps import FIGURES, POINTS, region_map
-from ptmcad.studies.tables import page
-from ptmcad.studies.texts import texts_beside
+from ptmcad.studies.texts import page, texts_beside
 from ptmcad.text.numerals import equalities
 from ptmcad.version import __version__
 

@@ -22,7 +22,7 @@ from ptmcad.question.config.designs import design_from
 from ptmcad.question.shipped import RecordSource
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 from ptmcad.text.parsing import share_for
-from ptmcad.workbench.designs.branchandbound import Lengths
+from ptmcad.workbench.designs.designbounds import Lengths
 from ptmcad.workbench.designs.evaluation import Evaluate, Value, evaluator
 from ptmcad.workbench.designs.optimiser import Enough, Point, best_of, within
 from ptmcad.workbench.designs.proof import (

@@ -28,8 +28,8 @@ from ptmcad.exact.ranges.width import lines_of, widest
 from ptmcad.exact.stages import problem_of
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, to_fraction
-from ptmcad.workbench.designs.areabounds import AreaBounder
-from ptmcad.workbench.designs.branchandbound import (
+from ptmcad.workbench.designs.designbounds import (
+    AreaBounder,
     Bounder,
     Goal,
     Lengths,

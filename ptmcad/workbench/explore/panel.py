@@ -18,10 +18,10 @@ from ptmcad.model import Kind, Model
 from ptmcad.options import Options
 from ptmcad.question.config.binding import bound, member_name
 from ptmcad.question.config.family import family_of
-from ptmcad.question.config.options import ranges_of
 from ptmcad.question.config.record import Record
 from ptmcad.question.config.resolution import slice_of, written_in
 from ptmcad.question.config.scalars import number_of
+from ptmcad.question.config.typed import ranges_of
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar, Sequence
 from ptmcad.text.numerals import Numbers, text_of

@@ -26,8 +26,9 @@ from ptmcad.text.codec import TRUTH, Codec, line, listed, named, record
 from ptmcad.text.node import Node
 from ptmcad.workbench.explore.explorepage import ASSETS, asset, page, refusal
 from ptmcad.workbench.explore.guard import Guard
+from ptmcad.workbench.explore.jobqueue import JobQueue
+from ptmcad.workbench.explore.jobs import Tasks
 from ptmcad.workbench.explore.panel import SliderPanel
-from ptmcad.workbench.explore.workerprocess import WorkerProcess
 
 MAX_BODY = 1 << 14
 MAX_CONNECTIONS = 64
@@ -56,7 +57,7 @@ HEADERS = {
 STATUS = {"done": 200, "superseded": 409, "refused": 422, "lost": 503}
 KINDS = {"map": ("fine", "framed"), "point": ("at",), "record": (), "save": ("name", "formats")}
 """What a question of each kind says beside its tab and the sliders' values."""
-_LOG = logging.getLogger("ptmcad.workbench.explore")
+_LOG = logging.getLogger("ptmcad.explore")
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
@@ -67,7 +68,7 @@ class Server:
 
     def __init__(self, panel: SliderPanel, folder: Path, guard: Guard) -> None:
         self.panel, self.guard = panel, guard
-        maps, points = WorkerProcess(panel, folder), WorkerProcess(panel, folder)
+        maps, points = (JobQueue(Tasks(panel, folder)) for _ in range(2))
         self.workers = {"map": maps, "save": maps, "point": points, "record": points}
         self.asking: set[web.RequestHandler] = set()
 
@@ -182,12 +183,10 @@ class Server:
             return web.json_response({"error": str(error)}, status=422)
         self.asking.add(request.protocol)
         try:
-            answer = await self.workers[kind].ask(job.pop("tab"), job)
+            ended, body = await self.workers[kind].ask(job.pop("tab"), job)
         finally:
             self.asking.remove(request.protocol)
-        return web.Response(
-            body=answer.body, status=STATUS[answer.ended], content_type="application/json"
-        )
+        return web.Response(body=body, status=STATUS[ended], content_type="application/json")
 
 
 def job_of(kind: str, body: bytes) -> dict[str, Any]:

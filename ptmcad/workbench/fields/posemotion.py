@@ -31,8 +31,8 @@ from ptmcad.ask.fields.track import MIN_STEP, Track, followed
 from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError, PtmcadError, expect
 from ptmcad.options import Progress
-from ptmcad.question.doubles import within_doubles
-from ptmcad.question.examples import FIRST, SECOND
+from ptmcad.question.shipped import FIRST, SECOND
+from ptmcad.question.slice import within_doubles
 from ptmcad.text.numerals import equalities
 from ptmcad.workbench.fields.pixelsolver import GridPoints, PixelSolver, filled
 from ptmcad.workbench.fields.quantityfield import Choice, choice_of, complete, exact_at

@@ -20,8 +20,8 @@ from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError, shown
 from ptmcad.extras import Extra, require
-from ptmcad.workbench.sweeps.member import Failed
-from ptmcad.workbench.sweeps.tasks import Answer, Task
+from ptmcad.workbench.sweeps.member import Failed, Work, compute
+from ptmcad.workbench.sweeps.pool import Answer
 
 CONNECT_SECONDS = 15
 _LOOK_SECONDS = 2.0
@@ -42,7 +42,7 @@ class Cluster:
         When distributed is not installed, or no scheduler answers at the address.
     """
 
-    def __init__(self, work: Task, address: str) -> None:
+    def __init__(self, work: Work, address: str) -> None:
         require(Extra.distributed, key="--scheduler")
         import distributed
 
@@ -139,9 +139,9 @@ class Cluster:
             self.client.close(timeout=2)
 
 
-def _answers(work: Task, numbers: Sequence[int]) -> list[Any]:
+def _answers(work: Work, numbers: Sequence[int]) -> list[Any]:
     """What a worker of the cluster does."""
-    return [work.answer(number) for number in numbers]
+    return [compute(work, number) for number in numbers]
 
 
 def _why(done: Any) -> str:

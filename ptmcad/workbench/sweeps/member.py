@@ -7,7 +7,7 @@ cluster; the text is that of the member classified alone, timings left out.
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from time import perf_counter
@@ -70,7 +70,7 @@ class Work:
         """Seconds that a member may take."""
         return self.wanted.timeout
 
-    def answer(self, number: int) -> Outcome:
+    def answer(self, number: int, _check: Callable[[], None]) -> Outcome:
         """What becomes of a member."""
         return compute(self, number)
 

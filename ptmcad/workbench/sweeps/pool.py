@@ -11,43 +11,47 @@ too. A worker is started when there is a member for it.
 
 from __future__ import annotations
 
-import os
 import signal
-import socket
-import subprocess
-import sys
-from collections.abc import Sequence
-from dataclasses import dataclass
-from multiprocessing.connection import Connection, wait
+from collections.abc import Callable, Iterator, Sequence
+from multiprocessing.connection import wait
 from time import monotonic
+from typing import TYPE_CHECKING, Any, Protocol
 
-from ptmcad.errors import OutputError
 from ptmcad.workbench.sweeps.member import Failed, out_of_time
-from ptmcad.workbench.sweeps.tasks import Answer, Task
+from ptmcad.workbench.worker import Task, Worker
+
+if TYPE_CHECKING:
+    from ptmcad.workbench.sweeps.cluster import Cluster
 
 _OVERRUN = 1.0
 """Seconds by which a member may overrun its time limit before its process is killed; it looks at
 the clock itself.
 """
-_PROGRAM = (
-    "import sys; sys.path[:] = sys.argv[4:]; "
-    "from ptmcad.workbench.sweeps.sweepworker import main; main(sys.argv[1:4])"
-)
 _AHEAD = 1
-"""Members that a worker has beside the one that it computes, so that it need not wait for this
+"""Members that a worker has besides the one that it computes, so that it need not wait for this
 process.
 """
 
 
-@dataclass(slots=True)
-class _Worker:
+Answer = tuple[int, Any]
+"""A member's number and what became of it: what the task returned, or a `Failed`."""
+
+
+class Limited(Task, Protocol):
+    """What is asked of each member."""
+
+    @property
+    def timeout(self) -> float | None:
+        """Seconds that a member may take."""
+
+
+class _Busy(Worker):
     """A worker process with the members that it has, the first being computed."""
 
-    process: subprocess.Popen[bytes]
-    connection: Connection
-    lifeline: int
-    numbers: list[int]
-    since: float
+    def __init__(self, task: Task) -> None:
+        super().__init__(task)
+        self.numbers: list[int] = []
+        self.since = monotonic()
 
 
 class Pool:
@@ -58,29 +62,37 @@ class Pool:
     jobs : how many there are.
     """
 
-    def __init__(self, work: Task, jobs: int) -> None:
+    def __init__(self, work: Limited, jobs: int) -> None:
         self.work = work
         self.jobs = jobs
-        self._workers: list[_Worker] = []
+        self._workers: list[_Busy] = []
         self._done: list[Answer] = []
 
     @property
     def room(self) -> bool:
+        """Whether one more member is wanted now."""
         return len(self._workers) < self.jobs or any(
             len(w.numbers) <= _AHEAD for w in self._workers
         )
 
     @property
     def busy(self) -> bool:
+        """Whether there are members of which nothing has been returned yet."""
         return bool(self._done) or any(worker.numbers for worker in self._workers)
 
     def submit(self, number: int) -> None:
+        """Have a member computed."""
         least = min(self._workers, key=lambda worker: len(worker.numbers), default=None)
         if least is None or (least.numbers and len(self._workers) < self.jobs):
-            least = self._started()
-        self._give(least, number)
+            least = _Busy(self.work)
+            self._workers.append(least)
+        if not least.numbers:
+            least.since = monotonic()
+        least.numbers.append(number)
+        least.ask(number, number)
 
     def answers(self, seconds: float | None) -> Sequence[Answer]:
+        """What has been answered; waits for an answer, for so many seconds at most."""
         busy = {worker.connection: worker for worker in self._workers if worker.numbers}
         if not self._done and busy:
             for connection in wait(list(busy), self._patience(seconds)):
@@ -90,85 +102,36 @@ class Pool:
         return answered
 
     def close(self) -> None:
+        """End at once; what is not answered is lost."""
         for worker in self._workers:
             worker.process.kill()
         for worker in self._workers:
-            _bury(worker)
+            worker.bury()
         self._workers = []
 
-    def _started(self) -> _Worker:
-        """A new worker process, which has been told what the work is.
-
-        Raises
-        ------
-        OutputError
-            When the system does not allow another process.
-        """
-        ours, theirs = socket.socketpair()
-        lifeline = os.pipe()
-        ends = map(str, (theirs.fileno(), lifeline[0], os.getpid()))
-        try:
-            process = subprocess.Popen(
-                [
-                    sys.executable,
-                    "-P",
-                    "-c",
-                    _PROGRAM,
-                    *ends,
-                    *sys.path,
-                ],  # so that it finds what this process finds
-                pass_fds=(theirs.fileno(), lifeline[0]),
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-            )
-        except OSError as error:
-            os.close(lifeline[1])
-            ours.close()
-            raise OutputError(f"no worker process can be started: {error.strerror}") from error
-        finally:
-            theirs.close()
-            os.close(lifeline[0])
-        worker = _Worker(process, Connection(ours.detach()), lifeline[1], [], monotonic())
-        self._workers.append(worker)
-        self._send(worker, self.work)
-        return worker
-
-    def _give(self, worker: _Worker, number: int) -> None:
-        if not worker.numbers:
-            worker.since = monotonic()
-        worker.numbers.append(number)
-        self._send(worker, number)
-
-    def _send(self, worker: _Worker, what: object) -> None:
-        try:
-            worker.connection.send(what)
-        except OSError:  # it has died: reading its answer says so
-            return
-
-    def _read(self, worker: _Worker) -> None:
+    def _read(self, worker: _Busy) -> None:
         """Take an answer, or note that the worker has died."""
         try:
-            number, outcome, ending = worker.connection.recv()
+            number, outcome, error = worker.answer()
         except (EOFError, OSError):
             self._died(worker, None)
             return
         worker.numbers.remove(number)
         worker.since = monotonic()
-        self._done.append((number, outcome))
-        if ending:
+        self._done.append((number, Failed(error) if error else outcome))
+        if error:
             self._ended(worker)
 
-    def _died(self, worker: _Worker, why: str | None) -> None:
+    def _died(self, worker: _Busy, why: str | None) -> None:
         """The first of a worker's members has failed; the others were not begun."""
         first = worker.numbers.pop(0)
         status = self._ended(worker)
         self._done.append((first, Failed(why or _how_ended(status))))
 
-    def _ended(self, worker: _Worker) -> int:
+    def _ended(self, worker: _Busy) -> int:
         """Do without a worker; others get its members. Its exit status."""
         self._workers.remove(worker)
-        status = _bury(worker)
+        status = worker.bury()
         for number in worker.numbers:
             self.submit(number)
         return status
@@ -192,13 +155,6 @@ class Pool:
                 self._died(worker, out_of_time(limit))
 
 
-def _bury(worker: _Worker) -> int:
-    """Close what belongs to a worker that has ended or is to end, and return its exit status."""
-    worker.connection.close()
-    os.close(worker.lifeline)
-    return worker.process.wait()
-
-
 def _how_ended(status: int) -> str:
     if status >= 0:
         return f"its process ended by itself with status {status}"
@@ -207,3 +163,23 @@ def _how_ended(status: int) -> str:
     except ValueError:
         name = f"signal {-status}"
     return f"its process was ended by {name}"
+
+
+def answers_of(
+    workers: Pool | Cluster,
+    following: Callable[[], int | None],
+    patience: Callable[[], float | None],
+) -> Iterator[Answer]:
+    """The answers of all members, in any order.
+
+    Parameters
+    ----------
+    following : the number of another member to compute, None while there is none.
+    patience : seconds to wait for an answer.
+    """
+    while True:
+        while workers.room and (number := following()) is not None:
+            workers.submit(number)
+        if not workers.busy:
+            return
+        yield from workers.answers(patience())

@@ -1,5 +1,5 @@
 """A sweep from its record to its folder: what is to be computed is planned, computed in any order,
-and recorded.
+and recorded; and small drawings of its maps, made from the stored results.
 
 Guarantee: when `sweep` returns, each member is done, refused, or has failed as often as it was to
 be tried. Stopped in any way it leaves a folder with which the same call goes on, computing no
@@ -14,29 +14,31 @@ import hashlib
 import json
 import os
 from collections import Counter, deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import chain
 from pathlib import Path
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.sweep import Sweep
 from ptmcad.ask.classification import prepare
 from ptmcad.errors import ConfigError, LimitReached, OutputError, PtmcadError
 from ptmcad.extras import Extra, require
 from ptmcad.options import Progress
-from ptmcad.question.config.sweeps import Sweeping, sweep_from
+from ptmcad.question.config.sweeps import Sweeping, Values, sweep_from
 from ptmcad.question.shipped import RecordSource
 from ptmcad.question.slice import Slice
-from ptmcad.question.sweep import Values
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import share_for
 from ptmcad.version import __version__
 from ptmcad.workbench.sweeps.index import Index, opened, read_sweep
 from ptmcad.workbench.sweeps.member import Failed, Wanted, Work, reason
-from ptmcad.workbench.sweeps.pool import Pool
-from ptmcad.workbench.sweeps.tasks import Workers
+from ptmcad.workbench.sweeps.pool import Pool, answers_of
+
+if TYPE_CHECKING:
+    from ptmcad.show.sweeps.sketch import Thumbnail
+    from ptmcad.workbench.sweeps.cluster import Cluster
 
 RETRIES = 2
 """How often a member is tried again that has failed."""
@@ -142,11 +144,11 @@ def checked(question: Sweeping, wanted: Wanted) -> Wanted:
     return wanted
 
 
-def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[], Workers]:
+def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[], Pool | Cluster]:
     """What makes the processes that compute, once something is to be computed."""
     if scheduler is None:
 
-        def pool() -> Workers:
+        def pool() -> Pool:
             prepare(
                 work.question.slice(0), work.wanted.options
             )  # compiles once for all, where that is needed
@@ -227,7 +229,7 @@ class _Run:
         self.total = len(work.question)
         self.settled = 0
 
-    def all(self, start: Callable[[], Workers]) -> None:
+    def all(self, start: Callable[[], Pool | Cluster]) -> None:
         """Compute what is to be computed.
 
         Raises
@@ -236,22 +238,20 @@ class _Run:
             When the time is over.
         """
         numbers = chain(self._earlier(), self._new())
-        workers: Workers | None = None
+
+        def following() -> int | None:
+            return self.again.popleft() if self.again else next(numbers, None)
+
+        first = following()
+        if first is None:
+            return
+        self.again.append(first)
+        workers = start()
         try:
-            while True:
-                while workers is None or workers.room:
-                    number = self.again.popleft() if self.again else next(numbers, None)
-                    if number is None:
-                        break
-                    workers = workers or start()
-                    workers.submit(number)
-                if workers is None or not workers.busy:
-                    return
-                for number, outcome in workers.answers(self._patience()):
-                    self._settle(number, outcome)
+            for number, outcome in answers_of(workers, following, self._patience):
+                self._settle(number, outcome)
         finally:
-            if workers is not None:
-                workers.close()
+            workers.close()
 
     def _settle(self, number: int, outcome: Any) -> None:
         self.index.record(number, outcome)
@@ -308,3 +308,41 @@ class _Run:
         except PtmcadError as error:
             return number, parameters, None, reason(error)
         return number, parameters, hashlib.sha256(data.encode()).digest(), ""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Drawing:
+    """The task of drawing members of the sweep in a folder."""
+
+    folder: Path
+    timeout: float | None = None
+
+    def answer(self, number: int, _check: Callable[[], None]) -> Thumbnail:
+        """The drawing of a member."""
+        from ptmcad.show.sweeps.sketch import sketch
+
+        return sketch(read_sweep(self.folder).result(number))
+
+
+def sketches(
+    folder: Path, numbers: Sequence[int], jobs: int | None, progress: Progress | None = None
+) -> Iterator[tuple[int, Thumbnail]]:
+    """The drawings of members, in any order.
+
+    Raises
+    ------
+    OutputError
+        When one cannot be drawn.
+    """
+    pool = Pool(Drawing(folder), min(jobs or processors(), max(1, len(numbers) // 4)))
+    left = iter(numbers)
+    try:
+        found = answers_of(pool, lambda: next(left, None), lambda: None)
+        for done, (number, drawn) in enumerate(found, 1):
+            if isinstance(drawn, Failed):
+                raise OutputError(f"member {number} cannot be drawn: {drawn.error}")
+            if progress is not None:
+                progress("drawings", done, len(numbers))
+            yield number, drawn
+    finally:
+        pool.close()

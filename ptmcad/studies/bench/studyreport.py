@@ -16,7 +16,7 @@ import pandas as pd
 from ptmcad.process.output import Writer, text_writer, write_files
 from ptmcad.show.columns import aligned
 from ptmcad.show.render.printing import save as save_figure
-from ptmcad.studies import tables
+from ptmcad.studies import texts as tables
 from ptmcad.studies.bench.harness import Row
 from ptmcad.studies.bench.stored import finest, frame, read_study, write_study, write_table
 from ptmcad.studies.bench.study import RIVALS

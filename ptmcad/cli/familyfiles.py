@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING
 from ptmcad.answer.changes import TOLERANCE
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.cli.commonoptions import Formats
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, Output, names_of
-from ptmcad.cli.formats import Formats
 from ptmcad.cli.pictures import figure
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Third
-from ptmcad.cli.stored import read_other, read_result
+from ptmcad.cli.storedresults import read_other, read_result
 from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
