@@ -7,13 +7,12 @@ with its table of counts, and the result's data classes.
 
 from __future__ import annotations
 
-from ptmcad.verification.changes import verify_changes
+from ptmcad.verification.arrangements import verify_changes, verify_surfaces
 from ptmcad.verification.checks import verify
 from ptmcad.verification.designs import verify_design
-from ptmcad.verification.poses import verify_poses
 from ptmcad.verification.ranges import verify_range
 from ptmcad.verification.report import Check, VerifyReport, check_anew
-from ptmcad.verification.surfaces import verify_surfaces
+from ptmcad.verification.solutions import verify_poses
 
 __all__ = [
     "Check",
