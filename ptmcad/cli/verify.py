@@ -45,7 +45,7 @@ _MORE_DIGITS = 10
 @click.command("verify")
 @result_argument
 @click.option("--seed", type=click.IntRange(min=0), metavar="N",
-              help="Seed of the random points and of the random boxes.  [default: a hash of the claims]")  # fmt: skip
+              help="Seed of the random points and of the random boxes.  [default: a fresh one, printed]")  # fmt: skip
 @click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
               help="Random boxes of the free area of a certified map.  [default: 16]")  # fmt: skip
 @click.option("--effort", type=click.IntRange(0, 10), metavar="N",

@@ -9,29 +9,40 @@ A member's arrangement is read off two maps, one over each axis: regions, counts
 both, and the order along two sides off each, where the map's stacks begin and end. The program that
 finds changes counts once for all cells that are joined, with the basis that the members have in
 common, and finds the order along the other sides in another way.
+
+The check of a family's surfaces: cut at a random value they are the critical curves of the
+member there.
+
+Guarantee: where the stored polynomials, at that value of the free parameter, have other irreducible
+factors than the member's curves on which solutions meet, they are not those of the family, but for
+finitely many values, of which a random one is none by accident. The member is classified alone,
+without what the members have in common.
 """
 
 from __future__ import annotations
 
 import random
+from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from hashlib import sha256
 
 from flint import fmpz_poly
 
 from ptmcad.answer.arrangement import Arrangement, correspondence
 from ptmcad.answer.changes import Changes
 from ptmcad.answer.counts import counted_by
-from ptmcad.answer.regionmap import Merge, RegionMap
+from ptmcad.answer.family import FamilyMap, SpaceTerms
+from ptmcad.answer.regionmap import Kind, Merge, RegionMap
 from ptmcad.errors import HypothesisError, shown
 from ptmcad.options import Progress
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import text_of
-from ptmcad.verification.line import simple_between
-from ptmcad.verification.report import Check, Unchecked, Violation
+from ptmcad.text.plane import PlanePolynomial
+from ptmcad.verification.parameterlines import simple_between
+from ptmcad.verification.planecurves import factors, polynomial
+from ptmcad.verification.report import Check, Unchecked, Violation, drawn
 from ptmcad.verification.sturm import roots_within
 
 NEAR = Fraction(1, 10**6)
@@ -58,16 +69,18 @@ def verify_changes(
     Parameters
     ----------
     maps_at : classifies a member, without what the members have in common.
-    seed : of the random values; drawn from a hash of the claims when None.
+    seed : of the random values; a fresh one when None.
     progress : called as ``progress("changes", done, total)`` before each member; may raise to stop.
     """
     method = "members alone, over either axis"
-    source = random.Random(_fingerprint(found) if seed is None else str(seed))
+    chosen = drawn(seed)
+    source = random.Random(chosen)
     try:
         detail: str = _checked(found, _Members(found, maps_at, progress), source)
         passed = None if isinstance(detail, Unchecked) else True
     except Violation as violation:
         return (Check("changes", method, False, shown(str(violation))),)
+    detail = type(detail)(f"{detail}; seed {chosen}")
     missing = "that no further change lies between the members that were looked at"
     return (Check("changes", method, passed, detail), Check("changes complete", "", None, missing))
 
@@ -242,7 +255,69 @@ def _runs(regions: Sequence[int]) -> tuple[int, ...]:
     return tuple(n for k, n in enumerate(regions) if k == 0 or regions[k - 1] != n)
 
 
-def _fingerprint(found: Changes) -> str:
-    return sha256(
-        repr((found.free, found.changes, found.between, found.arrangements)).encode()
-    ).hexdigest()
+_DRAWN = 10
+"""Values that are tried, where members have no map."""
+_SHARES = 1009
+"""A prime: random values are such shares of the range."""
+
+
+def verify_surfaces(
+    found: FamilyMap, map_at: Callable[[Fraction], RegionMap], seed: int | None = None
+) -> Check:
+    """Check the polynomials of the surfaces on which solutions meet.
+
+    Parameters
+    ----------
+    map_at : classifies a member, without what the members have in common; raises `HypothesisError`
+        where it has no map.
+    seed : of the random value; a fresh one when None.
+    """
+    if not found.surfaces:
+        return Check("surfaces", "", None, "none are stored: those of the family are not said")
+    name, method = "surfaces", "a member alone, factored"
+    chosen = drawn(seed)
+    source = random.Random(chosen)
+    for _ in range(_DRAWN):
+        value = found.free.low + (found.free.high - found.free.low) * Fraction(
+            source.randrange(1, _SHARES), _SHARES
+        )
+        try:
+            alone = map_at(value)
+        except HypothesisError:  # a value at which nothing is said of the family
+            continue
+        where = f"the member at {found.free.name} = {text_of(value)}"
+        wrong = _difference(found, alone, value)
+        if wrong:
+            return Check(name, method, False, shown(f"{where} {wrong}"))
+        number = f"{len(found.surfaces)} polynomial{'s' * (len(found.surfaces) > 1)}"
+        return Check(
+            name, method, True, f"{number} cut to the critical curves of {where}; seed {chosen}"
+        )
+    return Check(name, method, None, f"of {_DRAWN} random members none has a map")
+
+
+def _difference(found: FamilyMap, alone: RegionMap, value: Fraction) -> str:
+    """In what the surfaces, cut at a value, are not the member's curves there; empty when they are."""
+    names = alone.slice.axis_names
+    cut = {f for terms in found.surfaces for f in _cut(terms, value)}
+    known = {c.polynomial for c in alone.components}
+    for curve in sorted(cut - known, key=lambda p: p.terms):
+        return f"has no curve {curve.text(names)[:60]} = 0, as the surfaces have"
+    for c in alone.components:
+        if c.kind is Kind.CRITICAL and c.polynomial not in cut:
+            return (
+                f"has a critical curve {c.polynomial.text(names)[:60]} = 0 that lies on no surface"
+            )
+    return ""
+
+
+def _cut(terms: SpaceTerms, value: Fraction) -> list[PlanePolynomial]:
+    """The irreducible factors of a polynomial at a value of the third variable that are not
+    constant.
+    """
+    degree = max(powers[2] for powers, _ in terms)
+    plane: dict[tuple[int, int], int] = defaultdict(int)
+    for (i, j, k), c in terms:
+        plane[i, j] += c * value.numerator**k * value.denominator ** (degree - k)
+    cut = polynomial((*powers, c) for powers, c in plane.items())
+    return [] if cut.is_constant() else factors(cut)
