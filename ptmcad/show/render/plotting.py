@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,6 @@ from ptmcad.errors import expect
 from ptmcad.show.render.around import draw_around
 from ptmcad.show.render.axes import axis_name
 from ptmcad.show.render.blocks import PointPoses
-from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.legend import INK, head_of
 from ptmcad.show.render.overlay import Overlay
 from ptmcad.show.render.painting import fills_by_count, paint_map, paint_of
@@ -77,22 +76,21 @@ def draw_on(axes: Any, result: RegionMap, samples: bool, style: PictureStyle) ->
     if title:
         axes.set_title(title, loc="left", wrap=True)
     if style.legend is not LegendPlace.NONE:
-        handles = handles_of(fills_by_count(paint, result))
+        handles = [
+            Patch(
+                facecolor=fill.face,
+                hatch=fill.hatch or None,
+                edgecolor=INK,
+                linewidth=0.4,
+                label=text,
+            )
+            for text, fill in fills_by_count(paint, result).items()
+        ]
         below = style.legend is LegendPlace.BELOW
         axes.legend(
             handles=handles, title=head_of(result.slice)[0], ncols=len(handles) if below else 1, borderaxespad=0,
             loc="upper left", bbox_to_anchor=(0.0, -0.2) if below else (1.03, 1.0), frameon=False,
         )  # fmt: skip
-
-
-def handles_of(fills: Mapping[str, Fill]) -> list[Patch]:
-    """What matplotlib's own legends show of fills, by their texts."""
-    return [
-        Patch(
-            facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4, label=text
-        )
-        for text, fill in fills.items()
-    ]
 
 
 def draw_with_poses(
