@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from ptmcad.answer.sweep import Sweep
     from ptmcad.ask.changes import changes
     from ptmcad.ask.classification import classify
-    from ptmcad.ask.ranges import intervals, operation_widths, pose_paths
+    from ptmcad.ask.lines.follower import pose_paths
+    from ptmcad.ask.ranges import intervals, operation_widths
     from ptmcad.ask.solving import solve
     from ptmcad.ask.stepwise import counts_at, discriminant_variety, open_cad
     from ptmcad.exact.slicevariety import slice_variety
@@ -66,7 +67,7 @@ _HOMES = {
     "sweep": "workbench.sweeps.run",
     "intervals": "ask.ranges",
     "operation_widths": "ask.ranges",
-    "pose_paths": "ask.ranges",
+    "pose_paths": "ask.lines.follower",
     "RegionMap": "answer.regionmap",
     "Count": "question.counts",
     "Point": "question.slice",

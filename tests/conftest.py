@@ -187,13 +187,14 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     """Curves of pictures to a fiftieth of the window, and branches at a third of the values: for
     tests of what else the pictures show. How near curves are, and that branches are joined right,
     have tests of their own."""
-    from ptmcad.ask import boundaries, branches
+    from ptmcad.ask import boundaries
+    from ptmcad.ask.lines import diagram
 
     fine = boundaries.chains
     monkeypatch.setattr(
         boundaries, "chains", lambda found, wanted: fine(found, max(wanted, Fraction(1, 50)))
     )
-    monkeypatch.setattr(branches, "SAMPLES", 8)
+    monkeypatch.setattr(diagram, "SAMPLES", 8)
 
 
 @pytest.fixture(autouse=True)

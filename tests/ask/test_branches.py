@@ -13,8 +13,8 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.branches import Branch, Branches
-from ptmcad.ask import branches as module
-from ptmcad.ask.branches import branch_diagram, solutions_on_line
+from ptmcad.ask.lines import diagram as module
+from ptmcad.ask.lines.diagram import branch_diagram, solutions_on_line
 from ptmcad.ask.quantities import OPTION, of_pose, quantities, quantity
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError

@@ -19,15 +19,16 @@ from math import pi
 from flint import arb, ctx
 
 from ptmcad.answer.paths import Landing, Target
+from ptmcad.ask.lines.linesystem import DIGITS, LineSystem
+from ptmcad.ask.lines.meeting import Meeting, what_meets
 from ptmcad.exact.poses import exact_poses
-from ptmcad.exact.ranges.equations import LineSystem
-from ptmcad.exact.ranges.meeting import Meeting, what_meets
 from ptmcad.formulas.continuation import BITS, Reached, in_the_limit, nearer, over_range
 from ptmcad.text.balls import ball_over, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import simplest_fraction
 
-DIGITS = 12
+CriticalValue = AlgebraicNumber | Enclosure
+"""Exact, or enclosed where springs have free lengths."""
 _NEAREST = Fraction(1, 2**56)
 """How near to a critical value branches are followed for what holds there, against the window's
 width.
@@ -35,7 +36,7 @@ width.
 
 
 def landing(
-    family: LineSystem, number: AlgebraicNumber, met: Meeting, current: Reached, target: Reached
+    family: LineSystem, number: CriticalValue, met: Meeting, current: Reached, target: Reached
 ) -> Landing | None:
     """What holds at the critical value where a branch ends; None where the pose that is reached is
     not proved.
@@ -48,7 +49,7 @@ def landing(
     met : what the branch meets there.
     target : the only stable pose beyond.
     """
-    potential = family.formulas.smooth
+    potential = family.potential
     assert potential is not None  # snaps and mergers are those of a potential
 
     def energy(place: Reached) -> Enclosure:
@@ -78,7 +79,7 @@ def landing(
     return Landing(reached, energy(before), energy(before if at is None else Reached(near, at, at)))
 
 
-def ends_from(number: AlgebraicNumber, side: int) -> tuple[Fraction, Fraction]:
+def ends_from(number: CriticalValue, side: int) -> tuple[Fraction, Fraction]:
     """The near and the far end of an isolating interval, seen by one who goes to this side."""
     return (number.low, number.high) if side > 0 else (number.high, number.low)
 
@@ -89,7 +90,7 @@ def beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
 
 
 def _merged(
-    family: LineSystem, number: AlgebraicNumber, before: Reached, after: Reached
+    family: LineSystem, number: CriticalValue, before: Reached, after: Reached
 ) -> tuple[Enclosure, ...] | None:
     """The pose in which several merge, at the critical value between two places."""
     found = what_meets(family, before, after.value)
@@ -103,7 +104,7 @@ def _merged(
                 region[k] = Enclosure(Fraction(0), Fraction(0))
             elif angle is not None:
                 region[k] = _half_turned(region[k], angle)
-    if number.exact is None:
+    if isinstance(number, Enclosure) or number.exact is None:
         return tuple(region)
     poses = exact_poses(family.line.model, family.line.values(number.exact), DIGITS).equilibria
     near = [_turned((*pose.angles, *pose.reals), region, family.angles) for pose in poses]

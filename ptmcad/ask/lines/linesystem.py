@@ -1,5 +1,5 @@
-"""A model on a line of parameters: its polynomial system, and its formulas along the axis, in
-balls.
+"""A model on a line of parameters: its formulas along the axis, in balls, and its solutions at
+single values.
 """
 
 from __future__ import annotations
@@ -12,33 +12,49 @@ from typing import NamedTuple
 from flint import arb, ctx
 
 from ptmcad.algebra.polynomials import Monomial
+from ptmcad.ask.lines.diagram import SolutionsOnLine
 from ptmcad.exact.models import system_from
-from ptmcad.exact.models.system import ParametricSystem, Part, Terms
+from ptmcad.exact.models.system import Part, Terms
 from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.balls import evaluated, signs_of
 from ptmcad.formulas.continuation import BITS, BranchEquations, Reached, Vector, branch_equations
 from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.model.compile import CompiledSystem
 from ptmcad.question.line import Line, compiled_on
+from ptmcad.question.slice import relaxed_springs
 from ptmcad.text.balls import ball_over
 from ptmcad.text.flint_numbers import to_fraction
+
+DIGITS = 12
 
 
 @dataclass(frozen=True, slots=True)
 class LineSystem:
-    """A line with its model's polynomial system, its formulas on the line, and those of its
-    branches.
+    """A line with its model's formulas on it, those of its branches, and its solutions.
+
+    Attributes
+    ----------
+    potential : the energy with the springs' free lengths; None where there is none.
+    lengths : of the springs that have a free length; the equations are smooth where these are
+        positive.
     """
 
     line: Line
-    system: ParametricSystem
     formulas: CompiledSystem
     branches: BranchEquations
+    potential: Formula | None
+    lengths: tuple[Formula, ...]
+    solutions: SolutionsOnLine
 
     @property
     def angles(self) -> int:
         """How many of the unknowns are on the circle: the first ones."""
         return self.branches.angles
+
+    @property
+    def is_on_torus(self) -> bool:
+        """Whether all unknowns are angles and all solutions count."""
+        return not self.line.model.reals and not self.formulas.inequalities
 
     def values(
         self, formulas: Sequence[Formula], low: Fraction, high: Fraction, point: Vector
@@ -60,8 +76,26 @@ class LineSystem:
 
 def line_system(line: Line) -> LineSystem:
     """The system of a line's model."""
-    system, formulas = system_from(line.model), compiled_on(line.model, line.parameters)
-    graph = formulas.graph
+    formulas = compiled_on(line.model, line.parameters)
+    relaxed = relaxed_springs(line.model, line.parameters)
+    return LineSystem(
+        line,
+        formulas,
+        _relaxed(formulas, relaxed) if relaxed else _polynomial(line, formulas),
+        formulas.energy(relaxed) if relaxed else formulas.smooth,
+        tuple(formulas.springs[k].length for k in relaxed),
+        SolutionsOnLine(line.model, line.parameters, DIGITS),
+    )
+
+
+def _relaxed(formulas: CompiledSystem, relaxed: Iterable[int]) -> BranchEquations:
+    """The equations of springs of which some have free lengths."""
+    return branch_equations(formulas.balance(relaxed), len(formulas.angles))
+
+
+def _polynomial(line: Line, formulas: CompiledSystem) -> BranchEquations:
+    """The equations as polynomials of cosines and sines: in balls they are narrower so."""
+    system, graph = system_from(line.model), formulas.graph
     given = [expression_formula(graph, line.parameters[name]) for name in system.ring.parameters]
     turned = (
         f for k in formulas.angles for f in (graph.variable(k).cos(), graph.variable(k).sin())
@@ -69,13 +103,12 @@ def line_system(line: Line) -> LineSystem:
     elements = _Elements(
         graph, given, (*turned, *map(graph.variable, formulas.reals)), len(formulas.angles)
     )
-    branches = branch_equations(
+    return branch_equations(
         list(map(elements.formula, system.equation_terms)),
         elements.angles,
         [elements.formula(entry) for row in system.jacobian_terms for entry in row],
         [elements.gradient(entry) for row in system.jacobian_terms for entry in row],
     )
-    return LineSystem(line, system, formulas, branches)
 
 
 class _Elements(NamedTuple):

@@ -21,15 +21,14 @@ from typing import NamedTuple
 from flint import arb, arb_mat, ctx
 
 from ptmcad.algebra.polynomials import PLANE
-from ptmcad.exact.counting import equilibria
+from ptmcad.answer.poses import Pose
+from ptmcad.ask.lines.linesystem import LineSystem, coordinates_of
+from ptmcad.ask.lines.mirror import Mirror, mirror_of
 from ptmcad.exact.models.system import on_slice
-from ptmcad.exact.ranges.equations import LineSystem, coordinates_of
 from ptmcad.exact.ranges.line import system_on
-from ptmcad.exact.ranges.mirror import Mirror, mirror_of
 from ptmcad.formulas.continuation import BITS, Reached, Vector, at_value, bridge
 from ptmcad.model.involutions import involutions
 from ptmcad.text.balls import ball_of, ball_over
-from ptmcad.text.flint_numbers import from_fraction
 
 Range = tuple[arb, arb]
 """The ends of what an unknown may be."""
@@ -131,26 +130,24 @@ def what_meets(family: LineSystem, current: Reached, after: Fraction) -> Meeting
 
 
 def _solutions(family: LineSystem, value: Fraction) -> list[PlacedSolution] | None:
-    """All solutions at a value that is not critical; None when one was not enclosed."""
-    values = {n: from_fraction(v) for n, v in family.line.values(value).items()}
+    """All solutions at a value; None when they are not all known, or one was not enclosed."""
+    sample = family.solutions.at(value)
+    if sample is None:
+        return None
     found = []
-    for solution in equilibria(family.system, values).solutions:
-        with ctx.workprec(BITS):
-            center = [arb(x) for x in solution.center]
-            turns = 2 * family.angles
-            angles = (
-                arb.atan2(s, c) for c, s in zip(center[:turns:2], center[1:turns:2], strict=True)
-            )
-            guess = (*angles, *center[turns:])
-        place = at_value(family.branches, value, guess)
+    for pose in sample.poses:
+        place = at_value(family.branches, value, guess_of(pose))
         if place is None:
             return None
-        found.append(
-            PlacedSolution(
-                Reached(value, place, place), family.system.criterion.rank(solution.signs)
-            )
-        )
+        rank = int(pose.stable is not True) if pose.index is None else pose.index
+        found.append(PlacedSolution(Reached(value, place, place), rank))
     return found
+
+
+def guess_of(pose: Pose) -> Vector:
+    """The middles of a pose's unknowns."""
+    with ctx.workprec(BITS):
+        return tuple(ball_of(a.center) for a in (*pose.angles, *pose.reals))
 
 
 def _unmatched(
@@ -218,9 +215,10 @@ def _without_region(
     """What can be said without a region: a branch vanishes where nothing is left that it may have
     become.
     """
-    if family.system.inequalities or any(ahead for _, ahead in unmatched):
+    excluded = family.formulas.inequalities or family.lengths
+    if excluded or any(ahead for _, ahead in unmatched):
         return None
-    if len(unmatched) > 1 and not family.system.is_on_torus:
+    if len(unmatched) > 1 and not family.is_on_torus:
         return None  # some may go to infinity
     return Meeting(tuple(sorted(s.negative for s, _ in unmatched)), (), len(unmatched) > 2, beyond)
 
@@ -279,7 +277,8 @@ def _isolates(
     low, high = sorted((start, end))
     at, size = ball_over(low, high), len(box)
     whole = tuple(a.union(b) for a, b in box)
-    if not all(p > 0 for p in family.values(family.formulas.inequalities, low, high, whole)):
+    positive = (*family.formulas.inequalities, *family.lengths)
+    if not all(p > 0 for p in family.values(positive, low, high, whole)):
         return False
     faces = [(*whole[:i], side, *whole[i + 1 :]) for i, sides in enumerate(box) for side in sides]
     stack, pieces = [(face, 0) for face in faces], 0
@@ -355,7 +354,7 @@ def _reflections(
     """How the reflection of all angles at once, whose line may turn with the parameter, permutes
     the group.
     """
-    if family.system.ring.reals:
+    if family.line.model.reals or family.lengths:
         return []
     mirror = mirror_of(on_slice(*system_on(family.line)).equations, family.angles)
     values = [

@@ -21,10 +21,11 @@ from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.quantities import Quantity, of_pose, quantity, unit_of
 from ptmcad.ask.solving import poses_at
+from ptmcad.model import Model
 from ptmcad.options import Progress
 from ptmcad.question.line import has_free_lengths, on_line, varying_axis
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import values_at
+from ptmcad.text.expressions import Expressions, values_at
 
 SAMPLES = 24
 """Values in each interval, closer to its ends, where branches turn."""
@@ -72,7 +73,7 @@ def branch_diagram(
     """
     asked = [quantity(slice.model, name) for name in names]
     varying, other, value = varying_axis(slice, along, at)
-    line = line or SolutionsOnLine(slice, varying, value)
+    line = line or solutions_on_line(slice, along, at)
     branches: list[Branch] = []
     stretches = _stretches(slice, along, at)
     for number, (low, high) in enumerate(stretches):
@@ -114,15 +115,14 @@ def solutions_on_line(slice: Slice, along: str, at: Mapping[str, Any]) -> Soluti
         As `branch_diagram` does.
     """
     varying, _, value = varying_axis(slice, along, at)
-    return SolutionsOnLine(slice, varying, value)
+    return SolutionsOnLine(slice.model, on_line(slice, varying, value))
 
 
 class SolutionsOnLine:
     """The solutions on a line, each found when it is first asked for."""
 
-    def __init__(self, slice: Slice, varying: int, value: Fraction, digits: int = DIGITS):
-        self.model, self.digits = slice.model, digits
-        self.parameters = on_line(slice, varying, value)
+    def __init__(self, model: Model, parameters: Expressions, digits: int = DIGITS):
+        self.model, self.parameters, self.digits = model, parameters, digits
         self.undecided: list[Fraction] = []
         self._known: dict[Fraction, Sample | None] = {}
 
