@@ -1,7 +1,7 @@
 """Minima that vanish without a fold, in a spring without length: the search for folds must enclose
 these points too.
 
-Lemma 14 of docs/soundness.md proves it; here is a curve of such points for a flat cone and one for
+Lemma S5 of docs/soundness.md proves it; here is a curve of such points for a flat cone and one for
 a crease.
 """
 

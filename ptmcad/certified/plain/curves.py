@@ -2,7 +2,7 @@
 cone swallows, and solutions at which a condition stops to hold.
 
 Guarantee: each point of the window at which the chosen count changes lies on the projection of one
-of the curves (docs/soundness.md, "Plain formulas").
+of the curves (docs/soundness.md, Theorem 2).
 """
 
 from __future__ import annotations

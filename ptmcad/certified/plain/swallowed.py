@@ -2,7 +2,7 @@
 are swallowed.
 
 Guarantee: each point of the window at which a solution is swallowed by a spring's cone lies on the
-projection of one of the curves (docs/soundness.md, "Plain formulas").
+projection of one of the curves (docs/soundness.md, Theorem 2).
 """
 
 from __future__ import annotations
