@@ -10,7 +10,6 @@ representation, AAECC 9 (1999).
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -29,16 +28,13 @@ from flint import (
 )
 
 from ptmcad.algebra.groebner import grevlex_key, shifted
+from ptmcad.algebra.membership import Rules
 from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient import border_of, divided, standard_monomials
 from ptmcad.algebra.trigonometric import angle_sum
-from ptmcad.errors import LimitReached, PtmcadWarning
+from ptmcad.errors import LimitReached
 
 RationalPolynomial = Mapping[Monomial, fmpq]
-Rules = Mapping[Monomial, RationalPolynomial]
-"""A leading monomial to what it is equal to."""
-MANY = 128
-"""Solutions by Bezout's theorem, from which on a basis may not end by Buchberger's algorithm."""
 
 
 class FibreAlgebra(NamedTuple):
@@ -49,10 +45,12 @@ class FibreAlgebra(NamedTuple):
     basis : the monomial basis, 1 first.
     multiplication : one matrix for each unknown; column j holds the normal form of unknown times
         basis[j].
+    by_msolve : whether msolve has found it; that it is right is proved then.
     """
 
     basis: tuple[Monomial, ...]
     multiplication: tuple[fmpq_mat, ...]
+    by_msolve: bool = False
 
     @property
     def dimension(self) -> int:
@@ -68,16 +66,15 @@ class WorkLimit(NamedTuple):
     ----------
     dimension : of the quotient.
     polynomials, terms, bits : of the basis before it is reduced: how many, and what each may have.
+    by_msolve : dimension of a quotient that msolve is asked for where the basis is larger; 0 for
+        none.
     """
 
     dimension: int
     polynomials: int
     terms: int
     bits: int
-
-
-SMALL = WorkLimit(1_000, 120, 400, 4_000)
-"""A basis of this size takes some tenths of a second."""
+    by_msolve: int = 0
 
 
 def bezout_bound(equations: Sequence[RationalPolynomial]) -> int:
@@ -85,23 +82,6 @@ def bezout_bound(equations: Sequence[RationalPolynomial]) -> int:
     finitely many.
     """
     return math.prod(max(map(sum, e), default=0) or 1 for e in equations)
-
-
-def quotient(
-    equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimit | None = None
-) -> FibreAlgebra | None:
-    """The same as `fibre`, with a `PtmcadWarning` before a computation that may take very long."""
-    if most is None and bezout_bound(equations) >= MANY:
-        try:
-            return fibre(equations, unknowns, SMALL)
-        except LimitReached:
-            warnings.warn(
-                "the basis of the equations at the point grows beyond what ptmcad computes quickly, and may take "
-                "very long",
-                PtmcadWarning,
-                stacklevel=2,
-            )
-    return fibre(equations, unknowns, most)
 
 
 def fibre(
@@ -142,10 +122,10 @@ def fibre(
         raise LimitReached(
             f"there are {len(basis)} solutions with multiplicity, more than are counted at once"
         )
-    return _fibre_of_rules(rules, basis, unknowns)
+    return fibre_of_rules(rules, basis, unknowns)
 
 
-def _fibre_of_rules(rules: Rules, basis: tuple[Monomial, ...], unknowns: int) -> FibreAlgebra:
+def fibre_of_rules(rules: Rules, basis: tuple[Monomial, ...], unknowns: int) -> FibreAlgebra:
     """The quotient by a reduced Groebner basis.
 
     Parameters
@@ -216,7 +196,7 @@ def combined_angles(
     turns = list(zip(own[::2], own[1::2], strict=True))
     sums = [c for row in matrix for c in angle_sum(turns, row, one)]
     basis = tuple((*(0,) * (2 * angles), *m[2 * angles :], *m[: 2 * angles]) for m in algebra.basis)
-    return FibreAlgebra(basis, (*sums, *real[:reals], *own))
+    return FibreAlgebra(basis, (*sums, *real[:reals], *own), algebra.by_msolve)
 
 
 def evaluate(algebra: FibreAlgebra, p: RationalPolynomial) -> fmpq_mat:

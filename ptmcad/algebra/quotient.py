@@ -31,6 +31,7 @@ from ptmcad.algebra.polynomials import (
     multiplicity,
     ratio,
 )
+from ptmcad.errors import LimitReached
 
 LINE = 1009
 """The second axis is so much more than the first one on a line on which poles are looked for; any
@@ -41,10 +42,17 @@ Vector = tuple[tuple[Coefficient, ...], Coefficient]
 
 
 @lru_cache(maxsize=64)
-def standard_monomials(leading: tuple[Monomial, ...], unknowns: int) -> tuple[Monomial, ...] | None:
+def standard_monomials(
+    leading: tuple[Monomial, ...], unknowns: int, most: int | None = None
+) -> tuple[Monomial, ...] | None:
     """The monomials outside the leading ideal, by degree; None when there are infinitely many.
 
     The points of a slice have few leading ideals, most of them one.
+
+    Raises
+    ------
+    LimitReached
+        When they are more than ``most``.
     """
     for k in range(unknowns):
         if not any(sum(m) == m[k] for m in leading):
@@ -54,6 +62,8 @@ def standard_monomials(leading: tuple[Monomial, ...], unknowns: int) -> tuple[Mo
     while layer:
         kept = sorted(m for m in layer if not any(divides(n, m) for n in leading))
         found += kept
+        if most is not None and len(found) > most:
+            raise LimitReached(f"more than {most} monomials are outside of the leading ideal")
         layer = {shifted(m, k) for m in kept for k in range(unknowns)}
     return tuple(found)
 

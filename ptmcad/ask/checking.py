@@ -9,12 +9,13 @@ long, they are not counted.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from time import process_time
 
 from flint import fmpq
 
+from ptmcad.algebra.bases import plan_text
 from ptmcad.algebra.fibre import WorkLimit
 from ptmcad.ask.classification import check_flat_loops, check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
@@ -91,6 +92,8 @@ class CheckedSlice:
     engine : the one that ``--engine auto`` takes.
     cost : in words.
     forecast : what the exact map is predicted to take; None where the curve's size is not known.
+    bases : how Groebner bases at points are computed, in words; empty where they are small by the
+        bound.
     """
 
     slice: Slice
@@ -100,6 +103,7 @@ class CheckedSlice:
     cost: str
     bound: int | None = None
     forecast: Forecast | None = None
+    bases: str = ""
 
 
 def check(slice: Slice, sized: bool = True) -> CheckedSlice:
@@ -145,7 +149,8 @@ def check(slice: Slice, sized: bool = True) -> CheckedSlice:
         return CheckedSlice(slice, at, None, "certified", f"{cost}; {flat}" if flat else cost)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return CheckedSlice(slice, at, None, "exact", _UNCOUNTED)
-    return _counted(slice, at, sized)
+    found, bound = _counted(slice, at, sized)
+    return replace(found, bases=plan_text(bound))
 
 
 _ACROSS, _UP = Fraction(10, 21), Fraction(19, 35)
@@ -191,38 +196,44 @@ def _check_bounded(slice: Slice) -> None:
         ranges(branch, slice.axes)
 
 
-def _counted(slice: Slice, sample: tuple[Fraction, Fraction], sized: bool) -> CheckedSlice:
-    """The check of a slice that the exact engine takes."""
+def _counted(
+    slice: Slice, sample: tuple[Fraction, Fraction], sized: bool
+) -> tuple[CheckedSlice, int]:
+    """The check of a slice that the exact engine takes, and the bound for its solutions by Bezout's
+    theorem.
+    """
     problem = problem_of(slice)
     values = problem.on.values((from_fraction(sample[0]), from_fraction(sample[1])))
     degree, bound = degree_bound(problem.system, values)
     if degree > MAX_DEGREE or bound > MAX_BOUND:
-        return CheckedSlice(slice, sample, None, "exact", _UNCOUNTED, bound)
+        return CheckedSlice(slice, sample, None, "exact", _UNCOUNTED, bound), bound
     others = (problem.on.values(at) for at in points(problem.window))
     try:
         found, doubt = _solutions(problem.system, values)
         everywhere = bool(doubt) and all(_solutions(problem.system, other)[1] for other in others)
     except LimitReached:
-        return CheckedSlice(slice, sample, None, "exact", _UNCOUNTED, bound)
+        return CheckedSlice(slice, sample, None, "exact", _UNCOUNTED, bound), bound
     if everywhere:
         seen = f"at {len(SHARES)} points that were tried {doubt}"
         if (found or 0) > MAX_PROVED:
             refused = f"not known: {seen}; a slice where that is so everywhere is refused"
-            return CheckedSlice(slice, sample, found, "exact", refused)
+            return CheckedSlice(slice, sample, found, "exact", refused), bound
         if not returns_within(MAX_SECONDS, _prove, slice):
             late = (
                 "; that it is so everywhere, where the slice is refused, was not proved in the time"
             )
-            return CheckedSlice(slice, sample, found, "exact", f"not known: {seen}{late}")
+            return CheckedSlice(slice, sample, found, "exact", f"not known: {seen}{late}"), bound
     if not found:
-        return CheckedSlice(slice, sample, None, "exact", f"not known: at the sample {doubt}")
+        return CheckedSlice(
+            slice, sample, None, "exact", f"not known: at the sample {doubt}"
+        ), bound
     foretold = _foretold(problem, found) if not doubt and (sized or found > _LONG) else None
     words = _UNSIZED if foretold is None else in_figures(foretold)
     far = found > _LONG if foretold is None else not foretold.reachable
     if far and foretold is not None:
         words += f"; {OUT_OF_REACH}"
     offered = _BY_INTERVALS if far and _encloses(slice) else ""
-    return CheckedSlice(slice, sample, found, "exact", words + offered, forecast=foretold)
+    return CheckedSlice(slice, sample, found, "exact", words + offered, forecast=foretold), bound
 
 
 def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
@@ -320,6 +331,8 @@ def foretold(slice: Slice) -> Iterator[str]:
     if found.forecast is not None:
         yield f"curves {curve_text(found.forecast, slice.axis_names)}"
         yield way_text(found.forecast)
+    if found.bases:
+        yield f"bases at points of {found.bases}"
     yield (
         f"the whole map takes {found.cost}" if found.forecast is not None else f"cost {found.cost}"
     )
@@ -372,6 +385,8 @@ def cost_text(found: CheckedSlice) -> Iterator[str]:
     if found.forecast is not None:
         yield f"{'curves':<12}{curve_text(found.forecast, slice.axis_names)}"
     yield f"{'engine':<12}{found.engine}"
+    if found.bases:
+        yield f"{'bases':<12}{found.bases}"
     yield f"{'cost':<12}{found.cost}"
 
 

@@ -33,6 +33,11 @@ FEW = 3
 _MAX_WORK = 64, 120, 500, 5_000
 """Solutions, and polynomials, terms and bits of a basis, which take about two seconds."""
 
+_MAX_BY_MSOLVE = 150
+"""Solutions, whose algebra takes some tens of seconds: 70 take ten, of which the basis's proof is
+the half.
+"""
+
 
 def work_for(model: Model) -> WorkLimit | None:
     """How much work the exact solutions at a point may be before the certified engine is asked;
@@ -46,6 +51,16 @@ def work_for(model: Model) -> WorkLimit | None:
     if model.criterion.order <= FEW or model.reals or compiled(model).inequalities:
         return None
     return WorkLimit(*_MAX_WORK) if find_spec("numba") is not None else None
+
+
+def work_by_msolve() -> WorkLimit | None:
+    """How much work the exact solutions may be where the search has not told all apart; None
+    without msolve.
+    """
+    from ptmcad.algebra.bases import SMALL
+    from ptmcad.algebra.msolve import program
+
+    return SMALL._replace(by_msolve=_MAX_BY_MSOLVE) if program() is not None else None
 
 
 def counts_by_search(model: Model, point: Mapping[str, Fraction], timeout: float | None) -> Counts:

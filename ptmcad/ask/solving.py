@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
-from ptmcad.ask.manyangles import poses_by_search, work_for
+from ptmcad.answer.regionmap import Status
+from ptmcad.ask.manyangles import poses_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.model import Model, ptm
 from ptmcad.process.memory import loading
@@ -76,7 +77,8 @@ def poses_at(model: Model, parameters: Numbers, digits: int) -> Poses:
     """All solutions of a model; only the engine that is used is loaded.
 
     Of a mechanism with more than three angles whose basis grows too large it is the certified one,
-    see `manyangles`.
+    see `manyangles`; where that leaves the point undecided, the exact one with a basis by msolve,
+    if it is installed.
 
     Parameters
     ----------
@@ -101,7 +103,12 @@ def poses_at(model: Model, parameters: Numbers, digits: int) -> Poses:
     except LimitReached:
         if most is None:
             raise
-    return poses_by_search(model, parameters, digits)
+    found = poses_by_search(model, parameters, digits)
+    more = work_by_msolve() if found.status is Status.UNDECIDED else None
+    try:
+        return found if more is None else exact_poses(model, given, digits, more)
+    except LimitReached:
+        return found
 
 
 def needs_intervals(model: Model, parameters: Numbers) -> bool:

@@ -3,14 +3,18 @@ counts at a point.
 
 Guarantee: exact, as the map is that these are the steps of; none of them draws or stores anything.
 Where the basis at a point grows too large in more than three angles, the count is one that the
-certified engine proves.
+certified engine proves; where it does not tell, one from a basis by msolve, proved, if that is
+installed.
 """
 
 from __future__ import annotations
 
+from time import monotonic
+
+from ptmcad.algebra.bases import MISSING
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.slicevariety import SliceVariety
-from ptmcad.ask.manyangles import counts_by_search, work_for
+from ptmcad.ask.manyangles import counts_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models import system_from
@@ -124,4 +128,13 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
     try:
         return equilibria(system, exact, work_for(model)).counts
     except LimitReached:
+        begun = monotonic()
+    try:
         return counts_by_search(model, point, timeout)
+    except LimitReached as error:
+        if timeout is not None and monotonic() > begun + timeout:
+            raise
+        more = work_by_msolve()
+        if more is None:
+            raise LimitReached(f"{error}; {MISSING}") from error
+        return equilibria(system, exact, more).counts

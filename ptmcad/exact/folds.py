@@ -14,7 +14,7 @@ from collections.abc import Iterable, Sequence
 
 from flint import fmpq
 
-from ptmcad.algebra.fibre import quotient
+from ptmcad.algebra.bases import quotient
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
 from ptmcad.exact.models.potential import elements_of

@@ -13,13 +13,13 @@ from typing import NamedTuple
 
 from flint import fmpq
 
+from ptmcad.algebra.bases import quotient
 from ptmcad.algebra.fibre import (
     FibreAlgebra,
     UnivariateRepresentation,
     WorkLimit,
     evaluate,
     hermite_matrix,
-    quotient,
     scalar_matrix,
     univariate_representation,
 )

@@ -32,6 +32,8 @@ from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction
 
+BY_MSOLVE = "the Groebner basis was computed by msolve and proved to be one of the equations"
+
 
 def exact_poses(
     given: Model, parameters: Mapping[str, Fraction], digits: int, most: WorkLimit | None = None
@@ -87,7 +89,13 @@ def exact_poses(
         max((bits for _, bits in results), default=0),
         "; ".join(
             [
-                *filter(None, ["" if degenerate else _remark(found)]),
+                *filter(
+                    None,
+                    [
+                        "" if degenerate else _remark(found),
+                        BY_MSOLVE if point.algebra.by_msolve else "",
+                    ],
+                ),
                 *_vanishing(given, known, [solutions[k] for k in order]),
             ]
         ),

@@ -19,8 +19,8 @@ from support.signatures import signature
 
 from ptmcad import load
 from ptmcad.algebra.determinants import determinant
-from ptmcad.algebra.fibre import WorkLimit, fibre, quotient
 from ptmcad.algebra.fibre import evaluate as multiplication
+from ptmcad.algebra.fibre import fibre
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import (
     PLANE,
@@ -51,7 +51,6 @@ from ptmcad.algebra.real_roots import (
 from ptmcad.algebra.resultants import discriminant, interpolate, nothing, resultant
 from ptmcad.algebra.window import nowhere_zero
 from ptmcad.answer.regionmap import Kind
-from ptmcad.errors import LimitReached, PtmcadWarning
 from ptmcad.exact.cad.curves import curve
 from ptmcad.exact.cad.points import _discriminant
 from ptmcad.exact.models import system_of
@@ -535,13 +534,3 @@ def test_discriminants_of_least_degree_have_the_roots_of_the_whole_ones(p: fmpz_
         squarefree_part(discriminant(seen.in_v)),
     )
     assert least.degree() == whole.degree() == least.gcd(whole).degree() > 0
-
-
-def test_a_basis_that_grows_is_announced(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ptmcad.algebra.fibre.MANY", 1)
-    monkeypatch.setattr("ptmcad.algebra.fibre.SMALL", WorkLimit(0, 0, 0, 0))
-    corners = ({(2, 0): fmpq(1), (0, 0): fmpq(-1)}, {(0, 2): fmpq(1), (0, 0): fmpq(-1)})
-    with pytest.warns(PtmcadWarning, match="may take very long"):
-        assert quotient(corners, 2) == fibre(corners, 2)
-    with pytest.raises(LimitReached):
-        quotient(corners, 2, WorkLimit(0, 0, 0, 0))

@@ -6,6 +6,11 @@ from __future__ import annotations
 
 import copy
 import json
+import os
+import signal
+import subprocess
+import sys
+import time
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -73,6 +78,15 @@ READING = {
     "range": ("verify",),
 }
 WRONG: tuple[Any, ...] = (None, True, -1, "x", [], {"a": 1})
+
+ASKING = """
+from ptmcad.algebra import bases
+from ptmcad.algebra.fibre import WorkLimit
+bases.MANY, bases.SMALL = 1, WorkLimit(0, 0, 0, 0)
+from ptmcad.__main__ import main
+main()
+"""
+"""The program, which asks msolve also where it can do without."""
 
 
 @cache
@@ -231,3 +245,65 @@ def test_a_later_version_needs_a_newer_program(
     assert (status, said.count("\n")) == (2, 1)
     assert later in said
     assert "needs a newer ptmcad" in said
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="bounds memory")
+@pytest.mark.parametrize(
+    "head", ["[", '{"format": "ptmcad-region-map/2", "status": ['], ids=["other", "map"]
+)
+@pytest.mark.slow_cases("other")
+def test_a_large_file_that_is_no_result_is_refused_in_little_memory(
+    tmp_path: Path, head: str
+) -> None:
+    path = tmp_path / "large.json"
+    path.write_text(f"{head}{'{},' * 8_000_000}0]{'}' * (head[0] == '{')}")
+    command = [sys.executable, "-m", "ptmcad", "report", str(path), "--max-memory", "300M"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert done.stderr.startswith(f"error: {path}: "), done.stderr
+
+
+def test_a_large_result_is_read(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made = _made(folder, "exact")
+    data = json.loads(made.read_text())
+    data["slice"]["reference"] = {"notes": ["measured on a Monday"] * 100_000}
+    assert _read(made, data, capsys, "locate", "--at", "a=0,b=0") == (0, "")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="files without names have none on Linux alone")
+@pytest.mark.parametrize("to", ["the computation", "both"])
+def test_a_kill_leaves_nothing_of_msolve(tmp_path: Path, to: str) -> None:
+    """Whatever msolve reads and writes: nothing is there any more when all have ended."""
+    asked, temporary, program = tmp_path / "asked", tmp_path / "temporary", tmp_path / "msolve"
+    temporary.mkdir()
+    waits = f"import pathlib, time\npathlib.Path({str(asked)!r}).touch()\ntime.sleep(600)\n"
+    program.write_text(f"#!{sys.executable}\n{waits}")
+    program.chmod(0o755)
+    record = {"system": {"unknowns": {"x": "real", "y": "real"}, "equations": ["x^2 - a", "y^2 - b"]},
+              "axes": {"a": [1, 2], "b": [1, 2]}}  # fmt: skip
+    (tmp_path / "record.yaml").write_text(json.dumps(record))
+    command = [
+        sys.executable,
+        "-c",
+        ASKING,
+        "solve",
+        str(tmp_path / "record.yaml"),
+        "--at",
+        "a=1,b=1",
+    ]
+    environment = {
+        **os.environ,
+        "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}",
+        "TMPDIR": str(temporary),
+    }
+    with subprocess.Popen(command, cwd=ROOT, env=environment, stderr=subprocess.DEVNULL) as process:
+        while not asked.exists():
+            assert process.poll() is None
+            time.sleep(0.02)
+        (computing,) = map(
+            int, Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+        )
+        os.kill(computing, signal.SIGKILL)
+        if to == "both":
+            process.kill()
+    assert not list(temporary.iterdir())

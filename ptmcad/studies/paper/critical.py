@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ptmcad.studies.msolve import MsolveError, real_solutions
+from ptmcad.algebra.msolve import MsolveError, real_solutions
 from ptmcad.studies.paper.squaring import NAMES, Design
 from ptmcad.studies.paper.statements import (
     CIRCLES,

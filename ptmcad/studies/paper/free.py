@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cache
 
+from ptmcad.algebra.msolve import program
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import classify
 from ptmcad.ask.location import locate
-from ptmcad.studies.msolve import program
 from ptmcad.studies.paper import statements
 from ptmcad.studies.paper.claim import Facts
 from ptmcad.studies.paper.critical import critical_free_lengths

@@ -1,10 +1,13 @@
-"""msolve, an optional program: all real solutions in boxes where they are finitely many.
+"""msolve, an optional program: Groebner bases over Q, and all real solutions in boxes where they
+are finitely many.
 
 Guarantee: an answer is the whole answer of a run that ended well; all else is a `MsolveError` with
 what was said. On Linux no file is left, whatever is killed: those that msolve reads and writes have
 no names.
 
-Not guaranteed here: that msolve is right. The boxes are isolating, as msolve says.
+Not guaranteed here: that msolve is right. Its Groebner basis over Q is lifted from bases modulo
+primes, and checked modulo another prime; `ptmcad.algebra.proved` proves it before it is used. The
+boxes are isolating, as msolve says.
 
 Reference: Berthomieu, Eder, Safey El Din, msolve: a library for solving polynomial systems, ISSAC
 2021.
@@ -65,10 +68,32 @@ def real_solutions(
     MsolveError When msolve is not found, does not end within ``timeout`` seconds, or finds
         infinitely many complex solutions.
     """
-    return parsed(_answer(names, equations, timeout), len(names))
+    return parsed(_answer(names, equations, (), timeout), len(names))
 
 
-def _answer(names: Sequence[str], equations: Sequence[str], timeout: float | None) -> str:
+def groebner_basis(
+    equations: Sequence[str], unknowns: int, timeout: float | None = None
+) -> tuple[Terms, ...]:
+    """What msolve says is the reduced Groebner basis over Q, in the graded reverse lexicographic
+    order.
+
+    Parameters
+    ----------
+    equations : in the unknowns u0, u1, and so on, written out as sums of monomials.
+
+    Raises
+    ------
+    MsolveError When msolve is not found, does not end within ``timeout`` seconds, or says no list
+        of polynomials.
+    """
+    return parsed_basis(
+        _answer([f"u{k}" for k in range(unknowns)], equations, ("-g", "2"), timeout), unknowns
+    )
+
+
+def _answer(
+    names: Sequence[str], equations: Sequence[str], options: Sequence[str], timeout: float | None
+) -> str:
     command = program()
     if command is None:
         raise MsolveError(
@@ -85,7 +110,7 @@ def _answer(names: Sequence[str], equations: Sequence[str], timeout: float | Non
             if sys.platform == "linux"
             else [asked.name, answer.name]
         )
-        status, said = _run([command, "-f", paths[0], "-o", paths[1]], files, timeout)
+        status, said = _run([command, *options, "-f", paths[0], "-o", paths[1]], files, timeout)
         data = answer.read(MAX_ANSWER + 1)
     if status or not data:
         raise MsolveError(
