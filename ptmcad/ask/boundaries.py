@@ -19,9 +19,9 @@ import numpy as np
 from ptmcad.answer.boundaries import Boundary
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.location import component_cells
+from ptmcad.cover.connectivity import shown
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
-from ptmcad.cover.slanted import shown
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.chains import WallPolyline, chains, critical_shares
 from ptmcad.exact.cad.curves import lines_of

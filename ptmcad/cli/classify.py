@@ -188,7 +188,7 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
     certified = is_certified(slice, options.engine)
     off = switched_off(options.without, certified)
     if certified:
-        from ptmcad.certified.plan import beforehand
+        from ptmcad.certified.statement import beforehand
 
         steps = beforehand(slice, off)
     else:

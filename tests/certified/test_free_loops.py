@@ -23,12 +23,12 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.bands import certified_widths
 from ptmcad.certified import engine
-from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.intervals import certified_intervals
-from ptmcad.certified.plain import curves as plain_curves
-from ptmcad.certified.plain.points import plain_counter
+from ptmcad.certified.plain import criticalcurves as plain_curves
+from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
+from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.errors import ConfigError
 from ptmcad.formulas.graph import Formula
 from ptmcad.options import Options

@@ -24,11 +24,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from ptmcad.certified.plain.bounds import Range
-from ptmcad.certified.plain.chart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.cones import Matrix
-from ptmcad.certified.plain.frame import MirrorFrame
 from ptmcad.certified.plain.geometry import FactoredProblem
+from ptmcad.certified.plain.mirrors import MirrorFrame
 from ptmcad.certified.plain.opening import (
     Coordinates,
     UnfoldedEnergy,
@@ -36,6 +34,8 @@ from ptmcad.certified.plain.opening import (
     opening,
     stiffness,
 )
+from ptmcad.certified.plain.problem import Range
+from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
 from ptmcad.formulas.graph import Formula
 from ptmcad.model.determinants import determinant
 

@@ -7,7 +7,7 @@ lies in the narrow box that comes with it; two proved boxes may hold the same ze
 of docs/soundness.md.)
 
 The search knows no mathematics: `ptmcad.certified.contraction` discards and shrinks,
-`ptmcad.certified.isolation` proves.
+`ptmcad.certified.uniqueness` proves.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ptmcad.certified.contraction import Workspace, contract, contract_curve, determined, workspace
-from ptmcad.certified.isolation import inflated
+from ptmcad.certified.equationsystem import Arguments
 from ptmcad.certified.linear import space_for
-from ptmcad.certified.system import Arguments
+from ptmcad.certified.uniqueness import inflated
 from ptmcad.formulas.affine import LANES
 from ptmcad.formulas.compiled import ZERO, compiled, inlined
 from ptmcad.formulas.intervals import Floats

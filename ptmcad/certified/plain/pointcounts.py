@@ -17,19 +17,17 @@ from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.counts import counts_of_signs, euler_sum
 from ptmcad.certified.arb_isolation import refined
-from ptmcad.certified.parameters import values_at
-from ptmcad.certified.peaks import peaks
-from ptmcad.certified.plain.bounds import ranges
-from ptmcad.certified.plain.chart import SpringChart, chart, principal_minors
-from ptmcad.certified.plain.covering import in_description
+from ptmcad.certified.branchandprune import Boxes
+from ptmcad.certified.equationsystem import EquationSystem, system
+from ptmcad.certified.peaks import peaks, values_at
 from ptmcad.certified.plain.geometry import geometry
+from ptmcad.certified.plain.halfangles import in_description
 from ptmcad.certified.plain.problem import MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.plain.spectrum import inertia
+from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.straight import branches
-from ptmcad.certified.plain.zeros import Zeros, ZeroSearch
-from ptmcad.certified.points import PRECISIONS, PointCount, boxed
-from ptmcad.certified.search import Boxes
-from ptmcad.certified.system import EquationSystem, system
+from ptmcad.certified.plain.unknownranges import ranges
+from ptmcad.certified.plain.zeros import PRECISIONS, PointCount, Zeros, ZeroSearch, boxed
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.formulas.balls import ball, run_arb
 from ptmcad.formulas.graph import Formula

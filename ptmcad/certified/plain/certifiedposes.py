@@ -23,8 +23,8 @@ from ptmcad.answer.poses import Pose, Poses, springs_of
 from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_isolation import Box
 from ptmcad.certified.peaks import peaks
-from ptmcad.certified.plain.covering import located
-from ptmcad.certified.plain.points import BranchCounter, PlainCounter, plain_counter
+from ptmcad.certified.plain.halfangles import located
+from ptmcad.certified.plain.pointcounts import BranchCounter, PlainCounter, plain_counter
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.rational import Point, exact_eigenvalues, exact_values, rational_point
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
@@ -66,7 +66,7 @@ def plain_poses(model: Model, parameters: Mapping[str, Fraction], digits: int) -
 
     Raises
     ------
-    ConfigError, GeometryError As `ptmcad.certified.plain.points.plain_counter` does, or where a
+    ConfigError, GeometryError As `ptmcad.certified.plain.pointcounts.plain_counter` does, or where a
         parameter is not what its kind asks for.
     """
     slice = proved(point_slice(model, parameters))

@@ -21,7 +21,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.cover import tubes
+from ptmcad.cover import tubeframes as tubes
 from ptmcad.cover.complement import (
     Components,
     Frames,
@@ -30,9 +30,17 @@ from ptmcad.cover.complement import (
     grown,
     sums_of_areas,
 )
-from ptmcad.cover.graph import connected, touching
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle
-from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
+from ptmcad.cover.subdivision import (
+    COVERED,
+    CUT,
+    FREE,
+    Subdivision,
+    connected,
+    rectangle_array,
+    subdivide,
+    touching,
+)
 
 Integers = NDArray[np.int64]
 HALVINGS = 5

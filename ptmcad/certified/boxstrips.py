@@ -17,6 +17,7 @@ from math import ceil, inf, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.certified.branchandprune import Boxes
 from ptmcad.certified.contraction import (
     Workspace,
     linearise,
@@ -25,8 +26,7 @@ from ptmcad.certified.contraction import (
     row_constant,
     workspace,
 )
-from ptmcad.certified.search import Boxes
-from ptmcad.certified.system import Arguments
+from ptmcad.certified.equationsystem import Arguments
 from ptmcad.formulas.compiled import compiled, inlined
 from ptmcad.formulas.intervals import Floats
 from ptmcad.formulas.rounding import down, multiply, reciprocal, up

@@ -15,12 +15,10 @@ from itertools import islice
 
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Cell, PlanStep, Region, RegionMap, Status
-from ptmcad.certified.plain.points import BranchCounter
-from ptmcad.certified.points import PointCount
+from ptmcad.certified.plain.pointcounts import BranchCounter
+from ptmcad.certified.plain.zeros import PointCount
 from ptmcad.certified.statement import system_text
-from ptmcad.cover.borders import area_bounds
-from ptmcad.cover.complement import Components
-from ptmcad.cover.samples import samples
+from ptmcad.cover.complement import Components, area_bounds, samples
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Point, Slice
 

@@ -18,20 +18,19 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heappop, heappush
-from math import ceil
+from math import ceil, comb
 
 import numpy as np
 from flint import fmpq
 
-from ptmcad.certified.controls import controls
+from ptmcad.certified.branchandprune import Boxes, search_curve
 from ptmcad.certified.covering import Lattice, meeting, outward
+from ptmcad.certified.curvetubes import Tubes, tubes
+from ptmcad.certified.equationsystem import Arguments
 from ptmcad.certified.refinement import CurveEnclosure
-from ptmcad.certified.search import Boxes, search_curve
-from ptmcad.certified.system import Arguments
-from ptmcad.certified.tubes import Tubes, tubes
-from ptmcad.cover import tubes as exact
+from ptmcad.cover import tubeframes as exact
+from ptmcad.cover.lattice import from_boxes
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle, Tube
-from ptmcad.cover.rounding import from_boxes
 from ptmcad.formulas.intervals import Floats
 from ptmcad.text.flint_numbers import from_fraction
 
@@ -305,3 +304,28 @@ def _parted(
     frame = (*ends, bottom, top) if along == 0 else (bottom, top, *ends)
     patch = Patch(frame, along, tuple(found))
     return None if exact.flaw(patch, 2**62) else patch
+
+
+def controls(coefficients: Sequence[fmpq], start: fmpq, length: fmpq) -> list[fmpq]:
+    """Those of p(start + length t) for t in [0, 1], from the first to the last, exact.
+
+    Parameters
+    ----------
+    coefficients : of p, the constant one first.
+
+    >>> controls([fmpq(0), fmpq(0), fmpq(1)], fmpq(1), fmpq(2))
+    [1, 3, 9]
+    """
+    composed: list[fmpq] = []
+    for c in reversed(coefficients):
+        # Horner's rule: (...) (start + length t) + c
+        composed = [
+            start * a + length * b
+            for a, b in zip([*composed, fmpq(0)], [fmpq(0), *composed], strict=True)
+        ]
+        composed[0] += c
+    degree = len(coefficients) - 1
+    return [
+        sum((fmpq(comb(k, j), comb(degree, j)) * composed[j] for j in range(k + 1)), fmpq(0))
+        for k in range(degree + 1)
+    ]

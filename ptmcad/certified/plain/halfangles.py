@@ -16,11 +16,11 @@ from flint import arb, ctx, fmpq_mat, fmpz_mat
 
 from ptmcad.answer.regionmap import Solution
 from ptmcad.certified.arb_isolation import Box, refined
-from ptmcad.certified.distinct import FULL_TURN
+from ptmcad.certified.equationsystem import EquationSystem
+from ptmcad.certified.plain.harmonics import Multi, TrigonometricPolynomial, Vector
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem
-from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial, Vector
-from ptmcad.certified.points import PRECISIONS, PointCount, radius_between
-from ptmcad.certified.system import EquationSystem
+from ptmcad.certified.plain.zeros import PRECISIONS, PointCount, radius_between
+from ptmcad.certified.uniqueness import FULL_TURN
 from ptmcad.formulas.balls import ball
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.flint_numbers import to_fraction

@@ -17,10 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ptmcad.certified.branchandprune import Boxes, halved, widest_of
 from ptmcad.certified.contraction import Workspace, contract, workspace
+from ptmcad.certified.equationsystem import Arguments
 from ptmcad.certified.expansion import approach, eliminated, expanded, residual
-from ptmcad.certified.search import Boxes, halved, widest_of
-from ptmcad.certified.system import Arguments
 from ptmcad.formulas.compiled import ZERO, compiled, inlined
 from ptmcad.formulas.intervals import Floats, run
 from ptmcad.formulas.rounding import down, magnitude, multiply, up

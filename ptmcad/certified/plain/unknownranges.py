@@ -14,10 +14,10 @@ from math import gcd, inf, isfinite
 
 import numpy as np
 
-from ptmcad.certified.plain.chart import chart
 from ptmcad.certified.plain.geometry import geometry
-from ptmcad.certified.plain.problem import FIRST, Problem
-from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
+from ptmcad.certified.plain.harmonics import Multi, TrigonometricPolynomial
+from ptmcad.certified.plain.problem import FIRST, TURN, Problem, Range
+from ptmcad.certified.plain.springchart import chart
 from ptmcad.errors import ConfigError
 from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.graph import Formula, Graph, Operation, length
@@ -25,8 +25,6 @@ from ptmcad.formulas.intervals import Floats, program, run
 from ptmcad.formulas.tape import Tape, enclosing_floats, record
 from ptmcad.question.slice import Axis
 
-TURN = (-3.0, -3.0 + 6.2832)
-"""A little more than a full turn, cut where no symmetric solution lies."""
 MIN_POWER, MAX_POWER = -10, 40
 """Of two, tried as bounds."""
 MAX_BOXES = 1000
@@ -41,8 +39,6 @@ MIN_SHARE = 1e-12
 """Of a range, or of a number's size, below which it is not halved again."""
 MAX_WEIGHT = 3
 """Unknowns that grow together may grow like powers up to this one."""
-
-Range = tuple[float, float]
 
 
 def ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]:

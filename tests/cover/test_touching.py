@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ptmcad.cover.graph import connected
+from ptmcad.cover.subdivision import connected
 from ptmcad.exact.regions import Link, merge
 
 

@@ -1,5 +1,5 @@
 """The curves of a slice at which counts change, for any problem: folds, equilibria that a spring's
-cone swallows, and solutions at which a condition stops to hold.
+cone swallows where the spring has no length, and solutions at which a condition stops to hold.
 
 Guarantee: each point of the window at which the chosen count changes lies on the projection of one
 of the curves (docs/soundness.md, Theorem 2).
@@ -10,20 +10,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from ptmcad.certified.curve import CriticalCurve
-from ptmcad.certified.plain.angle import Angle
-from ptmcad.certified.plain.bounds import TURN, ranges
-from ptmcad.certified.plain.chart import SpringChart, chart, principal_minors
-from ptmcad.certified.plain.curvesearch import CurveSearch, Pruning
-from ptmcad.certified.plain.frame import MirrorFrame, frames
+from ptmcad.certified.plain.curvesearch import CurveSearch, Pruning, short_lengths, variable_weights
 from ptmcad.certified.plain.geometry import geometry
-from ptmcad.certified.plain.involution import mirrors
-from ptmcad.certified.plain.problem import Condition, Problem, problem_of
-from ptmcad.certified.plain.quotient import NEAR, SymmetricFold, folds
+from ptmcad.certified.plain.harmonics import Angle, TrigonometricPolynomial, Unknown
+from ptmcad.certified.plain.mirrors import MirrorFrame, frames, mirrors, square_of
+from ptmcad.certified.plain.problem import FIRST, TURN, Condition, Problem, SpringCone, problem_of
+from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.straight import branches
-from ptmcad.certified.plain.swallowed import cones
-from ptmcad.certified.scales import short_lengths, variable_weights
-from ptmcad.formulas.graph import Formula
+from ptmcad.certified.plain.symmetricfolds import NEAR, SymmetricFold, folds
+from ptmcad.certified.plain.unknownranges import ranges
+from ptmcad.certified.refinement import CriticalCurve
+from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.model.determinants import determinant
 from ptmcad.model.involutions import Involution
 from ptmcad.question.counts import Count
@@ -301,4 +298,57 @@ def _reason(search: CurveSearch) -> str:
         "equilibria meet: det H = 0"
         if search.problem.is_gradient
         else "solutions meet: the Jacobian is singular"
+    )
+
+
+def cones(search: CurveSearch, whole: SpringChart) -> Iterator[CriticalCurve]:
+    """Equilibria that come to a configuration in which a spring with a free length has none."""
+    closing = search.problem.closing
+    for s, cone in enumerate(search.problem.cones):
+        moving = whole.cones[s].active
+        name = f"point where spring {cone.name} has no length{search.problem.where}"
+        reason = f"an equilibrium is swallowed where spring {cone.name} has no length"
+        if len(search.problem.unknowns) - closing == 1:
+            # of one degree of freedom two equations d = 0 leave curves and need no direction
+            equations = [
+                *whole.equations[:closing],
+                *_without_length(cone.difference, whole.unknowns),
+            ]
+            pruning = Pruning(costly=whole.equations[closing:], nonnegative=search.values(whole))
+            yield search.curve(name, reason, equations, pruning)
+        elif len(moving) == 1 and search.problem.is_gradient and not search.stable:
+            yield _crease(search, cone, *moving)
+        else:
+            at = chart(search.exact, s)
+            equations = [*_without_length(cone.difference, at.unknowns), *at.equations]
+            minima = at.diagonal_times_length(s) if search.stable else ()
+            pruning = Pruning(costly=at.balances, nonnegative=[*minima, *search.values(at)])
+            yield search.curve(name, reason, equations, pruning, (*search.ranges, TURN))
+
+
+def _without_length(
+    parts: Sequence[TrigonometricPolynomial], unknowns: Sequence[Unknown]
+) -> list[Formula]:
+    """What is zero where some polynomials are; one that is zero everywhere says nothing."""
+    return [f for f in (part.formula(unknowns) for part in parts) if f.value != 0]
+
+
+def _crease(search: CurveSearch, cone: SpringCone, moving: int) -> CriticalCurve:
+    """All configurations in which a spring that one unknown alone moves has no length, whether it
+    is balanced or not.
+
+    That is a curve by itself: other springs without length there do not matter. Where the unknown
+    turns a vector that is always as long, this is as long as the rest on it, and the unknown drops
+    out.
+    """
+    x, y = cone.difference
+    gap = square_of((x.still, y.still)) - square_of((x - x.still, y - y.still))
+    drops = bool(gap.terms) and gap == gap.still
+    unknowns = [Graph().variable(FIRST)] * len(search.ranges)
+    return search.curve(
+        f"crease where spring {cone.name} has no length{search.problem.where}",
+        f"spring {cone.name} has no length, whatever the other unknowns are",
+        _without_length((gap,) if drops else (x, y), unknowns),
+        Pruning(),
+        () if drops else (search.ranges[moving],),
     )
