@@ -72,6 +72,7 @@ __all__ = [
     "slice_from",
     "slice_from_mapping",
     "slice_from_options",
+    "slice_from_typed",
     "units_of",
     "with_place",
 ]
@@ -153,9 +154,13 @@ def slice_from_options(
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
-    typed = Typed(config, slice, tuple(sets), tuple(ranges), count, mechanism)
-    if config is not None and typed == Typed(config):
-        return load(config)
+    return slice_from_typed(Typed(config, slice, tuple(sets), tuple(ranges), count, mechanism))
+
+
+def slice_from_typed(typed: Typed) -> Slice:
+    """The slice of what was typed, as `slice_from_options` gives it."""
+    if typed.config is not None and typed == Typed(typed.config):
+        return load(typed.config)
     return slice_of(record_from_options(typed))
 
 
