@@ -23,7 +23,7 @@ from ptmcad.question.slice import Axes, Axis, Slice
 from ptmcad.text.numerals import text_of
 
 if TYPE_CHECKING:
-    from ptmcad.exact.family import FamilyVariety
+    from ptmcad.exact.familyvariety import FamilyVariety
     from ptmcad.exact.models.system import SystemOnAxes
 
 
@@ -107,7 +107,7 @@ def in_common(asked: AskedFamily, options: Options = DEFAULTS) -> Common:
     """
     if all(is_certified(asked.member(value), options.engine) for value in asked.values):
         return Common(asked, None)
-    from ptmcad.exact.family import family_variety
+    from ptmcad.exact.familyvariety import family_variety
 
     try:
         return Common(asked, family_variety(in_space(asked)))

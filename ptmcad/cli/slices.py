@@ -22,7 +22,7 @@ from ptmcad.question.config import (
     record_from_options,
     with_place,
 )
-from ptmcad.question.config.record import Record
+from ptmcad.question.config.problemrecord import Record
 from ptmcad.question.config.typed import Typed
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.numerals import shortest_text

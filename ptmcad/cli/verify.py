@@ -274,7 +274,7 @@ def _verified_design(
     found: BestDesign, versions: Any, seed: int | None, progress: Progress
 ) -> VerifyReport:
     """The best design, and where ranges are longest by exact critical values."""
-    from ptmcad.question.config.designs import design_from
+    from ptmcad.question.config.designkey import design_from
     from ptmcad.show.document.design import extremes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_design
     from ptmcad.workbench.designs.proof import exact_maximum

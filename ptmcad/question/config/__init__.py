@@ -19,16 +19,16 @@ from typing import Any
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Faults, Place, expect
 from ptmcad.model import Kind, Parameter, ptm
 from ptmcad.question.config.binding import released_names, settled
-from ptmcad.question.config.family import (
+from ptmcad.question.config.familyquestion import (
     Family,
     checked_family,
     family_of,
     fault_of_member,
     member_like,
 )
-from ptmcad.question.config.model import named_model
+from ptmcad.question.config.modelkeys import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, tree_of
-from ptmcad.question.config.record import COUNT, Record, record_of, with_place
+from ptmcad.question.config.problemrecord import COUNT, Record, record_of, with_place
 from ptmcad.question.config.resolution import checked_slice, slice_of
 from ptmcad.question.config.scalars import check_axis_name, file_name, portable_file
 from ptmcad.question.config.typed import (
