@@ -16,13 +16,14 @@ from ptmcad.cli.commonoptions import Formats, format_option, gathered, name_opti
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.slices import SliceOptions, question_of, slice_options
+from ptmcad.cli.slices import question_of, slice_options
 from ptmcad.cli.storedresults import made_map, stored_in, stored_map, tolerance_option
 from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
 from ptmcad.options import Options
 from ptmcad.process.output import check_writable, write_files
-from ptmcad.question.config import file_name
+from ptmcad.question.config import file_name, slice_from_typed
+from ptmcad.question.config.typed import Typed
 from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.question.slice import Slice
 from ptmcad.show import render
@@ -78,7 +79,7 @@ def _style(size: str | None, palette: str | None, title: str | None) -> PictureS
 @limit_options
 @gathered(style=_style)
 def command(
-    *, asked: SliceOptions, path: str, pose: str, frames: int, fps: int, style: PictureStyle, dpi: int,
+    *, asked: Typed, path: str, pose: str, frames: int, fps: int, style: PictureStyle, dpi: int,
     tolerance: Fraction, out: Path, name: str | None, formats: Formats, limits: ResourceLimits,
 ) -> None:  # fmt: skip
     """Show the mechanism moving along a path of parameters, and where it snaps.
@@ -117,9 +118,9 @@ def command(
     report_written(out, names)
 
 
-def _slice(asked: SliceOptions) -> Slice:
+def _slice(asked: Typed) -> Slice:
     """The slice of a mechanism that can be drawn."""
-    slice = asked.slice()
+    slice = slice_from_typed(asked)
     if slice.model.drawable is None:
         raise ConfigError(no_drawing(slice.model))
     return slice

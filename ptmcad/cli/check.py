@@ -12,9 +12,9 @@ from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import MAX_FAULTS, ConfigError, Faults, HypothesisError
 from ptmcad.question.config import Family, with_place
 from ptmcad.question.config.designed import Design
-from ptmcad.question.config.designs import checked_design
-from ptmcad.question.config.family import checked_family
-from ptmcad.question.config.record import record_of
+from ptmcad.question.config.designkey import checked_design
+from ptmcad.question.config.familyquestion import checked_family
+from ptmcad.question.config.problemrecord import record_of
 from ptmcad.question.config.resolution import checked_slice
 from ptmcad.question.config.sweeps import Sweeping, checked_sweep
 from ptmcad.question.shipped import record_tree

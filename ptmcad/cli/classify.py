@@ -27,9 +27,9 @@ from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
 from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import (
-    SliceOptions,
     Third,
     engine_option,
+    question_asked,
     question_in,
     question_of,
     slice_options,
@@ -40,6 +40,7 @@ from ptmcad.options import Options
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.output import check_writable, how_to_go_on, save_stopped
 from ptmcad.question.config import Family
+from ptmcad.question.config.typed import Typed
 from ptmcad.question.counts import Count
 from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Slice
@@ -361,7 +362,7 @@ def _classify_family(
 @drawing_options(FORMATS, "json,png,svg", "Files to write")
 @gathered(options=_wanted, output=Output, third=Third)
 def command(
-    *, asked: SliceOptions, third: Third, count: str | None, options: Options, output: Output, limits: ResourceLimits,
+    *, asked: Typed, third: Third, count: str | None, options: Options, output: Output, limits: ResourceLimits,
     resume: Path | None,
 ) -> None:  # fmt: skip
     """Map the regions of a slice by their number of equilibria.
@@ -392,7 +393,7 @@ def command(
         ptmcad classify --slice rho,L2 --set F3=F --set F4=F --free F=-40:0 --surface --format json,png,ply
         ptmcad classify --slice rho,L2 --range rho=1/20:2 --range L2=0:2 --set l0=1/5 --set F3=-10 --set F4=-10
     """
-    slice = asked.question(count, third)
+    slice = question_asked(asked, count, third)
     options = replace(options, timeout=limits.timeout)
     if isinstance(slice, Family):
         _classify_family(slice, third, options, output, limits, resume)

@@ -34,21 +34,26 @@ def reading(
     )
 
 
-def gathered(**kinds: Callable[..., Any]) -> Callable[[F], F]:
-    """A decorator of a command that takes, for each name, what ``kinds`` makes of the options of
-    its parameters' names.
+Gathering = Callable[..., Any] | tuple[tuple[str, ...], Callable[..., Any]]
+"""A function of options, which are those of its parameters' names or those that are named."""
+
+
+def gathered(**kinds: Gathering) -> Callable[[F], F]:
+    """A decorator of a command that takes, for each name, what ``kinds`` makes of some options.
 
     It stands below the options that it gathers.
     """
+    known = {
+        name: kind if isinstance(kind, tuple) else (tuple(inspect.signature(kind).parameters), kind)
+        for name, kind in kinds.items()
+    }
 
     def decorate(command: F) -> F:
         @wraps(command)
         def with_fewer(**given: Any) -> Any:
             made = {
-                name: kind(
-                    **{option: given.pop(option) for option in inspect.signature(kind).parameters}
-                )
-                for name, kind in kinds.items()
+                name: kind(**{option: given.pop(option) for option in options})
+                for name, (options, kind) in known.items()
             }
             return command(**given, **made)
 

@@ -28,7 +28,7 @@ from ptmcad.cli.slices import question_in
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name
 from ptmcad.question.config.designed import Design
-from ptmcad.question.config.designs import design_from_options
+from ptmcad.question.config.designkey import design_from_options
 from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.show import render
 

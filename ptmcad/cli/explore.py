@@ -12,9 +12,11 @@ import click
 
 from ptmcad.cli.commonoptions import out_option
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.slices import SliceOptions, slice_options
+from ptmcad.cli.slices import slice_options
 from ptmcad.extras import Extra, require
 from ptmcad.process.handover import Topic, send
+from ptmcad.question.config import record_from_options
+from ptmcad.question.config.typed import Typed
 
 
 @click.command("explore")
@@ -37,7 +39,7 @@ from ptmcad.process.handover import Topic, send
 @limit_options
 def command(
     *,
-    asked: SliceOptions,
+    asked: Typed,
     free: str | None,
     sliders: tuple[str, ...],
     port: int,
@@ -57,7 +59,7 @@ def command(
         ptmcad explore --slice rho,L2 --set F3=F --set F4=F --free F=-40:0
     """
     require(Extra.explore)
-    record = asked.record(free)
+    record = record_from_options(asked._replace(free=free))
     with held(limits):
         from ptmcad.workbench.explore.panel import panel_of
 

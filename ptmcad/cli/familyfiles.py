@@ -12,7 +12,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ptmcad.answer.changes import TOLERANCE
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.commonoptions import Formats
@@ -54,29 +53,26 @@ def family_to_files(
     check_writable(wanted.out, names)
     members: list[RegionMap] = []
     with ProgressBar() as progress:
-        from ptmcad.ask.members import in_common, member_map
+        from ptmcad.ask.members import member_map
+        from ptmcad.workbench.familymaps import prepared, together
 
         progress("variety of the family", 0, 1)
-        common = in_common(family, options)
         ends = None if options.timeout is None else time.monotonic() + options.timeout
         drawn = bool(wanted.among(MESHES)) or (third.surface and bool(wanted.among(PICTURES)))
-        changes = None
-        if drawn or third.changes or third.between:
-            from ptmcad.ask.changes import changes_of
-
-            changes = changes_of(
-                common, options.tolerance or TOLERANCE, replace(options, progress=progress)
-            )
-        if changes is not None and third.between:
-            family = family._replace(values=changes.between)
-            common = common._replace(family=family)
-        for number, value in enumerate(family.values):
-            progress("members", number, len(family.values))
+        common, changes = prepared(
+            family,
+            replace(options, progress=progress),
+            changes=drawn or third.changes,
+            between=third.between,
+        )
+        values = common.family.values
+        for number, value in enumerate(values):
+            progress("members", number, len(values))
             left = None if ends is None else max(ends - time.monotonic(), 0.01)
             try:
                 found = member_map(common, value, replace(options, timeout=left))
             except LimitReached as stop:
-                written = f"; the maps of {number} of {len(family.values)} members are in {shown_path(wanted.out)}"
+                written = f"; the maps of {number} of {len(values)} members are in {shown_path(wanted.out)}"
                 raise LimitReached(
                     f"{stop} of {family.free.name} = {text_of(value)}{written}"
                 ) from stop
@@ -92,17 +88,7 @@ def family_to_files(
             surface = surface_of(
                 common, changes, options=replace(options, timeout=left, progress=progress)
             )
-    title = family.record.title
-    result = FamilyMap(
-        family.name,
-        family.free,
-        family.values,
-        tuple(members),
-        common.surfaces,
-        title,
-        changes,
-        family.text,
-    )
+    result = together(family, common, tuple(members), changes)
     if writers := _writers(result, surface, wanted, third.surface):
         write_files(wanted.out, writers)
     return result, surface

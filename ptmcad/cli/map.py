@@ -20,11 +20,13 @@ from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.pictures import figure, picture
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.proposals import poses, quantity_names
-from ptmcad.cli.slices import SliceOptions, question_of, slice_options
+from ptmcad.cli.slices import question_of, slice_options
 from ptmcad.cli.storedresults import made_map, stored_in, stored_map, tolerance_option
 from ptmcad.errors import ConfigError, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import check_writable, text_writer, write_files
+from ptmcad.question.config import slice_from_typed
+from ptmcad.question.config.typed import Typed
 from ptmcad.show import render
 from ptmcad.show.style import LegendPlace, PictureStyle
 
@@ -61,7 +63,7 @@ class DifferenceError(PtmcadError):
 @limit_options
 def command(
     *,
-    asked: SliceOptions,
+    asked: Typed,
     value: str,
     pose: str,
     pixels: tuple[int, int],
@@ -88,13 +90,15 @@ def command(
         ptmcad map --slice L2,rho --value length:k1 --pose stable:2 --format png,csv --pixels 50
     """
     stored = stored_map(asked)
-    slice = stored.slice if stored else asked.slice()
+    slice = stored.slice if stored else slice_from_typed(asked)
     if (
         not stored
         and slice.has_free_lengths
         and (value.strip() == "barrier" or not pose.strip().startswith("stable"))
     ):
-        slice = asked.slice("index")  # the certified engine finds the others when they are counted
+        slice = slice_from_typed(
+            asked._replace(counting="index")
+        )  # the certified engine finds the others when they are counted
     nothing_drawn = set(formats) <= set(DATA)
     report_idle([
         *idle_style(formats),

@@ -15,7 +15,7 @@ from ptmcad.cli.proposals import mechanisms as known_mechanisms
 from ptmcad.errors import ConfigError, quoted
 from ptmcad.model import Model
 from ptmcad.process.output import check_writable, write_files
-from ptmcad.question.config.model import model_of
+from ptmcad.question.config.modelkeys import model_of
 from ptmcad.question.config.starters import NAMES, starter_text
 from ptmcad.question.shipped import shipped_records
 from ptmcad.show import render

@@ -205,7 +205,7 @@ def _axes_of_result(path: Path) -> tuple[str, ...]:
 def _names_of_question(config: Path | None, mechanism: str | None) -> tuple[str, ...]:
     from ptmcad.model import ptm
     from ptmcad.question.config import load
-    from ptmcad.question.config.model import model_of
+    from ptmcad.question.config.modelkeys import model_of
     from ptmcad.question.config.starters import NAMES, starter_text
     from ptmcad.text.yamltree import read_text
 

@@ -20,10 +20,9 @@ from ptmcad.question.config import (
     Family,
     question_from_options,
     record_from_options,
-    slice_from_options,
     with_place,
 )
-from ptmcad.question.config.record import Record
+from ptmcad.question.config.problemrecord import Record
 from ptmcad.question.config.typed import Typed
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.numerals import shortest_text
@@ -48,70 +47,47 @@ class Third(NamedTuple):
         return self.members == BETWEEN
 
 
-class SliceOptions(NamedTuple):
-    """The record and what changes it, as they were typed."""
+def _typed(
+    config: Path | None,
+    axes: str | None,
+    sets: tuple[str, ...],
+    ranges: tuple[str, ...],
+    mechanism: str | None,
+) -> Typed:
+    return Typed(config, axes, sets, ranges, mechanism=mechanism)
 
-    config: Path | None
-    axes: str | None
-    sets: tuple[str, ...]
-    ranges: tuple[str, ...]
-    mechanism: str | None
 
-    def slice(self, count: str | None = None) -> Slice:
-        """The slice that is meant.
+def question_asked(asked: Typed, count: str | None, third: Third) -> Slice | Family:
+    """The slice that is meant, or the family where a third parameter is free.
 
-        Raises
-        ------
-        ConfigError
-            For anything wrong with the record or the options.
-        """
-        return slice_from_options(
-            self.config, self.axes, self.sets, self.ranges, count, self.mechanism
-        )
-
-    def record(self, free: str | None) -> Record:
-        """The record that is meant, in which a parameter may be free.
-
-        Raises
-        ------
-        ConfigError
-            For anything wrong with the record's keys or the options.
-        """
-        return record_from_options(self._typed(None)._replace(free=free))
-
-    def placed(self, error: ConfigError | HypothesisError, count: str | None = None) -> PtmcadError:
-        """A fault of the question with its place, as far as the record or the options can still be
-        read for it.
-        """
-        try:
-            return with_place(error, record_from_options(self._typed(count)))
-        except ConfigError:  # it is this one
-            return error
-
-    def question(self, count: str | None, third: Third) -> Slice | Family:
-        """The slice that is meant, or the family where a third parameter is free.
-
-        Raises
-        ------
-        ConfigError
-            For anything wrong with the record or the options.
-        """
-        members = None if third.between else third.members
-        return question_from_options(self._typed(count)._replace(free=third.free, members=members))
-
-    def _typed(self, count: str | None) -> Typed:
-        return Typed(self.config, self.axes, self.sets, self.ranges, count, self.mechanism)
+    Raises
+    ------
+    ConfigError
+        For anything wrong with the record or the options.
+    """
+    members = None if third.between else third.members
+    return question_from_options(asked._replace(counting=count, free=third.free, members=members))
 
 
 def _with_places(command: F) -> F:
     @wraps(command)
-    def placed(*, asked: SliceOptions, **given: Any) -> Any:
+    def placed(*, asked: Typed, **given: Any) -> Any:
         try:
             return command(asked=asked, **given)
         except (ConfigError, HypothesisError) as error:
-            raise asked.placed(error, given.get("count")) from error
+            raise _placed(error, asked._replace(counting=given.get("count"))) from error
 
     return placed  # type: ignore[return-value]
+
+
+def _placed(error: ConfigError | HypothesisError, asked: Typed) -> PtmcadError:
+    """A fault of the question with its place, as far as the record or the options can still be read
+    for it.
+    """
+    try:
+        return with_place(error, record_from_options(asked))
+    except ConfigError:  # it is this one
+        return error
 
 
 range_option = click.option(
@@ -139,7 +115,7 @@ def slice_options(command: F) -> F:
 
     What an engine finds wrong with the question is told with its place in the record.
     """
-    command = gathered(asked=SliceOptions)(_with_places(command))
+    command = gathered(asked=_typed)(_with_places(command))
     for add in (
         range_option,
         set_option,

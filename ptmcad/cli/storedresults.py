@@ -19,9 +19,9 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.commonoptions import report_idle
 from ptmcad.cli.drawing import share_of
 from ptmcad.cli.limits import clock_stopped
-from ptmcad.cli.slices import SliceOptions
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, blamed, shown
 from ptmcad.options import Options
+from ptmcad.question.config.typed import Typed
 from ptmcad.question.slice import Slice
 from ptmcad.show.document.regionmap import FORMAT
 from ptmcad.show.style import PictureStyle
@@ -89,7 +89,7 @@ def read_other(path: Path, read: Callable[[str], Answer], kind: str) -> Answer:
 
 
 @contextmanager
-def stored_in(path: Path | None) -> Iterator[None]:
+def stored_in(path: str | Path | None) -> Iterator[None]:
     """What is asked of the map in a file, if it is in one: where the map contradicts itself, that
     is said of the file.
 
@@ -179,7 +179,7 @@ tolerance_option = click.option(
 )  # fmt: skip
 
 
-def stored_map(asked: SliceOptions) -> RegionMap | None:
+def stored_map(asked: Typed) -> RegionMap | None:
     """The map where CONFIG is a result, whose ``--tolerance`` has no effect.
 
     Raises
@@ -187,10 +187,11 @@ def stored_map(asked: SliceOptions) -> RegionMap | None:
     ConfigError
         When the file is damaged, or an option would change the slice.
     """
-    if asked.config is None or not is_result(asked.config):
+    path = None if asked.config is None else Path(asked.config)
+    if path is None or not is_result(path):
         return None
     given = {
-        "--slice": asked.axes,
+        "--slice": asked.slice,
         "--set": asked.sets,
         "--range": asked.ranges,
         "--mechanism": asked.mechanism,
@@ -201,7 +202,7 @@ def stored_map(asked: SliceOptions) -> RegionMap | None:
                 "a result has its slice already: give the problem record to change it", key=option
             )
     report_idle([("tolerance", True, "the map is made already")])
-    return read_result(asked.config)
+    return read_result(path)
 
 
 def made_map(slice: Slice, options: Options, tolerance: Fraction) -> RegionMap:

@@ -274,7 +274,7 @@ def _verified_design(
     found: BestDesign, versions: Any, seed: int | None, progress: Progress
 ) -> VerifyReport:
     """The best design, and where ranges are longest by exact critical values."""
-    from ptmcad.question.config.designs import design_from
+    from ptmcad.question.config.designkey import design_from
     from ptmcad.show.document.design import extremes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_design
     from ptmcad.workbench.designs.proof import exact_maximum
@@ -357,7 +357,7 @@ def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) ->
     """What a family's members have in common, and where their arrangement changes."""
     from ptmcad.ask.changes import changes_of
     from ptmcad.ask.classification import region_map
-    from ptmcad.ask.members import Restored, in_common
+    from ptmcad.ask.members import in_common, restored
     from ptmcad.show.document.family import changes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_changes, verify_surfaces
 
@@ -374,7 +374,7 @@ def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) ->
     found, options = family.changes, Options(progress=progress)
     if found is not None and all(c.passed is not False for c in checks):
         checks += verify_changes(found, maps_at, seed, progress)
-    common = in_common(Restored(family), options)
+    common = in_common(restored(family), options)
     stored = {"versions": family.members[0].versions.get("ptmcad"), "surfaces": family.surfaces}
     anew = {"versions": __version__, "surfaces": common.surfaces}
     if found is not None and all(c.passed is not False for c in checks):

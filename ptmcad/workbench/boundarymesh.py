@@ -20,7 +20,7 @@ from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.changes import Changes
 from ptmcad.answer.family import FamilyMap
 from ptmcad.ask.changes import Members
-from ptmcad.ask.members import Common, Restored, in_common
+from ptmcad.ask.members import Common, in_common, restored
 from ptmcad.errors import ConfigError
 from ptmcad.exact.strips import BoundaryStrips
 from ptmcad.options import DEFAULTS, Options, Progress
@@ -82,7 +82,7 @@ def boundary_surface(
             key="surface",
         )
     options = Options(timeout=timeout, progress=progress)
-    return surface_of(in_common(Restored(found)), found.changes, share, max_members, options)
+    return surface_of(in_common(restored(found)), found.changes, share, max_members, options)
 
 
 def surface_of(

@@ -8,8 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, Literal
 
+from ptmcad.answer.changes import TOLERANCE, Changes
 from ptmcad.answer.family import FamilyMap
-from ptmcad.ask.members import in_common, members_of
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.ask.members import Common, in_common, members_of
 from ptmcad.errors import ConfigError, expect
 from ptmcad.options import Options, Progress
 from ptmcad.question.config import Family, family_from
@@ -59,23 +61,42 @@ def family(
             raise ConfigError("give at least one value of the free parameter", key="values")
         asked = asked._replace(values=tuple(chosen))
     options = Options(engine=engine, areas=areas, jobs=jobs, progress=progress)
-    common = in_common(asked, options)
-    found = None
-    if changes or values == "between":
-        from ptmcad.ask.changes import changes_of  # which loads the exact engine
-
-        found = changes_of(common, options=options)
-    if found is not None and values == "between":
-        asked = asked._replace(values=found.between)
-        common = common._replace(family=asked)
+    common, found = prepared(asked, options, changes=changes, between=values == "between")
     members = tuple(result for _, result in members_of(common, options))
+    return together(asked, common, members, found)
+
+
+def prepared(
+    asked: Family, options: Options, *, changes: bool, between: bool
+) -> tuple[Common, Changes | None]:
+    """What a family's members have in common, and where they change, if that is wanted.
+
+    Parameters
+    ----------
+    between : whether the members are at values between neighbouring changes.
+    """
+    common = in_common(asked, options)
+    if not (changes or between):
+        return common, None
+    from ptmcad.ask.changes import changes_of  # which loads the exact engine
+
+    found = changes_of(common, options.tolerance or TOLERANCE, options)
+    if between:
+        common = common._replace(family=asked._replace(values=found.between))
+    return common, found
+
+
+def together(
+    asked: Family, common: Common, members: tuple[RegionMap, ...], changes: Changes | None
+) -> FamilyMap:
+    """The maps of a family as one answer."""
     return FamilyMap(
         asked.name,
         asked.free,
-        asked.values,
+        common.family.values,
         members,
         common.surfaces,
         asked.record.title,
-        found,
+        changes,
         asked.text,
     )

@@ -14,6 +14,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from multiprocessing.connection import Connection
+from time import monotonic
 from typing import Any, Protocol
 
 from ptmcad.errors import OutputError, shown
@@ -46,6 +47,11 @@ class Task(Protocol):
 class Worker:
     """A process with its task.
 
+    Attributes
+    ----------
+    numbers : the jobs that it has, of which it computes the first.
+    since : when that was begun, as far as is known.
+
     Raises
     ------
     OutputError
@@ -73,10 +79,15 @@ class Worker:
             theirs.close()
             os.close(read)
         self.connection = Connection(ours.detach())
+        self.numbers: list[int] = []
+        self.since = monotonic()
         self._send(task)
 
     def ask(self, number: int, job: Any) -> None:
         """Have a job computed, after those that it has."""
+        if not self.numbers:
+            self.since = monotonic()
+        self.numbers.append(number)
         self._send((number, job))
 
     def cancel(self, number: int) -> None:
@@ -99,6 +110,8 @@ class Worker:
             When the process has died.
         """
         number, outcome, error = self.connection.recv()
+        self.numbers.remove(number)
+        self.since = monotonic()
         return number, outcome, error
 
     def bury(self) -> int:

@@ -10,8 +10,7 @@ from flint import fmpq
 
 from ptmcad.algebra.bernstein import halves, over, sign, table_of
 from ptmcad.workbench.designs.designbounds import Lengths
-from ptmcad.workbench.designs.designspace import longest_on_line
-from ptmcad.workbench.designs.subdivision import (
+from ptmcad.workbench.designs.designlines import (
     Space,
     certain,
     longest,
@@ -19,6 +18,7 @@ from ptmcad.workbench.designs.subdivision import (
     refined,
     root_bound,
 )
+from ptmcad.workbench.designs.designspace import longest_on_line
 
 WINDOW = (fmpq(0), fmpq(1))
 Terms = list[tuple[tuple[int, int, int], int]]

@@ -196,7 +196,7 @@ def test_a_member_that_overruns_its_time_is_a_failure(tmp_path: Path) -> None:
     assert compute(Work(question, Wanted(timeout=1e-6)), 0) == Failed(
         "the member's time limit of 1e-06 s was reached"
     )
-    pool = Pool(Work(question, Wanted(timeout=1e-3)), 1)
+    pool = Pool(Work(question, Wanted(timeout=1e-3)), 1, 1e-3)
     try:
         pool.submit(0)
         os.kill(pool._workers[0].process.pid, signal.SIGSTOP)
@@ -360,7 +360,7 @@ def test_killed_at_ten_random_moments_it_leaves_the_same_index(tmp_path: Path) -
 def test_workers_end_with_the_process_that_has_started_them(tmp_path: Path) -> None:
     """Whatever they do: this one would sleep for minutes and not look at anything."""
     (tmp_path / "sleeper.py").write_text(
-        "import time\nfrom pathlib import Path\nclass Sleeper:\n    timeout = None\n    def answer(self, number, check):\n"
+        "import time\nfrom pathlib import Path\nclass Sleeper:\n    def answer(self, number, check):\n"
         f"        Path({str(tmp_path / 'asleep')!r}).touch()\n        time.sleep(600)\n",
         encoding="utf-8",
     )

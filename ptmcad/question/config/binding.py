@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError, Faults, Place
-from ptmcad.question.config.record import Record, swept_names
+from ptmcad.question.config.problemrecord import Record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of, parsed
 from ptmcad.text.entry import Scalar
 from ptmcad.text.expressions import Expression, Expressions, constant

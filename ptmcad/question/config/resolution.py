@@ -16,7 +16,7 @@ from ptmcad.errors import ExpressionError, Faults, Place
 from ptmcad.model import Kind, Mechanism, Model
 from ptmcad.model.evaluate import value_at
 from ptmcad.question.config.binding import resolved
-from ptmcad.question.config.record import Record, read_record, swept_names
+from ptmcad.question.config.problemrecord import Record, read_record, swept_names
 from ptmcad.question.config.scalars import Window, names_in_scalar, number_of
 from ptmcad.question.counts import usual_count
 from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part

@@ -21,7 +21,7 @@ from ptmcad.model import Model
 from ptmcad.model.reading import NUMBER
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import tree_of
-from ptmcad.question.config.record import Record, swept_names
+from ptmcad.question.config.problemrecord import Record, swept_names
 from ptmcad.question.config.resolution import check_number, described_record, note_values, slice_of
 from ptmcad.question.config.scalars import AXIS_NAME, check_axis_name, number_of, number_text
 from ptmcad.question.shipped import A_SWEEP, FIRST, RecordSource, record_tree

@@ -15,7 +15,7 @@ from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Place
 from ptmcad.model import Model, ptm
 from ptmcad.question.config.binding import released_names, settled, with_numbers
 from ptmcad.question.config.objects import plain, tree_of
-from ptmcad.question.config.record import Record, record_of, unknown_parameter
+from ptmcad.question.config.problemrecord import Record, record_of, unknown_parameter
 from ptmcad.question.config.resolution import point_of, without_shorthands
 from ptmcad.question.config.scalars import Window, check_axis_name, number_of, number_text
 from ptmcad.question.counts import Count

@@ -26,9 +26,9 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.solving import solve
 from ptmcad.options import Progress
 from ptmcad.process.output import check_writable, write_files
-from ptmcad.studies.paper import equations
+from ptmcad.studies.paper import corrected as equations
 from ptmcad.studies.paper.claim import Claim, Verdict, judge, texts
-from ptmcad.studies.paper.equations import INTRODUCTION, Equation
+from ptmcad.studies.paper.corrected import INTRODUCTION, Equation
 from ptmcad.studies.paper.maps import FIGURES, POINTS, region_map
 from ptmcad.studies.texts import page, texts_beside
 from ptmcad.text.numerals import equalities

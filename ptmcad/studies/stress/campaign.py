@@ -35,8 +35,8 @@ from ptmcad.model.evaluate import value_at
 from ptmcad.options import Progress
 from ptmcad.show.columns import aligned
 from ptmcad.studies.stress.case import FEW, Case, Degenerate, Question, degenerate, free_lengths
+from ptmcad.studies.stress.doubleprecision import sextic_poses
 from ptmcad.studies.stress.judgement import Row, judge
-from ptmcad.studies.stress.methods import sextic_poses
 from ptmcad.studies.texts import installed, page
 from ptmcad.studies.texts import markdown as table_of
 from ptmcad.text.numerals import shortest_text

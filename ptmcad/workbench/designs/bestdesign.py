@@ -18,7 +18,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.extras import Extra, require
 from ptmcad.options import Options, Progress
 from ptmcad.question.config.designed import Aim, Design
-from ptmcad.question.config.designs import design_from
+from ptmcad.question.config.designkey import design_from
 from ptmcad.question.shipped import RecordSource
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 from ptmcad.text.parsing import share_for

@@ -4,7 +4,7 @@ best known one comes to it.
 Guarantee: `Outcome.bound` is an upper bound for all designs within the bounds off a set without
 interior, for those that satisfy the conditions. It rests on the bounds of the boxes alone, not on
 the order in which they were cut. For areas the window is cut into strips; over a strip and an
-interval of designs `subdivision` bounds the length of what may have the wanted count on any line of
+interval of designs `designlines` bounds the length of what may have the wanted count on any line of
 the strip, and so what it adds to the area.
 """
 
@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.real_roots import Interval
-from ptmcad.workbench.designs.subdivision import Run, Space, certain, longest, measure, refined
+from ptmcad.workbench.designs.designlines import Run, Space, certain, longest, measure, refined
 
 Place = tuple[Interval, ...]
 """A box of one or two design parameters."""

@@ -35,7 +35,7 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import Numbers
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret, names_of
-from ptmcad.workbench.designs.subdivision import Space
+from ptmcad.workbench.designs.designlines import Space
 
 KEY = "design.maximise"
 DIGITS = 15

@@ -65,11 +65,6 @@ class Work:
     wanted: Wanted
     version: str = __version__
 
-    @property
-    def timeout(self) -> float | None:
-        """Seconds that a member may take."""
-        return self.wanted.timeout
-
     def answer(self, number: int, _check: Callable[[], None]) -> Outcome:
         """What becomes of a member."""
         return compute(self, number)
@@ -123,7 +118,7 @@ def compute(work: Work, number: int) -> Outcome:
             result = region_map(slice, work.wanted.options)
             summary = summary_of(result, work.wanted)
         except LimitReached:
-            return Failed(out_of_time(work.timeout))
+            return Failed(out_of_time(work.wanted.timeout))
         except PtmcadError as error:
             return Refused(reason(error), perf_counter() - started)
         return Found(result.to_json(timings=False), summary, perf_counter() - started)

@@ -15,7 +15,7 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from multiprocessing.connection import wait
 from time import monotonic
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.workbench.sweeps.member import Failed, out_of_time
 from ptmcad.workbench.worker import Task, Worker
@@ -37,35 +37,18 @@ Answer = tuple[int, Any]
 """A member's number and what became of it: what the task returned, or a `Failed`."""
 
 
-class Limited(Task, Protocol):
-    """What is asked of each member."""
-
-    @property
-    def timeout(self) -> float | None:
-        """Seconds that a member may take."""
-
-
-class _Busy(Worker):
-    """A worker process with the members that it has, the first being computed."""
-
-    def __init__(self, task: Task) -> None:
-        super().__init__(task)
-        self.numbers: list[int] = []
-        self.since = monotonic()
-
-
 class Pool:
     """Worker processes on this machine.
 
     Parameters
     ----------
     jobs : how many there are.
+    timeout : seconds that a member may take.
     """
 
-    def __init__(self, work: Limited, jobs: int) -> None:
-        self.work = work
-        self.jobs = jobs
-        self._workers: list[_Busy] = []
+    def __init__(self, task: Task, jobs: int, timeout: float | None = None) -> None:
+        self.task, self.jobs, self.timeout = task, jobs, timeout
+        self._workers: list[Worker] = []
         self._done: list[Answer] = []
 
     @property
@@ -84,11 +67,8 @@ class Pool:
         """Have a member computed."""
         least = min(self._workers, key=lambda worker: len(worker.numbers), default=None)
         if least is None or (least.numbers and len(self._workers) < self.jobs):
-            least = _Busy(self.work)
+            least = Worker(self.task)
             self._workers.append(least)
-        if not least.numbers:
-            least.since = monotonic()
-        least.numbers.append(number)
         least.ask(number, number)
 
     def answers(self, seconds: float | None) -> Sequence[Answer]:
@@ -109,26 +89,24 @@ class Pool:
             worker.bury()
         self._workers = []
 
-    def _read(self, worker: _Busy) -> None:
+    def _read(self, worker: Worker) -> None:
         """Take an answer, or note that the worker has died."""
         try:
             number, outcome, error = worker.answer()
         except (EOFError, OSError):
             self._died(worker, None)
             return
-        worker.numbers.remove(number)
-        worker.since = monotonic()
         self._done.append((number, Failed(error) if error else outcome))
         if error:
             self._ended(worker)
 
-    def _died(self, worker: _Busy, why: str | None) -> None:
+    def _died(self, worker: Worker, why: str | None) -> None:
         """The first of a worker's members has failed; the others were not begun."""
         first = worker.numbers.pop(0)
         status = self._ended(worker)
         self._done.append((first, Failed(why or _how_ended(status))))
 
-    def _ended(self, worker: _Busy) -> int:
+    def _ended(self, worker: Worker) -> int:
         """Do without a worker; others get its members. Its exit status."""
         self._workers.remove(worker)
         status = worker.bury()
@@ -138,15 +116,15 @@ class Pool:
 
     def _patience(self, seconds: float | None) -> float | None:
         """How long to wait for an answer: until a member is late."""
-        if self.work.timeout is None:
+        if self.timeout is None:
             return seconds
         first = min(worker.since for worker in self._workers if worker.numbers)
-        late = max(0.0, first + self.work.timeout + _OVERRUN - monotonic())
+        late = max(0.0, first + self.timeout + _OVERRUN - monotonic())
         return late if seconds is None else min(seconds, late)
 
     def _kill_late(self) -> None:
         """End workers whose member has overrun its limit in code that does not look at the clock."""
-        limit = self.work.timeout
+        limit = self.timeout
         if limit is None:
             return
         for worker in list(self._workers):

@@ -89,9 +89,7 @@ def sweep(
         After ``timeout`` seconds; what is done stays.
     """
     question = sweep_from(config)
-    if not isinstance(wanted, Wanted):
-        wanted = _wanted({"along": axes_of(question)[0], **(wanted or {})})
-    wanted = checked(question, wanted)
+    wanted = wanted_of(question, wanted)
     place = Path(f"{question.name}-sweep") if folder is None else Path(folder)
     work = Work(question, wanted)
     with opened(place) as index:
@@ -109,7 +107,25 @@ def sweep(
     return read_sweep(place)
 
 
-def _wanted(fields: Mapping[str, Any]) -> Wanted:
+def wanted_of(question: Sweeping, wanted: Wanted | Mapping[str, Any] | None) -> Wanted:
+    """What is wanted of each member, if it has a meaning for these slices.
+
+    Raises
+    ------
+    ConfigError
+    """
+    if not isinstance(wanted, Wanted):
+        wanted = _by_name(wanted or {}, axes_of(question)[0])
+    _ = wanted.options  # which refuses an engine that there is not
+    if wanted.along and wanted.along not in axes_of(question):
+        raise ConfigError(
+            f"{wanted.along[:40]} is no axis: choose {' or '.join(axes_of(question))}",
+            key="--along",
+        )
+    return wanted
+
+
+def _by_name(fields: Mapping[str, Any], along: str) -> Wanted:
     known = {field.name for field in dataclasses.fields(Wanted)}
     for name in fields:
         if name not in known:
@@ -120,28 +136,13 @@ def _wanted(fields: Mapping[str, Any]) -> Wanted:
     shares = {
         name: share_for(name, fields[name]) for name in _SHARES if fields.get(name) is not None
     }
-    return Wanted(**{**fields, **shares})
+    chosen = {} if fields.get("along") is not None else {"along": along}
+    return Wanted(**{**fields, **shares, **chosen})
 
 
 def axes_of(question: Sweeping) -> tuple[str, ...]:
     """The names of the axes of every member."""
     return tuple(question.record.axes)
-
-
-def checked(question: Sweeping, wanted: Wanted) -> Wanted:
-    """What is wanted, if it has a meaning for these slices.
-
-    Raises
-    ------
-    ConfigError
-    """
-    _ = wanted.options  # which refuses an engine that there is not
-    if wanted.along and wanted.along not in axes_of(question):
-        raise ConfigError(
-            f"{wanted.along[:40]} is no axis: choose {' or '.join(axes_of(question))}",
-            key="--along",
-        )
-    return wanted
 
 
 def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[], Pool | Cluster]:
@@ -152,7 +153,7 @@ def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[]
             prepare(
                 work.question.slice(0), work.wanted.options
             )  # compiles once for all, where that is needed
-            return Pool(work, jobs or processors())
+            return Pool(work, jobs or processors(), work.wanted.timeout)
 
         return pool
     from ptmcad.workbench.sweeps.cluster import Cluster
@@ -315,7 +316,6 @@ class Drawing:
     """The task of drawing members of the sweep in a folder."""
 
     folder: Path
-    timeout: float | None = None
 
     def answer(self, number: int, _check: Callable[[], None]) -> Thumbnail:
         """The drawing of a member."""

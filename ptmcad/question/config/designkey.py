@@ -15,7 +15,7 @@ from ptmcad.errors import ConfigError, ExpressionError, Place
 from ptmcad.model.reading import NUMBER, two
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain, tree_of
-from ptmcad.question.config.record import Record
+from ptmcad.question.config.problemrecord import Record
 from ptmcad.question.config.resolution import axis_of, described_record, note_values
 from ptmcad.question.config.scalars import (
     AXIS_NAME,
@@ -27,7 +27,7 @@ from ptmcad.question.config.scalars import (
     with_ranges,
 )
 from ptmcad.question.config.typed import ranges_of
-from ptmcad.question.design import Inequality, condition_of, named
+from ptmcad.question.inequalities import Inequality, condition_of, named
 from ptmcad.question.shipped import A_DESIGN, FIRST, SECOND, RecordSource, record_tree
 from ptmcad.question.slice import Axis
 from ptmcad.text.codec import Codec, part, reading, record

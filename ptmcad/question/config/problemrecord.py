@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from ptmcad.errors import ConfigError, Faults, HypothesisError, Place, PtmcadError, shown
 from ptmcad.model import Model, ptm
 from ptmcad.model.reading import MAX_TITLE, NUMBER, VALUE, text_in, title_in, two
-from ptmcad.question.config.model import Described, described_in
+from ptmcad.question.config.modelkeys import Described, described_in
 from ptmcad.question.config.scalars import (
     AXIS_NAME,
     MAX_FILE_NAME,
@@ -50,7 +50,7 @@ class Record(NamedTuple):
     counting : which count distinguishes two regions; None of the mechanism's own choice.
     values_place : where the values are given, or would be; None of what is no record.
     sweep : what is swept, as it is written; `ptmcad.question.config.sweeps` reads it.
-    design : what is designed, as it is written; `ptmcad.question.config.designs` reads it, and no
+    design : what is designed, as it is written; `ptmcad.question.config.designkey` reads it, and no
         other command asks.
     unread : names that may stand in values and of which nothing can be said, because what says it
         is faulty.

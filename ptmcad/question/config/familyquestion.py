@@ -16,7 +16,7 @@ from typing import NamedTuple
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model import Model
 from ptmcad.question.config.binding import bound, member_name
-from ptmcad.question.config.record import Record
+from ptmcad.question.config.problemrecord import Record
 from ptmcad.question.config.resolution import (
     axis_of,
     described_record,
