@@ -24,9 +24,8 @@ if TYPE_CHECKING:
     from ptmcad.answer.sweep import Sweep
     from ptmcad.ask.changes import changes
     from ptmcad.ask.classification import classify
-    from ptmcad.ask.designs import design
-    from ptmcad.ask.families import family
-    from ptmcad.ask.ranges import intervals, operation_widths, pose_paths
+    from ptmcad.ask.lines.follower import pose_paths
+    from ptmcad.ask.ranges import intervals, operation_widths
     from ptmcad.ask.solving import solve
     from ptmcad.ask.stepwise import counts_at, discriminant_variety, open_cad
     from ptmcad.exact.slicevariety import slice_variety
@@ -35,9 +34,11 @@ if TYPE_CHECKING:
     from ptmcad.question.config import make_system as System
     from ptmcad.question.counts import Count
     from ptmcad.question.slice import Point, Slice
-    from ptmcad.sweeping.run import sweep
     from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
     from ptmcad.verification import VerifyReport, verify
+    from ptmcad.workbench.designs.bestdesign import design
+    from ptmcad.workbench.familymaps import family
+    from ptmcad.workbench.sweeps.run import sweep
 
 _HOMES = {
     "load": "question.config",
@@ -55,18 +56,18 @@ _HOMES = {
     "Changes": "answer.changes",
     "classify": "ask.classification",
     "BestDesign": "answer.design",
-    "design": "ask.designs",
-    "family": "ask.families",
+    "design": "workbench.designs.bestdesign",
+    "family": "workbench.familymaps",
     "FamilyMap": "answer.family",
     "slice_variety": "exact.slicevariety",
     "Pose": "answer.poses",
     "Poses": "answer.poses",
     "solve": "ask.solving",
     "Sweep": "answer.sweep",
-    "sweep": "sweeping.run",
+    "sweep": "workbench.sweeps.run",
     "intervals": "ask.ranges",
     "operation_widths": "ask.ranges",
-    "pose_paths": "ask.ranges",
+    "pose_paths": "ask.lines.follower",
     "RegionMap": "answer.regionmap",
     "Count": "question.counts",
     "Point": "question.slice",

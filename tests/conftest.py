@@ -187,13 +187,14 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     """Curves of pictures to a fiftieth of the window, and branches at a third of the values: for
     tests of what else the pictures show. How near curves are, and that branches are joined right,
     have tests of their own."""
-    from ptmcad.ask import boundaries, branches
+    from ptmcad.ask import boundaries
+    from ptmcad.ask.lines import diagram
 
     fine = boundaries.chains
     monkeypatch.setattr(
         boundaries, "chains", lambda found, wanted: fine(found, max(wanted, Fraction(1, 50)))
     )
-    monkeypatch.setattr(branches, "SAMPLES", 8)
+    monkeypatch.setattr(diagram, "SAMPLES", 8)
 
 
 @pytest.fixture(autouse=True)
@@ -201,7 +202,7 @@ def quick_pictures(request: pytest.FixtureRequest) -> None:
     """Most of a quick picture's time went to the nearness of its curves, so they are coarse where a
     test does not say that it is of that: in the rooms of pictures and of commands. Slow tests draw
     as the program does."""
-    rooms = {"behaviour", "cli", "explore", "show", "sweeping", "tests"}
+    rooms = {"behaviour", "cli", "show", "tests", "workbench"}
     marked = request.node.get_closest_marker
     if request.path.parent.name in rooms and not marked("slow") and not marked("fine"):
         request.getfixturevalue("coarse")

@@ -82,6 +82,8 @@ class PathEnd:
     target_energy : its energy, at ``at`` itself.
     among : whether it is proved that the pose vanishes together with one or more of the others in
         ``meeting``, and not with which of them.
+    fallen : whether the target is one of several stable poses, which steepest descent in floating
+        point chose.
     """
 
     fate: Fate
@@ -93,6 +95,7 @@ class PathEnd:
     target: Target | None = None
     target_energy: Enclosure | None = None
     among: bool = False
+    fallen: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,9 +148,6 @@ class PosePaths:
 
     Attributes
     ----------
-    joined : whether the points are solutions that were followed in floating point from one to the
-        next, as those of springs with free lengths are: each point is proved, and nothing between
-        them; ``upright`` and ``reverse`` are said of the points alone.
     moved : the unknowns on which a moment or a force works somewhere on the line, so that no energy
         tells where a pose goes that vanishes.
     """
@@ -159,7 +159,6 @@ class PosePaths:
     start: Fraction
     paths: tuple[PosePath, ...]
     moved: tuple[str, ...] = ()
-    joined: bool = False
 
     def __repr__(self) -> str:
         return f"<PosePaths of {self.name} along {self.along.name}: {len(self.paths)} from {self.start}>"

@@ -19,13 +19,13 @@ import numpy as np
 from ptmcad.answer.boundaries import Boundary
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.location import component_cells
+from ptmcad.cover.connectivity import shown
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
-from ptmcad.cover.slanted import shown
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.chains import WallPolyline, chains, critical_shares
 from ptmcad.exact.cad.curves import lines_of
-from ptmcad.question.doubles import within_doubles
+from ptmcad.question.slice import within_doubles
 from ptmcad.text.parsing import share_for
 
 TOLERANCE = Fraction(1, 1000)
@@ -35,16 +35,21 @@ Share = tuple[Fraction, Fraction]
 
 
 def boundaries(result: RegionMap, tolerance: Any = TOLERANCE) -> tuple[Boundary, ...]:
-    """The boundaries between regions and the variety's other curves.
+    """The boundaries between regions, and the variety's other curves, as polylines.
 
-    Parameters
-    ----------
-    tolerance : the largest distance from a curve to its polyline, as a share of the window's side.
+    No curve is further from its polyline than the tolerance, a share of the window's side, unless
+    the polyline says so (`Boundary.distance`). A certified map gives the outlines of its cells,
+    between which lies what is undetermined.
 
     Raises
     ------
     ConfigError
         When the tolerance is not between 0 and 1, or the map has no cells yet.
+
+    >>> import ptmcad
+    >>> curve = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho")).boundaries()[0]
+    >>> curve.points.shape, curve.kind.value
+    ((3, 2), 'critical')
     """
     wanted = share_for("tolerance", tolerance)
     if not result.cells:

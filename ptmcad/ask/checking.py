@@ -188,9 +188,9 @@ def _check_bounded(slice: Slice) -> None:
     """
     if slice.model == ptm() or not slice.model.reals:
         return
-    from ptmcad.certified.plain.bounds import ranges
     from ptmcad.certified.plain.problem import problem_of as problem_in_intervals
     from ptmcad.certified.plain.straight import branches
+    from ptmcad.certified.plain.unknownranges import ranges
 
     for branch in branches(problem_in_intervals(slice), slice.axes):
         ranges(branch, slice.axes)

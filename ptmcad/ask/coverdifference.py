@@ -19,10 +19,9 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Cell, Region, RegionMap
 from ptmcad.ask.location import component_cells
 from ptmcad.cover import components
-from ptmcad.cover.complement import Components
+from ptmcad.cover.complement import Components, samples
+from ptmcad.cover.connectivity import stepped
 from ptmcad.cover.rectangles import Cover
-from ptmcad.cover.samples import samples
-from ptmcad.cover.slanted import stepped
 from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Point

@@ -35,36 +35,42 @@ if TYPE_CHECKING:
     from ptmcad.cover.complement import Components
 
 
-def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
-    """The cell, region and counts of a point of the window.
+def locate(result: RegionMap, point: Any = None, /, **at: Any) -> Location:
+    """The region of a rational point, exactly; names are the two axes, values numbers or text such
+    as "7/10".
+
+    A float stands for its shortest decimal: 0.1 is 1/10. The values may be given as one
+    mapping instead, such as the sample of a cell.
 
     Raises
     ------
-    ConfigError When the names are not the two axes, a value is not an exact number, or the map
-        contradicts itself.
+    ConfigError
+        When the names are not the two axes, a value is not an exact number, or the map contradicts
+        itself.
     """
+    given = at if point is None else point
     names = result.slice.axis_names
     expect(
-        at,
+        given,
         (Mapping, Point),
         "point",
         f"the values of {names[0]} and {names[1]} by name, or a mapping of them",
     )
-    point = _point(result, at)
-    inside = all(axis.holds(value) for axis, value in zip(result.slice.axes, point, strict=True))
+    place = _point(result, given)
+    inside = all(axis.holds(value) for axis, value in zip(result.slice.axes, place, strict=True))
     if not inside:  # of the open window, which is what a map is of
         on_edge = all(
             axis.low <= value <= axis.high
-            for axis, value in zip(result.slice.axes, point, strict=True)
+            for axis, value in zip(result.slice.axes, place, strict=True)
         )
         return Location(Status.ON_EDGE if on_edge else Status.OUTSIDE)
     if result.cover is not None:
-        return _locate_outside_cover(result, result.cover, point)
+        return _locate_outside_cover(result, result.cover, place)
     if not result.cells:
         return Location(Status.UNDECIDED)
     base = result.base
-    u, v = from_fraction(point[base]), from_fraction(point[1 - base])
-    met = [c for c in result.components if not c.left_out and c.polynomial(*point) == 0]
+    u, v = from_fraction(place[base]), from_fraction(place[1 - base])
+    met = [c for c in result.components if not c.left_out and c.polynomial(*place) == 0]
     if met:
         return _on_curves(result, met, (u, v))
     number = _cell_at(result, u, v)

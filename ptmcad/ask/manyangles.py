@@ -77,8 +77,8 @@ def counts_by_search(model: Model, point: Mapping[str, Fraction], timeout: float
         When they were not all told apart.
     """
     with loading("the certified engine"):
-        from ptmcad.certified.plain.points import plain_counter
-        from ptmcad.certified.plain.poses import point_slice
+        from ptmcad.certified.plain.certifiedposes import point_slice
+        from ptmcad.certified.plain.pointcounts import plain_counter
         from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
     tried = "the Groebner basis of the equations grows beyond what is computed at a point"
     if len(model.unknowns) > MAX_UNKNOWNS_AT_POINTS:
@@ -115,5 +115,5 @@ def poses_by_search(mechanism: Model, point: Mapping[str, Fraction], digits: int
     apart.
     """
     with loading("the certified engine"):
-        from ptmcad.certified.plain.poses import plain_poses
+        from ptmcad.certified.plain.certifiedposes import plain_poses
     return plain_poses(mechanism, point, digits)

@@ -6,11 +6,10 @@ common, is computed for the member alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 from ptmcad.answer.family import FamilyMap, SpaceTerms
 from ptmcad.answer.regionmap import RegionMap
@@ -19,76 +18,46 @@ from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, DegenerateSliceError, ExpressionError, InfiniteSolutionsError
 from ptmcad.model import Model
 from ptmcad.options import DEFAULTS, Options
-from ptmcad.question.config import member_like
+from ptmcad.question.config import Family, member_like
 from ptmcad.question.slice import Axes, Axis, Slice
 from ptmcad.text.numerals import text_of
 
 if TYPE_CHECKING:
-    from ptmcad.exact.family import FamilyVariety
+    from ptmcad.exact.familyvariety import FamilyVariety
     from ptmcad.exact.models.system import SystemOnAxes
 
 
-class AskedFamily(Protocol):
-    """A family as a question, read from a record (`Family`) or off its maps (`Restored`)."""
+class FamilyOfMaps(NamedTuple):
+    """A family as a question, read off its maps."""
 
-    @property
-    def free(self) -> Axis: ...
-
-    @property
-    def values(self) -> tuple[Fraction, ...]: ...
-
-    @property
-    def axes(self) -> Axes: ...
-
-    @property
-    def text(self) -> Mapping[str, str]: ...
-
-    @property
-    def model(self) -> Model: ...
-
-    def member(self, value: Fraction) -> Slice: ...
+    free: Axis
+    values: tuple[Fraction, ...]
+    axes: Axes
+    text: Mapping[str, str]
+    model: Model
+    member: Callable[[Fraction], Slice]
 
 
-@dataclass(frozen=True, slots=True)
-class Restored:
-    """The family whose maps are given."""
+AskedFamily = Family | FamilyOfMaps
 
-    maps: FamilyMap
 
-    @property
-    def free(self) -> Axis:
-        return self.maps.free
+def restored(maps: FamilyMap) -> FamilyOfMaps:
+    """The family whose maps are given.
 
-    @property
-    def values(self) -> tuple[Fraction, ...]:
-        return self.maps.values
+    A member is a `ConfigError` when the maps do not say of what the family's parameters are made,
+    or that divides by zero at its value.
+    """
+    slice = maps.members[0].slice
 
-    @property
-    def axes(self) -> Axes:
-        return self.maps.axes
-
-    @property
-    def text(self) -> Mapping[str, str]:
-        return self.maps.text
-
-    @property
-    def model(self) -> Model:
-        return self.maps.members[0].slice.model
-
-    def member(self, value: Fraction) -> Slice:
-        """The slice at a value of the free parameter.
-
-        Raises
-        ------
-        ConfigError When the maps do not say of what the family's parameters are made, or that
-            divides by zero at this value.
-        """
+    def member(value: Fraction) -> Slice:
         try:
-            return member_like(self.maps.members[0].slice, self.text, self.free.name, value)
+            return member_like(slice, maps.text, maps.free.name, value)
         except ExpressionError as error:
             raise ConfigError(
-                f"{error.message} (at {self.free.name} = {text_of(value)})"
+                f"{error.message} (at {maps.free.name} = {text_of(value)})"
             ) from error
+
+    return FamilyOfMaps(maps.free, maps.values, maps.axes, maps.text, slice.model, member)
 
 
 class Common(NamedTuple):
@@ -138,7 +107,7 @@ def in_common(asked: AskedFamily, options: Options = DEFAULTS) -> Common:
     """
     if all(is_certified(asked.member(value), options.engine) for value in asked.values):
         return Common(asked, None)
-    from ptmcad.exact.family import family_variety
+    from ptmcad.exact.familyvariety import family_variety
 
     try:
         return Common(asked, family_variety(in_space(asked)))

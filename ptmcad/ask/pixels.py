@@ -21,7 +21,7 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.curves import by_component, curves_of, lines_of
-from ptmcad.question.doubles import within_doubles
+from ptmcad.question.slice import within_doubles
 from ptmcad.text.flint_numbers import from_fraction, interval_of
 
 MAX_PIXELS = 10**8
@@ -30,13 +30,19 @@ Labels = NDArray[np.int64]
 
 
 def grid(result: RegionMap, columns: int = 200, rows: int | None = None) -> Grid:
-    """Cell, region and counts at the centres of so many pixels along the first axis and, if not as
-    many, the second.
+    """Region and counts at the centres of columns x rows pixels, exactly; as many rows as columns
+    if not given.
 
     Raises
     ------
-    ConfigError When the numbers are not positive or there are more than `MAX_PIXELS` pixels, or the
-        map has no cells yet.
+    ConfigError
+        When the numbers are not positive or there are more than `MAX_PIXELS` pixels, or the map has
+        no cells yet.
+
+    >>> import ptmcad
+    >>> ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho")).grid(4, 2).stable
+    array([[1, 2, 2, 1],
+           [1, 1, 1, 1]])
     """
     down = columns if rows is None else rows
     for name, number in (("columns", columns), ("rows", down)):

@@ -1,7 +1,7 @@
 """Quantities of a solution by name: its energy, an unknown, a spring's force, a point's place.
 
 Guarantee: names, units and messages of all commands are these. Values are taken in two ways:
-`of_pose` encloses them, and `ptmcad.ask.fields.quantities` computes them in floating point, for
+`of_pose` encloses them, and `ptmcad.workbench.fields.fieldvalues` computes them in floating point, for
 many solutions at once.
 """
 

@@ -92,7 +92,7 @@ def poses_at(model: Model, parameters: Numbers, digits: int) -> Poses:
     """
     if needs_intervals(model, parameters):
         with loading("the certified engine"):
-            from ptmcad.certified.plain.poses import plain_poses
+            from ptmcad.certified.plain.certifiedposes import plain_poses
         return plain_poses(model, parameters, digits)
     from ptmcad.exact.poses import exact_poses
 

@@ -1,7 +1,7 @@
 """Isolated solutions in Arb's ball arithmetic: for what floats cannot separate, and for any number
 of digits.
 
-Guarantee: as for `ptmcad.certified.isolation`, with the same lemmas but none of its code.
+Guarantee: as for `ptmcad.certified.uniqueness`, with the same lemmas but none of its code.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from flint import arb, arb_mat, ctx, fmpq
 
-from ptmcad.certified.system import EquationSystem
+from ptmcad.certified.equationsystem import EquationSystem
 from ptmcad.formulas.balls import EmptyMeet, run_arb
 
 Box = tuple[arb, ...]

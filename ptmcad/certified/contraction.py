@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ptmcad.certified.equationsystem import Arguments
 from ptmcad.certified.linear import Linear, contract_linear
-from ptmcad.certified.system import Arguments
 from ptmcad.formulas.compiled import ZERO, compiled, inlined
 from ptmcad.formulas.intervals import Floats, Indices, run
 from ptmcad.formulas.rounding import down, magnitude, multiply, reciprocal, up

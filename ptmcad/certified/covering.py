@@ -16,13 +16,19 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.certified.boxstrips import (
+    NONE,
+    Strips,
+    areas_of_pieces,
+    numbers_of_pieces,
+    pieces,
+    strips,
+)
+from ptmcad.certified.branchandprune import Boxes
 from ptmcad.certified.refinement import CurveEnclosure
-from ptmcad.certified.search import Boxes
-from ptmcad.certified.strips import NONE, Strips, areas_of_pieces, numbers_of_pieces, pieces, strips
 from ptmcad.cover import from_boxes, union_area
+from ptmcad.cover.lattice import combined, cover_of, gathered
 from ptmcad.cover.rectangles import Cover, Window
-from ptmcad.cover.rounding import cover_of
-from ptmcad.cover.simplification import combined, gathered
 from ptmcad.cover.subdivision import Integers, rectangle_array
 from ptmcad.formulas.tape import enclosing_floats
 from ptmcad.model.involutions import Involution

@@ -19,7 +19,6 @@ import numba
 import numpy as np
 
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.certified.assembly import Assembler
 from ptmcad.certified.covering import (
     Lattice,
     Thinning,
@@ -29,18 +28,18 @@ from ptmcad.certified.covering import (
     thinning,
 )
 from ptmcad.certified.loading import load, may_be_slanted
-from ptmcad.certified.pace import SAFETY, Pace
-from ptmcad.certified.plain.curves import curves
-from ptmcad.certified.plain.involution import halving
-from ptmcad.certified.plain.points import plain_counter
+from ptmcad.certified.mapassembly import Assembler
+from ptmcad.certified.pace import PARTS, SAFETY, Pace, SearchProgress
+from ptmcad.certified.plain.criticalcurves import curves
+from ptmcad.certified.plain.mirrors import halving
+from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.refinement import CurveEnclosure, begin, refine
-from ptmcad.certified.searchprogress import PARTS, SearchProgress
-from ptmcad.certified.slanted import slanting
+from ptmcad.certified.slantedcover import slanting
 from ptmcad.certified.specks import without_specks
 from ptmcad.certified.statement import plan_of
 from ptmcad.cover import components
+from ptmcad.cover.lattice import combined
 from ptmcad.cover.rectangles import MAX_STEPS, Cover
-from ptmcad.cover.simplification import combined
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.process.handover import LAST_SECONDS, leave_if_asked

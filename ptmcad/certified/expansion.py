@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ptmcad.certified.contraction import Workspace, precondition
-from ptmcad.certified.system import Arguments
+from ptmcad.certified.equationsystem import Arguments
 from ptmcad.formulas.compiled import ZERO, compiled, inlined
 from ptmcad.formulas.intervals import Floats, run
 from ptmcad.formulas.rounding import down, magnitude, multiply, up

@@ -19,12 +19,12 @@ from flint import ctx
 
 from ptmcad.answer.intervals import CertifiedChange, CertifiedInterval
 from ptmcad.certified.arb_isolation import refined
-from ptmcad.certified.curve import CriticalCurve
-from ptmcad.certified.plain.curves import curves
-from ptmcad.certified.plain.points import plain_counter
-from ptmcad.certified.points import PointCount
-from ptmcad.certified.search import isolate
-from ptmcad.certified.system import EquationSystem
+from ptmcad.certified.branchandprune import isolate
+from ptmcad.certified.equationsystem import EquationSystem
+from ptmcad.certified.plain.criticalcurves import curves
+from ptmcad.certified.plain.pointcounts import plain_counter
+from ptmcad.certified.plain.zeros import PointCount
+from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.formulas.balls import ball, lower, upper
 from ptmcad.formulas.tape import enclosing_floats
 from ptmcad.question.counts import Count

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.system import Arguments
+from ptmcad.certified.equationsystem import Arguments
 from ptmcad.formulas.affine import (
     CENTER,
     ERROR,

@@ -17,11 +17,11 @@ from time import perf_counter
 import numpy as np
 from numba.core.event import Event, Listener, install_listener
 
-from ptmcad.certified.distinct import distinct
-from ptmcad.certified.search import isolate
-from ptmcad.certified.strips import areas_of_pieces, numbers_of_pieces, pieces, strips
-from ptmcad.certified.system import EquationSystem, system
-from ptmcad.certified.tubes import tubes
+from ptmcad.certified.boxstrips import areas_of_pieces, numbers_of_pieces, pieces, strips
+from ptmcad.certified.branchandprune import isolate
+from ptmcad.certified.curvetubes import tubes
+from ptmcad.certified.equationsystem import EquationSystem, system
+from ptmcad.certified.uniqueness import distinct
 from ptmcad.formulas.compiled import FUNCTIONS, in_turn
 from ptmcad.formulas.graph import Graph
 from ptmcad.formulas.intervals import program, run

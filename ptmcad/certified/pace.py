@@ -1,9 +1,10 @@
-"""The pace of a search: when it hands over a map on the way, and when it ends so that the last map
-is made in time.
+"""The pace of a search: when it hands over a map on the way, when it ends so that the last map is
+made in time, and how far it has come.
 
 Guarantee: maps on the way take at most `MAP_TIME_SHARE` of the time and `ALLOWANCE` seconds, as far
-as what a map takes is foreseen; the search is asked to end while `SAFETY` times what the last map
-is foreseen to take is left.
+as the time of a map is foreseen; the search is asked to end while `SAFETY` times the time foreseen
+for the last map is left. The progress never falls, and reaches `PARTS` at no share above the
+tolerance.
 
 Nothing here decides what is in a map: only when it is made.
 """
@@ -12,7 +13,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, log
+from sys import float_info
 from time import perf_counter, process_time
 
 MAP_TIME_SHARE = 0.06
@@ -131,3 +133,36 @@ class Pace:
         cost = self.cost(boxes) - (0.0 if thinned else self.thin.of(boxes))
         affordable = self.spent + cost <= ALLOWANCE + MAP_TIME_SHARE * (self.clock() - self.started)
         return affordable and cost + self.last(boxes) < self.left()
+
+
+PARTS = 1000
+"""Of the whole way, from a window of which all is undetermined to the tolerance."""
+LEVEL_SHRINKAGE = 0.5
+"""What a level leaves of the share, about: half as wide boxes along a curve are twice as many."""
+
+
+@dataclass(slots=True)
+class SearchProgress:
+    """The way to a tolerance, and how much of it is behind."""
+
+    tolerance: float
+    reached: int = 0
+
+    def __post_init__(self) -> None:
+        # one below all floats has become zero, which has no logarithm
+        self.tolerance = max(self.tolerance, float_info.min)
+
+    def at(self, share: float, level: float) -> int:
+        """The part of the way that is behind when a level that began at a share is done to the part
+        ``level``.
+
+        >>> way = SearchProgress(1e-3)
+        >>> way.at(1.0, 0.0), way.at(0.1, 0.0), way.at(0.2, 0.5), way.at(0.0, 1.0)
+        (0, 333, 333, 1000)
+        """
+        left = max(share * LEVEL_SHRINKAGE ** min(max(level, 0.0), 1.0), self.tolerance)
+        part = log(min(left, 1.0)) / log(self.tolerance)
+        self.reached = max(
+            self.reached, min(int(PARTS * part), PARTS - 1 if share > self.tolerance else PARTS)
+        )
+        return self.reached

@@ -15,9 +15,10 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ptmcad.certified.curve import CriticalCurve
-from ptmcad.certified.search import Boxes, SearchResult, search_curve
+from ptmcad.certified.branchandprune import Boxes, SearchResult, search_curve
+from ptmcad.certified.equationsystem import EquationSystem
 
 BUDGET = 20_000
 """Boxes that a task treats before it returns: about a tenth of a second."""
@@ -116,3 +117,31 @@ def _batches(boxes: Sequence[Boxes]) -> Iterator[Boxes]:
     together = np.concatenate(boxes) if boxes else np.empty((0, 0))
     for start in range(0, len(together), BATCH):
         yield together[start : start + BATCH]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CriticalCurve:
+    """One curve: its name, why counts change there, and the system that defines it.
+
+    The variables of its boxes are x, y and those that ``ranges`` gives.
+    """
+
+    name: str
+    reason: str
+    system: EquationSystem
+    ranges: tuple[tuple[float, float], ...]
+    weights: NDArray[np.float64] | None = None
+    """Of the variables' widths in the choice which one to bisect; equal ones when None."""
+
+    def importance(self) -> NDArray[np.float64]:
+        """The weights of all variables."""
+        return np.ones(2 + len(self.ranges)) if self.weights is None else self.weights
+
+    def start(self, window: Boxes) -> Boxes:
+        """Boxes over rectangles (low x, low y, high x, high y) of the window that hold the whole
+        curve over them.
+        """
+        count = len(window)
+        low = np.tile(np.array([r[0] for r in self.ranges]), (count, 1))
+        high = np.tile(np.array([r[1] for r in self.ranges]), (count, 1))
+        return np.concatenate([window[:, :2], low, window[:, 2:], high], axis=1)

@@ -21,11 +21,11 @@ from itertools import compress
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.certified.branchandprune import Boxes, search_curve
 from ptmcad.certified.covering import Lattice, meeting, outward
 from ptmcad.certified.refinement import CurveEnclosure
-from ptmcad.certified.search import Boxes, search_curve
 from ptmcad.cover.complement import Components
-from ptmcad.cover.slanted import components
+from ptmcad.cover.connectivity import components
 from ptmcad.cover.subdivision import COVERED, FREE, rectangle_array
 
 MAX_SHARE = Fraction(1, 10_000)

@@ -1,17 +1,20 @@
 """What a certified map says of its problem: the equations as text, and the plan.
 
 Guarantee: the potential is written from the mechanism's description, in the names of problem
-records.
+records. Each saving that the plan names is made, or is said to have been switched off. Loads
+neither numpy nor numba.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from ptmcad.answer.plan import half_step
+from ptmcad.answer.plan import half_step, saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import PlanStep, System
-from ptmcad.certified.curve import CriticalCurve
-from ptmcad.certified.plan import beforehand
+from ptmcad.certified.plain.mirrors import mirrors
+from ptmcad.certified.plain.problem import problem_of
+from ptmcad.errors import PtmcadError
 from ptmcad.model import Mechanism, Model
 from ptmcad.model.closed import conditions_of
 from ptmcad.model.description import equations_in
@@ -20,6 +23,9 @@ from ptmcad.model.involutions import Involution
 from ptmcad.model.work import Split, split_moments
 from ptmcad.question.slice import Slice
 from ptmcad.text.tree import to_text
+
+if TYPE_CHECKING:
+    from ptmcad.certified.refinement import CriticalCurve
 
 
 def system_text(model: Model, has_free_lengths: bool = False) -> System:
@@ -83,3 +89,45 @@ def plan_of(
         ),
         *half_step("curves over", change, slice),
     )
+
+
+def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
+    """What is known of the plan before anything is computed."""
+    free_lengths = slice.model.free_lengths
+    absent = [
+        name
+        for name in free_lengths
+        if name not in slice.parameters or not slice.parameters[name].numerator
+    ]
+    zero = [name for name in zero_parameters(slice) if name not in free_lengths]
+    steps = [saving_step("imports", without, "imports of matplotlib and sympy")]
+    steps += zero_terms([*zero, *absent])
+    return (*steps, *_plain(slice, without))
+
+
+def _plain(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
+    """The steps of a model without formulas of its own."""
+    reason = (
+        "its degree is out of reach when springs have free lengths"
+        if slice.has_free_lengths
+        else "curves are enclosed, as the certified engine was asked for"
+    )
+    steps = [PlanStep("discriminant variety", False, reason)]
+    if slice.count.is_of_stable:
+        steps.append(saving_step("folds-of-saddles", without))
+        if slice.has_free_lengths:
+            steps.append(saving_step("cones-and-creases", without))
+    if slice.has_free_lengths:
+        steps.append(saving_step("dependent-equations", without))
+    if _is_symmetric(slice):
+        steps.append(saving_step("mirror-images", without))
+    return tuple(steps)
+
+
+def _is_symmetric(slice: Slice) -> bool:
+    """Whether an involution keeps each point of the slice."""
+    try:
+        problem = problem_of(slice)
+    except PtmcadError:
+        return False  # the engine says why
+    return bool(mirrors(slice, problem))

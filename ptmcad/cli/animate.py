@@ -12,22 +12,19 @@ import click
 
 from ptmcad.answer.motion import Fall, Motion
 from ptmcad.answer.words import assignments
-from ptmcad.cli.formats import Formats, format_option
-from ptmcad.cli.gathering import gathered
+from ptmcad.cli.commonoptions import Formats, format_option, gathered, name_option, out_option
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.maps import made_map, stored_map, tolerance_option
-from ptmcad.cli.paths import name_option, out_option
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.question import question_of
-from ptmcad.cli.slices import SliceOptions, slice_options
-from ptmcad.cli.stored import stored_in
+from ptmcad.cli.slices import question_of, slice_options
+from ptmcad.cli.storedresults import made_map, stored_in, stored_map, tolerance_option
 from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
 from ptmcad.options import Options
 from ptmcad.process.output import check_writable, write_files
-from ptmcad.question.config import file_name
-from ptmcad.question.examples import FIRST, SECOND
+from ptmcad.question.config import file_name, slice_from_typed
+from ptmcad.question.config.typed import Typed
+from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.question.slice import Slice
 from ptmcad.show import render
 from ptmcad.show.drawable import no_drawing
@@ -82,7 +79,7 @@ def _style(size: str | None, palette: str | None, title: str | None) -> PictureS
 @limit_options
 @gathered(style=_style)
 def command(
-    *, asked: SliceOptions, path: str, pose: str, frames: int, fps: int, style: PictureStyle, dpi: int,
+    *, asked: Typed, path: str, pose: str, frames: int, fps: int, style: PictureStyle, dpi: int,
     tolerance: Fraction, out: Path, name: str | None, formats: Formats, limits: ResourceLimits,
 ) -> None:  # fmt: skip
     """Show the mechanism moving along a path of parameters, and where it snaps.
@@ -108,7 +105,7 @@ def command(
         stem = f"{result.slice.name}-motion" if name is None else file_name(name, "--name")
         names = tuple(f"{stem}.{kind}" for kind in formats)
         check_writable(out, names)
-        from ptmcad.ask.fields.motion import motion_of
+        from ptmcad.workbench.fields.posemotion import motion_of
 
         with stored_in(asked.config if stored else None):
             motion = motion_of(result, path, pose, frames, progress)
@@ -121,9 +118,9 @@ def command(
     report_written(out, names)
 
 
-def _slice(asked: SliceOptions) -> Slice:
+def _slice(asked: Typed) -> Slice:
     """The slice of a mechanism that can be drawn."""
-    slice = asked.slice()
+    slice = slice_from_typed(asked)
     if slice.model.drawable is None:
         raise ConfigError(no_drawing(slice.model))
     return slice

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.gathering import reading
-from ptmcad.cli.paths import PATH, out_option
+from ptmcad.cli.commonoptions import PATH, out_option, reading
+from ptmcad.cli.limits import seconds_of
 from ptmcad.cli.pictures import report_written
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.values import files
+from ptmcad.cli.proposals import files
 from ptmcad.errors import ConfigError
 from ptmcad.extras import Extra, require
 from ptmcad.process.output import check_writable
@@ -22,12 +22,6 @@ from ptmcad.question.slice import Slice
 
 METHODS = ("exact", "certified", "companion", "multistart", "qepcad", "singular", "msolve", "gcad")
 DEFAULT = "fig4"
-
-
-def _seconds(key: str, value: float) -> float:
-    if not 0 < value < 1e9:
-        raise ConfigError(f"{value} is not a positive number of seconds", key=key)
-    return value
 
 
 @click.command("bench")
@@ -44,7 +38,7 @@ def _seconds(key: str, value: float) -> float:
               help="Runs of each job that takes less than 2 seconds; others are run once.")  # fmt: skip
 @click.option("--seed", type=click.IntRange(0, 2**31), default=1, show_default=True,
               help="Of the order of the methods.")  # fmt: skip
-@click.option("--time-limit", type=float, default=60.0, show_default=True, callback=reading(_seconds), metavar="S",
+@click.option("--time-limit", type=float, default=60.0, show_default=True, callback=reading(seconds_of), metavar="S",
               help="Seconds for each method on each slice; what does not fit is left out, and reported.")  # fmt: skip
 @click.option("--quick", is_flag=True, help="Fewer and coarser settings.")
 @click.option(
@@ -85,8 +79,8 @@ def command(
     slices = _slices(configs)
     for extra in (Extra.bench, Extra.data):
         require(extra, key="bench")
-    from ptmcad.studies.bench.report import PAGE, SUFFIXES, save, save_page, terminal
     from ptmcad.studies.bench.study import RIVALS, measure
+    from ptmcad.studies.bench.studyreport import PAGE, SUFFIXES, save, save_page, terminal
     from ptmcad.verification import verify
 
     check_writable(

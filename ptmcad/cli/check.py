@@ -6,14 +6,19 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.commonoptions import record_argument
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
-from ptmcad.cli.paths import record_argument
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.errors import MAX_FAULTS, ConfigError, HypothesisError
+from ptmcad.errors import MAX_FAULTS, ConfigError, Faults, HypothesisError
 from ptmcad.question.config import Family, with_place
-from ptmcad.question.config.inquiry import load_inquiry
-from ptmcad.question.config.record import record_of
+from ptmcad.question.config.designed import Design
+from ptmcad.question.config.designkey import checked_design
+from ptmcad.question.config.familyquestion import checked_family
+from ptmcad.question.config.problemrecord import record_of
+from ptmcad.question.config.resolution import checked_slice
+from ptmcad.question.config.sweeps import Sweeping, checked_sweep
 from ptmcad.question.shipped import record_tree
+from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import shortest_text
 
 
@@ -33,7 +38,7 @@ def command(*, record: Path, limits: ResourceLimits) -> int:
         ptmcad check fig4
     """
     try:
-        asked, sweeping, designed = load_inquiry(record)
+        asked, sweeping, designed = _questions(record)
     except ConfigError as error:
         for fault in error.faults:
             click.echo(f"error: {fault}", err=True)
@@ -72,8 +77,33 @@ def command(*, record: Path, limits: ResourceLimits) -> int:
                 f"{'design':<12}{designed.maximise}{of} over {over}; above is the record without it"
             )
         if sweeping is not None:
-            from ptmcad.sweeping.estimate import sweep_text
+            from ptmcad.workbench.sweeps.estimate import sweep_text
 
             for line in sweep_text(sweeping, found):
                 click.echo(line)
     return 0
+
+
+def _questions(path: Path) -> tuple[Slice | Family, Sweeping | None, Design | None]:
+    """All that a record asks: the slice or the family, of a sweep its first member; the sweep; and
+    the design.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong in it, with file, line and key; its ``faults`` are all there are.
+    """
+    tree, faults = record_tree(path), Faults()
+    question: Slice | Family | None = None
+    sweep = design = None
+    with faults:
+        if "sweep" in tree.entries:
+            sweep = checked_sweep(tree)
+            question = sweep.slice(0)
+        else:
+            question = checked_family(tree) if "free" in tree.entries else checked_slice(tree)
+    with faults:
+        design = checked_design(tree) if "design" in tree.entries else None
+    faults.check()
+    assert question is not None
+    return question, sweep, design

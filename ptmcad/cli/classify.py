@@ -13,21 +13,34 @@ import click
 
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.timings import with_compilation
+from ptmcad.cli.commonoptions import (
+    Idle,
+    file_option,
+    gathered,
+    idle_drawing,
+    out_option,
+    reading,
+    report_idle,
+)
 from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Output, drawing_options, names_of, share_of
-from ptmcad.cli.gathering import gathered, reading
-from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
-from ptmcad.cli.paths import file_option, out_option
 from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.question import question_in, question_of
-from ptmcad.cli.slices import SliceOptions, Third, engine_option, slice_options
+from ptmcad.cli.slices import (
+    Third,
+    engine_option,
+    question_asked,
+    question_in,
+    question_of,
+    slice_options,
+)
 from ptmcad.errors import ConfigError, LimitReached, blamed
 from ptmcad.model import ptm
 from ptmcad.options import Options
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.output import check_writable, how_to_go_on, save_stopped
 from ptmcad.question.config import Family
+from ptmcad.question.config.typed import Typed
 from ptmcad.question.counts import Count
 from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Slice
@@ -176,7 +189,7 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
     certified = is_certified(slice, options.engine)
     off = switched_off(options.without, certified)
     if certified:
-        from ptmcad.certified.plan import beforehand
+        from ptmcad.certified.statement import beforehand
 
         steps = beforehand(slice, off)
     else:
@@ -239,7 +252,7 @@ def _idle(slice: Slice, options: Options) -> tuple[Idle, ...]:
 def _resumed(slice: Slice, path: Path) -> Any:
     """The stored map from which to go on."""
     from ptmcad.ask.classification import check_resumable
-    from ptmcad.cli.stored import read_result
+    from ptmcad.cli.storedresults import read_result
 
     earlier = read_result(path, whole=False)  # of which its cover alone is taken
     with blamed("--resume", path):
@@ -263,7 +276,7 @@ def _classify_family(
 ) -> None:
     """Classify and draw the members of a family."""
     # with what stores and draws families, which a slice does without
-    from ptmcad.cli.families import family_to_files, names_of_family
+    from ptmcad.cli.familyfiles import family_to_files, names_of_family
 
     report_idle((
         ("resume", resume is not None, "the members of a family are classified anew"),
@@ -349,7 +362,7 @@ def _classify_family(
 @drawing_options(FORMATS, "json,png,svg", "Files to write")
 @gathered(options=_wanted, output=Output, third=Third)
 def command(
-    *, asked: SliceOptions, third: Third, count: str | None, options: Options, output: Output, limits: ResourceLimits,
+    *, asked: Typed, third: Third, count: str | None, options: Options, output: Output, limits: ResourceLimits,
     resume: Path | None,
 ) -> None:  # fmt: skip
     """Map the regions of a slice by their number of equilibria.
@@ -380,7 +393,7 @@ def command(
         ptmcad classify --slice rho,L2 --set F3=F --set F4=F --free F=-40:0 --surface --format json,png,ply
         ptmcad classify --slice rho,L2 --range rho=1/20:2 --range L2=0:2 --set l0=1/5 --set F3=-10 --set F4=-10
     """
-    slice = asked.question(count, third)
+    slice = question_asked(asked, count, third)
     options = replace(options, timeout=limits.timeout)
     if isinstance(slice, Family):
         _classify_family(slice, third, options, output, limits, resume)

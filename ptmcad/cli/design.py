@@ -9,21 +9,27 @@ from pathlib import Path
 import click
 
 from ptmcad.answer.design import BestDesign
+from ptmcad.cli.commonoptions import (
+    Formats,
+    format_option,
+    gathered,
+    idle_output,
+    name_option,
+    out_option,
+    record_argument,
+    report_idle,
+)
 from ptmcad.cli.drawing import share_of
-from ptmcad.cli.formats import Formats, format_option
-from ptmcad.cli.gathering import gathered
-from ptmcad.cli.idle import idle_output, report_idle
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
-from ptmcad.cli.paths import name_option, out_option, record_argument
 from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.question import question_in
-from ptmcad.cli.values import names, settings
+from ptmcad.cli.proposals import names, settings
+from ptmcad.cli.slices import question_in
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name
 from ptmcad.question.config.designed import Design
-from ptmcad.question.config.designs import design_from_options
-from ptmcad.question.examples import FIRST, SECOND
+from ptmcad.question.config.designkey import design_from_options
+from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.show import render
 
 FORMATS = ("json", "png", "svg", "pdf")
@@ -131,7 +137,7 @@ def command(
         with clock_stopped(
             limits.timeout
         ):  # the time that the import takes is not the computation's
-            from ptmcad.ask.designs import TOLERANCE, design
+            from ptmcad.workbench.designs.bestdesign import TOLERANCE, design
         with ProgressBar() as progress:
             found = design(
                 question,

@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from ptmcad.cli.formats import Formats, format_option
-from ptmcad.cli.gathering import F, gathered, reading
+from ptmcad.cli.commonoptions import STYLE, F, Formats, format_option, gathered, reading
 from ptmcad.cli.pictures import picture
-from ptmcad.cli.values import palettes
+from ptmcad.cli.proposals import palettes
 from ptmcad.errors import ConfigError, blamed
 from ptmcad.process.output import Writer, text_writer
 from ptmcad.show import render
@@ -153,15 +152,8 @@ def _drawing(
     return DrawingOptions(samples, style, dpi, boundary_tolerance, pixels)
 
 
-def _style(
-    style: str, size: str | None, font_size: str | None, font_family: str | None, palette: str | None,
-    title: str | None, legend: str | None, line_width: str | None, thin_lines: str | None,
-) -> PictureStyle:  # fmt: skip
+def _style(*, style: str, **options: Any) -> PictureStyle:
     """The options of a style together."""
-    options = {
-        "size": size, "font_size": font_size, "font_family": font_family, "palette": palette, "title": title,
-        "legend": legend, "line_width": line_width, "thin_lines": thin_lines,
-    }  # fmt: skip
     try:
         made = styled(style, **options)
     except ConfigError as error:
@@ -178,7 +170,7 @@ def style_options(command: F) -> F:
     """Add the options that make a `PictureStyle`, which the command gets as ``style``, and
     ``--dpi``.
     """
-    command = gathered(style=_style)(command)
+    command = gathered(style=(STYLE, _style))(command)
     for option in (
         click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
                      help="Resolution of a PNG; regions of a map that it hides are shown zoomed, in every format."),

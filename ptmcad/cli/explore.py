@@ -10,11 +10,13 @@ from tempfile import TemporaryDirectory
 
 import click
 
+from ptmcad.cli.commonoptions import out_option
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import out_option
-from ptmcad.cli.slices import SliceOptions, slice_options
+from ptmcad.cli.slices import slice_options
 from ptmcad.extras import Extra, require
 from ptmcad.process.handover import Topic, send
+from ptmcad.question.config import record_from_options
+from ptmcad.question.config.typed import Typed
 
 
 @click.command("explore")
@@ -37,7 +39,7 @@ from ptmcad.process.handover import Topic, send
 @limit_options
 def command(
     *,
-    asked: SliceOptions,
+    asked: Typed,
     free: str | None,
     sliders: tuple[str, ...],
     port: int,
@@ -57,12 +59,12 @@ def command(
         ptmcad explore --slice rho,L2 --set F3=F --set F4=F --free F=-40:0
     """
     require(Extra.explore)
-    record = asked.record(free)
+    record = record_from_options(asked._replace(free=free))
     with held(limits):
-        from ptmcad.explore.panel import panel_of
+        from ptmcad.workbench.explore.panel import panel_of
 
         panel = panel_of(record, sliders)
-        from ptmcad.explore.server import serve
+        from ptmcad.workbench.explore.server import serve
 
         def announce(address: str) -> None:
             click.echo(f"explore   {address}\n          works once, in one browser; Ctrl-C ends it")

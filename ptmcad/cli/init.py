@@ -7,9 +7,9 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.commonoptions import PATH
 from ptmcad.cli.mechanisms import known_starter
-from ptmcad.cli.paths import PATH
-from ptmcad.cli.values import mechanisms
+from ptmcad.cli.proposals import mechanisms
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.process.output import reason
 from ptmcad.question.config.starters import NAMES, starter_text

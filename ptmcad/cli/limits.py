@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import click
 
-from ptmcad.cli.gathering import F, gathered, reading
+from ptmcad.cli.commonoptions import F, gathered, reading
 from ptmcad.errors import ConfigError
 from ptmcad.options import Progress
 from ptmcad.process.handover import Topic, send, watched
@@ -32,7 +32,8 @@ _SIZE = re.compile(r"([0-9]{1,12}(?:\.[0-9]{1,12})?)\s*([KMGT])(?:I?B)?", re.IGN
 _UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 
-def _seconds(_key: str, value: float) -> float:
+def seconds_of(_key: str, value: float) -> float:
+    """A positive number of seconds."""
     if not 0 < value < 1e9:
         raise click.BadParameter(f"{value} is not a positive number of seconds")
     return value
@@ -101,7 +102,7 @@ def limit_options(command: F) -> F:
                            help="Stop before using more memory, such as 500M or 2G (exit status 3; 2 when it is "
                                 "too little to start with).  "
                                 "[default: 9/10 of the machine's]")(command)  # fmt: skip
-    return click.option("--timeout", type=float, callback=reading(_seconds), metavar="S",
+    return click.option("--timeout", type=float, callback=reading(seconds_of), metavar="S",
                         help="Stop after S seconds (exit status 3); loading the certified engine, and compiling it, "
                              "once for a machine, is no part of them.")(command)  # fmt: skip
 

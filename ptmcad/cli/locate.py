@@ -13,14 +13,14 @@ import click
 from ptmcad.answer.location import Location
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words
+from ptmcad.cli.commonoptions import PATH, result_argument
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import PATH, result_argument
-from ptmcad.cli.stored import read_result
-from ptmcad.cli.values import point as propose_point
+from ptmcad.cli.proposals import point as propose_point
+from ptmcad.cli.storedresults import read_result
 from ptmcad.errors import ConfigError, shown
 from ptmcad.process.streams import reader_left
 from ptmcad.question.counts import further_names
-from ptmcad.question.examples import POINT
+from ptmcad.question.shipped import POINT
 from ptmcad.show.table import stability_in_words
 from ptmcad.text.numerals import equalities
 from ptmcad.text.textfile import lines_of

@@ -14,21 +14,19 @@ import click
 
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.field import Field
+from ptmcad.cli.commonoptions import Formats, format_option, idle_style, out_option, report_idle
 from ptmcad.cli.drawing import pixels_of, style_options
-from ptmcad.cli.formats import Formats, format_option
-from ptmcad.cli.idle import idle_style, report_idle
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.maps import made_map, stored_map, tolerance_option
-from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import figure, picture
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.question import question_of
-from ptmcad.cli.slices import SliceOptions, slice_options
-from ptmcad.cli.stored import stored_in
-from ptmcad.cli.values import poses, quantity_names
+from ptmcad.cli.proposals import poses, quantity_names
+from ptmcad.cli.slices import question_of, slice_options
+from ptmcad.cli.storedresults import made_map, stored_in, stored_map, tolerance_option
 from ptmcad.errors import ConfigError, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import check_writable, text_writer, write_files
+from ptmcad.question.config import slice_from_typed
+from ptmcad.question.config.typed import Typed
 from ptmcad.show import render
 from ptmcad.show.style import LegendPlace, PictureStyle
 
@@ -65,7 +63,7 @@ class DifferenceError(PtmcadError):
 @limit_options
 def command(
     *,
-    asked: SliceOptions,
+    asked: Typed,
     value: str,
     pose: str,
     pixels: tuple[int, int],
@@ -92,13 +90,15 @@ def command(
         ptmcad map --slice L2,rho --value length:k1 --pose stable:2 --format png,csv --pixels 50
     """
     stored = stored_map(asked)
-    slice = stored.slice if stored else asked.slice()
+    slice = stored.slice if stored else slice_from_typed(asked)
     if (
         not stored
         and slice.has_free_lengths
         and (value.strip() == "barrier" or not pose.strip().startswith("stable"))
     ):
-        slice = asked.slice("index")  # the certified engine finds the others when they are counted
+        slice = slice_from_typed(
+            asked._replace(counting="index")
+        )  # the certified engine finds the others when they are counted
     nothing_drawn = set(formats) <= set(DATA)
     report_idle([
         *idle_style(formats),
@@ -110,7 +110,7 @@ def command(
     names = tuple(f"{stem}.{kind}" for kind in formats)
     check_writable(out, names)
     with held(limits), ProgressBar() as progress:
-        from ptmcad.ask.fields.field import expect_somewhere, field_of, request_of
+        from ptmcad.workbench.fields.quantityfield import expect_somewhere, field_of, request_of
 
         request = request_of(
             slice, value, pose

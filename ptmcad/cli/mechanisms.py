@@ -4,18 +4,21 @@ a drawing.
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import click
 
-from ptmcad.cli.paths import PATH
-from ptmcad.cli.values import mechanisms as known_mechanisms
+from ptmcad.cli.commonoptions import PATH
+from ptmcad.cli.pictures import figure
+from ptmcad.cli.proposals import mechanisms as known_mechanisms
 from ptmcad.errors import ConfigError, quoted
 from ptmcad.model import Model
-from ptmcad.process.output import check_writable, text_writer, write_files
-from ptmcad.question.config.model import model_of
+from ptmcad.process.output import check_writable, write_files
+from ptmcad.question.config.modelkeys import model_of
 from ptmcad.question.config.starters import NAMES, starter_text
 from ptmcad.question.shipped import shipped_records
+from ptmcad.show import render
 from ptmcad.text.entry import plain_data
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import read_file, read_text
@@ -82,9 +85,10 @@ def command(*, names: tuple[str, ...], out: Path | None) -> None:
         for name, path in shipped_records().items():
             click.echo(f"  {name:<26}{plain_data(read_file(path)).get('title', '')}".rstrip())
     if out is not None:
-        from ptmcad.show.linedrawing import approximate_svg
-
         mechanisms = filter(None, (model.drawable for model in models))
-        drawn = {f"{m.name}.svg": text_writer(approximate_svg(m)) for m in mechanisms}
+        drawn = {
+            (name := f"{m.name}.svg"): figure(name, partial(render.draw_mechanism, m))
+            for m in mechanisms
+        }
         check_writable(out, tuple(drawn))
         write_files(out, drawn)

@@ -12,22 +12,28 @@ from pathlib import Path
 import click
 from click.core import ParameterSource
 
-from ptmcad.cli.formats import Formats, format_option
-from ptmcad.cli.gathering import gathered
-from ptmcad.cli.idle import idle_output, report_idle
+from ptmcad.cli.commonoptions import (
+    Formats,
+    format_option,
+    gathered,
+    idle_output,
+    name_option,
+    out_option,
+    record_argument,
+    report_idle,
+)
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.paths import name_option, out_option, record_argument
 from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.proposals import names, pair_of_names, point, quantity_names
 from ptmcad.cli.range_answers import RangeAnswer, RangeRequest, answer, is_enclosed, request_codec
 from ptmcad.cli.slices import range_option, set_option
-from ptmcad.cli.values import names, pair_of_names, point, quantity_names
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.model import ptm
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name, names_in_record, slice_from_options
-from ptmcad.question.examples import FIRST, SECOND
+from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.question.slice import Slice
 from ptmcad.text.parsing import rational
 

@@ -13,12 +13,12 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.question import question_of
+from ptmcad.cli.slices import question_of
 from ptmcad.question.slice import Slice
 from ptmcad.show import render
 
 if TYPE_CHECKING:
-    from ptmcad.ask.branches import SolutionsOnLine
+    from ptmcad.ask.lines.diagram import SolutionsOnLine
     from ptmcad.text.codec import Codec
 
 MAX_TEXT = 10_000
@@ -141,12 +141,12 @@ def _answers(
     def line() -> (
         SolutionsOnLine
     ):  # a picture of the paths shows branches too: those of the same solutions
-        from ptmcad.ask.branches import solutions_on_line
+        from ptmcad.ask.lines.diagram import solutions_on_line
 
         return solutions_on_line(slice, along, at)
 
     if request.start is not None:
-        from ptmcad.ask.ranges import pose_paths
+        from ptmcad.ask.lines.follower import pose_paths
 
         with ProgressBar() as progress:
             paths = pose_paths(slice, along, at, request.start, request.pose, progress)
@@ -157,7 +157,7 @@ def _answers(
             lambda: _paths_and_branches(slice, paths, line),
         )
     if request.quantities:
-        from ptmcad.ask.branches import branch_diagram
+        from ptmcad.ask.lines.diagram import branch_diagram
 
         with ProgressBar() as progress:
             diagram = branch_diagram(slice, along, at, request.quantities, progress, line())
@@ -185,7 +185,7 @@ minutes.
 
 
 def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOnLine]) -> Any:
-    from ptmcad.ask.branches import branch_diagram
+    from ptmcad.ask.lines.diagram import branch_diagram
 
     model = found.model
     if len(model.unknowns) > MAX_UNKNOWNS or not model.criterion.is_told:

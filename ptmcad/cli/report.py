@@ -6,11 +6,10 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.gathering import reading
+from ptmcad.cli.commonoptions import PATH, reading, result_argument
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import PATH, result_argument
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.stored import read_result
+from ptmcad.cli.storedresults import read_result
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, portable_file

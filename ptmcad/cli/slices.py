@@ -1,28 +1,31 @@
-"""What the commands share that ask about a slice: the record and the options that change it.
-
-Guarantee: every such command takes the same words for the same slice.
+"""The options that ask about a slice, and the question as a terminal's answer begins with it: windows,
+values that are not defaults, and the kind of count.
 """
 
+from __future__ import annotations
+
+from collections.abc import Mapping
 from functools import wraps
 from pathlib import Path
+from textwrap import fill
 from typing import Any, NamedTuple
 
 import click
 
-from ptmcad.cli.gathering import F, gathered
-from ptmcad.cli.paths import record_argument
-from ptmcad.cli.values import mechanisms, pair_of_names, settings
-from ptmcad.errors import ConfigError, HypothesisError, PtmcadError
+from ptmcad.cli.commonoptions import F, gathered, record_argument
+from ptmcad.cli.proposals import mechanisms, pair_of_names, settings
+from ptmcad.errors import ConfigError, HypothesisError, PtmcadError, shown
+from ptmcad.model import Model
 from ptmcad.question.config import (
     Family,
     question_from_options,
     record_from_options,
-    slice_from_options,
     with_place,
 )
-from ptmcad.question.config.options import Typed
-from ptmcad.question.config.record import Record
-from ptmcad.question.slice import Slice
+from ptmcad.question.config.problemrecord import Record
+from ptmcad.question.config.typed import Typed
+from ptmcad.question.slice import Slice, merged
+from ptmcad.text.numerals import shortest_text
 
 BETWEEN = "between"
 """In place of the members' values."""
@@ -44,70 +47,47 @@ class Third(NamedTuple):
         return self.members == BETWEEN
 
 
-class SliceOptions(NamedTuple):
-    """The record and what changes it, as they were typed."""
+def _typed(
+    config: Path | None,
+    axes: str | None,
+    sets: tuple[str, ...],
+    ranges: tuple[str, ...],
+    mechanism: str | None,
+) -> Typed:
+    return Typed(config, axes, sets, ranges, mechanism=mechanism)
 
-    config: Path | None
-    axes: str | None
-    sets: tuple[str, ...]
-    ranges: tuple[str, ...]
-    mechanism: str | None
 
-    def slice(self, count: str | None = None) -> Slice:
-        """The slice that is meant.
+def question_asked(asked: Typed, count: str | None, third: Third) -> Slice | Family:
+    """The slice that is meant, or the family where a third parameter is free.
 
-        Raises
-        ------
-        ConfigError
-            For anything wrong with the record or the options.
-        """
-        return slice_from_options(
-            self.config, self.axes, self.sets, self.ranges, count, self.mechanism
-        )
-
-    def record(self, free: str | None) -> Record:
-        """The record that is meant, in which a parameter may be free.
-
-        Raises
-        ------
-        ConfigError
-            For anything wrong with the record's keys or the options.
-        """
-        return record_from_options(self._typed(None)._replace(free=free))
-
-    def placed(self, error: ConfigError | HypothesisError, count: str | None = None) -> PtmcadError:
-        """A fault of the question with its place, as far as the record or the options can still be
-        read for it.
-        """
-        try:
-            return with_place(error, record_from_options(self._typed(count)))
-        except ConfigError:  # it is this one
-            return error
-
-    def question(self, count: str | None, third: Third) -> Slice | Family:
-        """The slice that is meant, or the family where a third parameter is free.
-
-        Raises
-        ------
-        ConfigError
-            For anything wrong with the record or the options.
-        """
-        members = None if third.between else third.members
-        return question_from_options(self._typed(count)._replace(free=third.free, members=members))
-
-    def _typed(self, count: str | None) -> Typed:
-        return Typed(self.config, self.axes, self.sets, self.ranges, count, self.mechanism)
+    Raises
+    ------
+    ConfigError
+        For anything wrong with the record or the options.
+    """
+    members = None if third.between else third.members
+    return question_from_options(asked._replace(counting=count, free=third.free, members=members))
 
 
 def _with_places(command: F) -> F:
     @wraps(command)
-    def placed(*, asked: SliceOptions, **given: Any) -> Any:
+    def placed(*, asked: Typed, **given: Any) -> Any:
         try:
             return command(asked=asked, **given)
         except (ConfigError, HypothesisError) as error:
-            raise asked.placed(error, given.get("count")) from error
+            raise _placed(error, asked._replace(counting=given.get("count"))) from error
 
     return placed  # type: ignore[return-value]
+
+
+def _placed(error: ConfigError | HypothesisError, asked: Typed) -> PtmcadError:
+    """A fault of the question with its place, as far as the record or the options can still be read
+    for it.
+    """
+    try:
+        return with_place(error, record_from_options(asked))
+    except ConfigError:  # it is this one
+        return error
 
 
 range_option = click.option(
@@ -135,7 +115,7 @@ def slice_options(command: F) -> F:
 
     What an engine finds wrong with the question is told with its place in the record.
     """
-    command = gathered(asked=SliceOptions)(_with_places(command))
+    command = gathered(asked=_typed)(_with_places(command))
     for add in (
         range_option,
         set_option,
@@ -147,3 +127,58 @@ def slice_options(command: F) -> F:
     ):  # fmt: skip
         command = add(command)
     return command
+
+
+MAX_VALUE = 40
+"""Characters of a value."""
+
+
+def question_of(slice: Slice) -> str:
+    """The question that a slice is."""
+    known, written = merged(slice.text, slice.model), slice.text
+    # of a shorthand that a text names what was written, not its own name
+    values = {
+        n: written.get(n, known.get(n, ""))
+        for n in (*written, *known)
+        if n in known or n in slice.model.shorthands
+    }
+    windows = {
+        axis.name: f"{shortest_text(axis.low)}, {shortest_text(axis.high)}" for axis in slice.axes
+    }
+    return _lines(slice.name, windows, values, slice.model, f"; count {slice.count.value}")
+
+
+def question_in(record: Record, name: str) -> str:
+    """The question of a record of which a family, a sweep or a design is made: values as they are
+    written.
+    """
+    values = {name: scalar.text for name, scalar in record.values.items()}
+    windows = {
+        name: f"{window.low.text}, {window.high.text}" for name, window in record.axes.items()
+    }
+    return _lines(
+        name,
+        windows,
+        values,
+        record.model,
+        f"; count {record.counting.value}" if record.counting else "",
+    )
+
+
+def _lines(
+    name: str, windows: Mapping[str, str], values: Mapping[str, str], model: Model, counted: str
+) -> str:
+    defaults = {name: parameter.default for name, parameter in model.parameters.items()}
+    fixed = [
+        f"{n} = {shown(v, MAX_VALUE)}"
+        for n, v in values.items()
+        if n not in windows and v != defaults.get(n)
+    ]
+    axes = ", ".join(f"{axis} in [{window}]" for axis, window in windows.items())
+    text = f"{name}: {axes}{'; ' * bool(fixed)}{', '.join(fixed)}{counted}"
+    for inside in (" = ", " in [", "count "):  # a line does not end there
+        text = text.replace(inside, inside.replace(" ", "\N{NO-BREAK SPACE}"))
+    lines = fill(
+        text, 80, initial_indent="question  ", subsequent_indent=" " * 10, break_long_words=False
+    )
+    return lines.replace("\N{NO-BREAK SPACE}", " ")

@@ -11,20 +11,26 @@ import click
 
 from ptmcad.answer.poses import MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.cli.formats import Formats, format_option
-from ptmcad.cli.idle import idle_output, report_idle
+from ptmcad.cli.commonoptions import (
+    Formats,
+    format_option,
+    idle_output,
+    name_option,
+    out_option,
+    record_argument,
+    report_idle,
+)
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.paths import name_option, out_option, record_argument
 from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.proposals import point
 from ptmcad.cli.slices import set_option
-from ptmcad.cli.values import point
 from ptmcad.errors import ConfigError
 from ptmcad.model import Model
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name, point_from_options, units_of
-from ptmcad.question.examples import POINT
+from ptmcad.question.shipped import POINT
 from ptmcad.show import render
 from ptmcad.show.drawable import no_drawing, no_landscape
 

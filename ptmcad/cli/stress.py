@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ptmcad.cli.formats import Formats, format_option
+from ptmcad.cli.commonoptions import Formats, format_option, out_option
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
-from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, LimitReached
@@ -55,7 +54,7 @@ def save(found: Row, folder: Path, formats: Formats) -> tuple[str, ...]:
 
 
 def _drawn(found: Row) -> Any:
-    from ptmcad.studies.stress.picture import draw_stress
+    from ptmcad.studies.stress.campaign import draw_stress
 
     return draw_stress(found["cases"])
 

@@ -4,8 +4,6 @@ into a folder.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from fractions import Fraction
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,74 +12,45 @@ import click
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import State, Sweep
+from ptmcad.cli.commonoptions import PATH, Formats, format_option, gathered, record_argument
 from ptmcad.cli.drawing import share_of
-from ptmcad.cli.formats import Formats, format_option
-from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import PATH, record_argument
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.question import question_in
-from ptmcad.cli.slices import engine_option
-from ptmcad.cli.values import names
+from ptmcad.cli.proposals import names
+from ptmcad.cli.slices import engine_option, question_in
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.extras import Extra, require, require_ffmpeg
 from ptmcad.process.handover import Topic, send
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
-from ptmcad.question.config.sweeps import Sweeping, load_sweep
+from ptmcad.question.config.sweeps import load_sweep
 from ptmcad.show import render
 from ptmcad.show.style import DEFAULT
 
 FORMATS = ("csv", "html", "gif", "mp4")
+MEMBER = (
+    "engine", "tolerance", "area_tolerance", "no_areas", "along", "no_ranges", "member_timeout",
+)  # fmt: skip
+"""The options that say what is wanted of each member, by their parameters' names."""
 RETRIES = 2
 MAX_FRAMES = 240
 """Pictures of a film; of more members some at equal distances are shown."""
 
 
-@dataclass(frozen=True, slots=True)
-class MemberOptions:
-    """What is wanted of each member, as it was typed."""
-
-    engine: str
-    tolerance: Fraction | None
-    area_tolerance: Fraction | None
-    no_areas: bool
-    along: str | None
-    no_ranges: bool
-    member_timeout: float | None
-
-    def wanted(self, question: Sweeping) -> Any:
-        """The same for these slices, checked.
-
-        Raises
-        ------
-        ConfigError
-            For options that do not fit the slices, or one another.
-        """
-        from ptmcad.sweeping.member import Wanted
-        from ptmcad.sweeping.run import axes_of, checked
-
-        if self.no_ranges and self.along is not None:
-            raise ConfigError(
-                "ranges are not asked for, but their axis is given: leave one out",
-                key="--no-ranges",
-            )
-        if self.no_areas and self.area_tolerance is not None:
-            raise ConfigError(
-                "areas are not asked for, but a tolerance is given: leave one out", key="--no-areas"
-            )
-        along = "" if self.no_ranges else self.along or axes_of(question)[0]
-        return checked(
-            question,
-            Wanted(
-                self.engine,
-                self.tolerance,
-                self.area_tolerance,
-                not self.no_areas,
-                along,
-                self.member_timeout,
-            ),
+def _wanted(
+    *, no_areas: bool, no_ranges: bool, member_timeout: float | None, **named: Any
+) -> dict[str, Any]:
+    """What is wanted of each member, by the names of `Wanted`."""
+    if no_ranges and named["along"] is not None:
+        raise ConfigError(
+            "ranges are not asked for, but their axis is given: leave one out", key="--no-ranges"
         )
+    if no_areas and named["area_tolerance"] is not None:
+        raise ConfigError(
+            "areas are not asked for, but a tolerance is given: leave one out", key="--no-areas"
+        )
+    along = "" if no_ranges else named.pop("along")
+    return {**named, "areas": not no_areas, "along": along, "timeout": member_timeout}
 
 
 @click.command("sweep")
@@ -122,9 +91,9 @@ class MemberOptions:
 @click.option("--member-timeout", type=click.FloatRange(min=0, min_open=True, max=1e9), metavar="S",
               help="Stop a member after S seconds, which is then a failure.")  # fmt: skip
 @limit_options
-@gathered(asked=MemberOptions)
+@gathered(asked=(MEMBER, _wanted))
 def command(
-    *, config: Path, out: Path | None, formats: Formats, fps: int, asked: MemberOptions, jobs: int | None,
+    *, config: Path, out: Path | None, formats: Formats, fps: int, asked: dict[str, Any], jobs: int | None,
     scheduler: str | None, retries: int, limits: ResourceLimits,
 ) -> int:  # fmt: skip
     """Classify every member of a sweep.
@@ -151,9 +120,9 @@ def command(
     folder = Path(f"{question.name}-sweep") if out is None else out
     wanted_files = tuple(f"{question.name}.{kind}" for kind in formats)
     with held(limits), ProgressBar() as progress:
-        from ptmcad.sweeping.run import sweep
+        from ptmcad.workbench.sweeps.run import sweep, wanted_of
 
-        wanted = asked.wanted(question)
+        wanted = wanted_of(question, asked)
         check_writable(folder, wanted_files)
         send(Topic.RESUMABLE, f"what is done is in {folder}; the same command goes on")
         found = sweep(question, folder, jobs, scheduler, wanted, retries, limits.timeout, progress)
@@ -178,8 +147,8 @@ def _table(sweep: Sweep, path: Path) -> None:
 
 def _atlas(sweep: Sweep, jobs: int | None, progress: ProgressBar, path: Path) -> None:
     from ptmcad.show.report.atlas import atlas, chosen, frame_of
-    from ptmcad.sweeping.index import members
-    from ptmcad.sweeping.sketches import sketches
+    from ptmcad.workbench.sweeps.index import members
+    from ptmcad.workbench.sweeps.run import sketches
 
     shown = list(members(sweep, chosen(sweep)))
     done = [member.number for member in shown if member.state is State.DONE]

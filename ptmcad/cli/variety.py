@@ -6,13 +6,14 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.commonoptions import PATH
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import PATH
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.slices import SliceOptions, slice_options
+from ptmcad.cli.slices import slice_options
 from ptmcad.errors import shown_path
 from ptmcad.process.output import check_writable, text_writer, write_files
-from ptmcad.question.config import portable_file
+from ptmcad.question.config import portable_file, slice_from_typed
+from ptmcad.question.config.typed import Typed
 from ptmcad.show.export import FORMATS
 
 
@@ -24,7 +25,7 @@ from ptmcad.show.export import FORMATS
 @limit_options
 def command(
     *,
-    asked: SliceOptions,
+    asked: Typed,
     format: str,
     out: Path | None,
     limits: ResourceLimits,
@@ -46,7 +47,7 @@ def command(
         ptmcad variety --slice L2,rho --format maple --out unloaded.mpl
         ptmcad variety --slice rho,L2 --set F3=-10 --set F4=-10 --format qepcad
     """
-    slice = asked.slice()
+    slice = slice_from_typed(asked)
     if out is not None:
         portable_file(out.name, "--out")
         check_writable(out.parent, (out.name,))

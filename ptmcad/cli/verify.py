@@ -22,12 +22,11 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import Bounds, Member, Summary
-from ptmcad.cli.families import read_family_file
-from ptmcad.cli.idle import report_idle
+from ptmcad.cli.commonoptions import report_idle, result_argument
+from ptmcad.cli.familyfiles import read_family_file
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.paths import result_argument
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.stored import MAX_BYTES, kind_of, read_other, read_result
+from ptmcad.cli.storedresults import MAX_BYTES, kind_of, read_other, read_result
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options, Progress
 from ptmcad.question.config import member_like
@@ -46,7 +45,7 @@ _MORE_DIGITS = 10
 @click.command("verify")
 @result_argument
 @click.option("--seed", type=click.IntRange(min=0), metavar="N",
-              help="Seed of the random points and of the random boxes.  [default: a hash of the claims]")  # fmt: skip
+              help="Seed of the random points and of the random boxes.  [default: a fresh one, printed]")  # fmt: skip
 @click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
               help="Random boxes of the free area of a certified map.  [default: 16]")  # fmt: skip
 @click.option("--effort", type=click.IntRange(0, 10), metavar="N",
@@ -203,10 +202,10 @@ def _meet(one: Bounds | None, other: Bounds | None) -> bool:
 def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) -> VerifyReport:
     """Each member's map, and what the index holds of it."""
     from ptmcad.answer.widths import Attainment
-    from ptmcad.sweeping.index import member_map, members, read_sweep
-    from ptmcad.sweeping.member import Wanted, summary_of
     from ptmcad.verification import VerifyReport, verify
     from ptmcad.verification.report import CheckProgress, Unchecked, Violation, checked
+    from ptmcad.workbench.sweeps.index import member_map, members, read_sweep
+    from ptmcad.workbench.sweeps.member import Wanted, summary_of
 
     sweep = read_sweep(folder)
     found = list(members(sweep))
@@ -275,10 +274,10 @@ def _verified_design(
     found: BestDesign, versions: Any, seed: int | None, progress: Progress
 ) -> VerifyReport:
     """The best design, and where ranges are longest by exact critical values."""
-    from ptmcad.ask.designing.proof import exact_maximum
-    from ptmcad.question.config.designs import design_from
+    from ptmcad.question.config.designkey import design_from
     from ptmcad.show.document.design import extremes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_design
+    from ptmcad.workbench.designs.proof import exact_maximum
 
     report = verify_design(found, seed, progress)
     if not report.ok or not found.maxima:
@@ -358,7 +357,7 @@ def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) ->
     """What a family's members have in common, and where their arrangement changes."""
     from ptmcad.ask.changes import changes_of
     from ptmcad.ask.classification import region_map
-    from ptmcad.ask.members import Restored, in_common
+    from ptmcad.ask.members import in_common, restored
     from ptmcad.show.document.family import changes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_changes, verify_surfaces
 
@@ -375,7 +374,7 @@ def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) ->
     found, options = family.changes, Options(progress=progress)
     if found is not None and all(c.passed is not False for c in checks):
         checks += verify_changes(found, maps_at, seed, progress)
-    common = in_common(Restored(family), options)
+    common = in_common(restored(family), options)
     stored = {"versions": family.members[0].versions.get("ptmcad"), "surfaces": family.surfaces}
     anew = {"versions": __version__, "surfaces": common.surfaces}
     if found is not None and all(c.passed is not False for c in checks):

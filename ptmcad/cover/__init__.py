@@ -26,9 +26,9 @@ def components(cover: Cover) -> Components:
     ValueError When a rectangle or a slanted piece is not one, frames meet others inside, or the
         lattice is too fine.
     """
-    from ptmcad.cover import slanted
+    from ptmcad.cover import connectivity
 
-    return slanted.components(cover)
+    return connectivity.components(cover)
 
 
 def union_area(cover: Cover) -> int:
@@ -60,6 +60,6 @@ def from_boxes(window: Window, low: Any, high: Any, steps: int) -> Cover:
     ---------
     Every point of the open window that lies in a closed box lies in a rectangle.
     """
-    from ptmcad.cover import rounding
+    from ptmcad.cover import lattice
 
-    return rounding.from_boxes(window, low, high, steps)
+    return lattice.from_boxes(window, low, high, steps)

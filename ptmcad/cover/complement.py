@@ -1,9 +1,10 @@
 """What a cover leaves of the window: connected components with exact areas, and the clusters of
-rectangles between.
+rectangles between; what a component borders on, and sample points well inside of it.
 
 Guarantee: exact. Two points of the open window are in one component if and only if a path joins
 them that meets no closed rectangle; two rectangles are in one cluster if and only if a chain of
-rectangles with common points joins them.
+rectangles with common points joins them. A sample is in its component, and not in any closed
+rectangle.
 
 As rectangles have interiors, an edge between two parts of the window that meet the interior of no
 rectangle is in no rectangle, while a corner at which only two such parts meet, diagonally, is in
@@ -12,14 +13,15 @@ one. So components are joined across edges, and clusters across edges and corner
 
 from __future__ import annotations
 
+from collections.abc import Container, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.cover import tubes
-from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
+from ptmcad.cover import tubeframes as tubes
+from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle, Window
 from ptmcad.cover.subdivision import COVERED, Subdivision, rectangle_array, subdivide
 
 Integers = NDArray[np.int64]
@@ -164,3 +166,87 @@ def union_area(cover: Cover) -> int:
     tree = subdivide(rectangle_array(cover), cover.steps)
     covered = tree.bounds[tree.state == COVERED]
     return sums_of_areas(covered, np.zeros(len(covered), dtype=np.int64), 1)[0]
+
+
+def area_bounds(components: Components, number: int, known: Container[int]) -> tuple[int, int]:
+    """A component's area; and with all that can be reached from it without entering another known
+    component.
+
+    In squares of a lattice step. What is reached are clusters, each of them once, and components
+    that are not known. The connected set of points with the component's count is no larger, unless
+    it reaches another known component.
+    """
+    around: dict[int, list[int]] = {}
+    for component, cluster in components.touching:
+        around.setdefault(cluster, []).append(component)
+    reached, clusters, waiting = {number}, set[int](), [number]
+    while waiting:
+        for cluster in components.clusters_at[waiting.pop()]:
+            if cluster not in clusters:
+                clusters.add(cluster)
+                more = {m for m in around[cluster] if m not in known} - reached
+                reached |= more
+                waiting += more
+    high = sum(components.areas[m] for m in reached) + sum(
+        components.cluster_areas[cluster] for cluster in clusters
+    )
+    return components.areas[number], high
+
+
+_PLACES = (
+    (Fraction(1, 2), Fraction(1, 2)),
+    (Fraction(1, 3), Fraction(3, 7)),
+    (Fraction(3, 5), Fraction(2, 7)),
+)
+"""Where the points are, as parts of the sides of the component's rectangle ..."""
+_REACH = Fraction(1, 8)
+"""... and how far they may be from there."""
+
+
+def samples(
+    components: Components, number: int, window: Window
+) -> Iterator[tuple[Fraction, Fraction]]:
+    """Simple points in the middle of the component's rectangle, and then off the middle, in the
+    axes' own units.
+    """
+    left, right, bottom, top = components.rectangles[number]
+    steps = components.cover.steps
+    for u, v in _PLACES:
+        yield _near(left, right, u, window[0], steps), _near(bottom, top, v, window[1], steps)
+
+
+def _near(
+    first: int, last: int, place: Fraction, interval: tuple[Fraction, Fraction], steps: int
+) -> Fraction:
+    step = (interval[1] - interval[0]) / steps
+    middle, reach = first + (last - first) * place, (last - first) * _REACH
+    return simplest_between(
+        interval[0] + (middle - reach) * step, interval[0] + (middle + reach) * step
+    )
+
+
+def simplest_between(low: Fraction, high: Fraction) -> Fraction:
+    """The fraction of least denominator, then of least absolute value, in the closed interval from
+    low to high.
+
+    >>> simplest_between(Fraction(3, 10), Fraction(7, 20)), simplest_between(Fraction(-5, 2), Fraction(-3, 2))
+    (Fraction(1, 3), Fraction(-2, 1))
+    """
+    if low <= 0 <= high:
+        return Fraction(0)
+    if high < 0:
+        return -simplest_between(-high, -low)
+    # continued fractions of both ends, as far as they agree
+    terms = []
+    while True:
+        whole = low.__ceil__()
+        if whole <= high:
+            terms.append(whole)
+            break
+        floor = whole - 1
+        terms.append(floor)
+        low, high = 1 / (high - floor), 1 / (low - floor)
+    value = Fraction(terms.pop())
+    while terms:
+        value = terms.pop() + 1 / value
+    return value

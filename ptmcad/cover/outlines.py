@@ -12,8 +12,7 @@ from collections.abc import Collection
 import numpy as np
 
 from ptmcad.cover.complement import Components
-from ptmcad.cover.graph import touching
-from ptmcad.cover.subdivision import CUT, FREE, Integers
+from ptmcad.cover.subdivision import CUT, FREE, Integers, touching
 
 _EAST, _NORTH, _WEST, _SOUTH = range(4)
 

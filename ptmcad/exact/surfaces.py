@@ -18,7 +18,7 @@ from ptmcad.algebra.polynomials import Coefficient, irreducible_factors
 from ptmcad.algebra.quotient import multiples, multiplication_denominator, quotient_algebra
 from ptmcad.algebra.real_roots import Interval
 from ptmcad.algebra.space import nowhere_zero
-from ptmcad.exact.family import FamilyVariety
+from ptmcad.exact.familyvariety import FamilyVariety
 from ptmcad.exact.models.system import SystemOnAxes
 from ptmcad.exact.variety import harmless, settles, sign_changes
 

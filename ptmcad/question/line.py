@@ -69,26 +69,31 @@ def varying_axis(slice: Slice, along: str, at: Mapping[str, Any]) -> tuple[int, 
     return varying, other, number_for(f"at {other}", at[other])
 
 
-def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
+def line_of(slice: Slice, along: str, at: Mapping[str, Any], *, free: bool = False) -> Line:
     """The line of a slice on which one axis varies and the other is fixed.
+
+    Parameters
+    ----------
+    free : whether springs may have a free length on it.
 
     Raises
     ------
     ConfigError When ``along`` is no axis, ``at`` does not name exactly the other one, its value is
         not an exact number, a parameter is not defined on the line, or springs have a free length
-        on it.
+        on it that they may not have.
     """
     varying, other, value = varying_axis(slice, along, at)
     try:
         parameters = on_line(slice, varying, value)
     except ExpressionError as error:
         raise ConfigError(str(error), key=f"at {other}") from error
-    parameters = without_free_lengths(
-        slice.model,
-        parameters,
-        "exact ends are",
-        "ptmcad range with --at alone encloses the ends",
-    )
+    if not free:
+        parameters = without_free_lengths(
+            slice.model,
+            parameters,
+            "exact ends are",
+            "ptmcad range with --at alone encloses the ends",
+        )
     return Line(slice.axes[varying], {other: value}, parameters, slice.model)
 
 

@@ -24,7 +24,7 @@ from itertools import count, product
 from math import comb, lcm
 from typing import NamedTuple
 
-from ptmcad.cover.tubes import halved
+from ptmcad.cover.tubeframes import halved
 from ptmcad.question.signs import PROVED, Box, Corner, Interval, Undecided, Verdict, Witness
 from ptmcad.question.slice import Axes
 from ptmcad.text.expressions import Expression, Term, polynomial_value

@@ -1,4 +1,5 @@
-"""Problem records by path or, of those that are shipped, by name.
+"""Problem records by path or, of those that are shipped, by name; and examples in messages, in the
+names of the built-in mechanism's first parameters.
 
 Guarantee: a name is found from anywhere, in a wheel and in a source tree; a file of that name wins
 over a shipped one.
@@ -12,9 +13,18 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import ConfigError
+from ptmcad.model import ptm
 from ptmcad.text.entry import Tree
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import read_file
+
+FIRST, SECOND, THIRD, *_ = ptm().parameters
+FORCE, *_ = ptm().forces
+POINT = f"{FIRST}=1,{SECOND}=3/2"
+A_SWEEP = "{F: [-10, -20]} or {F: {from: -40, to: 0, step: 5}}"
+A_DESIGN = f"{{maximise: range, along: {THIRD}, over: {{{FIRST}: [1/2, 2], {SECOND}: [1/2, 2]}}}}"
+AXES = f"{{{FIRST}: [0, 2], {SECOND}: [0, 2]}}"
+
 
 RecordSource = str | Path | Mapping[str, Any]
 """What a record is read from: its file, or a mapping like one."""

@@ -9,6 +9,7 @@ it was rounded.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -296,3 +297,20 @@ class Point(tuple[Fraction, Fraction]):
                 raise KeyError(key)
             return tuple.__getitem__(self, self.names.index(key))
         return tuple.__getitem__(self, key)
+
+
+@contextmanager
+def within_doubles(slice: Slice) -> Iterator[None]:
+    """Numbers are small enough inside.
+
+    Raises
+    ------
+    ConfigError
+        When one is not.
+    """
+    try:
+        yield
+    except OverflowError as error:
+        raise ConfigError(
+            f"{slice.name} has numbers beyond doubles, 1.8e308: there are no arrays of it"
+        ) from error

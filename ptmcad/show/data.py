@@ -21,7 +21,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.extras import Extra, require
 from ptmcad.question.counts import PREDICATES, further_names
-from ptmcad.question.doubles import within_doubles
+from ptmcad.question.slice import within_doubles
 from ptmcad.show.polynomial_text import Style, polynomial_text
 
 if TYPE_CHECKING:

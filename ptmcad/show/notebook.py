@@ -164,3 +164,24 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     columns = "".join(f"<th>{escape(h)}</th>" for h in head)
     body = "".join("<tr>" + "".join(f"<td>{escape(v)}</td>" for v in row) + "</tr>" for row in rows)
     return f"<table><thead><tr>{columns}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def map_svg(result: RegionMap) -> str | None:
+    """The map's picture as SVG; None where there is nothing to draw yet."""
+    image = picture(result, "svg")
+    return None if image is None else image.decode()
+
+
+def map_png(result: RegionMap) -> bytes | None:
+    """The map's picture as PNG; None where there is nothing to draw yet."""
+    return picture(result, "png")
+
+
+def grid_html(grid: Grid) -> str:
+    """The grid's pixels in place."""
+    return image_html(grid_png(grid), repr(grid), "Counts at the pixels' centres, exactly.")
+
+
+def field_html(field: Field) -> str:
+    """The field's pixels in place, and what of it is known."""
+    return image_html(field_png(field), repr(field), field_words(field))

@@ -1,19 +1,36 @@
-"""Verification of a stored region map by methods that share no code with the one that made it.
+"""Verification of a stored result by methods that share no code with the one that made it.
 
 Guarantee: nothing here imports the engines (`algebra`, `exact`, `certified`); a contract in
 pyproject.toml holds that. Common to both are FLINT, the text of numbers, descriptions, the slice
 with its table of counts, and the result's data classes.
+
+An order of reading, for what an exact map claims:
+
+1. `report`: a check is a function that raises `Violation`, or says what it checked; `checks` lists
+   all of them.
+2. `coordinates`, `derivation`, `constraints`, `kinds`: the polynomials that follow from a
+   description, derived once for both halves. `claims`: a stored map seen with them.
+3. `polynomialtexts`, `equationtexts`, `parameters`: the stored texts say the same.
+4. `fibrealgebra`, `inertia`: the solutions over a point, counted by signatures; `solutions`: the
+   stored counts and boxes. `variety`: the stored curves are all of those where counts change.
+5. `planecurves`, `sturm`, `projections`, `adjacency`, `merging`: the decomposition of the plane.
+   `windowsigns`, `plan`: what was left out.
+6. `disks`, `branches`, `areas`: enclosures of the areas.
+7. `parameterlines`, `ranges`, `designs`, `arrangements`: lines, designs and families.
+
+Certified maps: `certified.checks` lists their checks; `certified.waves`, `equations` and `field`
+derive and enclose, `solving` finds all solutions at a point, `sampling` looks at random boxes, and
+the package `exclusion` at the whole free area.
 """
 
 from __future__ import annotations
 
-from ptmcad.verification.changes import verify_changes
+from ptmcad.verification.arrangements import verify_changes, verify_surfaces
 from ptmcad.verification.checks import verify
 from ptmcad.verification.designs import verify_design
-from ptmcad.verification.poses import verify_poses
 from ptmcad.verification.ranges import verify_range
 from ptmcad.verification.report import Check, VerifyReport, check_anew
-from ptmcad.verification.surfaces import verify_surfaces
+from ptmcad.verification.solutions import verify_poses
 
 __all__ = [
     "Check",

@@ -37,9 +37,8 @@ from flint import fmpq
 from ptmcad.answer.regionmap import Adjacency, Cell, CriticalValue, NonAdjacency, Reason, Segment
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.claims import Claims, is_root, short, side
-from ptmcad.verification.heights import Heights
+from ptmcad.verification.projections import Heights, inside_stack
 from ptmcad.verification.report import Violation
-from ptmcad.verification.structure import inside_stack
 
 
 def check_adjacencies(claims: Claims) -> str:

@@ -18,20 +18,18 @@ from ptmcad.verification.adjacency import (
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.certified.checks import verify_certified
 from ptmcad.verification.certified.parameters import check_domain
-from ptmcad.verification.claims import Claims, fingerprint
-from ptmcad.verification.counts import check_counts
+from ptmcad.verification.claims import Claims
 from ptmcad.verification.designs import verify_design
+from ptmcad.verification.equationtexts import check_system
 from ptmcad.verification.exclusion.check import EFFORT, check_free_area, places_of
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
-from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
 from ptmcad.verification.plan import check_plan, refuse_ablation
-from ptmcad.verification.poses import verify_poses
-from ptmcad.verification.report import Check, CheckProgress, VerifyReport, checked
-from ptmcad.verification.solutions import check_solutions
-from ptmcad.verification.structure import check_critical_values, check_stacks
+from ptmcad.verification.projections import check_critical_values, check_stacks
+from ptmcad.verification.report import Check, CheckProgress, VerifyReport, checked, drawn
+from ptmcad.verification.solutions import check_counts, check_solutions, verify_poses
 from ptmcad.verification.variety import check_conditions, check_irreducible, check_norm
-from ptmcad.verification.window import check_left_out
+from ptmcad.verification.windowsigns import check_left_out
 
 NOT_CHECKED = (
     (
@@ -74,9 +72,9 @@ def verify(
 
     Parameters
     ----------
-    seed : of the random points at which the variety is compared with the norm of det H, or of the
-        random boxes of a certified map; drawn from a hash of the claims when None, so that nobody
-        can fit claims to the points.
+    seed : of the random points at which texts and the norm of det H are compared, and of the random
+        boxes of a certified map; a fresh one when None, which the report has, so that nobody can
+        fit claims to the points.
     boxes : number of random boxes of a certified map, `ptmcad.verification.certified.checks.BOXES`
         when None.
     progress : called as progress(what, done, total), with numbers that never fall.
@@ -108,7 +106,7 @@ def verify(
     if result.cover is not None or result.status is Status.CERTIFIED:
         free_area = partial(check_free_area, EFFORT if effort is None else effort)
         return verify_certified(result, seed, boxes, free_area, places_of, progress)
-    steps = checks_of(result, seed)
+    steps = checks_of(seed)
     missing: set[str] = set()
     if result.status is Status.PARTIAL:
         missing = set() if result.stacks else {name for name, _, _ in _SINCE_VARIETY}
@@ -117,26 +115,24 @@ def verify(
     return VerifyReport(tuple(checks))
 
 
-def checks_of(result: RegionMap, seed: int | None) -> tuple[CheckOf, ...]:
+def checks_of(number: int | None) -> tuple[CheckOf, ...]:
     """The checks of an exact map, in the order in which one rests on another: name, method and
     function.
 
     Parameters
     ----------
-    seed : as for `verify`.
+    number : the seed, as for `verify`.
     """
-    names = result.slice.axis_names
-    curves = (f"{c.kind.value}: {c.polynomial.text(names)}" for c in result.components)
-    drawn = fingerprint(result, curves) if seed is None else str(seed)
+    seed = drawn(number)
     return (
         ("shape", "cross references", check_shape),
         ("parameters as written", "expressions compared", check_text),
         ("signs of parameters", "Sturm counts, elimination", check_domain),
-        ("equations", "potential from the nodes", check_system),
+        ("equations", "residues at a random point", partial(check_system, seed=seed)),
         ("irreducible components", "factorization", check_irreducible),
-        ("variety complete", "norm of det H at random points", partial(check_norm, seed=drawn)),
-        ("conditions", "norms at random points", partial(check_conditions, seed=drawn)),
-        ("boundary components", "factors of the parameters", partial(check_boundary, seed=drawn)),
+        ("variety complete", "norm of det H at random points", partial(check_norm, seed=seed)),
+        ("conditions", "norms at random points", partial(check_conditions, seed=seed)),
+        ("boundary components", "factors of the parameters", partial(check_boundary, seed=seed)),
         ("left out", "Sturm counts, resultants", check_left_out),
         ("plan", "built once more", check_plan),
         *_SINCE_VARIETY,

@@ -6,11 +6,9 @@ other one.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from hashlib import sha256
 from math import gcd, lcm
 
 from flint import arb, ctx, fmpq, fmpz_poly
@@ -21,19 +19,15 @@ from ptmcad.model import Model
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification.algebra import NotFinite
 from ptmcad.verification.derivation import (
     Derivation,
-    SignMeaning,
     derivation_at,
     derivation_of,
-    meaning_of,
 )
-from ptmcad.verification.fibre import FibreAlgebra, fibre_over
-from ptmcad.verification.kinds import kind_of
+from ptmcad.verification.fibrealgebra import FibreAlgebra, NotFinite, fibre_over
+from ptmcad.verification.kinds import SignMeaning, kind_of, meaning_of
 from ptmcad.verification.report import Violation
-from ptmcad.verification.roots import numbered_root
-from ptmcad.verification.sturm import ends_of, roots_between, roots_within
+from ptmcad.verification.sturm import ends_of, numbered_root, roots_between, roots_within
 
 
 @dataclass(frozen=True)
@@ -189,15 +183,6 @@ class Claims:
     def free(self, low: fmpq, high: fmpq, v: fmpq) -> PlaneCurve | None:
         """None when no curve meets the closed segment [low, high] x {v}, else one that does."""
         return next((c for c in self.curves if roots_within(c.along(v), low, high) > 0), None)
-
-
-def fingerprint(result: RegionMap, further: Iterable[str]) -> str:
-    """A hash of the slice's parameters and of further claims, from which random points are drawn:
-    so none fit them.
-    """
-    names = result.slice.axis_names
-    claims = [f"{n}={e.to_text(names)}" for n, e in sorted(result.slice.parameters.items())]
-    return sha256("\n".join([*claims, *further]).encode()).hexdigest()[:16]
 
 
 def polynomial(value: CriticalValue) -> fmpz_poly:

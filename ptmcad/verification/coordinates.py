@@ -8,10 +8,11 @@ and its sine.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from typing import Any, TypeVar
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
@@ -21,7 +22,7 @@ from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree
 _SHOWN = 400
 Circle = tuple[fmpq_mpoly, fmpq_mpoly]
 """Cosine and sine of an angle."""
-Product = Callable[[fmpq_mpoly, fmpq_mpoly], fmpq_mpoly]
+R = TypeVar("R", bound=Any)
 
 
 def circle_names(angle: str) -> tuple[str, str]:
@@ -128,14 +129,14 @@ class CoordinateRing:
                             total = total / one
                 return total
             case Power(base, exponent):
-                return self.value(base) ** int(_number(_multiples(exponent)))
+                return self.value(base) ** int(_number(multiples(exponent)))
             case Call(function, argument):
                 return self.circle(argument)[0 if function == "cos" else 1]
 
     def circle(self, argument: Tree) -> Circle:
         """Cosine and sine of a sum of multiples of angles."""
         found = self.context.constant(1), self.context.constant(0)
-        for angle, multiple in _multiples(argument).items():
+        for angle, multiple in multiples(argument).items():
             if multiple.denominator != 1 or (multiple and not angle):
                 raise NotImplementedError(
                     "the checker knows sums of whole multiples of angles, such as 2*a - b, only"
@@ -145,19 +146,16 @@ class CoordinateRing:
         return found
 
 
-def turned(circle: Circle, by: Circle, times: int, product: Product = fmpq_mpoly.__mul__) -> Circle:
-    """Cosine and sine of an angle and some times another one."""
+def turned(circle: tuple[R, R], by: tuple[R, R], times: int) -> tuple[R, R]:
+    """Cosine and sine of an angle and some times another one, in any ring."""
     (cosine, sine), (c, s) = circle, by
     for _ in range(abs(times)):
         up = s if times > 0 else -s
-        cosine, sine = (
-            product(cosine, c) - product(sine, up),
-            product(sine, c) + product(cosine, up),
-        )
+        cosine, sine = cosine * c - sine * up, sine * c + cosine * up
     return cosine, sine
 
 
-def _multiples(tree: Tree) -> dict[str, Fraction]:
+def multiples(tree: Tree) -> dict[str, Fraction]:
     """The angles of a sum, each with its factor; what is no multiple of an angle has the empty
     name.
     """
@@ -167,14 +165,14 @@ def _multiples(tree: Tree) -> dict[str, Fraction]:
         case Name(name):
             return {name: Fraction(1)}
         case Negative(operand):
-            return {name: -multiple for name, multiple in _multiples(operand).items()}
+            return {name: -multiple for name, multiple in multiples(operand).items()}
         case Chain(first, steps):
-            total = _multiples(first)
+            total = multiples(first)
             for step in steps:
-                total = _joined(total, step.operator, _multiples(step.operand))
+                total = _joined(total, step.operator, multiples(step.operand))
             return total
         case Power(base, exponent):
-            return {"": _number(_multiples(base)) ** int(_number(_multiples(exponent)))}
+            return {"": _number(multiples(base)) ** int(_number(multiples(exponent)))}
         case Call():
             raise NotImplementedError("the checker knows no angle that is a cosine or sine")
 

@@ -9,7 +9,7 @@ energy with one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -18,13 +18,16 @@ from typing import NamedTuple, TypeVar
 from flint import fmpq, fmpq_mpoly
 
 from ptmcad.model import Kind, Mechanism, Model, System
-from ptmcad.question.counts import Count
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.text.tree import names_of
-from ptmcad.verification import xjoints
+from ptmcad.verification.constraints import (
+    CrossedBars,
+    along_loops,
+    crossed_conditions,
+    leave_one_way,
+    loop_conditions,
+)
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
-from ptmcad.verification.loops import Loops
-from ptmcad.verification.xjoints import CrossedBars
+from ptmcad.verification.kinds import SignMeaning, has_moments_apart, meaning_of
 
 T = TypeVar("T")
 Vector = tuple[fmpq_mpoly, fmpq_mpoly]
@@ -49,101 +52,6 @@ def coordinates_of(model: Model) -> tuple[str, ...]:
     return (
         tuple(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin"))
         + model.reals
-    )
-
-
-@dataclass(frozen=True, slots=True)
-class SignMeaning:
-    """What the signs at a solution mean: those of conditions for stability, if there are any.
-
-    Attributes
-    ----------
-    kinds : what may be counted.
-    order : the number of rows of the Hessian; 0 where there is none.
-    with_all : the names of the counts of a certified map that counts all solutions.
-    solution, equation, entry, determinant : what they are called in messages.
-    in_box, at_solution : that stored signs are not the true ones.
-    """
-
-    kinds: tuple[Count, ...]
-    order: int = 0
-    with_all: frozenset[str] = frozenset({"total"})
-    solution: str = "a solution"
-    equation: str = "equation {}"
-    entry: str = "Jacobian's entry {},{}"
-    determinant: str = "the Jacobian's determinant"
-    in_box: str = (
-        "the list of conditions for stability at the solution in it has the signs {!r}, not {!r}"
-    )
-    at_solution: str = (
-        "the conditions for stability at the solution {} have the signs {!r}, not {!r}"
-    )
-
-    def place(self, row: int, column: int) -> tuple[int, int]:
-        """Which of the equal entries of the Jacobian stands for one."""
-        return (min(row, column), max(row, column)) if self.order else (row, column)
-
-    def index(self, signs: str) -> int | None:
-        """The number of negative eigenvalues of the Hessian."""
-        return signs.count("-") if self.order else None
-
-    def is_stable(self, signs: str) -> bool | None:
-        """Whether a solution is stable; None where nothing says so."""
-        return self.about_stability(not {*signs} & {"-", "0"})
-
-    def about_stability(self, what: T) -> T | None:
-        """Something about stability; None where nothing says what is stable."""
-        return what if Count.STABLE in self.kinds else None
-
-    def indices(self, negative: Sequence[int | None]) -> tuple[int, ...] | None:
-        """Numbers of solutions by the number of negative eigenvalues."""
-        return tuple(negative.count(k) for k in range(self.order + 1)) if self.order else None
-
-
-def of_eigenvalues(unknowns: int) -> SignMeaning:
-    """Solutions are critical points, near each of a function, and the Jacobian is its Hessian."""
-    return SignMeaning(
-        kinds=(Count.TOTAL, Count.STABLE, Count.INDEX),
-        order=unknowns,
-        with_all=frozenset({"total", "stable", "index"}),
-        solution="an equilibrium",
-        equation="gradient's entry {}",
-        entry="Hessian's entry {},{}",
-        determinant="det H",
-        in_box="the Hessian at the solution in it has eigenvalues of signs {!r}, not {!r}",
-        at_solution="the Hessian at the solution {} has eigenvalues of signs {}, not {!r}",
-    )
-
-
-def meaning_of(model: Model) -> SignMeaning:
-    """What is known of a model's solutions: by an index where they are critical points, near each
-    of a function.
-    """
-    mechanism = model.whole
-    if mechanism is not None and (mechanism.closing or mechanism.xjoints):
-        return SignMeaning(
-            (Count.TOTAL, Count.STABLE)
-        )  # conditions for stability stand in the place of a Hessian
-    if mechanism is not None:
-        has_index = not _has_moments_apart(mechanism)
-    else:
-        assert isinstance(model, System)
-        has_index = model.potential is not None
-    if has_index:
-        return of_eigenvalues(len(model.unknowns))
-    return SignMeaning((Count.TOTAL, Count.STABLE) if model.stability else (Count.TOTAL,))
-
-
-def _has_moments_apart(mechanism: Mechanism) -> bool:
-    """Whether some moment depends on another unknown than its own.
-
-    Others are slopes of a function; with such a one nothing may be stored of indices and of what is
-    stable.
-    """
-    unknowns = {*mechanism.angles, *mechanism.reals}
-    return any(
-        unknowns.intersection(names_of(tree)) - {unknown}
-        for unknown, tree in mechanism.work.items()
     )
 
 
@@ -278,11 +186,8 @@ class Derivation:
     @property
     def pulling(self) -> tuple[SpringVector, ...]:
         """The springs whose free lengths can be taken off the equations; with others none has one."""
-        return self.springs if self.from_energy or self._loops.leave_one_way else ()
-
-    @property
-    def _loops(self) -> Loops:
-        return Loops(self.ring, self.unknowns, self.closing)
+        is_taken_off = self.from_energy or leave_one_way(self.unknowns, self.closing)
+        return self.springs if is_taken_off else ()
 
     def stretched(
         self, ring: CoordinateRing, length: Callable[[fmpq_mpoly], fmpq_mpoly]
@@ -315,7 +220,8 @@ class Derivation:
 
     def along_loops(self, p: fmpq_mpoly) -> fmpq_mpoly:
         """The derivative along closed loops with one degree of freedom left."""
-        return self._loops.along(self.ring.gradient(p, self.unknowns))
+        slopes = self.ring.gradient(p, self.unknowns)
+        return along_loops(self.ring, self.unknowns, self.closing, slopes)
 
 
 def derivation_at(model: Model, values: Mapping[str, Fraction]) -> Derivation:
@@ -366,97 +272,91 @@ def _derived(model: Model, numbers: Mapping[str, fmpq]) -> Derivation:
 def _of_mechanism(
     model: Model, mechanism: Mechanism, ring: CoordinateRing, unknowns: tuple[str, ...]
 ) -> Derivation:
-    parts = _Parts.of(mechanism, ring)
-    moments, kept = dict.fromkeys(unknowns, ring.context.constant(0)), parts.closing
-    moments |= {unknown: ring.value(tree) for unknown, tree in mechanism.work.items()}
-    forces = tuple(moments.values())
-    given = Derivation(
-        ring,
-        unknowns,
-        meaning_of(model),
-        parts.energy,
-        moments,
-        (),
-        springs=parts.springs,
-        closing=kept,
-        required=parts.required,
-        moved=not all(force.is_zero() for force in forces),
-        apart=_has_moments_apart(mechanism),
-    )
+    free = _unconstrained(model, mechanism, ring, unknowns)
+    given, forces = replace(free, ring=ring), tuple(free.moments.values())
+    assert free.energy is not None
     if mechanism.xjoints:
-        joints = [
-            CrossedBars(j.angle, j.other, ring.value(j.length), ring.value(j.bars))
-            for j in mechanism.xjoints
-        ]
-        equations, distances, stability = xjoints.conditions(
-            ring, unknowns, joints, _degrees(mechanism), (parts.energy, parts.ring), forces
+        joints = _joints(mechanism, ring)
+        equations, distances, stability = crossed_conditions(
+            ring, unknowns, joints, _degrees(model, mechanism), (free.energy, free.ring), forces
         )
         return replace(given, equations=equations, inequalities=distances, stability=stability)
-    slopes = tuple(map(fmpq_mpoly.__sub__, ring.gradient(parts.energy, unknowns), forces))
-    if not kept:
+    slopes = tuple(map(fmpq_mpoly.__sub__, ring.gradient(free.energy, unknowns), forces))
+    if not free.closing:
         return replace(given, equations=slopes, from_energy=True)
-    equations, stability = Loops(ring, unknowns, kept).conditions(slopes)
+    equations, stability = loop_conditions(ring, unknowns, free.closing, slopes)
     return replace(given, equations=equations, stability=stability)
 
 
-class _Parts(NamedTuple):
-    """What a mechanism's description has in a ring, to which the coordinates of X-joints' second
-    bars are added.
+def _unconstrained(
+    model: Model, mechanism: Mechanism, base: CoordinateRing, unknowns: tuple[str, ...]
+) -> Derivation:
+    """The parts of the description, without equations; with the coordinates of X-joints' second bars
+    as last variables.
     """
+    followers = tuple(mechanism.followers)
+    more = (name for angle in followers for name in circle_names(angle))
+    ring = (
+        CoordinateRing((*base.names, *more), base.angles + followers, base.numbers)
+        if followers
+        else base
+    )
+    points = {name: (ring.value(x), ring.value(y)) for name, (x, y) in mechanism.points.items()}
 
-    ring: CoordinateRing
-    energy: fmpq_mpoly
-    springs: tuple[SpringVector, ...]
-    required: tuple[Required, ...]
-    closing: tuple[fmpq_mpoly, ...]
+    def between(start: str, end: str) -> Vector:
+        (a, b), (c, d) = points[start], points[end]
+        return c - a, d - b
 
-    @classmethod
-    def of(cls, mechanism: Mechanism, base: CoordinateRing) -> _Parts:
-        """The springs, the energy and what is kept zero."""
-        followers = tuple(mechanism.followers)
-        more = (name for angle in followers for name in circle_names(angle))
-        ring = (
-            CoordinateRing((*base.names, *more), base.angles + followers, base.numbers)
-            if followers
-            else base
-        )
-        points = {name: (ring.value(x), ring.value(y)) for name, (x, y) in mechanism.points.items()}
+    springs = tuple(
+        SpringVector(s.name, ring.value(s.stiffness), ring.value(s.free), between(s.start, s.end))
+        for s in mechanism.springs
+    )
+    energy = sum((s.energy for s in springs), ring.context.constant(0))
+    for point, x, y in mechanism.loads:
+        energy -= points[point][0] * ring.value(x) + points[point][1] * ring.value(y)
+    required = [Required(f"the stiffness of spring {s.name}", s.stiffness, True) for s in springs]
+    required += [Required(f"the free length of spring {s.name}", s.free, False) for s in springs]
+    for number, torsion in enumerate(mechanism.torsion, 1):
+        stiffness, rest = ring.value(torsion.stiffness), tuple(map(from_fraction, torsion.rest))
+        cosine, sine = ring.circle(torsion.angle)
+        energy += stiffness * (1 - cosine * rest[0] - sine * rest[1])
+        required.append(Required(f"the stiffness of torsion spring {number}", stiffness, True))
+    closing = tuple(
+        squared(between(bar.start, bar.end)) - ring.value(bar.length) ** 2
+        for bar in mechanism.closing
+    )
+    moments = dict.fromkeys(unknowns, base.context.constant(0))
+    moments |= {unknown: base.value(tree) for unknown, tree in mechanism.work.items()}
+    return Derivation(
+        ring,
+        unknowns,
+        meaning_of(model),
+        energy,
+        moments,
+        (),
+        springs=springs,
+        closing=closing,
+        required=tuple(required),
+        moved=not all(force.is_zero() for force in moments.values()),
+        apart=has_moments_apart(mechanism),
+    )
 
-        def between(start: str, end: str) -> Vector:
-            (a, b), (c, d) = points[start], points[end]
-            return c - a, d - b
 
-        springs = tuple(
-            SpringVector(
-                s.name, ring.value(s.stiffness), ring.value(s.free), between(s.start, s.end)
-            )
-            for s in mechanism.springs
-        )
-        energy = sum((s.energy for s in springs), ring.context.constant(0))
-        for point, x, y in mechanism.loads:
-            energy -= points[point][0] * ring.value(x) + points[point][1] * ring.value(y)
-        required = [
-            Required(f"the stiffness of spring {s.name}", s.stiffness, True) for s in springs
-        ]
-        required += [
-            Required(f"the free length of spring {s.name}", s.free, False) for s in springs
-        ]
-        for number, torsion in enumerate(mechanism.torsion, 1):
-            stiffness, rest = ring.value(torsion.stiffness), tuple(map(from_fraction, torsion.rest))
-            cosine, sine = ring.circle(torsion.angle)
-            energy += stiffness * (1 - cosine * rest[0] - sine * rest[1])
-            required.append(Required(f"the stiffness of torsion spring {number}", stiffness, True))
-        closing = tuple(
-            squared(between(bar.start, bar.end)) - ring.value(bar.length) ** 2
-            for bar in mechanism.closing
-        )
-        return cls(ring, energy, springs, tuple(required), closing)
+def _joints(mechanism: Mechanism, ring: CoordinateRing) -> list[CrossedBars]:
+    return [
+        CrossedBars(j.angle, j.other, ring.value(j.length), ring.value(j.bars))
+        for j in mechanism.xjoints
+    ]
 
 
 @lru_cache(maxsize=8)
-def _degrees(mechanism: Mechanism) -> tuple[int, ...]:
+def _degrees(model: Model, mechanism: Mechanism) -> tuple[int, ...]:
     """Of the energy in the coordinates of each second bar, whatever the parameters are."""
-    parts = _Parts.of(mechanism, _ring_of(mechanism, {}))
+    ring = _ring_of(model, {})
+    free = _unconstrained(model, mechanism, ring, ())
+    assert free.energy is not None
+    normal = free.ring.normal(free.energy)
     return tuple(
-        xjoints.degree(parts.ring, joint.other, parts.energy) for joint in mechanism.xjoints
+        max((sum(pair) for pair in joint.powers(free.ring, normal)), default=0)
+        for joint in _joints(mechanism, ring)
     )

@@ -14,7 +14,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from hashlib import sha256
 from itertools import combinations
 
 from ptmcad.answer.design import BestDesign, BoundedBox
@@ -28,9 +27,8 @@ from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import names_in
-from ptmcad.verification.attainment import SliceLines, check_maxima
 from ptmcad.verification.derivation import parameters_of
-from ptmcad.verification.line import NotKnown, ParameterLine
+from ptmcad.verification.parameterlines import NotKnown, ParameterLine, SliceLines, check_maxima
 from ptmcad.verification.report import (
     Check,
     CheckProgress,
@@ -38,8 +36,9 @@ from ptmcad.verification.report import (
     VerifyReport,
     Violation,
     checked,
+    drawn,
 )
-from ptmcad.verification.signs import Sign, is_in_domain
+from ptmcad.verification.windowsigns import Sign, is_in_domain
 
 DESIGNS = 12
 """Random designs of which a line is looked at at least; one of each box."""
@@ -134,10 +133,8 @@ def verify_design(
 
     Parameters
     ----------
-    seed : of the random designs; from a hash of the claims when None.
+    seed : of the random designs; a fresh one when None.
     """
-    claims = f"{found.name} {found.best} {found.bound} {[box.bound for box in found.boxes]}"
-    drawn = sha256(claims.encode()).hexdigest()[:16] if seed is None else str(seed)
     headway = CheckProgress(progress)
     steps: tuple[tuple[str, str, Callable[[_DesignLines], str]], ...] = (
         ("form", "comparison", _check_form),
@@ -147,7 +144,7 @@ def verify_design(
             "ranges of each design by itself",
             partial(_check_values, within=headway.within),
         ),
-        ("bound", "ranges of random designs", partial(_check_bound, seed=drawn)),
+        ("bound", "ranges of random designs", partial(_check_bound, seed=drawn(seed))),
         ("extremes", "ranges on the lines themselves", _check_extremes),
     )
     checks = checked(_DesignLines(found), steps, (), headway)
@@ -355,7 +352,9 @@ def _check_bound(lines: _DesignLines, seed: str) -> str:
                 )
     if not settled:
         return Unchecked(f"of {len(boxes)} random designs nothing was found out")
-    return f"at {settled} random designs no range is longer than the bound of their box"
+    return (
+        f"at {settled} random designs no range is longer than the bound of their box; seed {seed}"
+    )
 
 
 def _check_extremes(lines: _DesignLines) -> str:

@@ -9,20 +9,22 @@ far as they are not critical, of the norms of conditions (these up to the probab
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
+
+from flint import fmpq_mpoly
 
 from ptmcad.answer.regionmap import Continuum, Kind
 from ptmcad.errors import ExpressionError
 from ptmcad.model import Model
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.text.syntax import names_in
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import derivation_of
-from ptmcad.verification.model import equation_factors
-from ptmcad.verification.plane import factors, polynomial
+from ptmcad.verification.derivation import Derivation, derivation_of
+from ptmcad.verification.planecurves import PLANE, factors, polynomial
 from ptmcad.verification.report import Violation
 from ptmcad.verification.variety import BITS, check_identity, condition_exponents, random_points
 
@@ -180,3 +182,49 @@ def _of_conditions(claims: Claims, seed: str) -> dict[PlanePolynomial, str]:
             if e > 0 and of_jacobian < 1:
                 found.setdefault(c.polynomial, f"the norm of condition {k} vanishes on it")
     return found
+
+
+Quotient = tuple[fmpq_mpoly, fmpq_mpoly]
+"""Numerator and denominator."""
+
+
+def equation_factors(claims: Claims, weights: Sequence[Sequence[int]] = ()) -> list[fmpq_mpoly]:
+    """For each equation on the slice, or sum of some by weights, the common factor of its
+    coefficients in Q[x, y].
+    """
+    true = derivation_of(claims.model)
+    found = []
+    sums = [
+        sum((w * e for w, e in zip(row, true.equations, strict=True)), 0 * true.equations[0])
+        for row in weights
+    ]
+    for equation in sums or true.equations:
+        common = PLANE.constant(0)
+        for a, b in on_slice(claims, true, true.ring.normal(equation)).values():
+            if not a.is_zero():
+                common = common.gcd(a / a.gcd(b))
+        found.append(common)
+    return found
+
+
+def on_slice(claims: Claims, true: Derivation, p: fmpq_mpoly) -> dict[tuple[int, ...], Quotient]:
+    """The coefficients, functions of the axes, of a polynomial in the coordinates; free lengths not
+    named are zero.
+    """
+    nothing = constant(0)
+    width = true.coordinates
+    parameters = [
+        claims.result.slice.parameters.get(name, nothing) for name in true.ring.names[width:]
+    ]
+    values = [(polynomial(e.numerator), polynomial(e.denominator)) for e in parameters]
+    sums: dict[tuple[int, ...], Quotient] = {}
+    for powers, c in p.terms():
+        numerator, denominator = PLANE.constant(c), PLANE.constant(1)
+        for value, e in zip(
+            values, powers[width:], strict=False
+        ):  # X-joints' second bars come last
+            if e:
+                numerator, denominator = numerator * value[0] ** e, denominator * value[1] ** e
+        a, b = sums.get(powers[:width], (PLANE.constant(0), PLANE.constant(1)))
+        sums[powers[:width]] = (a * denominator + numerator * b, b * denominator)
+    return sums

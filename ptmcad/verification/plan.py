@@ -21,7 +21,7 @@ from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.derivation import derivation_of
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
-from ptmcad.verification.window import plainly_outside
+from ptmcad.verification.windowsigns import plainly_outside
 
 _COST = r"([0-9]+(?:\.[0-9]+)?(?:e\+[0-9]+)?)"
 _CHOICE = re.compile(rf"predicted cost {_COST} against {_COST}", re.ASCII)

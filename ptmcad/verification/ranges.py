@@ -1,7 +1,7 @@
 """Checks of the counts along lines: the ends of intervals are values at which counts can change,
 and none is missing.
 
-Guarantee: of exact intervals that of `ptmcad.verification.line`. Of enclosed ones, with free
+Guarantee: of exact intervals that of `ptmcad.verification.parameterlines`. Of enclosed ones, with free
 lengths, counts are those that are stored at the samples and next to both ends; that nothing changes
 between these points is not checked.
 """
@@ -26,15 +26,13 @@ from ptmcad.text.expressions import axis, constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import fraction_of, integer_of, shortest_text
 from ptmcad.text.parsing import parse
-from ptmcad.verification.attainment import SliceLines, check_maxima
 from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import parameters_of
-from ptmcad.verification.line import NotKnown, ParameterLine
+from ptmcad.verification.parameterlines import NotKnown, ParameterLine, SliceLines, check_maxima
 from ptmcad.verification.parameters import check_text
-from ptmcad.verification.poses import map_of
 from ptmcad.verification.report import (
     Check,
     CheckProgress,
@@ -43,6 +41,7 @@ from ptmcad.verification.report import (
     Violation,
     checked,
 )
+from ptmcad.verification.solutions import map_of
 from ptmcad.verification.sturm import roots_within
 
 _NEAR = 2**7

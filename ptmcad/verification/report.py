@@ -6,6 +6,7 @@ listed as such.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -24,6 +25,11 @@ C = TypeVar("C")
 COLUMNS = 80
 WIDTH = 22
 """Of the column of names, where these are not known yet."""
+
+
+def drawn(seed: int | None) -> str:
+    """The seed of all random choices; a fresh one where none is given, to which no claims can be fitted."""
+    return str(int.from_bytes(os.urandom(8)) if seed is None else seed)
 
 
 class Violation(Exception):

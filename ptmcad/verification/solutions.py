@@ -7,29 +7,57 @@ Where that shows nothing, as of a box much larger than the distance over which t
 trace forms count the solutions in the box, and tell the signs.
 
 Guarantee: boxes that pass are disjoint and contain at least one solution each. As their number is
-the total that the signatures of `ptmcad.verification.counts` give, each contains exactly one and
+the total that the signatures of `ptmcad.verification.solutions` give, each contains exactly one and
 together they contain all. No box has a real solution that does not count: it has one real solution
 by the test, or trace forms count one; where neither tells, that is listed as not checked.
 Conditions for stability that are said to be zero are so: trace forms give the number of solutions
 at which one is, and in the other boxes it is not. A box is refused on such a count alone.
+
+Checks of the counts: at every cell's sample, by signatures of trace forms.
+
+Guarantee: exact at the samples; that the counts hold in the whole cells follows from the checks of
+the variety and of the decomposition.
+
+Checks of the poses at a point: none is missing or stored twice, in each box is one, with its
+index and stability.
+
+They are those of a map's cell (`ptmcad.verification.solutions`, and with free lengths
+`certified.points`): a window of two axes on which nothing depends has the point as its sample.
+
+Guarantee: that of these checks. Where a pose is degenerate, the number of different ones alone is
+checked.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from functools import partial
 from itertools import combinations
 
 from flint import arb, ctx
 
-from ptmcad.answer.regionmap import Cell, Solution
+from ptmcad.answer.counts import Counts, euler_sum
+from ptmcad.answer.poses import Pose, Poses
+from ptmcad.answer.regionmap import Cell, RegionMap, Solution, Status, System
+from ptmcad.cover.rectangles import Cover
 from ptmcad.model import Model
-from ptmcad.text.numerals import approximate_text
+from ptmcad.options import Progress
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Axis, Point, Slice
+from ptmcad.text.expressions import constant
+from ptmcad.text.numerals import approximate_text, text_of
+from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.field import Matrix
 from ptmcad.verification.certified.narrow import narrowed, precisions, tested
+from ptmcad.verification.certified.points import check_cell, check_listed, counting_of
+from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import Derivation
+from ptmcad.verification.derivation import Derivation, parameters_of
+from ptmcad.verification.fibrealgebra import FibreAlgebra
 from ptmcad.verification.inertia import inertia
-from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.kinds import kind_of, meaning_of
+from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
 from ptmcad.verification.terms import ball_at
 
 _NARROWINGS = 4
@@ -186,3 +214,175 @@ def _of_conditions(conditions: list[arb], stored: str) -> str | None:
         else:
             signs += "+" if value > 0 else "-"
     return signs
+
+
+def check_counts(claims: Claims) -> str:
+    """Total, stable and index of every cell; on a torus the sum of the signs; lengths and
+    stiffnesses positive.
+    """
+    model, name = claims.model, claims.result.slice.count.value
+    kind = kind_of(claims.result.slice.count)
+    for n, cell in enumerate(claims.result.cells):
+        where = ", ".join(f"{axis}={text_of(cell.sample[axis])}" for axis in cell.sample.names)
+        if (wrong := not_positive(model, claims.parameters_at(*cell.sample))) is not None:
+            raise Violation(f"{wrong} is not positive at {where} in cell {n}")
+        fibre = claims.fibre_at(*cell.sample)
+        counts = fibre.counts()
+        if counts is None:
+            raise Violation(f"{claims.meaning.solution} is degenerate at {where} in cell {n}")
+        if not model.reals and not fibre.point.inequalities and _euler_sum(fibre, counts) != 0:
+            raise Violation(f"the Euler sum of {_text(counts)} at {where} in cell {n} is not zero")
+        stored = Counts(cell.total or 0, cell.stable, cell.index)
+        if cell.total is None or stored != counts:
+            raise Violation(
+                f"cell {n} is said to have {_text(stored)}; at {where} there are {_text(counts)}"
+            )
+        if kind.is_predicate and cell.further != (true := {name: fibre.number_held()}):
+            raise Violation(
+                f"cell {n} is said to have {_further(cell.further)}; at {where} there are {_further(true)}"
+            )
+    return f"{len(claims.result.cells)} samples"
+
+
+def _euler_sum(fibre: FibreAlgebra, counts: Counts) -> int:
+    """The sum of the signs of the Jacobian's determinant, which is zero on a torus (Poincare and
+    Hopf).
+    """
+    if counts.index is None:
+        return fibre.balance()
+    return euler_sum(counts.index)
+
+
+def _further(numbers: Mapping[str, int]) -> str:
+    return ", ".join(f"{number} {name}" for name, number in numbers.items()) or "no further count"
+
+
+def _text(counts: Counts) -> str:
+    parts = [f"{counts.total} {'solutions' if counts.index is None else 'equilibria'}"]
+    if counts.stable is not None:
+        parts.append(f"{counts.stable} stable")
+    if counts.index is not None:
+        parts.append(f"index {counts.index}")
+    return ", ".join(parts)
+
+
+def not_positive(model: Model, values: Mapping[str, Fraction]) -> str | None:
+    """A length or stiffness that is not positive, or None."""
+    for name in model.positive:
+        if values[name] <= 0:
+            return name
+    return next((name for name in model.nonnegative if values.get(name, 0) < 0), None)
+
+
+_EXACT = Fraction(1, 2**100)
+"""Half the width of the box of a pose whose coordinates are all known exactly."""
+
+
+def verify_poses(found: Poses, progress: Progress | None = None) -> VerifyReport:
+    """Check stored poses without the code that made them."""
+    claims = CertifiedClaims(_map_of(found))
+    steps = (
+        (
+            "poses",
+            "signatures and interval Newton, or a search in balls",
+            partial(_check_poses, found=found),
+        ),
+    )
+    return VerifyReport(tuple(checked(claims, steps, (), CheckProgress(progress))))
+
+
+def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
+    result, model = claims.result, found.model
+    (cell,) = result.cells
+    for name in parameters_of(model):
+        if name not in found.parameters:
+            raise Violation(f"nothing says what {name} is")
+    if result.slice.has_free_lengths and found.equilibria:
+        try:
+            if found.status is Status.UNDECIDED:
+                number = check_listed(claims, counting_of(claims), cell)
+                return Unchecked(f"whether there are more than the {number} listed, which hold")
+            number = check_cell(claims, counting_of(claims), cell)
+            untold = (
+                ""
+                if cell.stable == found.stable
+                else ", of whose stability nothing is checked here"
+            )
+            return f"{number} poses{untold}"
+        except Unproved as reason:
+            return Unchecked(str(reason))
+    try:
+        number = claims.fibre_at(*cell.sample).number_of_real_solutions()
+    except Violation:  # infinitely many
+        number = -1
+    if found.status is Status.UNDECIDED and not found.equilibria:
+        return Unchecked("nothing is said of them")
+    if number != len(found.equilibria):
+        raise Violation(
+            f"{len(found.equilibria)} poses are listed; there are {max(number, 0) or 'infinitely many'}"
+        )
+    check_disjoint(0, cell, model)
+    regular = [
+        (k, pose, box)
+        for k, (pose, box) in enumerate(zip(found.equilibria, cell.solutions, strict=True))
+        if pose.multiplicity == 1
+    ]
+    for k, pose, box in regular:
+        try:
+            signs = signs_of(claims, cell, box)
+        except Violation as violation:
+            raise Violation(f"the box of pose {k + 1}: {violation}") from None
+        index, stable = claims.meaning.index(signs), claims.meaning.is_stable(signs)
+        if (index, stable) != (pose.index, pose.stable):
+            raise Violation(f"pose {k + 1} has index {index}, and that it is stable is {stable}")
+    if len(regular) < number:
+        return Unchecked(
+            f"{number} different poses; {number - len(regular)} of them are degenerate"
+        )
+    return f"{number} poses"
+
+
+def map_of(slice: Slice, cells: tuple[Cell, ...], status: Status = Status.EXACT) -> RegionMap:
+    """A map of a slice that has cells only, for what is checked of points."""
+    return RegionMap(
+        slice=slice,
+        status=status,
+        system=System((), (), "", (), ()),
+        cells=cells,
+        undetermined=Fraction(0),
+        versions={},
+        cover=Cover(2, ()),
+    )
+
+
+def _map_of(found: Poses) -> RegionMap:
+    """The map of one cell that has the point as its sample."""
+    expressions = {name: constant(value) for name, value in found.parameters.items()}
+    axes = (Axis("x", Fraction(0), Fraction(1)), Axis("y", Fraction(0), Fraction(1)))
+    slice = Slice("", found.model, axes, expressions, Count.TOTAL)
+    boxes = tuple(_box(pose, slice.has_free_lengths) for pose in found.equilibria)
+    meaning = meaning_of(found.model)
+    index = meaning.indices([pose.index for pose in found.equilibria])
+    # a map of all counts with a cover has no stable ones where conditions say which are; each pose
+    # is asked below
+    stable = (
+        meaning.about_stability(found.stable)
+        if meaning.order or not slice.has_free_lengths
+        else None
+    )
+    sample = Point(slice.axis_names, Fraction(1, 2), Fraction(1, 2))
+    return map_of(
+        slice, (Cell(None, 0, sample, 0, len(boxes), stable, index, boxes),), found.status
+    )
+
+
+def _box(pose: Pose, in_angles: bool) -> Solution:
+    numbers = (pose.angles if in_angles else pose.cosines_sines) + pose.reals
+    signs = (
+        "" if pose.index is None else "+" * (len(pose.eigenvalues) - pose.index) + "-" * pose.index
+    )
+    return Solution(
+        tuple(x.center for x in numbers),
+        max((x.radius for x in numbers), default=_EXACT) or _EXACT,
+        signs,
+    )

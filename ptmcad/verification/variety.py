@@ -7,9 +7,8 @@ and the identity is checked at the others. A false identity of degree d agrees a
 with probability under d/2^47. So are the norms of inequalities and of conditions for stability,
 over those solutions at which they are not zero all over the slice.
 
-The points are drawn from a hash of the claims themselves, so that no one can choose claims to fit
-the points. They lie on no stored component: a point on one, where the fibre degenerates, is drawn
-again.
+The points are drawn from a fresh seed, so that no one can choose claims to fit them. They lie on no
+stored component: a point on one, where the fibre degenerates, is drawn again.
 
 Guarantee: up to that probability, every CRITICAL component is a factor of N, and no other curve is
 a factor of it but BOUNDARY components; every curve on which a condition's norm vanishes is stored;
@@ -42,8 +41,8 @@ from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import coordinates_of
-from ptmcad.verification.fibre import FibreAlgebra
-from ptmcad.verification.plane import factors, polynomial
+from ptmcad.verification.fibrealgebra import FibreAlgebra
+from ptmcad.verification.planecurves import factors, polynomial
 from ptmcad.verification.report import Violation
 
 POINTS, BITS = 12, 48

@@ -13,16 +13,16 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.branches import Branch, Branches
-from ptmcad.ask import branches as module
-from ptmcad.ask.branches import branch_diagram, solutions_on_line
-from ptmcad.ask.fields import quantities as fields
-from ptmcad.ask.fields.quantities import quantity_of
+from ptmcad.ask.lines import diagram as module
+from ptmcad.ask.lines.diagram import branch_diagram, solutions_on_line
 from ptmcad.ask.quantities import OPTION, of_pose, quantities, quantity
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.branches import kind
+from ptmcad.workbench.fields import fieldvalues as fields
+from ptmcad.workbench.fields.fieldvalues import quantity_of
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FIG4 = str(CONFIGS / "fig4.yaml")

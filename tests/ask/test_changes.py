@@ -21,7 +21,7 @@ from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError, DegenerateSliceError, LimitReached
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.question.config import family_from, member_like
-from ptmcad.verification.changes import Maps, _is_seen, verify_changes
+from ptmcad.verification.arrangements import Maps, _is_seen, verify_changes
 
 OVER_THE_FIRST = Options(engine="exact", areas=False, without=frozenset(("axis-order",)))
 

@@ -17,9 +17,9 @@ import pytest
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.certified.plain.curves import curves
-from ptmcad.certified.plain.points import plain_counter as point_counter
-from ptmcad.certified.search import search_curve
+from ptmcad.certified.branchandprune import search_curve
+from ptmcad.certified.plain.criticalcurves import curves
+from ptmcad.certified.plain.pointcounts import plain_counter as point_counter
 from ptmcad.model.mechanisms import RECORD
 from ptmcad.question.slice import Count, Slice
 

@@ -22,8 +22,8 @@ from support.minima_search import minima
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified import engine
-from ptmcad.certified.curve import CriticalCurve
-from ptmcad.certified.plain.points import plain_counter
+from ptmcad.certified.plain.pointcounts import plain_counter
+from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.model.mechanisms import RECORD
 from ptmcad.question.slice import Count, Slice

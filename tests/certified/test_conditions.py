@@ -17,12 +17,12 @@ from support.pages import data_of
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
-from ptmcad.certified.plain.bounds import ranges, scaled_together
-from ptmcad.certified.plain.curves import curves
-from ptmcad.certified.plain.points import plain_counter as point_counter
+from ptmcad.certified.plain.criticalcurves import curves
+from ptmcad.certified.plain.harmonics import Harmonics
+from ptmcad.certified.plain.pointcounts import plain_counter as point_counter
 from ptmcad.certified.plain.problem import problem_of
-from ptmcad.certified.plain.trigonometric import Harmonics
-from ptmcad.certified.points import PointCount
+from ptmcad.certified.plain.unknownranges import ranges, scaled_together
+from ptmcad.certified.plain.zeros import PointCount
 from ptmcad.cli import run as run_command
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Graph

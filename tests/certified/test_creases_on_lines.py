@@ -16,7 +16,7 @@ pytest.importorskip("numba")
 
 from ptmcad.answer.intervals import CertifiedIntervals
 from ptmcad.certified.intervals import certified_intervals
-from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.question.config import slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Count
 

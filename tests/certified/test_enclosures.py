@@ -19,13 +19,13 @@ from ptmcad.text.balls import ball_of
 
 pytest.importorskip("numba")
 
+from ptmcad.certified.branchandprune import search_curve
 from ptmcad.certified.contraction import contract, workspace
-from ptmcad.certified.curve import CriticalCurve
-from ptmcad.certified.plain.chart import SpringChart, chart
-from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
-from ptmcad.certified.search import search_curve
+from ptmcad.certified.plain.springchart import SpringChart, chart
+from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.formulas.balls import run_arb
 from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.intervals import program, run

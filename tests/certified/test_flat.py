@@ -18,13 +18,13 @@ from support.paper_energy import PaperEnergy, energy_at
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.certified.curve import CriticalCurve
-from ptmcad.certified.plain import curves as plain_curves
-from ptmcad.certified.plain.curves import curves
-from ptmcad.certified.plain.involution import mirrors
+from ptmcad.certified.branchandprune import search_curve
+from ptmcad.certified.plain import criticalcurves as plain_curves
+from ptmcad.certified.plain.criticalcurves import curves
+from ptmcad.certified.plain.mirrors import mirrors
 from ptmcad.certified.plain.problem import problem_of
-from ptmcad.certified.plan import beforehand
-from ptmcad.certified.search import search_curve
+from ptmcad.certified.refinement import CriticalCurve
+from ptmcad.certified.statement import beforehand
 from ptmcad.model.involutions import Involution
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice

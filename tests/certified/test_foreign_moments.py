@@ -75,7 +75,7 @@ def residual(
 
 @pytest.mark.parametrize("at", POINTS)
 def test_without_free_lengths_counts_are_those_of_the_exact_engine(at: tuple[str, str]) -> None:
-    from ptmcad.certified.plain.points import plain_counter
+    from ptmcad.certified.plain.pointcounts import plain_counter
 
     slice = sliced("0", "0")
     a, force = map(Fraction, at)

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ptmcad.certified.curve import CriticalCurve
-from ptmcad.certified.plain.chart import chart
-from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.branchandprune import search_curve
+from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
-from ptmcad.certified.search import search_curve
+from ptmcad.certified.plain.springchart import chart
+from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.formulas.intervals import program, run
 from ptmcad.formulas.tape import record
 from ptmcad.model import ptm

@@ -22,19 +22,19 @@ from support.loop_search import Energy, Numbers, counts_along
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.bands import certified_widths
-from ptmcad.ask.fields.field import field_of, request_of
 from ptmcad.certified import engine
-from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.intervals import certified_intervals
-from ptmcad.certified.plain import curves as plain_curves
-from ptmcad.certified.plain.points import plain_counter
+from ptmcad.certified.plain import criticalcurves as plain_curves
+from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
+from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.errors import ConfigError
 from ptmcad.formulas.graph import Formula
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
 from ptmcad.show.report.tape import tape
+from ptmcad.workbench.fields.quantityfield import field_of, request_of
 
 pytest.importorskip("numba")
 

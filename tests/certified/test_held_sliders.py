@@ -20,13 +20,13 @@ from support.multistart import Found, Model, model_of, solutions
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.certified.plain import bounds
-from ptmcad.certified.plain.bounds import known_ranges
-from ptmcad.certified.plain.points import plain_counter
-from ptmcad.certified.plain.poses import point_slice
+from ptmcad.certified.plain import unknownranges as bounds
+from ptmcad.certified.plain.certifiedposes import point_slice
+from ptmcad.certified.plain.harmonics import TrigonometricPolynomial
+from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import Problem, problem_of
 from ptmcad.certified.plain.straight import branches
-from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
+from ptmcad.certified.plain.unknownranges import known_ranges
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count, Slice
 

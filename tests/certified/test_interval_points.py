@@ -14,10 +14,9 @@ from support.dense_search import dense_search
 from support.examples import examples
 
 import ptmcad
-from ptmcad.certified.parameters import values_at
-from ptmcad.certified.peaks import peaks
-from ptmcad.certified.plain.points import BranchCounter, plain_counter
-from ptmcad.certified.points import PointCount
+from ptmcad.certified.peaks import peaks, values_at
+from ptmcad.certified.plain.pointcounts import BranchCounter, plain_counter
+from ptmcad.certified.plain.zeros import PointCount
 from ptmcad.formulas.balls import ball, run_arb
 from ptmcad.model import ptm
 from ptmcad.question.slice import Axis, Count, Slice

@@ -23,9 +23,9 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.peaks import peaks
-from ptmcad.certified.plain.curves import curves
-from ptmcad.certified.plain.points import plain_counter
-from ptmcad.certified.points import PointCount
+from ptmcad.certified.plain.criticalcurves import curves
+from ptmcad.certified.plain.pointcounts import plain_counter
+from ptmcad.certified.plain.zeros import PointCount
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.model import ptm
 from ptmcad.options import Options

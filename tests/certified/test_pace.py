@@ -17,9 +17,16 @@ from numba.core.event import install_listener
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.certified import engine, loading, refinement, slanted
-from ptmcad.certified.pace import ALLOWANCE, MAP_TIME_SHARE, MIN_RESERVE, SAFETY, Pace
-from ptmcad.certified.searchprogress import PARTS, SearchProgress
+from ptmcad.certified import engine, loading, refinement, slantedcover
+from ptmcad.certified.pace import (
+    ALLOWANCE,
+    MAP_TIME_SHARE,
+    MIN_RESERVE,
+    PARTS,
+    SAFETY,
+    Pace,
+    SearchProgress,
+)
 from ptmcad.errors import LimitReached
 from ptmcad.formulas.compiled import FUNCTIONS
 from ptmcad.options import Options
@@ -128,7 +135,7 @@ def stopped(
         patch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
         patch.setattr(refinement, "BUDGET", 500)
         patch.setattr(refinement, "search_curve", clock.slowed(refinement.search_curve, 0.1))
-        patch.setattr(slanted, "search_curve", clock.slowed(slanted.search_curve, 0.1))
+        patch.setattr(slantedcover, "search_curve", clock.slowed(slantedcover.search_curve, 0.1))
         if phase == "handing":
             hand = clock.slowed(handed.append, length)
         else:
@@ -174,7 +181,7 @@ def test_counts_are_left_out_before_the_limit_is_missed(monkeypatch: pytest.Monk
     """Each count at a point takes ten seconds: what is not counted is undetermined, and the map is
     there in time.
     """
-    from ptmcad.certified.plain.points import BranchCounter
+    from ptmcad.certified.plain.pointcounts import BranchCounter
 
     clock = Clock()
     monkeypatch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
@@ -276,7 +283,7 @@ def test_nothing_is_compiled_after_loading() -> None:
         }
 
     before = signatures()
-    assert before["ptmcad.certified.strips.strips"] == 1
+    assert before["ptmcad.certified.boxstrips.strips"] == 1
     ptmcad.classify(window(), count="total", tolerance="1/5", jobs=1)
     assert signatures() == before
 

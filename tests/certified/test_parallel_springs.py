@@ -20,7 +20,7 @@ from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.plain import problem as plain_problem
-from ptmcad.certified.plain.poses import plain_poses
+from ptmcad.certified.plain.certifiedposes import plain_poses
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.model import Mechanism
 from ptmcad.options import Options

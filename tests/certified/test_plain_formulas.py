@@ -16,17 +16,17 @@ from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
+from ptmcad.certified.branchandprune import search_curve
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import rational
-from ptmcad.certified.plain.bounds import ranges
-from ptmcad.certified.plain.curves import curves
-from ptmcad.certified.plain.points import plain_counter
-from ptmcad.certified.plain.points import plain_counter as point_counter
+from ptmcad.certified.plain.criticalcurves import curves
+from ptmcad.certified.plain.harmonics import Harmonics
+from ptmcad.certified.plain.pointcounts import plain_counter
+from ptmcad.certified.plain.pointcounts import plain_counter as point_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.spectrum import inertia
-from ptmcad.certified.plain.trigonometric import Harmonics
-from ptmcad.certified.search import search_curve
+from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.errors import ConfigError, GeometryError
 from ptmcad.model.mechanisms import RECORD
 from ptmcad.question.config import slice_from_mapping

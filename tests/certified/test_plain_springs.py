@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from test_plain_formulas import PLAIN_PTM
 
 import ptmcad
-from ptmcad.certified.plain.chart import SpringChart, chart, principal_minors
+from ptmcad.certified.plain.divisors import common_factor
 from ptmcad.certified.plain.geometry import common_factors, geometry
 from ptmcad.certified.plain.problem import Problem, problem_of
-from ptmcad.certified.plain.scaling import common_factor
+from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
 from ptmcad.formulas.graph import Formula, Operation
 from ptmcad.formulas.intervals import program, run
 from ptmcad.formulas.tape import record

@@ -21,15 +21,14 @@ pytest.importorskip("numba")
 import ptmcad
 from ptmcad.certified import line
 from ptmcad.certified.intervals import certified_intervals
-from ptmcad.certified.plain.bounds import ranges
-from ptmcad.certified.plain.chart import chart
-from ptmcad.certified.plain.curves import curves
-from ptmcad.certified.plain.frame import MirrorFrame, frames
+from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.geometry import geometry
-from ptmcad.certified.plain.involution import halving, mirrors
+from ptmcad.certified.plain.mirrors import MirrorFrame, frames, halving, mirrors
 from ptmcad.certified.plain.opening import Coordinates, coordinates, opening, stiffness
-from ptmcad.certified.plain.points import plain_counter
+from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
+from ptmcad.certified.plain.springchart import chart
+from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.formulas.balls import run_arb
 from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.tape import record

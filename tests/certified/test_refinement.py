@@ -17,9 +17,8 @@ pytest.importorskip("numba")
 
 import ptmcad
 from ptmcad.certified import refinement
-from ptmcad.certified.curve import CriticalCurve
-from ptmcad.certified.refinement import CurveEnclosure, begin, refine
-from ptmcad.certified.system import system
+from ptmcad.certified.equationsystem import system
+from ptmcad.certified.refinement import CriticalCurve, CurveEnclosure, begin, refine
 from ptmcad.formulas.graph import Graph
 
 ANGLES = np.linspace(0.1, 3.1, 97)

@@ -12,15 +12,14 @@ from numpy.typing import NDArray
 
 pytest.importorskip("numba")
 
+from ptmcad.certified.branchandprune import search_curve
 from ptmcad.certified.contraction import contract, workspace
+from ptmcad.certified.equationsystem import EquationSystem, quotients, system
 from ptmcad.certified.line import on_line
-from ptmcad.certified.plain.chart import SpringChart, chart
-from ptmcad.certified.plain.curves import curves
+from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
-from ptmcad.certified.search import search_curve
-from ptmcad.certified.solved import quotients
-from ptmcad.certified.system import EquationSystem, system
+from ptmcad.certified.plain.springchart import SpringChart, chart
 from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.formulas.intervals import program, run
 from ptmcad.formulas.tape import record

@@ -12,12 +12,11 @@ import pytest
 pytest.importorskip("numba")
 
 from ptmcad.certified import specks
+from ptmcad.certified.branchandprune import Boxes
 from ptmcad.certified.covering import Lattice, box_rectangles, meeting, thinning
-from ptmcad.certified.curve import CriticalCurve
-from ptmcad.certified.refinement import CurveEnclosure, begin, refine
-from ptmcad.certified.search import Boxes
+from ptmcad.certified.equationsystem import system
+from ptmcad.certified.refinement import CriticalCurve, CurveEnclosure, begin, refine
 from ptmcad.certified.specks import without_specks
-from ptmcad.certified.system import system
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.formulas.graph import Graph

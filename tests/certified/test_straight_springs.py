@@ -25,10 +25,10 @@ from support.examples import examples
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.certified.engine import certified_map
-from ptmcad.certified.plain import curves as plain_curves
-from ptmcad.certified.plain import points as plain_points
-from ptmcad.certified.plain.points import plain_counter
-from ptmcad.certified.plain.poses import point_slice
+from ptmcad.certified.plain import criticalcurves as plain_curves
+from ptmcad.certified.plain import pointcounts as plain_points
+from ptmcad.certified.plain.certifiedposes import point_slice
+from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.straight import branches
 from ptmcad.options import Options

@@ -14,9 +14,9 @@ from support.few import few
 
 pytest.importorskip("numba")
 
+from ptmcad.certified.boxstrips import NONE, areas_of_pieces, numbers_of_pieces, pieces, strips
 from ptmcad.certified.covering import Lattice, Thinning
-from ptmcad.certified.strips import NONE, areas_of_pieces, numbers_of_pieces, pieces, strips
-from ptmcad.certified.system import EquationSystem, system
+from ptmcad.certified.equationsystem import EquationSystem, system
 from ptmcad.formulas.graph import Graph
 
 COEFFICIENTS = st.fractions(-3, 3, max_denominator=8)

@@ -11,8 +11,8 @@ from flint import arb, arb_series, ctx
 
 pytest.importorskip("numba")
 
-from ptmcad.certified.system import system
-from ptmcad.certified.tubes import Tubes, tubes
+from ptmcad.certified.curvetubes import Tubes, tubes
+from ptmcad.certified.equationsystem import system
 from ptmcad.formulas.graph import Formula, Graph, direction, length
 from ptmcad.formulas.intervals import program
 from ptmcad.formulas.tape import record

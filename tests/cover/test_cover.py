@@ -18,11 +18,10 @@ from numpy.typing import NDArray
 from support.examples import examples
 
 from ptmcad.cover import components, from_boxes, union_area
-from ptmcad.cover.borders import area_bounds
+from ptmcad.cover.complement import area_bounds, samples, simplest_between
+from ptmcad.cover.lattice import combined, gathered
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
-from ptmcad.cover.samples import samples, simplest_between
-from ptmcad.cover.simplification import combined, gathered
 
 UNIT = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))
 WINDOW = ((Fraction(1, 20), Fraction(2)), (Fraction(-7, 3), Fraction(5)))

@@ -13,9 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
-from ptmcad.cover import components, tubes, union_area
+from ptmcad.cover import components, union_area
+from ptmcad.cover import tubeframes as tubes
+from ptmcad.cover.connectivity import shown, stepped
 from ptmcad.cover.rectangles import Cover, Patch, Tube
-from ptmcad.cover.slanted import shown, stepped
 from ptmcad.cover.subdivision import FREE
 from ptmcad.verification.certified.slanted import SlantedFrame
 from ptmcad.verification.certified.sweep import sweep

@@ -13,7 +13,7 @@ import pytest
 from flint import fmpq
 
 import ptmcad
-from ptmcad.ask.ranges import Fate, pose_paths
+from ptmcad.ask.lines.follower import Fate, pose_paths
 from ptmcad.ask.solving import poses_at
 from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import polynomial_at

@@ -18,12 +18,12 @@ from flint import arb, arb_mat, ctx
 from support.maps import CONFIGS
 
 import ptmcad
-from ptmcad.ask.ranges import Fate, PosePath, pose_paths
+from ptmcad.ask.lines.follower import Fate, PosePath, pose_paths
+from ptmcad.ask.lines.linesystem import line_system
+from ptmcad.ask.lines.mirror import Mirror, mirror_of
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models.system import on_slice
-from ptmcad.exact.ranges.equations import line_system
 from ptmcad.exact.ranges.line import system_on
-from ptmcad.exact.ranges.mirror import Mirror, mirror_of
 from ptmcad.formulas.continuation import (
     BITS,
     BranchEquations,
@@ -99,7 +99,7 @@ def test_an_upright_pose_snaps_to_the_reverse_one(
     """Section 4.2 of the paper; ends agree with the ranges, poses with a descent in floating point."""
     slice, numbers = record(name), Numbers(record(name), along, at)
     found = pose_paths(slice, along, at, Fraction(start))
-    (operation,) = ptmcad.ask.ranges.intervals(slice, along, at).operation
+    (operation,) = ptmcad.intervals(slice, along, at).operation
     upright = [p for p in found.paths if p.upright]
     reverse = [p for p in found.paths if p.reverse]
     assert len(upright) == len(reverse) == 1
@@ -554,7 +554,7 @@ def test_losing_stability_is_no_merger() -> None:
     }
     found = pose_paths(system(**asked), "b", {"a": "3/2"}, Fraction(1, 2)).paths
     assert [(p.low.fate, p.high.fate) for p in found] == [(Fate.WINDOW, Fate.UNSTABLE)] * 2
-    counts = ptmcad.ask.ranges.intervals(system(**asked), "b", {"a": "3/2"})
+    counts = ptmcad.intervals(system(**asked), "b", {"a": "3/2"})
     assert counts.changes[-2].before.total == counts.changes[-2].after.total == 8
 
 

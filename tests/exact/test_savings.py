@@ -365,7 +365,7 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 @pytest.mark.slow
 def test_curves_of_the_certified_engine() -> None:
     pytest.importorskip("numba")
-    from ptmcad.certified.plain.curves import curves
+    from ptmcad.certified.plain.criticalcurves import curves
 
     def found(slice: Slice, *without: str) -> dict[str, tuple[int, ...]]:
         """Names of the curves, with the number of formulas beside the equations that vanish."""

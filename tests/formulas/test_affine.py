@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 pytest.importorskip("numba")
 
 from ptmcad.certified.contraction import contract_curve, survives, workspace
+from ptmcad.certified.equationsystem import EquationSystem, quotients, system
 from ptmcad.certified.linear import contract_linear, space_for
-from ptmcad.certified.solved import quotients
-from ptmcad.certified.system import EquationSystem, system
 from ptmcad.formulas.affine import CENTER, ERROR, FIRST, LANES, frame_for, run_affine, set_frame
 from ptmcad.formulas.balls import run_arb
 from ptmcad.formulas.graph import Formula, Graph, direction, inverse_length, length, meet

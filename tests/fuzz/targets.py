@@ -22,7 +22,7 @@ from fuzz.damage import damaged_bytes, damaged_tokens, damaged_tree, nasty
 from fuzz.records import expression
 from fuzz.seeds import CONFIGS, records, results
 from ptmcad.cli.locate import rows_of
-from ptmcad.cli.stored import read_result
+from ptmcad.cli.storedresults import read_result
 from ptmcad.errors import PtmcadError
 from ptmcad.question.config import MAX_DEGREE, slice_from_options
 from ptmcad.question.slice import Slice

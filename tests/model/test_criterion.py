@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from ptmcad.answer.counts import counts_of_signs
-from ptmcad.ask.fields.field import choice_of
 from ptmcad.errors import ConfigError
 from ptmcad.model.criterion import CONDITIONS, DEFINITENESS, NOTHING, Criterion, by_hessian
 from ptmcad.question.config import load
 from ptmcad.question.counts import usual_count
 from ptmcad.question.slice import count_fault
+from ptmcad.workbench.fields.quantityfield import choice_of
 
 RECORDS = {
     "fig2": by_hessian(2),

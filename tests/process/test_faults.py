@@ -292,7 +292,7 @@ HIGH_DEGREE = (
 """Lengths that are quadratic in the axes; its projection takes three seconds."""
 INTERRUPTED = {
     "map": (
-        "ptmcad.ask.fields.field filled",
+        "ptmcad.workbench.fields.quantityfield filled",
         ("map", "configs/fig4.yaml", "--value", "barrier", "--pose", "stable:2"),
     ),
     "range": (
@@ -300,7 +300,7 @@ INTERRUPTED = {
         ("range", "configs/fig4.yaml", "--along", "rho", "--over", "L2", "--format", "json"),
     ),
     "animate": (
-        "ptmcad.ask.fields.motion filled",
+        "ptmcad.workbench.fields.posemotion filled",
         ("animate", "configs/fig4.yaml", "--path", "rho=3/4:6/5,L2=3/2", "--pose", "stable:2"),
     ),
     "classify, areas": (

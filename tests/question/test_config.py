@@ -13,7 +13,7 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.model import ptm
 from ptmcad.question.config import load, point_from_mapping, slice_from_mapping, slice_from_options
-from ptmcad.question.config.designs import design_from
+from ptmcad.question.config.designkey import design_from
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Count
 from ptmcad.text.entry import plain_data

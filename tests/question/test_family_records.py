@@ -17,7 +17,7 @@ from ptmcad.question.config import (
     slice_from_mapping,
     slice_from_options,
 )
-from ptmcad.question.config.options import Typed
+from ptmcad.question.config.typed import Typed
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Name, Number, names_of, replaced, to_text
 

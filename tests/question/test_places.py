@@ -12,7 +12,7 @@ import pytest
 import ptmcad
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, slice_from_mapping
-from ptmcad.question.config.designs import design_from
+from ptmcad.question.config.designkey import design_from
 
 MECHANISM = """\
 name: t

@@ -17,7 +17,7 @@ from support.certified_map import certified_map
 from support.maps import CONFIGS, shipped
 
 import ptmcad
-from ptmcad.answer import METHODS
+from ptmcad.answer import METHODS, Method
 from ptmcad.answer.boundaries import Grid
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.field import Field
@@ -71,11 +71,13 @@ def returned() -> set[str]:
     """The names of all classes that are public, or that a public function or method says it
     returns.
     """
-    functions = [method for methods in METHODS.values() for method in methods.values()]
+    methods = [method for methods in METHODS.values() for method in methods.values()]
+    homes = [Method(method) if isinstance(method, str) else method for method in methods]
+    functions = [home.function if isinstance(home, Method) else home for home in homes]
     public = [getattr(ptmcad, name) for name in ptmcad.__all__]
     names = {found.__name__ for found in public if isinstance(found, type)} | set(METHODS)
     for found in (*functions, *(f for f in public if inspect.isfunction(f))):
-        annotation = inspect.signature(getattr(found, "__func__", found)).return_annotation
+        annotation = inspect.signature(found).return_annotation
         names |= set(re.findall(r"[A-Z]\w+", str(annotation)))
     return names - NO_RESULTS
 

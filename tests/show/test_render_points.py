@@ -16,7 +16,7 @@ from matplotlib.text import Text
 from support.maps import shipped
 
 from ptmcad.cli import run
-from ptmcad.cli.points import measured, places, poses_at
+from ptmcad.cli.plot import measured, places, poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.around import draw_around
 from ptmcad.show.render.clearance import Stroke, crosses

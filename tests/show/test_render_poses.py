@@ -22,7 +22,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from support.examples import examples
-from support.maps import shipped
 
 import ptmcad
 from ptmcad.answer.poses import Poses
@@ -30,7 +29,6 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.ask.solving import poses_at, solve
 from ptmcad.show.render import printing
 from ptmcad.show.render.clearance import Label, Stroke, crosses, overlap, place, polyline
-from ptmcad.show.render.figure import draw_figure
 from ptmcad.show.render.landscape import contour_levels, copies, draw_landscape, energy_of
 from ptmcad.show.render.mechanism import PALE, STRONG
 from ptmcad.show.render.poses import draw_poses, printed_number, value_text
@@ -334,28 +332,6 @@ def test_the_edges_of_the_torus_are_one() -> None:
     }
 
 
-# ------------------------------------------------------------------------------------------- the map and the poses
-
-
-FIGURE_POINTS = {"fig4": (Fraction(7, 10), Fraction(3, 2)), "fig3": (Fraction(3, 4), Fraction(-10))}
-
-
-def classified(name: str, count: str) -> ptmcad.RegionMap:
-    return shipped(name, None if count == "stable" else count)
-
-
-@pytest.mark.parametrize(("name", "count", "panels"), [("fig4", "stable", 2), ("fig3", "index", 2)])
-@pytest.mark.slow_cases("fig4-stable-2")
-def test_the_figure_has_the_map_and_the_stable_poses(name: str, count: str, panels: int) -> None:
-    result = classified(name, count)
-    figure = draw_figure(result, FIGURE_POINTS[name], poses(f"paper, fig. {name[-1]}"))
-    assert figure.axes[0].get_gid() == "map"
-    assert sum(str(a.get_gid()).startswith("pose-") for a in figure.axes) == panels
-    (point,) = [a for a in figure.findobj() if a.get_gid() == "point"]
-    x, y = {"fig4": (0.35, 0.75), "fig3": (0.375, 0.0)}[name]
-    assert (point.get_xdata()[0], point.get_ydata()[0]) == pytest.approx((x, y))
-
-
 # -------------------------------------------------------------------------------------------------- all of them
 
 
@@ -384,15 +360,6 @@ def test_texts_do_not_overlap_and_are_on_the_page(
     assert not [1 for a, b in combinations(boxes, 2) if a.overlaps(b)]
     for box in boxes:
         assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height
-
-
-@pytest.mark.parametrize(("name", "count"), [("fig4", "stable"), ("fig3", "index")])
-@pytest.mark.slow_cases("fig3-index")
-def test_texts_of_the_figure_do_not_overlap(name: str, count: str) -> None:
-    boxes = boxes_of(
-        draw_figure(classified(name, count), FIGURE_POINTS[name], poses(f"paper, fig. {name[-1]}"))
-    )
-    assert not [1 for a, b in combinations(boxes, 2) if a.overlaps(b)]
 
 
 @pytest.mark.slow

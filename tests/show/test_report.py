@@ -18,6 +18,7 @@ from typing import Any
 
 import pytest
 import yaml
+from flint import arb, ctx
 from hypothesis import given
 from hypothesis import strategies as st
 from support.certified_map import certified_map
@@ -33,22 +34,15 @@ from ptmcad.question.config import load, slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Point
 from ptmcad.show.render.axes import scale_of
 from ptmcad.show.report import page
-from ptmcad.show.report.bounds import (
-    Bounds,
-    cosine_sine,
-    decimal_text,
-    degrees,
-    exactly,
-    square_root,
-)
-from ptmcad.show.report.equilibria import at_sample
+from ptmcad.show.report.decimals import decimal_text, degrees
+from ptmcad.show.report.equilibria import at_sample, potential_at
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.show.report.frame import ticks
 from ptmcad.show.report.packing import packed
 from ptmcad.show.report.page import harmless
-from ptmcad.show.report.potential import potential_at
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.report.sections import question
+from ptmcad.text.balls import ball_over, enclosure_of
 from ptmcad.text.numerals import text_of
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -344,25 +338,13 @@ def test_angles_contain_the_true_one(degree: int, slack: int) -> None:
             Fraction(str(f(mpmath.mpf(degree) * mpmath.pi / 180))) for f in (mpmath.cos, mpmath.sin)
         )
     radius = Fraction(1, 10**slack) if slack else Fraction(1, 10**20)
-    found = degrees(Bounds(c - radius, c + radius), Bounds(s - radius, s + radius))
-    assert found is not None
-    turns = min((degree, degree - 360, degree + 360), key=lambda t: abs(t - found[0]))
-    assert found[0] <= turns <= found[1]
-    assert found[1] - found[0] <= 400 * radius + Fraction(1, 10**15)
-
-
-@given(middle=st.fractions(min_value=-40, max_value=40), slack=st.sampled_from([0, 12, 6, 3]))
-def test_cosines_and_sines_of_bounds_contain_the_true_ones(middle: Fraction, slack: int) -> None:
-    import mpmath
-
-    radius = Fraction(1, 10**slack) if slack else Fraction(0)
-    found = cosine_sine(Bounds(middle - radius, middle + radius))
-    with mpmath.workdps(60):
-        for end in (middle - radius, middle, middle + radius):
-            angle = mpmath.mpf(end.numerator) / end.denominator
-            for (low, high), function in zip(found, (mpmath.cos, mpmath.sin), strict=True):
-                assert low <= Fraction(mpmath.nstr(function(angle), 50)) <= high
-                assert high - low <= 2 * radius + Fraction(1, 10**15)
+    with ctx.workprec(128):
+        angle = degrees(*(ball_over(v - radius, v + radius) for v in (c, s)))
+        assert angle is not None
+        found = enclosure_of(angle)
+    turns = min((degree, degree - 360, degree + 360), key=lambda t: abs(t - found.low))
+    assert found.low <= turns <= found.high
+    assert found.high - found.low <= 400 * radius + Fraction(1, 10**15)
 
 
 def test_poses_with_free_lengths_satisfy_the_mechanism() -> None:
@@ -405,17 +387,8 @@ def test_boxes_of_angles_that_are_none_are_refused(solution: Solution) -> None:
 
 
 def test_boxes_that_tell_no_angle() -> None:
-    assert degrees(Bounds(Fraction(-1), Fraction(1)), Bounds(Fraction(-1), Fraction(1))) is None
-    assert degrees(exactly(0), exactly(0)) is None
-
-
-@given(value=st.fractions(min_value=0, max_value=10**9))
-def test_square_roots_are_bounded_from_both_sides(value: Fraction) -> None:
-    low, high = square_root(exactly(value))
-    assert low * low <= value <= high * high
-    assert high - low <= max(high, Fraction(1)) / 2**60
-    assert exactly(-2) * Bounds(low, high) == (-2 * high, -2 * low)
-    assert Bounds(Fraction(-1), Fraction(2)) ** 2 == (0, 4)
+    assert degrees(arb(0, 1), arb(0, 1)) is None
+    assert degrees(arb(0), arb(0)) is None
 
 
 def unit_of(text: str) -> float:

@@ -19,9 +19,9 @@ from support.browser import Browser
 from support.maps import CONFIGS, shipped
 
 from ptmcad import extras
-from ptmcad.ask.fields.field import exact_at
 from ptmcad.errors import ConfigError, PtmcadError
 from ptmcad.show.report import page
+from ptmcad.workbench.fields.quantityfield import exact_at
 
 SCRIPT = Path(chromium.__file__).parents[2] / "ptmcad" / "show" / "widget.js"
 needs_anywidget = pytest.mark.skipif(

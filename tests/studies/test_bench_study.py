@@ -28,7 +28,6 @@ from ptmcad.studies.bench import harness
 from ptmcad.studies.bench.error import figures, outward
 from ptmcad.studies.bench.harness import Row, measurement
 from ptmcad.studies.bench.process import Usage
-from ptmcad.studies.bench.report import curve_file, curves, page, sentences, terminal
 from ptmcad.studies.bench.stored import (
     BAD,
     compare,
@@ -39,6 +38,7 @@ from ptmcad.studies.bench.stored import (
     write_table,
 )
 from ptmcad.studies.bench.study import RIVALS
+from ptmcad.studies.bench.studyreport import curve_file, curves, page, sentences, terminal
 from ptmcad.studies.picture import draw
 
 ROOT = Path(__file__).resolve().parents[2]

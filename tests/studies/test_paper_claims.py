@@ -556,7 +556,7 @@ def test_maps_with_free_lengths_at_points() -> None:
     starting points.
     """
     from ptmcad.ask.location import locate
-    from ptmcad.studies.stress.methods import double_poses, proved_poses
+    from ptmcad.studies.stress.doubleprecision import double_poses, proved_poses
 
     draw, seen = Random(7), list[int]()
     map_ = free.certified("L2 = 3/2")

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 import sympy as sp
 
-from ptmcad.studies.paper import equations
+from ptmcad.studies.paper import corrected as equations
 from ptmcad.studies.paper.claim import Claim, Verdict, texts
 from ptmcad.studies.paper.pages import (
     FILES,

@@ -20,8 +20,8 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.studies.bench import __main__ as command
-from ptmcad.studies.bench import scaling
-from ptmcad.studies.bench.scaling import FAMILIES, exponent
+from ptmcad.studies.bench import growth as scaling
+from ptmcad.studies.bench.growth import FAMILIES, exponent
 
 # --------------------------------------------------------------------------------------------- what is known of folds
 

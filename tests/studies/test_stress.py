@@ -26,6 +26,7 @@ from ptmcad.studies.stress.campaign import (
     answer,
     campaign,
     changed,
+    draw_stress,
     markdown,
     random_case,
     scaled,
@@ -44,9 +45,8 @@ from ptmcad.studies.stress.case import (
     named_cases,
     point,
 )
+from ptmcad.studies.stress.doubleprecision import double_poses, newton_pose, sextic_poses
 from ptmcad.studies.stress.judgement import Row, judge
-from ptmcad.studies.stress.methods import double_poses, newton_pose, sextic_poses
-from ptmcad.studies.stress.picture import draw_stress
 from ptmcad.text.flint_numbers import from_fraction
 
 CASES = named_cases()

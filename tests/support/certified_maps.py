@@ -9,9 +9,8 @@ from math import hypot
 
 from ptmcad.answer.regionmap import Cell, Region, RegionMap, Status, System
 from ptmcad.cover import components
-from ptmcad.cover.borders import area_bounds
+from ptmcad.cover.complement import area_bounds, samples
 from ptmcad.cover.rectangles import Cover, Rectangle
-from ptmcad.cover.samples import samples
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Point
 

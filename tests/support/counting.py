@@ -12,7 +12,7 @@ from ptmcad.verification.certified.counted import CountedPoint
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.points import counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.poses import map_of
+from ptmcad.verification.solutions import map_of
 
 PAPER = known_of("ptm")
 MIDDLE = Point(("x", "y"), Fraction(1, 2), Fraction(1, 2))

@@ -22,7 +22,7 @@ from ptmcad.exact.cad.points import PointsOver
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import PlaneCurve
-from ptmcad.verification.heights import Heights
+from ptmcad.verification.projections import Heights
 from ptmcad.verification.sturm import LONG_DEGREE, roots_between
 
 SQRT2 = fmpz_poly([-2, 0, 1])
@@ -86,7 +86,7 @@ def test_a_double_point_is_one_point_without_a_polynomial_in_v(
     def fail(*_: object) -> None:
         raise AssertionError("the long way")
 
-    monkeypatch.setattr("ptmcad.verification.heights.points_over", fail)
+    monkeypatch.setattr("ptmcad.verification.projections.points_over", fail)
     monkeypatch.setattr("ptmcad.exact.cad.points.squarefree_part", fail)
     assert checker(known).between(LOW, HIGH) == 2
     assert len(engine(known).between(LOW, HIGH, [])) == 2

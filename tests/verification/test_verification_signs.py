@@ -1,4 +1,4 @@
-"""Signs proved by `ptmcad.verification.signs` against `ptmcad.question.positivity`, which shares no
+"""Signs proved by `ptmcad.verification.windowsigns` against `ptmcad.question.positivity`, which shares no
 code with it.
 """
 
@@ -25,7 +25,7 @@ from ptmcad.text.parsing import parse
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.signs import Sign, has_no_pole, is_in_domain
+from ptmcad.verification.windowsigns import Sign, has_no_pole, is_in_domain
 
 WINDOW = ((fmpq(0), fmpq(2)), (fmpq(-3), fmpq(1)))
 

@@ -22,7 +22,7 @@ from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.text.expressions import axis, constant
 from ptmcad.verification.certified.parameters import check_domain
-from ptmcad.verification.certified.system import check_potential
+from ptmcad.verification.equationtexts import check_potential
 from ptmcad.verification.parameters import check_text
 from ptmcad.verification.report import Unchecked, Violation
 
@@ -259,30 +259,36 @@ FALSE = [
         " + 1000*F3*(262144*rho - 594256)*(262144*rho - 228345)*(262144*rho - 89146)",
         "differs from the mechanism",
     ),
-    ("$", f" + F3/{10**45}", "differs from the mechanism's by 1/1000"),
-    ("$", " + 1", "differs from the mechanism's by 1"),
-    ("$", f" + 1/{10**45}*(cos(th1) - 1)", "differs from the mechanism's by"),
-    ("1/2\\*k1", "1/2*k2", "differs from the mechanism's by"),
-    (" - F3\\*", " + F3*", "differs from the mechanism's by"),
+    ("$", f" + F3/{10**45}", "differs from the mechanism's"),
+    ("$", " + 1", "differs from the mechanism's"),
+    ("$", f" + 1/{10**45}*(cos(th1) - 1)", "differs from the mechanism's"),
+    ("1/2\\*k1", "1/2*k2", "differs from the mechanism's"),
+    (" - F3\\*", " + F3*", "differs from the mechanism's"),
     ("\\(L2\\*sin\\(th2\\)\\)\\^2", "(L1*sin(th2))^2", "a root of what is no spring's length"),
-    ("sin\\(th1\\)", "sin(rho)", "a part that is no formula: 'sin"),
+    ("sin\\(th1\\)", "sin(rho)", "a part that is no formula: 'rho'"),
     ("cos\\(th1\\)", "th1", "a part that is no formula: 'th1'"),
-    ("^", "exit() + ", "a part that is no formula: 'exit"),
+    ("^", "exit() + ", "cannot be read at"),
     ("$", " + 1/rho", "a part that is no formula"),
     ("$", " + 1/(rho - rho)", "a part that is no formula"),
     ("$", " + 0*foo", "a part that is no formula: 'foo'"),
-    ("$", " + 0*9^9^9^9", "a part that is no formula"),
+    ("$", " + 0*9^9^9^9", "cannot be read at"),
     ("$", " + 0.5", "differs from the mechanism"),
     ("$", "*(L1 + L2)^9*(L1 + L2)^9", "differs from the mechanism"),
-    ("$", " + rho**2", "not a formula in the names"),
+    ("$", " + rho**2", "cannot be read at"),
     ("$", " + (", "cannot be read"),
     ("$", " + " + "(" * 2000 + "1" + ")" * 2000, "cannot be read"),
     (
         "$",
         " + " + "-" * 4000 + "rho",
-        "cannot be read|nested too deeply|too many parts within each other",
+        "cannot be read at",
     ),
-    ("$", " + rho" * 700, "differs from the mechanism's|nested too deeply|cannot be read"),
+    ("$", " + rho" * 700, "differs from the mechanism's"),
+    ("$", " + ((L1 + L2 + rho)^9)^9", "differs from the mechanism's"),
+    (
+        "$",
+        " + (k1 + k2 + k3 + F3 + F4)^6*(L1 + L2 + rho + F3x + F4x)^6",
+        "differs from the mechanism's",
+    ),
 ]
 
 
@@ -295,11 +301,7 @@ def test_no_other_potential_is_accepted(energy: str, old: str, new: str, message
         check_potential(claims(asked(), text))
 
 
-@pytest.mark.parametrize(
-    "more",
-    [" + ((L1 + L2 + rho)^9)^9", " + (k1 + k2 + k3 + F3 + F4)^6*(L1 + L2 + rho + F3x + F4x)^6"],
-)
-def test_what_is_too_large_is_not_checked(energy: str, more: str) -> None:
-    found = check_potential(claims(asked(), energy + more))
+def test_a_text_of_too_high_a_degree_is_not_checked(energy: str) -> None:
+    found = check_potential(claims(asked(), f"{energy} + ((L1 + L2)^99999)^99999"))
     assert isinstance(found, Unchecked)
-    assert "a product of more than" in found
+    assert "too high a degree" in found

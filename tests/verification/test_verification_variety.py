@@ -20,7 +20,7 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import variety
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.plane import polynomial
+from ptmcad.verification.planecurves import polynomial
 from ptmcad.verification.report import Violation
 from ptmcad.verification.variety import check_norm
 

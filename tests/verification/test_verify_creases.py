@@ -19,7 +19,7 @@ pytest.importorskip("numba")
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.certified.engine import certified_map
-from ptmcad.certified.plain import curves as plain_curves
+from ptmcad.certified.plain import criticalcurves as plain_curves
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
 from ptmcad.verification.certified.boxes import Unproved
@@ -234,7 +234,7 @@ def test_what_continues_a_side_hides_no_equilibrium_a_turn_away(at: tuple[str, s
 @pytest.mark.slow
 def test_counts_without_a_potential_agree_with_the_engines() -> None:
     """Moments that depend on the other angle: the balance in half angles is that of virtual work."""
-    from ptmcad.certified.plain.points import plain_counter
+    from ptmcad.certified.plain.pointcounts import plain_counter
 
     moved = {**PAIR, "moments": {"a": "1/3*sin(b) + 1/9", "b": "1/5*cos(a)"}}
     slice = ptmcad.slice_from_mapping(record(moved, "total"))
@@ -253,8 +253,8 @@ def test_counts_without_a_potential_agree_with_the_engines() -> None:
 @pytest.mark.slow_cases("mechanism0")
 @pytest.mark.slow
 def test_counts_agree_with_the_engines(mechanism: dict[str, Any]) -> None:
-    from ptmcad.certified.plain.points import plain_counter
-    from ptmcad.certified.plain.poses import point_slice
+    from ptmcad.certified.plain.certifiedposes import point_slice
+    from ptmcad.certified.plain.pointcounts import plain_counter
 
     generator = np.random.default_rng(3)
     slice = ptmcad.slice_from_mapping(record(mechanism))

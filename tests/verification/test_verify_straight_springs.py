@@ -16,7 +16,7 @@ pytest.importorskip("numba")
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.certified.engine import certified_map
-from ptmcad.certified.plain import curves as plain_curves
+from ptmcad.certified.plain import criticalcurves as plain_curves
 from ptmcad.options import Options
 from ptmcad.verification.certified.kinks import sides
 from ptmcad.verification.certified.ranges import _Bounds

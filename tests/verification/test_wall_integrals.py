@@ -15,10 +15,10 @@ from support.examples import examples
 from support.few import few
 
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification import roots, sturm
+from ptmcad.verification import sturm
 from ptmcad.verification.branches import PanelEffort, PanelPart, WallBranch, integrals_over
 from ptmcad.verification.claims import PlaneCurve
-from ptmcad.verification.roots import numbered_root
+from ptmcad.verification.sturm import numbered_root
 
 HEIGHTS = (fmpq(-3), fmpq(3))
 
@@ -188,10 +188,10 @@ def test_panels_that_are_halved_come_near_to_a_critical_value(name: str) -> None
 
 def test_a_root_is_found_in_a_window_of_any_size(monkeypatch: pytest.MonkeyPatch) -> None:
     """In few steps: the window is cut to what may hold roots at first."""
-    asked = []
+    asked, true = [], sturm.changes_of
 
     def changes_of(p: fmpz_poly) -> Callable[[fmpq], int]:
-        changes = sturm.changes_of(p)
+        changes = true(p)
 
         def counted(at: fmpq) -> int:
             asked.append(at)
@@ -199,7 +199,7 @@ def test_a_root_is_found_in_a_window_of_any_size(monkeypatch: pytest.MonkeyPatch
 
         return counted
 
-    monkeypatch.setattr(roots, "changes_of", changes_of)
+    monkeypatch.setattr(sturm, "changes_of", changes_of)
     far = fmpq(10) ** 300
     for p, expected in (
         (fmpz_poly([-1, 3]), [fmpq(1, 3)]),
@@ -210,7 +210,7 @@ def test_a_root_is_found_in_a_window_of_any_size(monkeypatch: pytest.MonkeyPatch
     ):
         for number, value in enumerate(expected):
             asked.clear()
-            roots._changes_of.cache_clear()
+            sturm._changes_of.cache_clear()
             found = numbered_root(p, -far, far, number)
             assert found is not None
             assert abs(found - value) < arb(2) ** -40 * abs(arb(value)) + arb(2) ** -400

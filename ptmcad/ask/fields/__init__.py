@@ -1,3 +1,1 @@
-"""Continuous quantities of equilibria over a map's window, in floating point, from the certified
-samples onwards.
-"""
+"""A model in floating point, and one solution of it followed along a course of parameters."""

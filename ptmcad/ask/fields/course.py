@@ -13,7 +13,7 @@ from typing import Any
 
 from ptmcad.answer.motion import Place
 from ptmcad.errors import ConfigError, shown
-from ptmcad.question.examples import FIRST, SECOND
+from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.question.slice import Slice
 from ptmcad.text.parsing import number_for
 

@@ -15,9 +15,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.answer.poses import Pose
 from ptmcad.formulas.doubles import Doubles
 from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled
+from ptmcad.question.slice import Slice, within_doubles
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -221,3 +223,22 @@ def apart(one: Floats, other: Floats, angles: int) -> Floats:
     gap = one - other
     gap[:angles] = np.remainder(gap[:angles] + np.pi, 2 * np.pi) - np.pi
     return gap
+
+
+def parameters_at(slice: Slice, x: Floats, y: Floats) -> Mapping[str, Any]:
+    """Every parameter of the model at points, given by arrays of coordinates of one shape: a
+    number, or that shape.
+    """
+    found: dict[str, Any] = {}
+    with within_doubles(slice):
+        for name, e in slice.parameters.items():
+            sides = [
+                sum((float(c) * x**i * y**j for i, j, c in terms), 0.0 * x * y)
+                for terms in (e.numerator, e.denominator)
+            ]
+            found[name] = float(e.constant()) if e.is_constant else sides[0] / sides[1]
+    return found
+
+
+def unknowns_of(pose: Pose) -> Floats:
+    return np.array([float(e.center) for e in (*pose.angles, *pose.reals)])

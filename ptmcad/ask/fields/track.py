@@ -7,10 +7,9 @@ from fractions import Fraction
 import numpy as np
 
 from ptmcad.answer.motion import Place
-from ptmcad.ask.fields.branches import parameters_at
 from ptmcad.ask.fields.course import Course
 from ptmcad.ask.fields.descent import solution
-from ptmcad.ask.fields.equations import Floats, ModelState, state_at
+from ptmcad.ask.fields.equations import Floats, ModelState, parameters_at, state_at
 from ptmcad.question.slice import Slice
 
 ALONG = 0.08

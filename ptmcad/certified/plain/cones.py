@@ -17,10 +17,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from ptmcad.certified.plain.angle import Unknown
+from ptmcad.certified.plain.divisors import over
+from ptmcad.certified.plain.harmonics import TrigonometricPolynomial, Unknown
 from ptmcad.certified.plain.problem import SpringCone
-from ptmcad.certified.plain.scaling import over
-from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.graph import Formula, Graph, direction, inverse_length, length, meet
 from ptmcad.text.expressions import Expression

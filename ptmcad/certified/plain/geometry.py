@@ -1,18 +1,31 @@
-"""What all formulas of a problem are written of, exactly and once: factors, derivatives, springs,
-bodies that turn.
+"""All that the formulas of a problem are made of, exactly and once: factors, derivatives, springs,
+and bodies that one angle turns together.
 
-Guarantee: everything is over the positive common factor of its equation.
+Guarantee: everything is over the positive common factor of its equation. The moment of a `Turn`, in
+which springs between the bodies have no part, vanishes at every equilibrium, and its stiffness is
+its derivative along w: the second derivative of the energy, up to a positive factor. (Lemma S4 of
+docs/soundness.md.)
+
+With d' = c J d + e along w, J being the turn by a right angle and c = -1, 0 or 1, a spring's length
+l has l' = u.e and l'' = c u x e + (u x e)^2/l + u.e'. Of a spring that turns as a whole e is zero,
+and of one from a body that turns to a fixed point it is as long as the way from there to the axis,
+however long the spring is. That way is often the same for all springs: times this arm stands what
+all of them do together, which intervals enclose more narrowly than the sum of its products.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
 
-from ptmcad.certified.plain.cones import ConeShape, shape
-from ptmcad.certified.plain.problem import Problem, Push
-from ptmcad.certified.plain.scaling import common_factor, over
-from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
-from ptmcad.certified.plain.turning import Turn, turns
+from ptmcad.certified.plain.cones import ConeFormulas, ConeShape, Pair, shape
+from ptmcad.certified.plain.divisors import common_factor, divided, largest_factor, over
+from ptmcad.certified.plain.harmonics import TrigonometricPolynomial, Unknown
+from ptmcad.certified.plain.problem import Problem, Push, SpringCone
+from ptmcad.formulas.axisfunctions import expression_formula
+from ptmcad.formulas.graph import Formula
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 
@@ -86,4 +99,125 @@ def common_factors(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Expressio
             axes,
         )
         for i, f in enumerate(problem.equations)
+    )
+
+
+MAX_DIRECTIONS = 1
+"""Directions w that are used: those in which most terms drop out. More of them cost more than they
+discard.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """A direction w of unknowns that change together.
+
+    Attributes
+    ----------
+    weights : w.
+    slope : of the smooth part of the energy along w, over the factor: what is a multiple of the
+        arm, over it, and the rest.
+    bend : the slope's own.
+    levers : for each cone c, e and e', the latter two over the factor and the arm.
+    factor : positive in the open window.
+    arm : what divides all e.
+    """
+
+    weights: tuple[int, ...]
+    slope: Pair
+    bend: Pair
+    levers: tuple[tuple[int, Pair, Pair], ...]
+    factor: Expression
+    arm: Expression
+
+    def moment(self, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown]) -> Formula:
+        """What vanishes at equilibria."""
+        total, rest = _written(self.slope, unknowns)
+        for at, (_, e, _) in zip(springs, self.levers, strict=True):
+            (x, y), (ux, uy) = _written(e, unknowns), at.unit
+            total = total - at.pull * (ux * x + uy * y)
+        return expression_formula(rest.graph, self.arm) * total + rest
+
+    def stiffness(
+        self, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown], factor: Formula
+    ) -> Formula:
+        """The second derivative along w."""
+        total, rest = _written(self.bend, unknowns)
+        arm = expression_formula(rest.graph, self.arm)
+        for at, (c, e, de) in zip(springs, self.levers, strict=True):
+            (x, y), (dx, dy), (ux, uy) = _written(e, unknowns), _written(de, unknowns), at.unit
+            across = ux * y - uy * x
+            bent = factor * (arm * (at.inverse * across.squared()))
+            total = total - at.pull * (c * across + bent + (ux * dx + uy * dy))
+        return arm * total + rest
+
+
+def _written(pair: Pair, unknowns: Sequence[Unknown]) -> tuple[Formula, Formula]:
+    first, second = pair
+    return first.formula(unknowns), second.formula(unknowns)
+
+
+def turns(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Turn, ...]:
+    """The directions in which springs or terms drop out, the best ones first."""
+    found = []
+    for weights in product((0, 1, -1), repeat=len(problem.unknowns)):
+        lead = next((w for w in weights if w), 0)
+        angles = all(is_angle for is_angle, w in zip(problem.is_angle, weights, strict=True) if w)
+        if lead > 0 and sum(map(abs, weights)) > 1 and angles:
+            gain = _gain(problem, weights)
+            if gain > 0:
+                found.append((gain, weights))
+    found.sort(key=lambda entry: -entry[0])
+    return tuple(_turn(problem, weights, axes) for _, weights in found[:MAX_DIRECTIONS])
+
+
+def _gain(problem: Problem, weights: Sequence[int]) -> int:
+    """How many terms less there are than in the equations that the moment is put together of."""
+    before = sum(len(f.terms) for w, f in zip(weights, problem.equations, strict=True) if w)
+    after = len(_along(problem.equations, weights).terms)
+    for cone in problem.cones:
+        before += sum(
+            len(d.derivative(i).terms) for i, w in enumerate(weights) if w for d in cone.difference
+        )
+        after += sum(len(f.terms) for f in _lever(cone, weights)[1])
+    return before - after
+
+
+def _along(
+    slopes: Sequence[TrigonometricPolynomial], weights: Sequence[int]
+) -> TrigonometricPolynomial:
+    total = TrigonometricPolynomial({})
+    for w, f in zip(weights, slopes, strict=True):
+        total = total + f if w > 0 else total - f if w < 0 else total
+    return total
+
+
+def _derivative(f: TrigonometricPolynomial, weights: Sequence[int]) -> TrigonometricPolynomial:
+    return _along([f.derivative(i) for i in range(len(weights))], weights)
+
+
+def _lever(cone: SpringCone, weights: Sequence[int]) -> tuple[int, Pair]:
+    """c and e with the fewest terms."""
+    x, y = cone.difference
+    dx, dy = (_derivative(f, weights) for f in (x, y))
+    choices: list[tuple[int, Pair]] = [
+        (c, (dx + y.scaled(Fraction(c)), dy - x.scaled(Fraction(c)))) for c in (0, 1, -1)
+    ]
+    return min(choices, key=lambda choice: sum(len(f.terms) for f in choice[1]))
+
+
+def _turn(problem: Problem, weights: tuple[int, ...], axes: tuple[Axis, Axis]) -> Turn:
+    slope = _along(problem.equations, weights)
+    levers = [_lever(cone, weights) for cone in problem.cones]
+    factor = common_factor([slope, *(f for _, e in levers for f in e)], axes)
+    arm = largest_factor(over(f, factor) for _, e in levers for f in e)
+    ends = [(c, (over(e[0], factor * arm), over(e[1], factor * arm))) for c, e in levers]
+    parts = divided(over(slope, factor), arm)
+    return Turn(
+        weights,
+        parts,
+        (_derivative(parts[0], weights), _derivative(parts[1], weights)),
+        tuple((c, e, (_derivative(e[0], weights), _derivative(e[1], weights))) for c, e in ends),
+        factor,
+        arm,
     )

@@ -18,12 +18,9 @@ from fractions import Fraction
 from math import comb
 from typing import NamedTuple
 
-from ptmcad.certified.plain.angle import Angle, Unknown
-from ptmcad.certified.plain.bounds import Range
-from ptmcad.certified.plain.frame import MirrorFrame
-from ptmcad.certified.plain.involution import image_of
-from ptmcad.certified.plain.problem import FIRST
-from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial
+from ptmcad.certified.plain.harmonics import Angle, Multi, TrigonometricPolynomial, Unknown
+from ptmcad.certified.plain.mirrors import MirrorFrame, image_of
+from ptmcad.certified.plain.problem import FIRST, Range
 from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.graph import Formula, Graph, inverse_length, length
 from ptmcad.formulas.values import substituted

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ptmcad.certified.plain.divisors import lowest_terms
-from ptmcad.certified.plain.scaling import absolute
-from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
+from ptmcad.certified.plain.divisors import absolute, lowest_terms
+from ptmcad.certified.plain.harmonics import TrigonometricPolynomial
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 

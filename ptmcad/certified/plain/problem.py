@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
 
+from ptmcad.certified.plain.harmonics import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.certified.plain.parallel import shares
-from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.axisfunctions import expression_formula
 from ptmcad.formulas.graph import Formula, Graph, length
@@ -41,6 +41,10 @@ minute.
 """
 FIRST = 2
 """Number of the first unknown among the variables, after the two axes."""
+TURN = (-3.0, -3.0 + 6.2832)
+"""A little more than a full turn, cut where no symmetric solution lies."""
+Range = tuple[float, float]
+"""Of an unknown: all solutions are between its ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +119,7 @@ class Problem:
     further : all are positive where the predicate holds that a count is by; empty where it is by
         none.
     covering : of each of the description's unknowns its whole multiples of these, where these are
-        others (`ptmcad.certified.plain.covering`).
+        others (`ptmcad.certified.plain.halfangles`).
     """
 
     unknowns: tuple[str, ...]

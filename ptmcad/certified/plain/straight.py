@@ -21,10 +21,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
-from ptmcad.certified.plain.covering import in_half_angle
 from ptmcad.certified.plain.divisors import common_divisor, quotient, square_root
+from ptmcad.certified.plain.halfangles import in_half_angle
+from ptmcad.certified.plain.harmonics import Multi, TrigonometricPolynomial, Vector, waves
 from ptmcad.certified.plain.problem import Condition, Problem, Push, SpringCone
-from ptmcad.certified.plain.trigonometric import Multi, TrigonometricPolynomial, Vector, waves
 from ptmcad.question.positivity import Need, decide
 from ptmcad.question.signs import PROVED
 from ptmcad.question.slice import Axis

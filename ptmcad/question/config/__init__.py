@@ -19,30 +19,31 @@ from typing import Any
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, Faults, Place, expect
 from ptmcad.model import Kind, Parameter, ptm
 from ptmcad.question.config.binding import released_names, settled
-from ptmcad.question.config.family import (
+from ptmcad.question.config.familyquestion import (
     Family,
     checked_family,
     family_of,
     fault_of_member,
     member_like,
 )
-from ptmcad.question.config.model import named_model
+from ptmcad.question.config.modelkeys import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, tree_of
-from ptmcad.question.config.options import Typed, ranges_of, settings_of, with_axes
-from ptmcad.question.config.points import (
+from ptmcad.question.config.problemrecord import COUNT, Record, record_of, with_place
+from ptmcad.question.config.resolution import checked_slice, slice_of
+from ptmcad.question.config.scalars import check_axis_name, file_name, portable_file
+from ptmcad.question.config.typed import (
+    Typed,
     point_from,
     point_from_mapping,
     point_from_options,
+    ranges_of,
+    settings_of,
     units_of,
+    with_axes,
 )
-from ptmcad.question.config.record import COUNT, Record, record_of, with_place
-from ptmcad.question.config.resolution import checked_slice, slice_of
-from ptmcad.question.config.scalars import file_name, portable_file
-from ptmcad.question.config.windows import check_axis_name
 from ptmcad.question.counts import Count
 from ptmcad.question.domain import MAX_DEGREE
-from ptmcad.question.examples import FIRST, SECOND
-from ptmcad.question.shipped import RecordSource, record_tree
+from ptmcad.question.shipped import FIRST, SECOND, RecordSource, record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar, Sequence, Written
 from ptmcad.text.node import Node
@@ -71,6 +72,7 @@ __all__ = [
     "slice_from",
     "slice_from_mapping",
     "slice_from_options",
+    "slice_from_typed",
     "units_of",
     "with_place",
 ]
@@ -152,9 +154,13 @@ def slice_from_options(
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
-    typed = Typed(config, slice, tuple(sets), tuple(ranges), count, mechanism)
-    if config is not None and typed == Typed(config):
-        return load(config)
+    return slice_from_typed(Typed(config, slice, tuple(sets), tuple(ranges), count, mechanism))
+
+
+def slice_from_typed(typed: Typed) -> Slice:
+    """The slice of what was typed, as `slice_from_options` gives it."""
+    if typed.config is not None and typed == Typed(typed.config):
+        return load(typed.config)
     return slice_of(record_from_options(typed))
 
 

@@ -14,11 +14,11 @@ from fractions import Fraction
 from ptmcad.errors import ExpressionError, Place
 from ptmcad.model import Model
 from ptmcad.question.config.binding import with_numbers
-from ptmcad.question.config.family import Family, family_of
-from ptmcad.question.config.record import Record
+from ptmcad.question.config.familyquestion import Family, family_of
+from ptmcad.question.config.problemrecord import Record
 from ptmcad.question.config.resolution import axis_of, point_of, slice_of
-from ptmcad.question.config.windows import Window
-from ptmcad.question.design import Bounds, Inequality, named
+from ptmcad.question.config.scalars import Window
+from ptmcad.question.inequalities import Bounds, Inequality, named
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.entry import Scalar
 from ptmcad.text.numerals import Numbers

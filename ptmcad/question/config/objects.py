@@ -14,7 +14,7 @@ from typing import Any, cast
 
 from ptmcad.errors import A_RECORD, ConfigError, Place, expect
 from ptmcad.model import ClosedMechanism, Mechanism, Model, System, built_in
-from ptmcad.question.config.model import model_of
+from ptmcad.question.config.modelkeys import model_of
 from ptmcad.question.shipped import record_tree
 from ptmcad.text.entry import Tree, from_python
 

@@ -15,14 +15,13 @@ from fractions import Fraction
 from ptmcad.errors import ExpressionError, Faults, Place
 from ptmcad.model import Kind, Mechanism, Model
 from ptmcad.model.evaluate import value_at
-from ptmcad.question.config.names import resolved
-from ptmcad.question.config.record import Record, read_record, swept_names
-from ptmcad.question.config.scalars import names_in_scalar, number_of
-from ptmcad.question.config.windows import Window
+from ptmcad.question.config.binding import resolved
+from ptmcad.question.config.problemrecord import Record, read_record, swept_names
+from ptmcad.question.config.scalars import Window, names_in_scalar, number_of
 from ptmcad.question.counts import usual_count
 from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part
-from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK, window_of
+from ptmcad.question.shipped import AXES
 from ptmcad.question.signs import PROVED, Finding, Subject
 from ptmcad.question.slice import Axes, Axis, Slice, count_fault, have_free_lengths
 from ptmcad.text.entry import Scalar, Tree

@@ -15,8 +15,8 @@ from ptmcad.model.mechanisms import MEANINGS
 from ptmcad.model.reading import DEFINITIONS, MAX_NAME, VALUE, Context
 from ptmcad.model.record import mechanism_codec
 from ptmcad.model.systems import system_codec
-from ptmcad.question.config.designs import DESIGN
-from ptmcad.question.config.record import record_codec
+from ptmcad.question.config.designkey import DESIGN
+from ptmcad.question.config.problemrecord import record_codec
 from ptmcad.question.config.starters import mechanism_names
 from ptmcad.question.config.sweeps import DEFINITIONS as OF_SWEEPS
 from ptmcad.question.config.sweeps import SWEEP

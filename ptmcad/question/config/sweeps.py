@@ -1,8 +1,11 @@
-"""The key ``sweep`` of a record: which values some parameters take, and the slice of each member.
+"""The key ``sweep`` of a record: which values some parameters take together, as products of lists and
+progressions, one after another, and the slice of each member.
 
 Guarantee: whatever is wrong is a `ConfigError` with file, line and key. A member is the slice that
-the options ``--set`` would ask for with the member's values. Values are exact rational numbers; a
-range ends exactly where it says.
+the options ``--set`` would ask for with the member's values. Values are exact rational numbers, a
+range ends exactly where it says, and nothing is listed that a progression describes. Members are
+numbered from 0 in the order of the record: products in their order, of each the last parameter's
+value changing fastest.
 """
 
 from __future__ import annotations
@@ -10,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -17,18 +21,86 @@ from ptmcad.model import Model
 from ptmcad.model.reading import NUMBER
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import tree_of
-from ptmcad.question.config.record import Record, swept_names
+from ptmcad.question.config.problemrecord import Record, swept_names
 from ptmcad.question.config.resolution import check_number, described_record, note_values, slice_of
-from ptmcad.question.config.scalars import number_of, number_text
-from ptmcad.question.config.windows import AXIS_NAME, check_axis_name
-from ptmcad.question.examples import A_SWEEP, FIRST
-from ptmcad.question.shipped import RecordSource, record_tree
+from ptmcad.question.config.scalars import AXIS_NAME, check_axis_name, number_of, number_text
+from ptmcad.question.shipped import A_SWEEP, FIRST, RecordSource, record_tree
 from ptmcad.question.slice import Slice
-from ptmcad.question.sweep import Product, Spaced, Sweep, Values
 from ptmcad.text.codec import Codec, part, reading, record
 from ptmcad.text.entry import Sequence, Tree
 from ptmcad.text.node import Node
 from ptmcad.text.syntax import did_you_mean
+
+
+@dataclass(frozen=True, slots=True)
+class Spaced:
+    """``number`` values, each a ``step`` from the one before; the step may be negative."""
+
+    first: Fraction
+    step: Fraction
+    number: int
+
+    def __len__(self) -> int:
+        return self.number
+
+    def __getitem__(self, number: int) -> Fraction:
+        return self.first + number * self.step
+
+
+Values = Spaced | tuple[Fraction, ...]
+Product = Mapping[str, Values]
+"""Every combination of the parameters' values."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """Products of values, one after another; all of them are of the same parameters.
+
+    >>> half = Spaced(Fraction(0), Fraction(1, 2), 3)
+    >>> sweep = Sweep(({"F3": (Fraction(-10),), "F4": half},))
+    >>> len(sweep), sweep[1]
+    (3, {'F3': Fraction(-10, 1), 'F4': Fraction(1, 2)})
+    """
+
+    products: tuple[Product, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What is swept, in the record's order."""
+        return tuple(self.products[0])
+
+    def __len__(self) -> int:
+        return sum(map(_size, self.products))
+
+    def __getitem__(self, number: int) -> dict[str, Fraction]:
+        """The values of a member.
+
+        Raises
+        ------
+        IndexError
+            When there is no such member.
+        """
+        rest = number
+        for product in self.products:
+            if 0 <= rest < _size(product):
+                chosen = _chosen(product, rest)
+                return {name: chosen[name] for name in self.names}
+            rest -= _size(product)
+        raise IndexError(f"there is no member {number} of {len(self)}")
+
+
+def _size(product: Product) -> int:
+    return prod(map(len, product.values()))
+
+
+def _chosen(product: Product, number: int) -> dict[str, Fraction]:
+    """The values of one combination, the last parameter's changing fastest."""
+    chosen = {}
+    for name, values in reversed(tuple(product.items())):
+        number, place = divmod(number, len(values))
+        chosen[name] = values[place]
+    return chosen
+
 
 MAX_MEMBERS = 1_000_000
 """Of a sweep; more would rather be asked in parts."""

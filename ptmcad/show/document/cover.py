@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import Any
 
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Patch, Tube
-from ptmcad.cover.tubes import flaw
+from ptmcad.cover.tubeframes import flaw
 from ptmcad.text.codec import Codec
 from ptmcad.text.node import Node
 

@@ -38,6 +38,7 @@ from ptmcad.text.codec import (
     POSITIVE,
     RATIONAL,
     TEXT,
+    TRUTH,
     Codec,
     Key,
     Known,
@@ -182,14 +183,16 @@ _ENERGY: Codec[Any] = in_words(
 )
 _PATH_END = record_of(
     PathEnd, {**_POINTS, **_places(PATH_DIGITS)}, fate=choice(Fate, by_name), text=derived(attrgetter("fate.value")),
-    energy=_ENERGY, target_energy=_ENERGY, **unless_default(PathEnd, "among"),
+    energy=_ENERGY, target_energy=_ENERGY, **unless_default(PathEnd, "among", "fallen"),
 )  # fmt: skip
 PATHS = record_of(
     PosePaths,
     {Axis: _AXIS, PosePath: record_of(PosePath, {**_POINTS, PathEnd: _PATH_END}, start=None, number=POSITIVE)},
-    name=None, model=None, moved=None, **unless_default(PosePaths, "joined"),
+    name=None, model=None, moved=None, joined=Key(TRUTH, lambda _: False, default=False, made=False),
 )  # fmt: skip
-"""The codec of the paths of stable poses."""
+"""The codec of the paths of stable poses. Earlier versions joined points in floating point
+(``joined``) where springs have free lengths.
+"""
 BRANCHES = record_of(
     Branches,
     {Axis: TEXT, Enclosure: in_words(partial(known, digits=BRANCH_DIGITS))},

@@ -183,24 +183,17 @@ def maximum_text(found: Maximum, over: str, digits: int) -> str:
 def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
     """What becomes of each pose in both directions."""
     name, model = found.along.name, found.model
-    where = "at all points that were computed" if found.joined else "on the path"
     lines = []
     for path in found.paths:
         place = next(p for p in path.points if p.value == path.start)
         heights = _heights(model)
-        side = f"; {_side(path, heights)} {where}" if heights else ""
+        side = f"; {_side(path, heights)} on the path" if heights else ""
         at = f"{name} = {shortest_text(path.start)}"
         lines.append(
             f"{model.nouns.pose} {path.number} at {at}: {_unknowns(place, model, digits)}{side}"
         )
         ends = (("down", path.low), ("up", path.high))
         lines += [f"  {direction}: {_end(e, found, digits)}" for direction, e in ends]
-    if found.joined and lines:
-        lines.append(
-            "followed in floating point from one proved solution to the next; what meets at an end is told by the "
-            "numbers on both sides of it, and is not proved; where several stable ones are left, steepest descent says "
-            "to which the mechanism snaps"
-        )
     return (
         "\n".join(lines)
         if lines
@@ -261,9 +254,11 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
     heights = _heights(model)
     kind = f" ({_posture(end.target, heights)})" if heights else ""
     lower = drop or "an undecided amount"
-    return (
+    snaps = (
         f"{what}; {model.nouns.whole} snaps to {target}{kind}, where the energy is lower by {lower}"
     )
+    chosen = ", which of several stable ones steepest descent in floating point chose"
+    return snaps + chosen * end.fallen
 
 
 def _event(end: PathEnd, model: Model) -> str:

@@ -13,6 +13,7 @@ _FUNCTIONS = {
     "film": ("gif_bytes", "save_film", "save_pictures"),
     "fonts": ("check_families",),
     "landscape": ("draw_landscape",),
+    "mechanism": ("draw_mechanism",),
     "multiples": ("multiples_figure",),
     "paths": ("draw_paths",),
     "pixelmap": ("field_png", "grid_png"),

@@ -7,11 +7,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
-import numpy as np
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from ptmcad.answer.comparison import Bounds, Change, Comparison
@@ -20,15 +18,15 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, symbol
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
 from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang, rewrapped
-from ptmcad.show.render.inches import Box, write_lines
-from ptmcad.show.render.legend import INK, Entry, Type, Wording, draw_legend, entries, hidden_words
+from ptmcad.show.render.legend import Entry, Type, Wording, entries, hidden_words
 from ptmcad.show.render.painting import Paint, paint_of
+from ptmcad.show.render.panels import LINE, Panel, PanelGrid
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import few, wrapped
-from ptmcad.show.render.thinmarks import Marks, draw_chart, marks_of
+from ptmcad.show.render.thinmarks import Marks, marks_of
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, count_text
@@ -44,21 +42,6 @@ _MAX_HEAD = 3
 LETTERS = ("A", "B")
 """Of the two maps, so that a change of counts has a direction: from A to B."""
 _MAX_NAMES = 3
-NO_MARKS = Marks()
-
-
-@dataclass(frozen=True, slots=True)
-class _MapPanel:
-    """A chart with what stands above and below it, and regions that are seen however narrow they
-    are.
-    """
-
-    seen: Shapes
-    paint: Paint
-    head: Sequence[str]
-    legend: Sequence[Entry]
-    outlined: Mapping[int, Fill]
-    marks: Marks = NO_MARKS
 
 
 def traced(result: RegionMap) -> None:
@@ -137,7 +120,7 @@ def _figure(comparison: Comparison, dpi: int, style: PictureStyle) -> Figure:
     side = each - left - right - 1.2 * em
     seen_sides = (side, side if style.size is None or style.wide is not None else style.size[1] / 2)
     panels = _panels(comparison, first, style, seen_sides, dpi)
-    head = 1.35 * em * max(len(panel.head) for panel in panels) + 0.5 * em
+    head = LINE * em * max(len(panel.head) for panel in panels) + 0.5 * em
     legend = max(type.height(panel.legend) for panel in panels)
     rest = head + below + 0.8 * em + legend + 0.6 * em
     tall = style.size[1] - rest if style.size is not None and style.wide is None else side
@@ -149,10 +132,11 @@ def _figure(comparison: Comparison, dpi: int, style: PictureStyle) -> Figure:
             key="size",
         )
     figure = Figure(figsize=(width, tall + rest), dpi=dpi, facecolor="white")
-    for k, panel in enumerate(panels):
-        box = (k * each + left + 0.3 * em, tall + rest - head - tall, side, tall)
-        _draw(figure, panel, box, how, font)
-        draw_legend(figure, panel.legend, box[0], box[1] - below - 0.8 * em, type)
+    corner = (left + 0.3 * em, tall + rest - head)
+    grid = PanelGrid(
+        corner, (side, tall), (each, 0.0), 3, how, type, below + 0.8 * em, shared=False
+    )
+    grid.draw(figure, panels, fontweight="bold")
     title = f"{whole_title(comparison.first)} and {whole_title(comparison.second)}"
     figure.set_label(f"{title}\n{' '.join(difference_words(comparison))}")
     return figure
@@ -160,7 +144,7 @@ def _figure(comparison: Comparison, dpi: int, style: PictureStyle) -> Figure:
 
 def _panels(
     comparison: Comparison, first: Shapes, style: PictureStyle, sides: Size, dpi: int
-) -> list[_MapPanel]:
+) -> list[Panel]:
     """The two maps and the difference, with text as wide as they are."""
     type, side = Type.of(style), sides[0]
     found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], Marks]] = []
@@ -202,7 +186,7 @@ def _panels(
     found.append((whole, bare, f"Difference, {' → '.join(LETTERS)}", changes, fills, marks))
     untold = style.legend is LegendPlace.NONE
     return [
-        _MapPanel(
+        Panel(
             seen, paint, _head(title, side, type),
             [] if untold else [rewrapped(entry, side, type) for entry in told], outlined, marks,
         )
@@ -275,19 +259,3 @@ def _differences(comparison: Comparison, style: PictureStyle) -> list[Entry]:
             )
         )
     return told
-
-
-def _draw(figure: Figure, panel: _MapPanel, box: Box, how: Dress, font: float) -> None:
-    left, bottom, _, high = box
-    axes = draw_chart(figure, box, panel.seen, panel.paint, panel.marks, how)
-    for number, fill in panel.outlined.items():
-        rims = [np.vstack([polygon, polygon[:1]]) for polygon in panel.seen.polygons(number)]
-        axes.add_artist(
-            LineCollection(
-                rims, transform=axes.transAxes, colors=fill.face, linewidths=0.1 * font, joinstyle="round", zorder=4,
-                gid=f"change-{number}",
-            )
-        )  # fmt: skip
-    em = font / 72
-    first = (left, bottom + high + 0.35 * em + 0.675 * em)
-    write_lines(figure, first, reversed(panel.head), font, -1.35 * em, fontweight="bold", color=INK)

@@ -67,28 +67,16 @@ class Layout:
     shortened: bool = False
 
 
-def flowing(
-    title: Sequence[str],
-    legend: Sequence[Entry],
-    type: Type,
-    insets: int,
-    beside: float,
-    tallest: float,
-) -> Layout:
-    """The layout of a map of a fixed side, with the legend and insets at its right.
-
-    Parameters
-    ----------
-    beside, tallest : so many inches are left free at the right, and it is at least so tall there.
-    """
+def flowing(title: Sequence[str], legend: Sequence[Entry], type: Type, insets: int) -> Layout:
+    """The layout of a map of a fixed side, with the legend and insets at its right."""
     below = type.height(legend) + 0.1
-    high = max(SIDE + BOTTOM, below + 0.1, BLOCK, tallest)
+    high = max(SIDE + BOTTOM, below + 0.1, BLOCK)
     right, under = _places(insets, below, high)
     columns = 1 + max((column for column, _ in right), default=0)
     left = LEFT + SIDE + GAP
     rows = 1 + max((row for row, _ in under), default=-1)
     top = high + rows * BLOCK
-    size = (left + columns * COLUMN + MARGIN + beside, top + TITLE_LINE * len(title) + 2 * MARGIN)
+    size = (left + columns * COLUMN + MARGIN, top + TITLE_LINE * len(title) + 2 * MARGIN)
     corners = [(left + column * COLUMN, top - down) for column, down in right]
     corners += [(MARGIN + column * COLUMN, (rows - row) * BLOCK) for row, column in under]
     return Layout(

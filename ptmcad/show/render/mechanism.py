@@ -12,12 +12,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
 
-from ptmcad.model import Support
+from ptmcad.model import Mechanism, Support
+from ptmcad.show.linedrawing import approximate_places, fitted
 from ptmcad.show.render.clearance import Position
+from ptmcad.show.render.inches import axes_at
 from ptmcad.show.render.legend import INK, SWATCH, Mark
+from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import (
     AMPLITUDE,
     BAR_WIDTHS,
@@ -30,6 +34,7 @@ from ptmcad.show.render.sketch import (
     SUPPORT,
     Sketch,
     bar_width,
+    sketched,
 )
 from ptmcad.show.spiral import spiral
 
@@ -75,6 +80,27 @@ def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> N
             *placed.center, placed.label.text, fontsize=LABEL_SIZE, color=style.text, ha="center", va="center",
             zorder=9, gid=f"{prefix}label-{placed.label.text}",
         )  # fmt: skip
+
+
+_SIDE, _MARGIN = 360.0, 50.0
+"""In points, of the drawing of a mechanism in no pose of its own."""
+
+
+def draw_mechanism(mechanism: Mechanism) -> Figure:
+    """A mechanism at the parameters' defaults, in any pose."""
+    inner = _SIDE - 2 * _MARGIN
+    nodes = {
+        name: (_MARGIN + inner * x, _MARGIN + inner * y)
+        for name, (x, y) in fitted(approximate_places(mechanism), 1.0).items()
+    }
+    with settings():
+        figure = Figure(figsize=(_SIDE / 72, _SIDE / 72), facecolor="white")
+        figure.set_label(mechanism.name)
+        axes = axes_at(figure, (0.0, 0.0, _SIDE / 72, _SIDE / 72))
+        axes.set(xlim=(0, _SIDE), ylim=(0, _SIDE))
+        axes.set_axis_off()
+        draw_sketch(axes, sketched(mechanism, nodes, (_SIDE, _SIDE), {}), STRONG, "")
+    return figure
 
 
 def _line(

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.transforms import Affine2D
 
@@ -15,7 +16,6 @@ from ptmcad.errors import expect
 from ptmcad.show.render.around import draw_around
 from ptmcad.show.render.axes import axis_name
 from ptmcad.show.render.blocks import PointPoses
-from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.legend import INK, head_of
 from ptmcad.show.render.overlay import Overlay
 from ptmcad.show.render.painting import fills_by_count, paint_map, paint_of
@@ -23,7 +23,7 @@ from ptmcad.show.render.poses import describe
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import MapDrawing, description, whole_title
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.style import LegendPlace, PictureStyle, styled
+from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, styled
 
 
 def plot(
@@ -76,22 +76,21 @@ def draw_on(axes: Any, result: RegionMap, samples: bool, style: PictureStyle) ->
     if title:
         axes.set_title(title, loc="left", wrap=True)
     if style.legend is not LegendPlace.NONE:
-        handles = handles_of(fills_by_count(paint, result))
+        handles = [
+            Patch(
+                facecolor=fill.face,
+                hatch=fill.hatch or None,
+                edgecolor=INK,
+                linewidth=0.4,
+                label=text,
+            )
+            for text, fill in fills_by_count(paint, result).items()
+        ]
         below = style.legend is LegendPlace.BELOW
         axes.legend(
             handles=handles, title=head_of(result.slice)[0], ncols=len(handles) if below else 1, borderaxespad=0,
             loc="upper left", bbox_to_anchor=(0.0, -0.2) if below else (1.03, 1.0), frameon=False,
         )  # fmt: skip
-
-
-def handles_of(fills: Mapping[str, Fill]) -> list[Patch]:
-    """What matplotlib's own legends show of fills, by their texts."""
-    return [
-        Patch(
-            facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4, label=text
-        )
-        for text, fill in fills.items()
-    ]
 
 
 def draw_with_poses(
@@ -114,9 +113,21 @@ def draw_with_poses(
     OSError
         When the file cannot be written.
     """
+    figure, missing = with_poses(result, points, dpi, style, overlay)
+    save(figure, path, dpi=dpi, style=style)
+    return missing
+
+
+def with_poses(
+    result: RegionMap,
+    points: Sequence[PointPoses],
+    dpi: int = 150,
+    style: PictureStyle = DEFAULT,
+    overlay: Overlay = (),
+) -> tuple[Figure, tuple[str, ...]]:
+    """What `draw_with_poses` writes, and what had no room, in words."""
     told = " ".join(f"At point {n}: {describe(poses)}" for n, (_, poses) in enumerate(points, 1))
     with settings(style):
         figure, missing = draw_around(MapDrawing(result, style, dpi, overlay=overlay), points)
     figure.set_label(f"{whole_title(result)}\n{description(result)} {told}")
-    save(figure, path, dpi=dpi, style=style)
-    return missing
+    return figure, missing

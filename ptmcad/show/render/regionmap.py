@@ -176,19 +176,6 @@ def _seen(whole: Shapes, sides: Size, dpi: int, earlier: _Seen | None = None) ->
     return _Seen(whole, thin, (*views, *unstable), lines)
 
 
-@dataclass(frozen=True, slots=True)
-class FreeSpace:
-    """Inches left free at the right of a picture that grows with what it shows, and how tall it is
-    there at least.
-    """
-
-    beside: float = 0.0
-    tallest: float = 0.0
-
-
-NO_ROOM = FreeSpace()
-
-
 class MapDrawing(NamedTuple):
     """A map and what it is to look like; to be drawn within `settings`.
 
@@ -210,11 +197,11 @@ class MapDrawing(NamedTuple):
         """The style's, or the slice's heading."""
         return whole_title(self.result) if self.style.title is None else self.style.title
 
-    def figure(self, room: FreeSpace = NO_ROOM) -> Figure:
+    def figure(self) -> Figure:
         """The picture."""
-        return self.drawn(room)[0]
+        return self.drawn()[0]
 
-    def drawn(self, room: FreeSpace = NO_ROOM) -> tuple[Figure, tuple[str, ...]]:
+    def drawn(self) -> tuple[Figure, tuple[str, ...]]:
         """The picture, and what it leaves out."""
         result, style = self.result, self.style
         if style.flows:
@@ -224,7 +211,7 @@ class MapDrawing(NamedTuple):
             )
             legend = self.legend(seen)[0]
             title = _lines(self.title)
-            layout = flowing(title, legend, type, len(seen.views), room.beside, room.tallest)
+            layout = flowing(title, legend, type, len(seen.views))
         else:
             seen, layout = self.fit()
         figure = Figure(figsize=layout.size, dpi=self.dpi, facecolor="white")

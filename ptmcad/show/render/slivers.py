@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import Merge, Region, RegionMap
-from ptmcad.cover.graph import connected
+from ptmcad.cover.subdivision import connected
 from ptmcad.show.render.clearance import Box
 from ptmcad.show.render.view import Interval, Point, Same, Shapes, View
 from ptmcad.show.style import Size

@@ -19,17 +19,11 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
-from ptmcad.show.render.inches import Box, write_lines
+from ptmcad.show.render.inches import Box
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type
-from ptmcad.show.render.multiples import (
-    draw_flowed,
-    family_entries,
-    in_words,
-    title_of,
-    titles_and_rows,
-    value_text,
-)
+from ptmcad.show.render.multiples import family_entries, in_words, title_of, value_text
 from ptmcad.show.render.painting import Paint, paint_of
+from ptmcad.show.render.panels import HeadAndFoot
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
@@ -80,11 +74,8 @@ def _figure(
     else:
         fills = [entry for entry in told if entry.mark != STRONG]
         told = sheet_entries(surface, colours, fills if _lowest(family) else fills[:1])
-    titles, lines = titles_and_rows(family, style, told, wide, type)
-    head, foot = (
-        1.5 * em * len(titles) + 0.4 * em,
-        1.35 * type.line * len(lines) + (0.7 * em if lines else 0.0),
-    )
+    around = HeadAndFoot.of(title_of(family), told, wide, style, type)
+    head, foot = around.head, around.foot if around.rows else 0.0
     # names of axes are so many letters below the box, whose lowest corner is a tenth above the
     # axes' end
     foot += max(0.0, 4.8 * em - 0.1 * (tall - head - foot))
@@ -107,8 +98,7 @@ def _figure(
             inches = min(box[2] * wide, box[3] * tall) / _BOX_DIAGONAL
             add_sheets(axes, surface, colours, _curves(family), 0.6 * paint.strong / 72 / inches)
     _limit(axes, family)
-    write_lines(figure, (0.6 * em, tall - em), titles, font, 1.5 * em, fontweight="bold", color=INK)
-    draw_flowed(figure, lines, em, type)
+    around.draw(figure)
     return figure
 
 

@@ -14,22 +14,22 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.show.render.axes import symbol
+from ptmcad.show.render.axes import Dress, symbol
 from ptmcad.show.render.colours import Fill
-from ptmcad.show.render.legend import head_of
+from ptmcad.show.render.legend import Entry, Type, draw_legend, head_of
 from ptmcad.show.render.painting import fills_by_count, paint_of
-from ptmcad.show.render.plotting import draw_on, handles_of
+from ptmcad.show.render.panels import Panel, PanelGrid
+from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.stage import Pixels
-from ptmcad.show.style import DEFAULT, LegendPlace
+from ptmcad.show.style import DEFAULT
 from ptmcad.show.table import in_order
 from ptmcad.text.numerals import fraction_of, shortest_text
 
-SIZE = (7.0, 5.2)
+SIZE, _DPI = (7.0, 5.2), 100
 """Inches of a picture."""
-_BOX = (0.11, 0.12, 0.62, 0.76)
-"""Of the map, as shares of the picture's sides: left, bottom, width, height."""
-_STYLE, _DPI = DEFAULT._replace(legend=LegendPlace.NONE, title=""), 100
-
+_GRID = PanelGrid((0.77, 4.58), (4.34, 3.95), (0.0, 0.0), 1, Dress(), Type(12))
+_KEY = (5.25, 4.58)
+"""The upper left corner of the legend."""
 _MAX_LENGTH = 90
 """Characters of the values above a map."""
 
@@ -47,33 +47,27 @@ class SweepFilm:
         self, maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]]
     ) -> None:
         self.maps, self.values = maps, values
-        self.head, fills = "", dict[str, Fill]()
+        fills: dict[str, Fill] = {}
+        head: tuple[str, ...] = ("",)
         for number in range(len(values)):
             result = maps(number)
             fills |= fills_by_count(paint_of(DEFAULT, result), result)
-            self.head = head_of(result.slice)[0]
-        self.legend = handles_of({text: fills[text] for text in sorted(fills, key=in_order)})
+            head = head_of(result.slice)[:1]
+        told = (Entry((text,), fills[text]) for text in sorted(fills, key=in_order))
+        self.legend = [Entry(head, strong=True), *told]
 
     def __len__(self) -> int:
         return len(self.values)
 
     def frame(self, number: int) -> Pixels:
         figure = Figure(figsize=SIZE, dpi=_DPI, facecolor="white")
-        axes: Any = figure.add_axes(_BOX)
-        draw_on(axes, self.maps(number), False, _STYLE)
+        result = self.maps(number)
         text = ",  ".join(
             f"{symbol(n)} = {shortest_text(fraction_of(v))}" for n, v in self.values[number].items()
         )
-        figure.text(
-            _BOX[0],
-            0.93,
-            text if len(text) <= _MAX_LENGTH else f"{text[:_MAX_LENGTH]}…",
-            fontsize=12,
-        )
-        figure.legend(
-            handles=self.legend, title=self.head, loc="upper left",
-            bbox_to_anchor=(_BOX[0] + _BOX[2] + 0.02, _BOX[1] + _BOX[3]), borderaxespad=0, frameon=False, fontsize=9,
-        )  # fmt: skip
+        head = text if len(text) <= _MAX_LENGTH else f"{text[:_MAX_LENGTH]}…"
+        _GRID.draw(figure, [Panel(shapes(result), paint_of(DEFAULT, result), (head,))])
+        draw_legend(figure, self.legend, *_KEY)
         canvas: Any = FigureCanvasAgg(figure)
         canvas.draw()
         return np.asarray(canvas.buffer_rgba())[..., :3].copy()

@@ -6,30 +6,27 @@ holds the equilibrium, as `ptmcad.verify` checks. Numbers that are not texts are
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain
+from math import prod
 from operator import gt
 from typing import Any, NamedTuple, TypeVar
 
-from ptmcad.answer.regionmap import Cell, RegionMap, Solution
+from flint import acb, arb, ctx
+
+from ptmcad.answer.regionmap import Cell, RegionMap, Solution, System
 from ptmcad.errors import ConfigError, PoleError
 from ptmcad.formulas.values import evaluated
 from ptmcad.model import Mechanism, Model
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.question.slice import merged
-from ptmcad.show.report.bounds import (
-    Bounds,
-    cosine_sine,
-    decimal_text,
-    degrees,
-    exactly,
-    last_place,
-    square_root,
-)
-from ptmcad.show.report.potential import Potential, energy, potential_at
+from ptmcad.show.report.decimals import ball_text, decimal_text, degrees, last_place
+from ptmcad.text.balls import ball_of, ball_over
 from ptmcad.text.expressions import values_at
-from ptmcad.text.numerals import shortest_text, text_of
+from ptmcad.text.numerals import Numbers, fraction_of, magnitude, shortest_text, text_of
 
 MAX_DRAWN = 10**100
 """Of parameters and coefficients that can be drawn: their products stay far within the range of
@@ -38,11 +35,15 @@ floating point.
 
 _MAX_TURNED = 1000
 """Radians in a stored angle, which is within one turn or a few."""
+_BITS = 192
+"""Of the precision, beyond that of any box that is stored."""
 _DIGITS = 7
 _DRAWN_DIGITS = 9
 """Of numbers for drawing, or from which the page's script begins: a little more than are shown."""
 
 Value = TypeVar("Value")
+Potential = Mapping[tuple[int, ...], Fraction]
+"""Exponents of the system's unknowns to coefficients."""
 
 
 def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
@@ -79,19 +80,22 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     system = compiled(model)
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | values
     acting = (system.shown.loads, system.moments[: system.criterion.order])
-    loads, moments = evaluated(acting if drawn else ((), ()), _Within(system, known))
     others = {
         n: v for n, v in distinct_parameters(values, model).items() if n not in cell.sample.names
     }
-    return {
-        "parameters": [[n, both(v)] for n, v in others.items()],
-        "loads": [[float(component[0]) for component in force] for force in loads],
-        "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()]
-        if drawn
-        else [],
-        "moments": [float(moment[0]) for moment in moments if any(map(any, moments))],
-        "equilibria": _solutions(model, cell, known, potential, polynomial) if drawn else [],
-    }
+    with ctx.workprec(_BITS):
+        loads, moments = evaluated(acting if drawn else ((), ()), _Within(system, known))
+        return {
+            "parameters": [[n, both(v)] for n, v in others.items()],
+            "loads": [[float(component) for component in force] for force in loads],
+            "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()]
+            if drawn
+            else [],
+            "moments": [
+                float(moment) for moment in moments if not all(m.is_zero() for m in moments)
+            ],
+            "equilibria": _solutions(model, cell, known, potential, polynomial) if drawn else [],
+        }
 
 
 def coordinates(model: Model) -> tuple[str, ...]:
@@ -116,7 +120,7 @@ def _plain(value: Fraction) -> str:
     text = shortest_text(value)
     if "/" not in text:
         return f"= {text}"
-    rounded = decimal_text(exactly(value), last_place([exactly(value)], _DIGITS))
+    rounded = decimal_text((value, value), magnitude(abs(value)) + 1 - _DIGITS)
     return f"≈ {rounded.replace('−', '-')}"
 
 
@@ -145,20 +149,22 @@ def _solutions(
     energies = (
         [pose.energy for pose in poses]
         if potential is None
-        else [energy(potential, box) for box in boxes]
+        else [_energy(potential, box) for box in boxes]
     )
-    known = [bounds for bounds in energies if bounds is not None]
-    energy_place = _place(known)
+    energy_place = last_place((ball for ball in energies if ball is not None), _DIGITS)
     turns = 2 * len(model.angles)
     reals = [box[turns:] for box in boxes]
-    real_place = _place(x for row in reals for x in row)
+    real_place = last_place((x for row in reals for x in row), _DIGITS)
     parts = [{} for _ in boxes] if model.drawable is None else _parts(model.drawable, poses)
     kinds = [model.criterion.kind_of_signs(solution.signs) for solution in cell.solutions]
     order = {"stable": 0, "degenerate": len(model.unknowns) + 1}
 
-    def rank(k: int) -> tuple[int, Fraction]:
-        low, high = energies[k] or (Fraction(0), Fraction(0))
-        return order.get(kinds[k], cell.solutions[k].signs.count("-")), low + high
+    def rank(k: int) -> tuple[int, Any]:
+        energy = energies[k]
+        return (
+            order.get(kinds[k], cell.solutions[k].signs.count("-")),
+            0 if energy is None else energy.mid().fmpq(),
+        )
 
     found = []
     for k in sorted(range(len(boxes)), key=rank):
@@ -167,17 +173,17 @@ def _solutions(
         unknowns = [_angle_text(angle) for angle in angles]
         entry = {
             "kind": kinds[k],
-            "unknowns": unknowns + [decimal_text(x, real_place) for x in reals[k]],
+            "unknowns": unknowns + [ball_text(x, real_place) for x in reals[k]],
             "at": [_drawn(c) for c in box],
-            "energy": "" if at is None else decimal_text(at, energy_place),
-            "level": 0.0 if at is None or abs(at[0] + at[1]) > MAX_DRAWN**3 else _drawn(at),
+            "energy": "" if at is None else ball_text(at, energy_place),
+            "level": 0.0 if at is None or at.abs_upper() > MAX_DRAWN**3 else _drawn(at),
         }
         found.append(entry | parts[k])
     return found
 
 
 class _Pose(NamedTuple):
-    """What is shown of a pose, as formulas, or as their bounds."""
+    """What is shown of a pose, as formulas, or as balls around their values."""
 
     energy: Any
     points: Mapping[str, tuple[Any, Any]]
@@ -190,50 +196,49 @@ def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]
     places = [
         coordinate for pose in poses for place in pose.points.values() for coordinate in place
     ]
-    length_place = _place([*places, *(length for pose in poses for length, _, _ in pose.stretches)])
-    force_place = _place(force for pose in poses for _, _, force in pose.stretches)
-    moment_place = _place(spring.moment for pose in poses for spring in pose.turned)
+    lengths = [length for pose in poses for length, _, _ in pose.stretches]
+    length_place = last_place([*places, *lengths], _DIGITS)
+    forces = (force for pose in poses for _, _, force in pose.stretches)
+    force_place = last_place(forces, _DIGITS)
+    moments = (spring.moment for pose in poses for spring in pose.turned)
+    moment_place = last_place(moments, _DIGITS)
     found = []
     for pose in poses:
         shown = {
-            name: f"({decimal_text(x, length_place)}, {decimal_text(y, length_place)})"
+            name: f"({ball_text(x, length_place)}, {ball_text(y, length_place)})"
             for name, (x, y) in pose.points.items()
         }
         turned = [
             (
                 _angle_text(degrees(spring.cosine, spring.sine)),
-                decimal_text(spring.moment, moment_place),
+                ball_text(spring.moment, moment_place),
             )
             for spring in pose.turned
         ]
         entry: dict[str, Any] = {
             "nodes": [[_drawn(x) for x in place] for place in pose.points.values()],
             "places": [shown[name] for name in mechanism.moving],
-            "lengths": [decimal_text(length, length_place) for length, _, _ in pose.stretches],
-            "forces": [decimal_text(force, force_place) for _, _, force in pose.stretches],
+            "lengths": [ball_text(length, length_place) for length, _, _ in pose.stretches],
+            "forces": [ball_text(force, force_place) for _, _, force in pose.stretches],
         }
         found.append(entry | ({"deflections": turned} if turned else {}))
     return found
 
 
-def _place(values: Iterable[Bounds]) -> int:
-    return last_place(list(values), _DIGITS)
-
-
-def _drawn(value: Bounds) -> float:
-    """The middle of bounds, in few characters."""
-    middle = float(f"{float(sum(value) / 2):.{_DRAWN_DIGITS}g}")
+def _drawn(value: arb) -> float:
+    """The middle of a ball, in few characters."""
+    middle = float(f"{float(value.mid()):.{_DRAWN_DIGITS}g}")
     return int(middle) if middle.is_integer() and abs(middle) < 10**_DRAWN_DIGITS else middle
 
 
-def _angle_text(angle: Bounds | None) -> str:
+def _angle_text(angle: arb | None) -> str:
     if angle is None:
         return "not determined"
-    text = decimal_text(angle, -4)
+    text = ball_text(angle, -4)
     return f"{text.lstrip('−') if text in ('−180.0000', '−0.0000') else text}°"
 
 
-def _box(solution: Solution, model: Model, polynomial: bool) -> tuple[Bounds, ...]:
+def _box(solution: Solution, model: Model, polynomial: bool) -> tuple[arb, ...]:
     """Cosines, sines and unknowns on the line, from a box around them, or around the angles, as
     certified maps have.
     """
@@ -248,35 +253,92 @@ def _box(solution: Solution, model: Model, polynomial: bool) -> tuple[Bounds, ..
     center, radius = solution.center, solution.radius
     if len(center) != len(most) or not 0 <= radius < widest or any(map(gt, map(abs, center), most)):
         raise ConfigError(f"a stored solution is no box around {kind}; check it with ptmcad verify")
-    ends = [Bounds(c - radius, c + radius) for c in center]
+    balls = [ball_over(c - radius, c + radius) if radius else ball_of(c) for c in center]
     if polynomial:
-        return tuple(ends)
-    return (*(bounds for end in ends[:angles] for bounds in cosine_sine(end)), *ends[angles:])
+        return tuple(balls)
+    turned = (part for ball in balls[:angles] for part in (ball.cos(), ball.sin()))
+    return (*turned, *balls[angles:])
 
 
 @dataclass(frozen=True, slots=True)
 class _Within:
-    """The arithmetic of bounds, at exact parameters and a box of cosines, sines and unknowns on the
+    """The arithmetic of balls, at exact parameters and a box of cosines, sines and unknowns on the
     line.
     """
 
     system: CompiledSystem
     values: Mapping[str, Fraction]
-    box: tuple[Bounds, ...] = ()
+    box: tuple[arb, ...] = ()
 
-    def constant(self, value: Fraction) -> Bounds:
-        return exactly(value)
+    def constant(self, value: Fraction) -> arb:
+        return ball_of(value)
 
-    def variable(self, number: int) -> Bounds:
+    def variable(self, number: int) -> arb:
         if number in self.system.reals:
             return self.box[2 * len(self.system.angles) + self.system.reals.index(number)]
         return self.constant(self.values[self.system.names[number]])
 
-    def cos(self, number: int) -> Bounds:
+    def cos(self, number: int) -> arb:
         return self.box[2 * self.system.angles.index(number)]
 
-    def sin(self, number: int) -> Bounds:
+    def sin(self, number: int) -> arb:
         return self.box[2 * self.system.angles.index(number) + 1]
 
-    def length(self, x: Bounds, y: Bounds) -> Bounds:
-        return square_root(x * x + y * y)
+    def length(self, x: arb, y: arb) -> arb:
+        return abs(acb(x, y))
+
+
+_TERM = re.compile(r"(^-?|[+-]) ?([^ ]+) ?")
+_MAX_CHARACTERS = 100_000
+"""Characters of a potential, which has some hundred."""
+_EXPONENT = re.compile(r"[1-9][0-9]?", re.ASCII)
+
+
+def potential_at(system: System, values: Numbers) -> Potential:
+    """The stored potential, a polynomial in the unknowns, with numbers for the parameters: exact.
+
+    Raises
+    ------
+    ConfigError
+        When the text is not a sum of products of numbers, parameters and unknowns.
+    """
+    text = system.potential
+    if len(text) > _MAX_CHARACTERS or "".join(m[0] for m in _TERM.finditer(text)) != text:
+        raise ConfigError("the stored potential is not a polynomial", key="system.potential")
+    found: dict[tuple[int, ...], Fraction] = {}
+    for sign, body in _TERM.findall(text):
+        exponents = [0] * len(system.unknowns)
+        coefficient = Fraction(-1 if sign == "-" else 1)
+        for factor in body.split("*"):
+            name, hat, exponent = factor.partition("^")
+            if hat and not _EXPONENT.fullmatch(exponent):
+                raise ConfigError(f"{factor[:40]!r} is not a power", key="system.potential")
+            times_taken = int(exponent) if hat else 1
+            if name in system.unknowns:
+                exponents[system.unknowns.index(name)] += times_taken
+            elif name in values:
+                coefficient *= values[name] ** times_taken
+            else:
+                coefficient *= _number(factor)
+        key = tuple(exponents)
+        found[key] = found.get(key, Fraction(0)) + coefficient
+    return {key: c for key, c in found.items() if c}
+
+
+def _number(text: str) -> Fraction:
+    try:
+        return fraction_of(text)
+    except ValueError as error:
+        raise ConfigError(
+            f"{text[:40]!r} is neither a number nor a known name", key="system.potential"
+        ) from error
+
+
+def _energy(potential: Potential, unknowns: Sequence[arb]) -> arb:
+    """The potential's value at unknowns in these balls."""
+    total = arb(0)
+    for exponents, coefficient in potential.items():
+        # not by powers, which are none of a ball around zero
+        powers = ([value] * n for value, n in zip(unknowns, exponents, strict=True))
+        total += prod(chain.from_iterable(powers), start=ball_of(coefficient))
+    return total

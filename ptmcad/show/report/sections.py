@@ -16,7 +16,6 @@ from ptmcad.answer.words import count_words, index_words, several
 from ptmcad.show.render.axes import named, symbol
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.legend import Entry, entries
-from ptmcad.show.report.bounds import exactly
 from ptmcad.show.report.chart import MapPictures, counts_text, hatch_id
 from ptmcad.show.report.equilibria import both, distinct_parameters
 from ptmcad.show.report.reproduction import reproduction
@@ -175,7 +174,7 @@ def regions(result: RegionMap) -> str:
         elif low == high:
             bounds = f"exactly {text_of(low)}"
         else:
-            width = certified_digits(exactly(high - low), 1)
+            width = certified_digits((high - low, high - low), 1)
             bounds = f"bounds {width} apart"
         sample = ", ".join(
             f"{escape(symbol(n))} = {escape(both(region.sample[n]))}" for n in region.sample.names

@@ -23,7 +23,7 @@ from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import load
 from ptmcad.question.savings import ALL, SAVINGS, Engine
 from ptmcad.question.slice import Slice
-from ptmcad.studies.bench import scaling
+from ptmcad.studies.bench import growth as scaling
 from ptmcad.studies.bench.harness import Job, classification, made_with, summary, table, turns
 from ptmcad.studies.bench.stored import write_study
 from ptmcad.studies.bench.study import difference

@@ -25,9 +25,8 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.location import component_cells
-from ptmcad.cover import slanted
-from ptmcad.cover.graph import repeated
-from ptmcad.cover.subdivision import COVERED, FREE
+from ptmcad.cover import connectivity
+from ptmcad.cover.subdivision import COVERED, FREE, repeated
 from ptmcad.errors import LimitReached
 from ptmcad.exact.cad.chains import WallPolyline, chains, critical_shares
 from ptmcad.exact.regions import Link, merge
@@ -247,7 +246,7 @@ def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
     if None in counts:
         return None
     complement, cells = component_cells(result, result.cover)
-    parts = slanted.shown(complement, NARROW)
+    parts = connectivity.shown(complement, NARROW)
     tree = parts.subdivision
     rectangles = tree.bounds / result.cover.steps
     if truth.base:

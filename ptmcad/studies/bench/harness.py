@@ -27,7 +27,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.columns import aligned
 from ptmcad.studies.bench.error import Truth
 from ptmcad.studies.bench.process import Usage, run
-from ptmcad.studies.tables import installed
+from ptmcad.studies.texts import installed
 
 PACKAGES = (
     "ptmcad",

@@ -26,12 +26,11 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.solving import solve
 from ptmcad.options import Progress
 from ptmcad.process.output import check_writable, write_files
-from ptmcad.studies.paper import equations
+from ptmcad.studies.paper import corrected as equations
 from ptmcad.studies.paper.claim import Claim, Verdict, judge, texts
-from ptmcad.studies.paper.equations import INTRODUCTION, Equation
+from ptmcad.studies.paper.corrected import INTRODUCTION, Equation
 from ptmcad.studies.paper.maps import FIGURES, POINTS, region_map
-from ptmcad.studies.tables import page
-from ptmcad.studies.texts import texts_beside
+from ptmcad.studies.texts import page, texts_beside
 from ptmcad.text.numerals import equalities
 from ptmcad.version import __version__
 
@@ -226,7 +225,7 @@ def _pictures(figure: str) -> dict[str, bytes]:
     """Names, such as ``fig4.png`` (the map beside the stable poses) and ``fig4-poses.svg``, and
     contents.
     """
-    from ptmcad.show.render.figure import draw_figure
+    from ptmcad.show.render.plotting import with_poses
     from ptmcad.show.render.poses import draw_poses
     from ptmcad.show.render.printing import content
 
@@ -234,7 +233,7 @@ def _pictures(figure: str) -> dict[str, bytes]:
     result, poses = region_map(figure), solve(figure, **at)
     first, second = (Fraction(at[name]) for name in result.slice.axis_names)
     drawn = {
-        figure: draw_figure(result, (first, second), poses),
+        figure: with_poses(result, [((first, second), poses)])[0],
         f"{figure}-poses": draw_poses(poses),
     }
     return {

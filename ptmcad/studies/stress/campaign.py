@@ -9,6 +9,9 @@ that does not exist is null or empty, never 0.
 The same seed and number give the same random case, whose right answer is known by construction: a
 scaled or mirrored copy has the counts of its tame original, which come from the second method;
 points beside a fold or a cusp have those of the construction.
+
+In the plot every point that has an error is drawn; where the count of double precision is wrong it
+is drawn as such, also where no error exists.
 """
 
 from __future__ import annotations
@@ -32,10 +35,10 @@ from ptmcad.model.evaluate import value_at
 from ptmcad.options import Progress
 from ptmcad.show.columns import aligned
 from ptmcad.studies.stress.case import FEW, Case, Degenerate, Question, degenerate, free_lengths
+from ptmcad.studies.stress.doubleprecision import sextic_poses
 from ptmcad.studies.stress.judgement import Row, judge
-from ptmcad.studies.stress.methods import sextic_poses
-from ptmcad.studies.tables import installed, page
-from ptmcad.studies.tables import markdown as table_of
+from ptmcad.studies.texts import installed, page
+from ptmcad.studies.texts import markdown as table_of
 from ptmcad.text.numerals import shortest_text
 from ptmcad.version import __version__
 
@@ -276,3 +279,41 @@ def to_csv(campaign: Row) -> str:
         writer.writeheader()
         writer.writerows(rows)
     return text.getvalue()
+
+
+MIN_DRAWN_ERROR = 1e-20
+"""Errors below are drawn here: enclosures of 12 digits have middles about 1e-19 off."""
+NOTE = "Of poses in radians, of lines relative to the window. At 1e-20: none or less; at the top: no pose found."
+NO_POSE = 10.0
+"""Where it is drawn that there is none, which is as bad as can be."""
+TITLE = "Error of double precision against what is extreme"
+MARKS = (
+    ("double precision, count right", "double_error", True, "o", "#385880"),
+    ("double precision, count wrong", "double_error", False, "X", "#c1440e"),
+    ("ptmcad, middle of the enclosure", "error", None, "_", "#45917d"),
+)
+"""What is drawn: label, number, of which rows by whether the double's count is right, mark and
+colour.
+"""
+
+
+def draw_stress(outcomes: Sequence[Row]) -> Any:
+    """One small plot for each family of points; the figure's label is its description."""
+    from ptmcad.studies.picture import Curve, Mark, draw  # brings matplotlib
+
+    points = [o for o in outcomes if o["condition"] is not None or o["error"] is not None]
+    double, ours = (sum(not o[key] for o in points) for key in ("double_right", "right"))
+    found = f"{len(points)} cases; the count of double precision is wrong in {double}, ptmcad's in {ours}."
+    panels: dict[str, list[Curve]] = {o["family"]: [] for o in points}
+    for family, curves in panels.items():
+        for label, key, right, marker, color in MARKS:
+            drawn = [
+                o for o in points if o["family"] == family and right in (None, o["double_right"])
+            ]
+            places = [float(Fraction(o["stiffness"])) for o in drawn]
+            heights = [NO_POSE if o[key] is None else max(o[key], MIN_DRAWN_ERROR) for o in drawn]
+            marks = [Mark(x, y, x, x) for x, y in zip(places, heights, strict=True)]
+            curves.append(
+                Curve(label, {"marker": marker, "color": color, "linestyle": "none"}, marks)
+            )
+    return draw(TITLE, "", "error", panels, (NOTE, found))

@@ -26,7 +26,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.studies.byhand import scale
 from ptmcad.studies.stress.case import Case, free_lengths
-from ptmcad.studies.stress.methods import (
+from ptmcad.studies.stress.doubleprecision import (
     IndexedPose,
     apart,
     double_poses,

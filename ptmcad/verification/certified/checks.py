@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.options import Progress
-from ptmcad.text.numerals import text_of
+from ptmcad.question.slice import Slice
 from ptmcad.verification.certified.counted import Places
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import check_points
@@ -18,10 +18,10 @@ from ptmcad.verification.certified.structure import (
     check_form,
     check_regions,
 )
-from ptmcad.verification.certified.system import check_potential
-from ptmcad.verification.claims import fingerprint
+from ptmcad.verification.certified.waves import form_of
+from ptmcad.verification.equationtexts import check_potential
 from ptmcad.verification.parameters import check_text
-from ptmcad.verification.report import Check, CheckProgress, VerifyReport, Violation, checked
+from ptmcad.verification.report import Check, CheckProgress, VerifyReport, Violation, checked, drawn
 
 BOXES = 16
 NOT_CHECKED = (
@@ -54,7 +54,7 @@ def verify_certified(
     Solutions are looked for in balls where compiled code leaves places, if that is installed.
     """
     claims = CertifiedClaims(result)
-    drawn = fingerprint(result, _claims_of(result)) if seed is None else str(seed)
+    chosen = drawn(seed)
     number = BOXES if boxes is None else boxes
     headway = CheckProgress(progress)
     within = headway.within
@@ -67,7 +67,11 @@ def verify_certified(
         ("form", "comparison", check_form),
         ("parameters as written", "expressions compared", check_text),
         ("signs of parameters", "Sturm counts, elimination", check_domain),
-        ("equations", "potential from the nodes", check_potential),
+        (
+            "equations",
+            "residues at a random point",
+            lambda of: check_potential(of, chosen, closed=_is_closed(result.slice)),
+        ),
         ("components", "sweep over the rectangles", check_components),
         ("regions and areas", "sweep, breadth-first search", check_regions),
         (
@@ -78,13 +82,18 @@ def verify_certified(
         (
             "random boxes",
             "Krawczyk's test over boxes of parameters",
-            lambda of: check_boxes(of, drawn, number, places(), within),
+            lambda of: check_boxes(of, chosen, number, places(), within),
         ),
         ("the whole free area", "exclusion of critical points", lambda of: free_area(of, within)),
     )
     checks = checked(claims, steps, headway=headway)
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
     return VerifyReport(tuple(checks))
+
+
+def _is_closed(slice: Slice) -> bool:
+    """Whether there are closed loops and springs with free lengths."""
+    return slice.has_free_lengths and bool(form_of(slice).closing)
 
 
 def contradiction(result: RegionMap) -> str:
@@ -101,15 +110,3 @@ def contradiction(result: RegionMap) -> str:
         except Violation as violation:
             return str(violation)
     return ""
-
-
-def _claims_of(result: RegionMap) -> Iterator[str]:
-    """What a certified map says of its window, its cells and its cover."""
-    yield from (
-        f"{axis.name}: {text_of(axis.low)} to {text_of(axis.high)}" for axis in result.slice.axes
-    )
-    yield from (
-        f"{text_of(c.sample[0])}, {text_of(c.sample[1])}: {c.stable} {c.total}"
-        for c in result.cells
-    )
-    yield repr(result.cover)

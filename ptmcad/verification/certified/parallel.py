@@ -15,8 +15,8 @@ from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.verification.signs import Sign, Window, has_no_pole, is_in_domain
 from ptmcad.verification.terms import evaluated
+from ptmcad.verification.windowsigns import Sign, Window, has_no_pole, is_in_domain
 
 Coordinate = Mapping[Any, fmpq_mpoly]
 """One of a vector, by waves."""

@@ -18,10 +18,10 @@ from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import derivation_of
 from ptmcad.verification.parameters import auxiliary, written
-from ptmcad.verification.plane import PLANE, polynomial
+from ptmcad.verification.planecurves import PLANE, polynomial
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.signs import Sign, Window, has_no_pole, is_in_domain
 from ptmcad.verification.terms import ball, evaluated, monomials
+from ptmcad.verification.windowsigns import Sign, Window, has_no_pole, is_in_domain
 
 
 def check_domain(claims: Claims) -> str:

@@ -45,7 +45,7 @@ def violation(r: RegionMap, likely: str = "") -> tuple[str, str] | None:
     by some check. So the check that is likely to reject it is tried first.
     """
     claims = Claims(r)
-    checks = {name: check for name, _, check in checks_of(r, None)}
+    checks = {name: check for name, _, check in checks_of(None)}
     for name in (*BEFORE.get(likely, ()), *([likely] if likely else [])):
         try:
             checks[name](claims)

@@ -1,0 +1,234 @@
+"""Bifurcation diagrams: all solutions at many values of one axis, joined to branches between the
+critical values.
+
+Guarantee: critical values are those of `ptmcad.ask.ranges`, or the certified engine's with free
+lengths; the solutions at each value are all there are. Between two neighbouring values they are
+joined by nearness, each to one of the same Morse index; where that is ambiguous more values are
+tried in between. The joins are no claim.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import cos, pi
+from typing import Any
+
+from ptmcad.answer.branches import Branch, Branches, BranchPoint
+from ptmcad.answer.poses import Pose
+from ptmcad.answer.regionmap import Status
+from ptmcad.ask.quantities import Quantity, of_pose, quantity, unit_of
+from ptmcad.ask.solving import poses_at
+from ptmcad.model import Model
+from ptmcad.options import Progress
+from ptmcad.question.line import has_free_lengths, on_line, varying_axis
+from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import Expressions, values_at
+
+SAMPLES = 24
+"""Values in each interval, closer to its ends, where branches turn."""
+NEAR = (Fraction(1, 10**5), Fraction(1, 10**4), Fraction(1, 1000))
+"""... and these parts of its length from each end."""
+HALVINGS = 5
+"""Of the distance of two values between which a join is ambiguous."""
+CLEAR = 0.6
+"""A join is clear when it is shorter than this part of the next best."""
+DIGITS = 6
+
+_Place = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """All solutions at a value."""
+
+    value: Fraction
+    poses: tuple[Pose, ...]
+
+
+def branch_diagram(
+    slice: Slice,
+    along: str,
+    at: Mapping[str, Any],
+    names: Sequence[str],
+    progress: Progress | None = None,
+    line: SolutionsOnLine | None = None,
+) -> Branches:
+    """All branches of solutions on a line of a slice, with some quantities at each of their points.
+
+    Parameters
+    ----------
+    along, at : as for `ptmcad.ask.ranges.intervals`.
+    names : as `ptmcad.ask.quantities.quantity` takes them.
+    progress : called as progress("branches: interval", done, total).
+    line : `solutions_on_line` of the same slice and line, where other questions were asked of it
+        before.
+
+    Raises
+    ------
+    ConfigError
+        For a name that the model does not have, and as the intervals do.
+    """
+    asked = [quantity(slice.model, name) for name in names]
+    varying, other, value = varying_axis(slice, along, at)
+    line = line or solutions_on_line(slice, along, at)
+    branches: list[Branch] = []
+    stretches = _stretches(slice, along, at)
+    for number, (low, high) in enumerate(stretches):
+        if progress is not None:
+            progress("branches: interval", number, len(stretches))
+        branches += _joined(line.samples(low, high), asked)
+    fixed = {other: value}
+    shown, units = (q.name for q in asked), (unit_of(q, slice) for q in asked)
+    undecided = tuple(line.undecided)
+    return Branches(
+        slice.name,
+        slice.model,
+        slice.axes[varying],
+        fixed,
+        tuple(shown),
+        tuple(units),
+        tuple(branches),
+        undecided,
+    )
+
+
+def _stretches(slice: Slice, along: str, at: Mapping[str, Any]) -> list[tuple[Fraction, Fraction]]:
+    """Intervals without a critical value, from the window's lower edge to its upper one."""
+    if has_free_lengths(slice, along, at):
+        from ptmcad.certified.intervals import certified_intervals
+
+        return certified_intervals(slice, along, at, DIGITS).stretches
+    from ptmcad.exact.ranges.line import intervals
+
+    return intervals(slice, along, at).stretches
+
+
+def solutions_on_line(slice: Slice, along: str, at: Mapping[str, Any]) -> SolutionsOnLine:
+    """The line's solutions, for more than one `branch_diagram`.
+
+    Raises
+    ------
+    ConfigError
+        As `branch_diagram` does.
+    """
+    varying, _, value = varying_axis(slice, along, at)
+    return SolutionsOnLine(slice.model, on_line(slice, varying, value))
+
+
+class SolutionsOnLine:
+    """The solutions on a line, each found when it is first asked for."""
+
+    def __init__(self, model: Model, parameters: Expressions, digits: int = DIGITS):
+        self.model, self.parameters, self.digits = model, parameters, digits
+        self.undecided: list[Fraction] = []
+        self._known: dict[Fraction, Sample | None] = {}
+
+    def at(self, value: Fraction) -> Sample | None:
+        """The solutions at a value; None where they are not all known, or one is degenerate."""
+        if value not in self._known:
+            self._known[value] = self._found(value)
+        return self._known[value]
+
+    def _found(self, value: Fraction) -> Sample | None:
+        parameters = values_at(self.parameters, value)
+        found = poses_at(self.model, parameters, self.digits)
+        if found.status not in (Status.EXACT, Status.CERTIFIED):
+            self.undecided.append(value)
+            return None
+        return Sample(value, found.equilibria)
+
+    def samples(self, low: Fraction, high: Fraction) -> list[Sample]:
+        """Solutions at values in an interval, close enough to be joined."""
+        known = [
+            s
+            for value in values_between(low, high, SAMPLES, NEAR)
+            if (s := self.at(value)) is not None
+        ]
+        result = known[:1]
+        for sample in known[1:]:
+            result += [*self._between(result[-1], sample, HALVINGS), sample]
+        return result
+
+    def _between(self, first: Sample, second: Sample, depth: int) -> list[Sample]:
+        if depth == 0 or _pairs(first, second)[1]:
+            return []
+        width = second.value - first.value
+        middle = self.at(short((first.value + second.value) / 2, width))
+        if middle is None:
+            return []
+        return [
+            *self._between(first, middle, depth - 1),
+            middle,
+            *self._between(middle, second, depth - 1),
+        ]
+
+
+def values_between(
+    first: Fraction, last: Fraction, number: int, near: Iterable[Fraction]
+) -> list[Fraction]:
+    """Values on the way from the first to the last, closer to both, where branches turn.
+
+    Parameters
+    ----------
+    number : of parts.
+    near : parts of the way from each end where there is one, too.
+    """
+    parts = {1 - share if from_last else share for share in near for from_last in (False, True)}
+    parts |= {Fraction(round((1 - cos(pi * k / number)) * 2**19), 2**20) for k in range(1, number)}
+    return [short(first + part * (last - first), abs(last - first)) for part in sorted(parts)]
+
+
+def short(value: Fraction, width: Fraction) -> Fraction:
+    """A number near a value with few digits, against the width of where it lies."""
+    unit = 2**24 * (width.denominator // width.numerator + 1)
+    return Fraction(round(value * unit), unit)
+
+
+def place_of(pose: Pose) -> _Place:
+    return (*map(float, pose.cosines_sines), *map(float, pose.reals))
+
+
+def _pairs(first: Sample, second: Sample) -> tuple[dict[int, int], bool]:
+    """For the solutions at one value those at the next that are nearest, and whether no other comes
+    near to that.
+    """
+    before, after = ([(p.index, p.stable, place_of(p)) for p in s.poses] for s in (first, second))
+    distances = sorted(
+        (sum((a - b) ** 2 for a, b in zip(p[2], q[2], strict=True)) ** 0.5, i, j)
+        for i, p in enumerate(before)
+        for j, q in enumerate(after)
+        if p[:2] == q[:2]
+    )
+    pairs: dict[int, int] = {}
+    lengths: dict[int, float] = {}
+    for distance, i, j in distances:
+        if i not in pairs and j not in pairs.values():
+            pairs[i], lengths[i] = j, distance
+    clear = all(
+        lengths.get(i, 0.0) <= CLEAR * distance for distance, i, j in distances if pairs.get(i) != j
+    )
+    return pairs, clear and len(pairs) == len(before) == len(after)
+
+
+def _joined(samples: Sequence[Sample], asked: Sequence[Quantity]) -> list[Branch]:
+    """The branches through the samples of an interval; one that finds no continuation ends."""
+    if not samples:
+        return []
+
+    def point(value: Fraction, pose: Pose) -> BranchPoint:
+        return BranchPoint(value, tuple(of_pose(q, pose) for q in asked))
+
+    done: list[tuple[Pose, list[BranchPoint]]] = []
+    growing = {k: (p, [point(samples[0].value, p)]) for k, p in enumerate(samples[0].poses)}
+    for first, second in itertools.pairwise(samples):
+        pairs, _ = _pairs(first, second)
+        done += [branch for k, branch in growing.items() if k not in pairs]
+        following = {j: growing[i] for i, j in pairs.items()}
+        for j, pose in enumerate(second.poses):
+            following.setdefault(j, (pose, []))[1].append(point(second.value, pose))
+        growing = following
+    done += growing.values()
+    return [Branch(pose.stable, pose.index, tuple(points)) for pose, points in done]

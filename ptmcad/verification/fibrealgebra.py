@@ -1,0 +1,422 @@
+"""The algebra Q[x]/(equations) of finitely many solutions: standard monomials and tables of
+multiplication.
+
+Guarantee: exact. FLINT's own Buchberger algorithm gives the Groebner basis, in graded reverse
+lexicographic order with the last variable first.
+
+The solutions over one rational point, by a route of its own: geometry, Groebner basis at the
+point, trace forms.
+
+Guarantee: exact.
+
+The order is graded reverse lexicographic with the last unknown first, FLINT's own Buchberger
+algorithm runs at the point itself, and counts come from signatures of trace forms: another
+elimination than the one over Q(x, y) in `ptmcad.exact.variety` and another count than the root
+isolation in `ptmcad.exact.counting`.
+
+The number of negative eigenvalues of a Hessian is that of the changes of sign in the sequence of
+its leading principal minors (Jacobi), in a basis in which none of them vanishes; the sums of the
+signs of their products over the real solutions tell how many solutions have which signs (Tarski
+queries).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import chain, pairwise, product
+from math import prod
+
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpz_mpoly_ctx, fmpz_mpoly_vec
+
+from ptmcad.answer.counts import Counts
+from ptmcad.model import Model
+from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.verification.coordinates import CoordinateRing
+from ptmcad.verification.derivation import Derivation, derivation_at
+from ptmcad.verification.inertia import bases, determinant, leading_minors, negative_eigenvalues
+
+Monomial = tuple[int, ...]
+"""Exponents of the variables, last to first."""
+
+
+class NotFinite(ArithmeticError):
+    """The equations have infinitely many complex solutions at the point."""
+
+
+def algebra(
+    equations: list[fmpq_mpoly], variables: int
+) -> tuple[tuple[Monomial, ...], tuple[fmpq_mat, ...]]:
+    """The standard monomials, and the matrix of multiplication by each variable, last to first."""
+    rules = _reduced_basis(equations, variables)
+    width = range(variables)
+    if not all(any(sum(lead) == lead[k] for lead in rules) for k in width):
+        raise NotFinite
+    bounds = [
+        next(lead[k] for lead in rules if sum(lead) == lead[k])
+        if (0,) * variables not in rules
+        else 0
+        for k in width
+    ]
+    basis = tuple(
+        sorted(
+            (
+                m
+                for m in product(*map(range, bounds))
+                if not any(_divides(lead, m) for lead in rules)
+            ),
+            key=lambda m: (sum(m), m),
+        )
+    )
+    place = {m: i for i, m in enumerate(basis)}
+    known: dict[Monomial, list[fmpq]] = {}
+
+    def normal(m: Monomial) -> list[fmpq]:
+        """Coordinates of a monomial, by the rules, recursively."""
+        if m in known:
+            return known[m]
+        row = [fmpq(0)] * len(basis)
+        if m in place:
+            row[place[m]] = fmpq(1)
+        else:
+            lead = next(r for r in rules if _divides(r, m))
+            for t, c in rules[lead].items():
+                for i, x in enumerate(normal(_times(t, m, lead))):
+                    if x != 0:
+                        row[i] += c * x
+        known[m] = row
+        return row
+
+    tables = []
+    for k in width:
+        columns = [normal(tuple(e + (i == k) for i, e in enumerate(m))) for m in basis]
+        tables.append(
+            fmpq_mat(
+                len(basis), len(basis), [column[i] for i in range(len(basis)) for column in columns]
+            )
+        )
+    return basis, tuple(tables)
+
+
+def _reduced_basis(
+    equations: list[fmpq_mpoly], variables: int
+) -> dict[Monomial, dict[Monomial, fmpq]]:
+    """A Groebner basis as rules: leading monomial -> what it is modulo the ideal."""
+    ring: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(
+        tuple(f"x{k}" for k in range(variables)), Ordering.degrevlex
+    )
+    integral = []
+    for e in equations:
+        scale = 1
+        for c in e.coeffs():
+            scale = scale * int(c.q)
+        integral.append(
+            ring.from_dict({m[::-1]: int((c * scale).p) for m, c in e.to_dict().items()})
+        )
+    vector = fmpz_mpoly_vec([p.primitive()[1] for p in integral], ring)
+    rules: dict[Monomial, dict[Monomial, fmpq]] = {}
+    for p in vector.buchberger_naive().autoreduction():
+        terms = [(tuple(int(e) for e in m), fmpq(c)) for m, c in p.terms()]
+        (lead, c), tail = terms[0], terms[1:]
+        rules[lead] = {m: -d / c for m, d in tail}
+    return rules
+
+
+def _divides(a: Monomial, b: Monomial) -> bool:
+    return all(x <= y for x, y in zip(a, b, strict=True))
+
+
+def _times(tail: Monomial, m: Monomial, lead: Monomial) -> Monomial:
+    return tuple(t + x - y for t, x, y in zip(tail, m, lead, strict=True))
+
+
+@dataclass(frozen=True)
+class FibreAlgebra:
+    """The algebra Q[coordinates of the unknowns]/(equations) at one point.
+
+    Attributes
+    ----------
+    basis : the standard monomials.
+    tables : the matrix of multiplication by each variable, last to first; columns are images of the
+        basis.
+    saturated : whether solutions at which an inequality's polynomial vanishes, which do not count,
+        are left out; then the last variable is the inverse of the inequalities' product.
+    """
+
+    basis: tuple[Monomial, ...]
+    tables: tuple[fmpq_mat, ...]
+    point: Derivation
+    saturated: bool = False
+
+    @property
+    def dimension(self) -> int:
+        """Number of complex solutions, with multiplicity."""
+        return len(self.basis)
+
+    @property
+    def conditions(self) -> tuple[fmpq_mpoly, ...]:
+        """The inequalities' polynomials, then those of the conditions for stability."""
+        return (*self.point.inequalities, *self.point.stability)
+
+    def matrix(self, p: fmpq_mpoly) -> fmpq_mat:
+        """The matrix of multiplication by p, a polynomial in the coordinates."""
+        total = fmpq_mat(self.dimension, self.dimension)
+        for exponents, c in p.terms():
+            term = _identity(self.dimension) * c
+            for table, e in zip(self._own, exponents, strict=True):
+                for _ in range(int(e)):
+                    term = term * table
+            total = total + term
+        return total
+
+    @property
+    def _own(self) -> tuple[fmpq_mat, ...]:
+        """The matrices of multiplication by the model's coordinates."""
+        return self.tables[::-1][: self.point.coordinates]
+
+    @cached_property
+    def jacobian_entries(self) -> list[list[fmpq_mat]]:
+        """The Jacobian, whose entries act on the algebra; a Hessian is symmetric."""
+        n = range(len(self.point.jacobian))
+        places = [[self.point.meaning.place(i, j) for j in n] for i in n]
+        entries = {(i, j): self.matrix(self.point.jacobian[i][j]) for i, j in {*chain(*places)}}
+        return [[entries[place] for place in row] for row in places]
+
+    @cached_property
+    def jacobian(self) -> fmpq_mat:
+        """The matrix of multiplication by the Jacobian's determinant."""
+        found: fmpq_mat = determinant(self.jacobian_entries)
+        return found
+
+    def norm(self) -> fmpq:
+        """The product of the Jacobian's determinant over all complex solutions."""
+        return fmpq(self.jacobian.det())
+
+    def norm_where_nonzero(self, p: fmpq_mpoly) -> fmpq:
+        """The product of a polynomial over the complex solutions at which it is not zero."""
+        coefficients = [fmpq(c) for c in self.matrix(p).charpoly().coeffs()]
+        k = next(k for k, c in enumerate(coefficients) if c != 0)
+        return coefficients[k] * (-1 if (self.dimension - k) % 2 else 1)
+
+    def signature(self, weight: fmpq_mat) -> tuple[int, int]:
+        """Numbers of positive and negative squares of the trace form (f, g) -> trace(weight f g).
+
+        Their difference is the sum of the weight's signs over the real solutions; their sum is the
+        number of different complex solutions where the weight is not zero.
+        """
+        powers = self._powers
+        n = self.dimension
+        form = _traces_of_products([weight * p for p in powers], powers)
+        # all eigenvalues are real, so Descartes' rule of signs is exact
+        coefficients = [fmpq(c) for c in form.charpoly().coeffs()]
+        zero = next(k for k, c in enumerate(coefficients) if c != 0)
+        signs = [1 if c > 0 else -1 for c in coefficients if c != 0]
+        positive = sum(a != b for a, b in pairwise(signs))
+        return positive, n - zero - positive
+
+    @cached_property
+    def _powers(self) -> list[fmpq_mat]:
+        """The matrices of multiplication by the basis."""
+        return [self._monomial(m) for m in self.basis]
+
+    def _monomial(self, m: Monomial) -> fmpq_mat:
+        result = _identity(self.dimension)
+        for table, e in zip(self.tables, m, strict=True):
+            for _ in range(e):
+                result = result * table
+        return result
+
+    def counts(self) -> Counts | None:
+        """Numbers of the real solutions that count, by index and stability; None when some solution
+        is degenerate.
+        """
+        if self.norm() == 0:
+            return None
+        required = [self.matrix(p) for p in self.point.inequalities]
+        if index := self._index(required):
+            return Counts(sum(index), index[0], index)
+        total = self._number(required)
+        if not self.point.stability:
+            return Counts(total, None, None)
+        wanted = [*required, *(self.matrix(p) for p in self.point.stability)]
+        return Counts(total, self._number(wanted), None)
+
+    def number_held(self) -> int:
+        """The number of the minima that count at which all conditions for stability are positive: a
+        count's margins.
+        """
+        return self._index([self.matrix(p) for p in self.conditions])[0]
+
+    def within(
+        self, center: Sequence[Fraction], radius: Fraction, *, counted: bool
+    ) -> tuple[int, list[fmpq_mat]]:
+        """The number of the real solutions in an open box, and functions that are all positive at
+        these and no others.
+
+        Parameters
+        ----------
+        center : in the order of the model's coordinates.
+        counted : whether only solutions that count are asked for.
+        """
+        positive = [self.matrix(p) for p in self.point.inequalities if counted]
+        number = self._number(positive)
+        for table, x in zip(self._own, map(from_fraction, center), strict=True):
+            off = table - _identity(self.dimension) * x
+            inside = _identity(self.dimension) * from_fraction(radius) ** 2 - off * off
+            # where no solution is lost, all that are left are on this side
+            if (left := self._number([*positive, inside])) < number:
+                number, positive = left, [*positive, inside]
+        return number, positive
+
+    def signs(self, positive: Sequence[fmpq_mat]) -> str:
+        """Of the only real solution at which functions are positive: those of the Hessian's
+        eigenvalues, positive ones first, or of the conditions for stability.
+        """
+        if index := self._index(positive):
+            negative = index.index(1)
+            return "+" * (len(index) - 1 - negative) + "-" * negative
+        return "".join(
+            "0+-"[self._sum_of_signs(positive, self.matrix(p))] for p in self.point.stability
+        )
+
+    def number_of_real_solutions(self) -> int:
+        """Of different ones that count, degenerate ones among them."""
+        return self._number([self.matrix(q) for q in self.point.inequalities])
+
+    def number_of_zeros(self, p: fmpq_mpoly) -> int:
+        """Of the real solutions that count, the number of those at which a polynomial is zero."""
+        required, square = (
+            [self.matrix(q) for q in self.point.inequalities],
+            self.matrix(p) * self.matrix(p),
+        )
+        return self.number_of_real_solutions() - self._sum_of_signs(required, square)
+
+    def balance(self) -> int:
+        """The sum of the signs of the Jacobian's determinant over all real solutions."""
+        positive, negative = self.signature(self.jacobian)
+        return positive - negative
+
+    def _number(self, positive: Sequence[fmpq_mat]) -> int:
+        """The number of real solutions at which all of some functions are positive."""
+        return self._sum_of_signs(positive, _identity(self.dimension))
+
+    def _sum_of_signs(self, positive: Sequence[fmpq_mat], weight: fmpq_mat) -> int:
+        """The sum of the weight's signs over the real solutions at which all of some functions are
+        positive.
+
+        For the number 1 where a function is positive, and 0 elsewhere, stands half the sum of the
+        signs of the function and of its square.
+        """
+        total = 0
+        for exponents in product((1, 2), repeat=len(positive)):
+            factor = weight
+            for function, e in zip(positive, exponents, strict=True):
+                for _ in range(e):
+                    factor = factor * function
+            plus, minus = self.signature(factor)
+            total += plus - minus
+        return total >> len(positive)
+
+    def _index(self, required: Sequence[fmpq_mat]) -> tuple[int, ...]:
+        """Numbers of the critical points that count by the number of negative eigenvalues, where
+        none is zero; nothing of other solutions."""
+        if not self.point.hessian:
+            return ()
+        minors = self._minors()
+        n = len(minors)
+        sums: dict[tuple[int, ...], int] = {}
+        for chosen in product((0, 1), repeat=n):
+            weight = _identity(self.dimension)
+            for minor, c in zip(minors, chosen, strict=True):
+                weight = weight * minor if c else weight
+            sums[chosen] = self._sum_of_signs(required, weight)
+        index = [0] * (n + 1)
+        for signs in product((1, -1), repeat=n):
+            number = sum(
+                value * prod(s for s, c in zip(signs, chosen, strict=True) if c)
+                for chosen, value in sums.items()
+            )
+            index[negative_eigenvalues(signs)] += number >> n
+        return tuple(index)
+
+    def _minors(self) -> list[fmpq_mat]:
+        """The Hessian's leading principal minors in a basis in which they vanish at no solution."""
+        entries = self.jacobian_entries
+        for basis in bases(len(entries)):
+            minors = leading_minors(entries, basis, len(entries) - 1)
+            if all(m.det() != 0 for m in minors):
+                return [*minors, self.jacobian]
+        raise AssertionError("a regular form has minors that are not zero in almost every basis")
+
+    def form_traces(self, form: Sequence[int]) -> list[fmpq]:
+        """Traces of the powers 1, 2, ..., dimension of a linear form in the coordinates."""
+        matrix = fmpq_mat(self.dimension, self.dimension)
+        for c, table in zip(reversed(form), self._own, strict=True):
+            matrix = matrix + table * fmpq(c)
+        # Newton's identities: powers of the matrix would have entries of many more digits than
+        # their traces
+        coefficients = [fmpq(c) for c in reversed(matrix.charpoly().coeffs())]
+        traces: list[fmpq] = []
+        for k in range(1, self.dimension + 1):
+            total = coefficients[k] * k
+            for i in range(1, k):
+                total += coefficients[i] * traces[k - i - 1]
+            traces.append(-total)
+        return traces
+
+
+def fibre(model: Model, values: Mapping[str, Fraction]) -> FibreAlgebra:
+    """The fibre over rational values of the parameters, as `fibre_over` has it."""
+    return fibre_over(derivation_at(model, values))
+
+
+def fibre_over(point: Derivation) -> FibreAlgebra:
+    """The algebra of the solutions at rational values of the parameters.
+
+    Where some solution is degenerate, or an inequality's polynomial vanishes at one, it is that of
+    the solutions at which no inequality's polynomial does.
+
+    Raises
+    ------
+    NotFinite
+        When there are infinitely many complex solutions.
+    """
+    if not point.inequalities:
+        return FibreAlgebra(*algebra(point.generators(), point.coordinates), point)
+    try:
+        found = FibreAlgebra(*algebra(point.generators(), point.coordinates), point)
+        if found.norm() != 0 and all(found.matrix(p).det() != 0 for p in point.inequalities):
+            return found
+    except NotFinite:
+        pass
+    return FibreAlgebra(*algebra(_saturated(point), point.coordinates + 1), point, saturated=True)
+
+
+def _saturated(point: Derivation) -> list[fmpq_mpoly]:
+    """Generators of the ideal of the solutions at which no inequality's polynomial vanishes.
+
+    The inverse of their product is one more variable, the last one.
+    """
+    ring = CoordinateRing((*point.ring.names, ""), point.ring.angles)
+    product = prod((ring.taken(p, point.ring) for p in point.inequalities), start=ring.elements[""])
+    return [*(ring.taken(p, point.ring) for p in point.generators()), product - 1]
+
+
+def _identity(n: int) -> fmpq_mat:
+    return fmpq_mat(n, n, [fmpq(int(i == j)) for i in range(n) for j in range(n)])
+
+
+def _traces_of_products(first: Sequence[fmpq_mat], second: Sequence[fmpq_mat]) -> fmpq_mat:
+    """The traces of f g for all f of the first and g of the second matrices.
+
+    A trace is the sum of the products of the entries of f and of the transposed g, so all of them
+    are one product.
+    """
+    size = sum(
+        len(f.entries()) for f in first[:1]
+    )  # there is no matrix where there are no solutions
+    rows = fmpq_mat(len(first), size, [c for f in first for c in f.entries()])
+    columns = fmpq_mat(len(second), size, [c for g in second for c in g.transpose().entries()])
+    return rows * columns.transpose()

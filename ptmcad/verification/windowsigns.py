@@ -1,0 +1,248 @@
+"""Checks of the components that are left out: they have no point in the open window, or no real
+count feels them.
+
+Guarantee: the first is exact, the second up to the probability of `ptmcad.verification.variety`,
+which checks it. Signs of coefficients on boxes prove most of the first; what they do not settle is
+settled by Sturm counts over a point in each interval that the curve's discriminant and edge values
+leave, and over its roots, where isolated points would be.
+
+The sign of a rational function over the open window, proved once more: Sturm counts between
+critical abscissae.
+
+Guarantee: `Sign.PROVED` and `Sign.WRONG` are theorems. `Sign.UNCHECKED` is answered where a
+function of both axes has a degree over `MAX_DEGREE`, or may be zero at an isolated point.
+
+It shares nothing with what the engines ask (`ptmcad.question.positivity`): no Bernstein
+coefficients, no halving of boxes, no isolation by Descartes' rule, another elimination. A
+polynomial changes sign in the open window where one of its irreducible factors of odd multiplicity
+does; and between the roots of such a factor's discriminant and of its values on two edges, the
+number of its roots in a fibre, all of them simple, is that over one sample (`window`).
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from flint import fmpq, fmpq_mpoly, fmpq_poly, fmpz_poly
+
+from ptmcad.answer.regionmap import HARMLESS, NO_POINT, CriticalValue, Kind
+from ptmcad.text.expressions import Expression
+from ptmcad.text.flint_numbers import to_fraction
+from ptmcad.verification.claims import Claims, PlaneCurve, short
+from ptmcad.verification.planecurves import factored, polynomial
+from ptmcad.verification.projections import Heights, projection_of_one
+from ptmcad.verification.report import Violation
+from ptmcad.verification.sturm import isolating_intervals, roots_between, separated_points
+
+BOXES = 600
+"""Boxes into which the window may be cut before the algebraic way is taken."""
+HALVINGS = 4
+"""Times that the window's sides are halved before a curve may be used although it has no point in
+the window.
+"""
+
+
+RUNS = "runs through the window"
+Interval = tuple[fmpq, fmpq]
+
+
+def check_left_out(claims: Claims) -> str:
+    """A component that is left out has no point in the open window, or is checked with the variety."""
+    result = claims.result
+    number = 0
+    for n, c in enumerate(result.components):
+        if not c.left_out or (c.left_out == HARMLESS and c.kind is Kind.INFINITY):
+            continue
+        if c.left_out != NO_POINT:
+            raise Violation(
+                f"component {n} is left out for a reason that cannot be checked: {c.left_out[:60]}"
+            )
+        number += 1
+        curve = PlaneCurve.of(n, c.polynomial, result.base)
+        if min(curve.degrees) > 0 and _nowhere_zero(curve, claims.base, claims.height):
+            continue
+        hit = point_in_window(curve, claims.base, claims.height)
+        if hit is not None:
+            raise Violation(
+                f"component {n} is left out, but {hit}: {c.polynomial.text(result.slice.axis_names)[:60]}"
+            )
+    return f"{number} components"
+
+
+def point_in_window(
+    curve: PlaneCurve, base: Interval, height: Interval, isolated: bool = True
+) -> str | None:
+    """What is known of a point of the curve in the open window; None when there is none.
+
+    Parameters
+    ----------
+    isolated : whether points through which it does not run are asked for, too.
+    """
+    if curve.degrees[1] == 0:
+        return RUNS if roots_between(curve.in_v[0], *base) else None
+    if curve.degrees[0] == 0:
+        return RUNS if roots_between(curve.in_u[0], *height) else None
+    product = fmpz_poly([1])
+    singular = []
+    for f, origin in projection_of_one(curve, height):
+        product = product * (f // f.gcd(product))
+        if "edge" not in origin:
+            singular.append(f)
+    if any(roots_between(curve.over(u), *height) for u in separated_points(product, *base)):
+        return RUNS
+    # no branch runs through the window; what is left are isolated points, over roots of the
+    # discriminant
+    for f in singular if isolated else ():
+        for a, b in isolating_intervals(f, *base):
+            place = CriticalValue(
+                tuple(int(c) for c in f.coeffs()), to_fraction(a), to_fraction(b), ""
+            )
+            if Heights((curve,), place).between(*height):
+                return f"it has an isolated point near {short(a)}"
+    return None
+
+
+def _nowhere_zero(curve: PlaneCurve, base: Interval, height: Interval) -> bool:
+    """Whether the curve is proved to have no point in the open window; False may mean undecided.
+
+    With u = (a + b x)/(1 + x), v = (c + d y)/(1 + y) an open box becomes the quadrant x, y > 0, on
+    which a polynomial whose coefficients have one sign has no zero. A box that is not settled is
+    cut in four; Sturm settles the cuts.
+    """
+    waiting, done = [(*base, *height)], 0
+    rows = [fmpq_poly(row) for row in curve.in_v]
+    while waiting:
+        done += 1
+        a, b, c, d = waiting.pop()
+        if _one_sign(rows, curve.degrees[0], (a, b), (c, d)):
+            continue
+        u, v = (a + b) / 2, (c + d) / 2
+        if (
+            done > BOXES
+            or roots_between(curve.over(u), c, d)
+            or roots_between(curve.along(v), a, b)
+        ):
+            return False
+        waiting += [(a, u, c, v), (u, b, c, v), (a, u, v, d), (u, b, v, d)]
+    return True
+
+
+def plainly_outside(curve: PlaneCurve, claims: Claims) -> bool:
+    """Whether few signs show that the curve has no point in the open window: those for which it has
+    to be left out.
+
+    A curve in one variable is decided by its roots; another one is asked for on the window and on
+    what halving both sides up to `HALVINGS` times makes of it, with constant terms then.
+    """
+    if curve.degrees[1] == 0:
+        return not roots_between(curve.in_v[0], *claims.base)
+    if curve.degrees[0] == 0:
+        return not roots_between(curve.in_u[0], *claims.height)
+    rows = [fmpq_poly(row) for row in curve.in_v]
+    if _one_sign(rows, curve.degrees[0], claims.base, claims.height):
+        return True
+    waiting = [(0, claims.base, claims.height)]
+    while waiting:
+        halved, (a, b), (c, d) = waiting.pop()
+        if _one_sign(rows, curve.degrees[0], (a, b), (c, d), strict=True):
+            continue
+        if halved == HALVINGS or curve.over(a)(c) * curve.over(b)(d) <= 0:
+            return False
+        u, v = (a + b) / 2, (c + d) / 2
+        waiting += [
+            (halved + 1, base, height) for base in ((a, u), (u, b)) for height in ((c, v), (v, d))
+        ]
+    return True
+
+
+def _one_sign(
+    rows: list[fmpq_poly],
+    degree: int,
+    base: tuple[fmpq, fmpq],
+    height: tuple[fmpq, fmpq],
+    strict: bool = False,
+) -> bool:
+    lines = [_on_half_line(row, degree, base) for row in rows]
+    signs = set()
+    for i in range(degree + 1):
+        column = _on_half_line(fmpq_poly([line[i] for line in lines]), len(rows) - 1, height)
+        signs |= {
+            (c > 0) - (c < 0) for c in (column[j] for j in range(len(rows))) if strict or c != 0
+        }
+        if len(signs) > 1:
+            return False
+    return 0 not in signs
+
+
+def _on_half_line(p: fmpq_poly, degree: int, interval: tuple[fmpq, fmpq]) -> fmpq_poly:
+    """(1 + x)^degree p((low + high x)/(1 + x)): its values for x > 0 are those of p in the
+    interval, times a power.
+    """
+    low, high = interval
+    on_unit = p(fmpq_poly([low, high - low]))  # p(low + (high - low) z), z = x/(1 + x)
+    reversed_ = fmpq_poly(
+        [on_unit[degree - i] for i in range(degree + 1)]
+    )  # (1 + x)^degree q(x/(1+x)) = x^degree r(1 + 1/x)
+    shifted = reversed_(fmpq_poly([1, 1]))
+    return fmpq_poly([shifted[degree - i] for i in range(degree + 1)])
+
+
+MAX_DEGREE = 30
+"""The sum of the degrees in the two axes up to which a function of both is looked at."""
+
+Window = tuple[Interval, Interval]
+
+
+class Sign(Enum):
+    """What is known of a function in the window."""
+
+    PROVED = "proved"
+    WRONG = "wrong"
+    UNCHECKED = "not checked"
+
+
+def has_no_pole(e: Expression, window: Window) -> Sign:
+    """Whether the denominator, as it is stored, has no zero in the open window."""
+    denominator = polynomial(e.denominator)
+    return _sign(denominator * _side(denominator, window), window, strict=True)
+
+
+def is_in_domain(e: Expression, window: Window, strict: bool) -> Sign:
+    """Whether a function without a pole is positive, or not negative, in the open window."""
+    if not e.numerator:
+        return Sign.WRONG if strict else Sign.PROVED
+    denominator = polynomial(e.denominator)
+    return _sign(polynomial(e.numerator) * _side(denominator, window), window, strict)
+
+
+def _side(p: fmpq_mpoly, window: Window) -> int:
+    """The sign at the window's middle, where it has one."""
+    (u0, u1), (v0, v1) = window
+    return -1 if p((u0 + u1) / 2, (v0 + v1) / 2) < 0 else 1
+
+
+def _sign(p: fmpq_mpoly, window: Window, strict: bool) -> Sign:
+    """Whether a polynomial that is not zero is positive, or not negative, in the open window."""
+    relevant = [
+        PlaneCurve.of(0, f, 0) for f, multiplicity in factored(p) if strict or multiplicity % 2
+    ]
+    if any(min(f.degrees) > 0 and sum(f.degrees) > MAX_DEGREE for f in relevant):
+        (u0, u1), (v0, v1) = window
+        grid = [fmpq(k, 32) for k in range(1, 32)]
+        values = (p(u0 + (u1 - u0) * s, v0 + (v1 - v0) * t) for s in grid for t in grid)
+        return Sign.WRONG if any(value < 0 for value in values) else Sign.UNCHECKED
+    met = {point_in_window(f, *window, isolated=strict) for f in relevant}
+    if RUNS in met or _generic_value(p, window) < 0:
+        return Sign.WRONG
+    return Sign.PROVED if met <= {None} else Sign.UNCHECKED
+
+
+def _generic_value(p: fmpq_mpoly, window: Window) -> fmpq:
+    """The value at a point where it is not zero."""
+    (u0, u1), (v0, v1) = window
+    for k in range(2, 200):
+        for m in range(2, 200):
+            value = p(u0 + (u1 - u0) / k, v0 + (v1 - v0) / m)
+            if value != 0:
+                return value
+    raise ArithmeticError("a polynomial of low degree is zero at 39204 points of a grid")

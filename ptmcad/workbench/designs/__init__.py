@@ -1,0 +1,3 @@
+"""The best design: exact evaluations, a global search over them, and the proof that none exceeds
+a bound.
+"""

@@ -1,0 +1,317 @@
+"""What a design attains: the length of a range, an area, a barrier or another number, exactly.
+
+Guarantee: values are enclosed; None stands for a design that has none, as it does not fit the
+question or lies where nothing can be counted. Which saddle is the lowest pass of a barrier is found
+in floating point; its height is enclosed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from fractions import Fraction
+from typing import NamedTuple
+
+from flint import arb, ctx
+
+from ptmcad.answer.intervals import Span
+from ptmcad.answer.poses import Poses
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.ask.classification import region_map
+from ptmcad.ask.members import Common, member_map
+from ptmcad.ask.quantities import Quantity, named, of_pose, unknown
+from ptmcad.errors import (
+    ConfigError,
+    DegenerateSliceError,
+    ExpressionError,
+    HypothesisError,
+    InfiniteSolutionsError,
+)
+from ptmcad.options import Options
+from ptmcad.question.config.designed import Aim, Design
+from ptmcad.text.balls import ball_of, exact
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.numerals import Numbers
+from ptmcad.text.syntax import did_you_mean, parse
+from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret, names_of
+from ptmcad.workbench.designs.designlines import Space
+
+KEY = "design.maximise"
+DIGITS = 15
+AREA_TOLERANCE = Fraction(1, 10**6)
+_BITS = 100
+_MAX_POWER = 100
+
+
+class Value(NamedTuple):
+    """What a design attains; ``span`` are the ends of a range."""
+
+    value: Enclosure
+    span: tuple[Enclosure, Enclosure] | None = None
+
+
+Evaluate = Callable[[Numbers], Value | None]
+
+
+def evaluator(design: Design, common: Common | None = None, space: Space | None = None) -> Evaluate:
+    """What evaluates designs.
+
+    Parameters
+    ----------
+    common : what the members of the family have in common, where all designs are of one.
+    space : the variety over all designs, where it is known: then a range's ends are found from it.
+        Without, from the variety of each design's line alone.
+
+    Raises
+    ------
+    ConfigError
+        When a quantity or an expression has no meaning for the model.
+    """
+    match design.aim:
+        case Aim.RANGE:
+            found = _range_of(design) if space is None else _range_in(design, space)
+        case Aim.AREA:
+            found = _area_of(design, common)
+        case Aim.BARRIER:
+            found = _barrier_of(design)
+        case Aim.EXPRESSION:
+            found = _expression_of(design)
+
+    with suppress(HypothesisError):
+        found(design.middle)  # raises what no design can be asked
+
+    def evaluate(values: Numbers) -> Value | None:
+        if not design.holds(values):
+            return None
+        try:
+            return found(values)
+        except (HypothesisError, ConfigError):  # on the variety, or beyond what the geometry needs
+            return None
+
+    return evaluate
+
+
+def _range_of(design: Design) -> Evaluate:
+    from ptmcad.exact.ranges.anyline import ranges_on
+    from ptmcad.exact.ranges.line import intervals
+
+    first = design.over[0].name
+
+    def evaluate(values: Numbers) -> Value | None:
+        slice = design.slice(values)
+        found: Sequence[Span]
+        try:
+            found = intervals(slice, design.along, {first: values[first]}, design.working).operation
+        except (DegenerateSliceError, InfiniteSolutionsError):
+            found, possible = ranges_on(slice, design.along, values[first], design.working)
+            if found != possible:
+                return None
+        if not found:
+            return Value(Enclosure(Fraction(0), Fraction(0)))
+        widest = max(found, key=lambda span: span.width.low)
+        ends = tuple(
+            Enclosure(end, end) if isinstance(end, Fraction) else Enclosure(end.low, end.high)
+            for end in (widest.low, widest.high)
+        )
+        return Value(widest.width, (ends[0], ends[1]))
+
+    return evaluate
+
+
+def _range_in(design: Design, space: Space) -> Evaluate:
+    from ptmcad.workbench.designs.designspace import longest_on_line
+
+    names = [axis.name for axis in design.over]
+
+    def evaluate(values: Numbers) -> Value | None:
+        found = longest_on_line(space, tuple(from_fraction(values[name]) for name in names))
+        if found is None:
+            return None
+        low, high = (Enclosure(to_fraction(a), to_fraction(b)) for a, b in found)
+        return Value(
+            Enclosure(max(high.low - low.high, Fraction(0)), high.high - low.low), (low, high)
+        )
+
+    return evaluate
+
+
+def _area_of(design: Design, common: Common | None) -> Evaluate:
+    options = Options(engine="exact", area_tolerance=AREA_TOLERANCE)
+
+    def evaluate(values: Numbers) -> Value | None:
+        found: RegionMap
+        if common is not None:
+            found = member_map(common, values[common.family.free.name], options)
+        else:
+            found = region_map(design.slice(values), options)
+        wanted = [
+            r.area
+            for r in found.regions
+            if (r.total if r.stable is None else r.stable) == design.working
+        ]
+        return Value(
+            Enclosure(
+                sum((a for a, _ in wanted), Fraction(0)), sum((b for _, b in wanted), Fraction(0))
+            )
+        )
+
+    return evaluate
+
+
+def _poses(design: Design, values: Numbers) -> Poses | None:
+    """The poses of a design that has as many stable ones as is asked."""
+    from ptmcad.ask.solving import poses_at
+
+    poses = poses_at(design.model, design.point(values), DIGITS)
+    if poses.status in (Status.ON_VARIETY, Status.UNDECIDED):
+        return None
+    # where it is not decided whether a pose is tense, it is not taken for one
+    number = sum(not (design.tension and pose.may_be_slack) for pose in poses.working)
+    return poses if number == design.working else None
+
+
+def chosen(design: Design, poses: Poses) -> int | None:
+    """The number of the pose that is meant, in the order of `Poses`; None where there is no such
+    one.
+    """
+    from ptmcad.workbench.fields.quantityfield import choice_of
+
+    choice = choice_of(design.pose, design.model)
+    numbers = choice.numbers(poses)
+    return numbers[choice.rank - 1] if choice.rank <= len(numbers) else None
+
+
+def _barrier_of(design: Design) -> Evaluate:
+    from ptmcad.ask.fields.equations import state_at, unknowns_of
+    from ptmcad.workbench.fields.quantityfield import choice_of
+
+    named(design.model, "barrier", KEY)
+    if choice_of(design.pose, design.model).kind != "stable":
+        raise ConfigError("a barrier is that of a stable pose: ask for stable:1", key="design.pose")
+
+    def evaluate(values: Numbers) -> Value | None:
+        import numpy as np
+
+        from ptmcad.workbench.fields.barrier import barriers
+
+        poses = _poses(design, values)
+        number = None if poses is None else chosen(design, poses)
+        if poses is None or number is None:
+            return None
+        given = {name: float(value) for name, value in poses.parameters.items()}
+        at = np.array([unknowns_of(pose) for pose in poses.equilibria]).T[:, None]
+        found = barriers(
+            lambda _pixels, where: state_at(design.model, given, where),
+            at,
+            np.array([number]),
+            len(design.model.angles),
+        )
+        if np.isnan(found[0]):
+            return None
+        low = poses.equilibria[number].known_energy
+        saddles = [pose.known_energy for pose in poses.equilibria if pose.index == 1]
+        top = min(saddles, key=lambda energy: abs(float(energy) - float(low) - float(found[0])))
+        return Value(Enclosure(top.low - low.high, top.high - low.low))
+
+    return evaluate
+
+
+def _expression_of(design: Design) -> Evaluate:
+    model, text = design.model, design.maximise
+    quantity = named(model, text, KEY) or unknown(model, text)
+    if quantity is not None and quantity.name in model.angles:
+        quantity = None  # by itself an angle is in radians, as in any expression
+    if quantity is not None:
+        return _quantity_of(design, quantity)
+    tree = _tree(design)
+    needs_pose = bool(model.unknowns.keys() & set(names_of(tree)))
+
+    def evaluate(values: Numbers) -> Value | None:
+        poses = _poses(design, values)
+        if poses is None:
+            return None
+        known = {name: Enclosure(v, v) for name, v in {**poses.parameters, **values}.items()}
+        if needs_pose:
+            number = chosen(design, poses)
+            if number is None:
+                return None
+            pose = poses.equilibria[number]
+            known |= dict(zip(model.sorted_unknowns, (*pose.angles, *pose.reals), strict=True))
+        enclosed = _enclosed(tree, known)
+        return None if enclosed is None else Value(enclosed)
+
+    return evaluate
+
+
+def _quantity_of(design: Design, quantity: Quantity) -> Evaluate:
+    def evaluate(values: Numbers) -> Value | None:
+        poses = _poses(design, values)
+        number = None if poses is None else chosen(design, poses)
+        found = (
+            None if poses is None or number is None else of_pose(quantity, poses.equilibria[number])
+        )
+        return None if found is None else Value(found)
+
+    return evaluate
+
+
+def _tree(design: Design) -> Tree:
+    model = design.model
+    known = (*model.sorted_unknowns, *model.parameters, *(axis.name for axis in design.over))
+    try:
+        tree = parse(design.maximise)
+    except ExpressionError as error:
+        raise ConfigError(f"{design.maximise[:60]!r}: {error.message}", key=KEY) from error
+    words = [aim.value for aim in Aim if aim is not Aim.EXPRESSION]
+    for name in names_of(tree):
+        if name not in known:
+            hint = (
+                did_you_mean(name, (*words, *known))
+                or f"; there are {', '.join(words)} and expressions"
+            )
+            raise ConfigError(f"{name!r} is neither an aim nor a parameter{hint}", key=KEY)
+    return tree
+
+
+def _enclosed(tree: Tree, known: Mapping[str, Enclosure]) -> Enclosure | None:
+    """The value of an expression; None where it has none."""
+    with ctx.workprec(_BITS):
+        value = interpret(tree, _TreesInBalls(known))
+        return Enclosure(exact(value.lower()), exact(value.upper())) if value.is_finite() else None
+
+
+class _TreesInBalls(NamedTuple):
+    """Expressions in balls."""
+
+    known: Mapping[str, Enclosure]
+
+    def number(self, number: Number) -> arb:
+        return ball_of(number.value)
+
+    def name(self, name: Name) -> arb:
+        found = self.known[name.name]
+        return ball_of(found.low).union(ball_of(found.high))
+
+    def call(self, call: Call) -> arb:
+        argument = interpret(call.argument, self)
+        return argument.cos() if call.function == "cos" else argument.sin()
+
+    def negative(self, value: arb) -> arb:
+        return -value
+
+    def joined(self, left: arb, step: Step, right: arb) -> arb:
+        if step.operator in "+-":
+            return left + right if step.operator == "+" else left - right
+        return left * right if step.operator == "*" else left / right
+
+    def power(self, base: arb, power: Power, exponent: arb) -> arb:
+        whole = exponent.unique_fmpz()
+        if whole is None or abs(whole) > _MAX_POWER:
+            return base**exponent
+        found = arb(1)
+        for _ in range(
+            abs(int(whole))
+        ):  # python-flint's ball ** int is not a number when the ball's middle is zero
+            found = found * base
+        return found if whole >= 0 else 1 / found

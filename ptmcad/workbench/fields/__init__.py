@@ -1,0 +1,1 @@
+"""Quantities of solutions over a map, and the motion of one along a path, in floating point."""

@@ -1,0 +1,207 @@
+"""One member of a sweep, from its number to its result's text and what an index holds of it.
+
+Guarantee: `compute` is the only way to a member's result, in this process, another one or on a
+cluster; the text is that of the member classified alone, timings left out.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from time import perf_counter
+from typing import Any
+
+from ptmcad.answer.counts import counted_by
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.sweep import Bounds, CountedArea, Summary, Widest
+from ptmcad.answer.widths import Maximum, overall
+from ptmcad.ask.classification import region_map
+from ptmcad.errors import ConfigError, HypothesisError, LimitReached, PtmcadError
+from ptmcad.options import Options
+from ptmcad.question.config.sweeps import Sweeping
+from ptmcad.question.slice import Slice
+from ptmcad.text.codec import listed, row_of
+from ptmcad.text.numerals import decimal, text_of
+from ptmcad.version import __version__
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is wanted of each member.
+
+    Attributes
+    ----------
+    along : the axis along which the widest operation range is found; empty for none.
+    timeout : seconds that a member may take.
+    """
+
+    engine: str = "auto"
+    tolerance: Fraction | None = None
+    area_tolerance: Fraction | None = None
+    areas: bool = True
+    along: str = ""
+    timeout: float | None = None
+
+    @property
+    def options(self) -> Options:
+        """The engine's options; a member has one thread, as there are many members."""
+        return Options(
+            engine=self.engine,
+            tolerance=self.tolerance,
+            area_tolerance=self.area_tolerance,
+            areas=self.areas,
+            timeout=self.timeout,
+            jobs=1,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What a process needs to compute members by their numbers."""
+
+    question: Sweeping
+    wanted: Wanted
+    version: str = __version__
+
+    def answer(self, number: int, _check: Callable[[], None]) -> Outcome:
+        """What becomes of a member."""
+        return compute(self, number)
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A member's result: the text of its document without timings, and what an index holds of it."""
+
+    text: str
+    summary: Summary
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """Why no result of these values is possible; another attempt would end in the same way."""
+
+    error: str
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """Why an attempt gave no result, though another one may."""
+
+    error: str
+
+
+Outcome = Found | Refused | Failed
+
+_ONE_AT_A_TIME = threading.Lock()
+"""FLINT's precision belongs to the process: a cluster's worker with several threads computes one
+member at a time.
+"""
+
+
+def compute(work: Work, number: int) -> Outcome:
+    """Classify a member.
+
+    Errors that are no answer about the member (a bug, memory) are raised.
+    """
+    if work.version != __version__:
+        return Failed(
+            f"this process has ptmcad {__version__}, and the sweep was asked with {work.version}"
+        )
+    with _ONE_AT_A_TIME:
+        started = perf_counter()
+        try:
+            slice = work.question.slice(number)
+            result = region_map(slice, work.wanted.options)
+            summary = summary_of(result, work.wanted)
+        except LimitReached:
+            return Failed(out_of_time(work.wanted.timeout))
+        except PtmcadError as error:
+            return Refused(reason(error), perf_counter() - started)
+        return Found(result.to_json(timings=False), summary, perf_counter() - started)
+
+
+def reason(error: PtmcadError) -> str:
+    """Why values are refused, without the place of the record, which may be moved."""
+    if isinstance(error, ConfigError):
+        return str(ConfigError(error.message, key=error.key))
+    return str(error)
+
+
+def out_of_time(timeout: float | None) -> str:
+    """What is said of a member that took too long, wherever that was noticed."""
+    return f"the member's time limit of {timeout:g} s was reached"
+
+
+def summary_of(result: RegionMap, wanted: Wanted) -> Summary:
+    """What an index holds of a map."""
+    return Summary(
+        status=result.status.value,
+        cells=len(result.cells),
+        regions=len(result.regions),
+        undetermined=text_of(result.undetermined),
+        areas=tuple(_areas(result, known=wanted.areas or result.cover is not None)),
+        widest=_widest(result.slice, wanted.along) if wanted.along else None,
+    )
+
+
+def _areas(result: RegionMap, known: bool) -> Iterator[CountedArea]:
+    """The regions by the count that distinguishes them, in increasing order."""
+    found: dict[tuple[int, ...], list[tuple[Fraction, Fraction]]] = {}
+    for region in result.regions:
+        found.setdefault(counted_by(region, result.slice.count), []).append(region.area)
+    for count, areas in sorted(found.items()):
+        low, high = (sum((area[side] for area in areas), Fraction(0)) for side in (0, 1))
+        text = "?" if count == (-1,) else "-".join(map(str, count))
+        yield CountedArea(text, len(areas), bounds(low, high) if known else ("", ""))
+
+
+def bounds(low: Fraction, high: Fraction) -> Bounds:
+    """Decimals of 18 digits that bound an enclosed number.
+
+    >>> bounds(Fraction(-1, 3), Fraction(1, 2))
+    ('-0.333333333333333334', '0.5')
+    """
+    return decimal(low, up=False), decimal(high, up=True)
+
+
+def _widest(slice: Slice, along: str) -> Widest:
+    """The widest operation range, or why that is not known."""
+    from ptmcad.exact.ranges.strips import strips
+    from ptmcad.exact.ranges.width import widest
+
+    try:
+        maxima = widest(slice, along, strips(slice, along))
+    except (ConfigError, HypothesisError) as error:
+        return Widest(along, remark=str(error))
+    if not maxima:
+        return Widest(along)
+    over = next(name for name in slice.axis_names if name != along)
+    return Widest(
+        along,
+        _width(maxima),
+        tuple(bounds(m.at.low, m.at.high) for m in maxima),
+        "; ".join(m.words(over) for m in maxima),
+        attainment=overall(maxima).value,
+    )
+
+
+def _width(maxima: tuple[Maximum, ...]) -> Bounds:
+    """The bounds of the largest width of all: each of the maxima may be it."""
+    return bounds(max(m.width.low for m in maxima), max(m.width.high for m in maxima))
+
+
+def _width_from(*values: Any) -> Widest:
+    """A width; an index that was written before attainment was told says of limits that they are
+    attained.
+    """
+    found = Widest(*values)
+    return found if len(values) > 5 or not found.proof else replace(found, proof=found.attainment)
+
+
+AREAS = listed(row_of(CountedArea))
+WIDEST = row_of(Widest, _width_from)
+"""How these are written in an index."""

@@ -1,0 +1,348 @@
+"""A sweep from its record to its folder: what is to be computed is planned, computed in any order,
+and recorded; and small drawings of its maps, made from the stored results.
+
+Guarantee: when `sweep` returns, each member is done, refused, or has failed as often as it was to
+be tried. Stopped in any way it leaves a folder with which the same call goes on, computing no
+member again that is done. The index is the same whatever the order, the processes and the
+interruptions, seconds and attempts aside.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import os
+from collections import Counter, deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import chain
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+from ptmcad.answer.sweep import Sweep
+from ptmcad.ask.classification import prepare
+from ptmcad.errors import ConfigError, LimitReached, OutputError, PtmcadError
+from ptmcad.extras import Extra, require
+from ptmcad.options import Progress
+from ptmcad.question.config.sweeps import Sweeping, Values, sweep_from
+from ptmcad.question.shipped import RecordSource
+from ptmcad.question.slice import Slice
+from ptmcad.text.numerals import text_of
+from ptmcad.text.parsing import share_for
+from ptmcad.version import __version__
+from ptmcad.workbench.sweeps.index import Index, opened, read_sweep
+from ptmcad.workbench.sweeps.member import Failed, Wanted, Work, reason
+from ptmcad.workbench.sweeps.pool import Pool, answers_of
+
+if TYPE_CHECKING:
+    from ptmcad.show.sweeps.sketch import Thumbnail
+    from ptmcad.workbench.sweeps.cluster import Cluster
+
+RETRIES = 2
+"""How often a member is tried again that has failed."""
+_SHARES = ("tolerance", "area_tolerance")
+_AT_ONCE = 100
+"""Members that are planned in one step."""
+
+
+def sweep(
+    config: RecordSource | Sweeping,
+    folder: str | Path | None = None,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+    wanted: Wanted | Mapping[str, Any] | None = None,
+    retries: int = RETRIES,
+    timeout: float | None = None,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Classify every member of a record's ``sweep``, into a folder.
+
+    Called again with the same record and folder it goes on where it was stopped.
+
+    Parameters
+    ----------
+    config : the file of a record with the key ``sweep``, or a mapping like it.
+    folder : where the index and the results go; ``NAME-sweep`` when None.
+    jobs : number of worker processes on this machine; all processors when None.
+    scheduler : address of a Dask scheduler, such as ``tcp://host:8786``, whose workers compute
+        instead; with the extra ``distributed``.
+    wanted : the engine's options, and the axis of operation ranges, as `Wanted` or some of its
+        fields by name, such as ``{"areas": False, "along": ""}``; without ``along`` ranges are
+        along the first axis.
+    retries : how often a member is tried again whose process died, or which a limit stopped.
+    timeout : seconds after which `LimitReached` is raised.
+    progress : called as progress(stage, done, total).
+
+    Returns
+    -------
+    The sweep, which can be iterated: each member with its values, counts, areas and ranges.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong with the record, or a folder that holds another sweep.
+    OutputError
+        When the folder cannot be written to, or another process works on it.
+    LimitReached
+        After ``timeout`` seconds; what is done stays.
+    """
+    question = sweep_from(config)
+    wanted = wanted_of(question, wanted)
+    place = Path(f"{question.name}-sweep") if folder is None else Path(folder)
+    work = Work(question, wanted)
+    with opened(place) as index:
+        index.claim(_facts(question), _asked(question, wanted))
+        index.check(question.sweep.names)
+        run = _Run(work, index, retries, progress, timeout)
+        try:
+            run.all(_workers(work, jobs, scheduler))
+        except (LimitReached, OutputError) as stopped:
+            raise type(stopped)(
+                f"{stopped}; {_left(index, question)}; the same command goes on"
+            ) from stopped
+        finally:
+            index.share()
+    return read_sweep(place)
+
+
+def wanted_of(question: Sweeping, wanted: Wanted | Mapping[str, Any] | None) -> Wanted:
+    """What is wanted of each member, if it has a meaning for these slices.
+
+    Raises
+    ------
+    ConfigError
+    """
+    if not isinstance(wanted, Wanted):
+        wanted = _by_name(wanted or {}, axes_of(question)[0])
+    _ = wanted.options  # which refuses an engine that there is not
+    if wanted.along and wanted.along not in axes_of(question):
+        raise ConfigError(
+            f"{wanted.along[:40]} is no axis: choose {' or '.join(axes_of(question))}",
+            key="--along",
+        )
+    return wanted
+
+
+def _by_name(fields: Mapping[str, Any], along: str) -> Wanted:
+    known = {field.name for field in dataclasses.fields(Wanted)}
+    for name in fields:
+        if name not in known:
+            raise ConfigError(
+                f"there is no option {name[:40]!r}; the options are {', '.join(sorted(known))}",
+                key="wanted",
+            )
+    shares = {
+        name: share_for(name, fields[name]) for name in _SHARES if fields.get(name) is not None
+    }
+    chosen = {} if fields.get("along") is not None else {"along": along}
+    return Wanted(**{**fields, **shares, **chosen})
+
+
+def axes_of(question: Sweeping) -> tuple[str, ...]:
+    """The names of the axes of every member."""
+    return tuple(question.record.axes)
+
+
+def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[], Pool | Cluster]:
+    """What makes the processes that compute, once something is to be computed."""
+    if scheduler is None:
+
+        def pool() -> Pool:
+            prepare(
+                work.question.slice(0), work.wanted.options
+            )  # compiles once for all, where that is needed
+            return Pool(work, jobs or processors(), work.wanted.timeout)
+
+        return pool
+    from ptmcad.workbench.sweeps.cluster import Cluster
+
+    require(
+        Extra.distributed, key="--scheduler"
+    )  # whether or not there is anything left to compute
+    return lambda: Cluster(work, scheduler)
+
+
+def processors() -> int:
+    """How many this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
+
+
+def _facts(question: Sweeping) -> dict[str, str]:
+    """What the index says of the sweep as a whole."""
+    return {
+        "name": question.name,
+        "names": json.dumps(question.sweep.names, ensure_ascii=False),
+        "members": str(len(question)),
+        "version": __version__,
+    }
+
+
+def _asked(question: Sweeping, wanted: Wanted) -> str:
+    """A digest of all that results depend on."""
+    record, sweep = question.record, question.sweep
+    first = _slice_data(question.slice(0))
+    values = [
+        [[name, *_values_data(v)] for name, v in product.items()] for product in sweep.products
+    ]
+    texts = {name: scalar.text for name, scalar in record.values.items()}
+    options = [None if value is None else str(value) for value in dataclasses.astuple(wanted)]
+    return hashlib.sha256(json.dumps([first, values, texts, options]).encode()).hexdigest()
+
+
+def _values_data(values: Values) -> list[str]:
+    """A list of values or a progression, as texts."""
+    if isinstance(values, tuple):
+        return [",".join(map(text_of, values))]
+    return [text_of(field) for field in (values.first, values.step, values.number)]
+
+
+def _slice_data(slice: Slice) -> Any:
+    """All of a slice as data that JSON writes."""
+    from ptmcad.show.document.slice import SLICE
+
+    return SLICE.write(slice)
+
+
+def _left(index: Index, question: Sweeping) -> str:
+    done = sum(number for state, number in index.states().items() if state.value == "done")
+    return f"{done} of {len(question)} members are done, in {index.folder}"
+
+
+class _Run:
+    """One run over the members that are not done."""
+
+    def __init__(
+        self,
+        work: Work,
+        index: Index,
+        retries: int,
+        progress: Progress | None,
+        timeout: float | None,
+    ) -> None:
+        self.work, self.index, self.retries = work, index, retries
+        self.progress, self.timeout = progress, timeout
+        self.deadline = None if timeout is None else monotonic() + timeout
+        self.failures: Counter[int] = Counter()
+        self.again: deque[int] = deque()
+        self.total = len(work.question)
+        self.settled = 0
+
+    def all(self, start: Callable[[], Pool | Cluster]) -> None:
+        """Compute what is to be computed.
+
+        Raises
+        ------
+        LimitReached
+            When the time is over.
+        """
+        numbers = chain(self._earlier(), self._new())
+
+        def following() -> int | None:
+            return self.again.popleft() if self.again else next(numbers, None)
+
+        first = following()
+        if first is None:
+            return
+        self.again.append(first)
+        workers = start()
+        try:
+            for number, outcome in answers_of(workers, following, self._patience):
+                self._settle(number, outcome)
+        finally:
+            workers.close()
+
+    def _settle(self, number: int, outcome: Any) -> None:
+        self.index.record(number, outcome)
+        if isinstance(outcome, Failed) and self.failures[number] < self.retries:
+            self.failures[number] += 1
+            self.again.append(number)
+            return
+        self._count()
+
+    def _count(self) -> None:
+        self.settled += 1
+        if self.progress is not None:
+            self.progress("members", self.settled, self.total)
+
+    def _patience(self) -> float | None:
+        if self.deadline is None:
+            return None
+        left = self.deadline - monotonic()
+        if left <= 0:
+            raise LimitReached(f"the time limit of {self.timeout:g} s was reached")
+        return left
+
+    def _earlier(self) -> Iterator[int]:
+        """The members of an earlier run that are not done."""
+        self.planned = self.index.planned
+        waiting = self.index.count_waiting()
+        self.settled = self.planned - waiting
+        return self.index.waiting(self.planned)
+
+    def _new(self) -> Iterator[int]:
+        """The members that no run has come to, as they are entered into the index."""
+        question = self.work.question
+        for low in range(self.planned, self.total, _AT_ONCE):
+            self._patience()
+            entered = [
+                self._entry(question, k) for k in range(low, min(low + _AT_ONCE, self.total))
+            ]
+            with self.index.transaction():
+                fresh = [self.index.plan(*entry) for entry in entered]
+            for entry, is_fresh in zip(entered, fresh, strict=True):
+                if is_fresh:
+                    yield entry[0]
+                else:
+                    self._count()
+
+    def _entry(
+        self, question: Sweeping, number: int
+    ) -> tuple[int, dict[str, str], bytes | None, str]:
+        """A member's number, its values, a digest of its slice, and why there is no slice."""
+        values: dict[str, Fraction] = question.sweep[number]
+        parameters = {name: text_of(value) for name, value in values.items()}
+        try:
+            data = json.dumps(_slice_data(question.slice(number)), sort_keys=True)
+        except PtmcadError as error:
+            return number, parameters, None, reason(error)
+        return number, parameters, hashlib.sha256(data.encode()).digest(), ""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Drawing:
+    """The task of drawing members of the sweep in a folder."""
+
+    folder: Path
+
+    def answer(self, number: int, _check: Callable[[], None]) -> Thumbnail:
+        """The drawing of a member."""
+        from ptmcad.show.sweeps.sketch import sketch
+
+        return sketch(read_sweep(self.folder).result(number))
+
+
+def sketches(
+    folder: Path, numbers: Sequence[int], jobs: int | None, progress: Progress | None = None
+) -> Iterator[tuple[int, Thumbnail]]:
+    """The drawings of members, in any order.
+
+    Raises
+    ------
+    OutputError
+        When one cannot be drawn.
+    """
+    pool = Pool(Drawing(folder), min(jobs or processors(), max(1, len(numbers) // 4)))
+    left = iter(numbers)
+    try:
+        found = answers_of(pool, lambda: next(left, None), lambda: None)
+        for done, (number, drawn) in enumerate(found, 1):
+            if isinstance(drawn, Failed):
+                raise OutputError(f"member {number} cannot be drawn: {drawn.error}")
+            if progress is not None:
+                progress("drawings", done, len(numbers))
+            yield number, drawn
+    finally:
+        pool.close()

@@ -1,0 +1,236 @@
+"""Paths of stable poses with free lengths: against exact paths where these are tiny, proved poses,
+a film's fall, steepest descent.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from fractions import Fraction
+from itertools import pairwise
+from math import degrees
+from pathlib import Path
+
+import jsonschema
+import pytest
+from support.maps import CONFIGS
+
+import ptmcad
+from ptmcad.answer.paths import Fate, PosePaths
+from ptmcad.cli import run
+from ptmcad.errors import ConfigError
+from ptmcad.show.ranges.table import path_table
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+
+pytest.importorskip("numba")
+
+FREE02 = CONFIGS / "free02.yaml"
+SCHEMA = json.loads((CONFIGS.parent / "docs" / "range.schema.json").read_text(encoding="utf-8"))
+
+
+def slice_of(*, free: str = "1/5", window: str = "11/10:13/10") -> ptmcad.Slice:
+    return ptmcad.slice_from_options(FREE02, sets=[f"l0={free}"], ranges=[f"rho={window}"])
+
+
+@pytest.fixture(scope="module")
+def found() -> PosePaths:
+    return ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, "6/5")
+
+
+@pytest.mark.slow
+def test_it_snaps_at_the_fold_to_the_pose_that_is_left(found: PosePaths) -> None:
+    assert [(p.number, p.low.fate, p.high.fate) for p in found.paths] == [
+        (1, Fate.WINDOW, Fate.WINDOW), (2, Fate.WINDOW, Fate.SNAP)]  # fmt: skip
+    end = found.paths[1].high
+    assert isinstance(end.at, Enclosure)
+    assert end.at.text(8) == "1.2316624"
+    assert (end.meeting, end.leaving) == ((0, 1), ())
+    assert end.target is not None
+    assert end.energy is not None
+    assert end.target_energy is not None
+    points = [end.at.center + Fraction(k, 10**5) for k in (1, 2)]
+    beyond = [
+        ptmcad.solve(rho=rho, L2="3/2", F3=-10, F4=-10, l0="1/5").equilibria for rho in points
+    ]
+    near, far = (next(p for p in poses if p.stable) for poses in beyond)
+    for got, one, two in zip(end.target.angles, near.angles, far.angles, strict=True):
+        assert got.radius < Fraction(1, 10**20)
+        assert float(got) == pytest.approx(2 * float(one) - float(two), abs=1e-8)
+    lower = 2 * float(near.known_energy) - float(far.known_energy)
+    assert float(end.target_energy) == pytest.approx(lower, abs=1e-7)
+    assert end.energy.low > end.target_energy.high
+
+
+@pytest.mark.slow
+def test_what_holds_at_a_fold_is_told_there_wherever_the_path_began(found: PosePaths) -> None:
+    """The energy of the fold itself, by poses before it: it changes as distance, and their square
+    roots cancel.
+    """
+    ends = [
+        found.paths[1].high,
+        ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, "23/20", 2).paths[0].high,
+    ]
+    (one, two) = (
+        tuple(e.text(10) for e in (*end.target.angles, end.energy, end.target_energy))  # type: ignore[misc, union-attr]
+        for end in ends
+    )
+    assert one == two
+    assert isinstance(ends[0].at, Enclosure)
+    assert ends[0].energy is not None
+    before = ptmcad.solve(
+        rho=ends[0].at.center - Fraction(1, 10**6), L2="3/2", F3=-10, F4=-10, l0="1/5"
+    ).equilibria
+    folding = [p.known_energy for p in before if p.index in (0, 1)]
+    assert min(abs(float(e) - float(ends[0].energy)) for e in folding) < 1e-3
+    assert ends[0].energy.radius < Fraction(1, 10**14)
+
+
+@pytest.mark.slow
+def test_every_point_is_a_proved_stable_pose_and_neighbours_are_near(found: PosePaths) -> None:
+    for path in found.paths:
+        assert [p.value for p in path.points] == sorted({p.value for p in path.points})
+        assert Fraction(6, 5) in {p.value for p in path.points}
+        assert len(path.points) > 15
+        for point in path.points[::5]:
+            poses = ptmcad.solve(rho=point.value, L2="3/2", F3=-10, F4=-10, l0="1/5").equilibria
+            near = [p for p in poses if all(
+                a.low <= b.high and b.low <= a.high for a, b in zip(p.angles, point.angles, strict=True))]  # fmt: skip
+            assert [p.stable for p in near] == [True]
+        for one, two in pairwise(path.points):
+            assert abs(float(one.angles[0]) - float(two.angles[0])) < 0.1
+    assert (found.paths[0].upright, found.paths[0].reverse) == (False, True)
+    assert (found.paths[1].upright, found.paths[1].reverse) == (True, False)
+
+
+@pytest.mark.slow
+def test_tiny_free_lengths_make_no_difference() -> None:
+    """To the exact paths without, which are proved."""
+    slices = [slice_of(free=free, window="4/5:6/5") for free in ("1/1000000", "0")]
+    free, exact = (
+        ptmcad.pose_paths(slice, "rho", {"L2": "3/2"}, "9/10", 2).paths[0] for slice in slices
+    )
+    assert isinstance(free.high.at, Enclosure)
+    assert isinstance(exact.high.at, AlgebraicNumber)
+    assert (
+        (free.low.fate, free.high.fate)
+        == (exact.low.fate, exact.high.fate)
+        == (Fate.WINDOW, Fate.SNAP)
+    )
+    assert float(free.high.at) == pytest.approx(float(exact.high.at), abs=1e-4)
+    assert free.high.meeting == exact.high.meeting
+    assert free.high.target is not None
+    assert exact.high.target is not None
+    for a, b in zip(free.high.target.angles, exact.high.target.angles, strict=True):
+        assert degrees(float(a)) == pytest.approx(degrees(float(b)), abs=0.05)
+
+
+@pytest.mark.slow
+def test_a_film_falls_at_the_same_place(found: PosePaths) -> None:
+    slice = ptmcad.slice_from_options(FREE02, ranges=["rho=11/10:13/10", "L2=7/5:8/5"])
+    motion = ptmcad.classify(slice, tolerance="1/5", jobs=1).animate(
+        "rho=6/5:5/4,L2=3/2", "stable:2", frames=6
+    )
+    (fall,) = motion.falls
+    end = found.paths[1].high
+    assert isinstance(end.at, Enclosure)
+    assert fall.at[0] == pytest.approx(float(end.at), abs=1e-7)
+
+
+@pytest.mark.slow
+def test_of_several_stable_poses_the_one_that_steepest_descent_reaches_is_chosen() -> None:
+    """At the pitchfork two others stay stable; it is said that the choice is no proof."""
+    slice = ptmcad.slice_from_options(CONFIGS / "free-load.yaml", ranges=["rho=1/5:3/4"])
+    paths = ptmcad.pose_paths(slice, "rho", {"F": -10}, "7/10", 2)
+    end = paths.paths[0].low
+    assert (end.fate, end.meeting, end.leaving) == (Fate.SNAP, (0, 1, 1), (1,))
+    assert end.fallen
+    assert end.target is not None
+    assert [round(degrees(float(angle)), 6) for angle in end.target.angles] == [-73.868528] * 2
+    assert "of several stable ones steepest descent in floating point chose" in path_table(paths)
+
+
+@pytest.mark.parametrize(
+    ("start", "number", "message", "key"),
+    [
+        ("2", None, "2 is not inside the window of rho, 11/10 to 13/10", "--path"),
+        ("1.23166242", None, "", ""),
+        ("6/5", 3, "3 is none of the 2 stable poses at rho = 6/5", "--pose"),
+        ("x", None, "x", "--path"),
+    ],
+)
+@pytest.mark.slow_cases("1.23166242-None--")
+def test_starts_that_there_are_not(start: str, number: int | None, message: str, key: str) -> None:
+    if not message:  # beside the fold, however near
+        assert len(ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, start, 1).paths) == 1
+        return
+    with pytest.raises(ConfigError, match=message) as caught:
+        ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, start, number)
+    assert caught.value.key == key
+
+
+@pytest.mark.usefixtures("coarse")
+def test_the_command_draws_and_tells_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = [
+        "range",
+        str(FREE02),
+        "--along",
+        "rho",
+        "--at",
+        "L2=3/2",
+        "--range",
+        "rho=6/5:5/4",
+        "--path",
+        "61/50",
+    ]
+    assert (
+        run([*asked, "--pose", "2", "--format", "json,svg", "--out", str(tmp_path), "--name", "x"])
+        == 0
+    )
+    out = capsys.readouterr().out
+    assert re.search(
+        r"^pose 2 at rho = 1\.22: .*; y3 > 0 and y4 > 0 on the path$",
+        out,
+        re.M,
+    ), out
+    assert (
+        "  up: rho = 1.231662423: fold: the stable pose merges with a saddle and both vanish; the mechanism"
+        in out
+    )
+    assert {path.name for path in tmp_path.iterdir()} == {"x.json", "x-path.svg"}
+    data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
+    jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
+    assert "joined" not in data["path"]
+    assert data["path"]["paths"][0]["high"]["at"]["decimal"].startswith("1.23166242")
+    picture = (tmp_path / "x-path.svg").read_text(encoding="utf-8")
+    assert "saddle, not followed" in picture
+
+
+@pytest.mark.slow
+def test_a_slider_on_a_level_is_none_of_the_points_that_rise() -> None:
+    """y of P lies between 0.2 and 0.8 on both paths; the slider's height is always 0."""
+    slider = ptmcad.slice_from_mapping({
+        "mechanism": {
+            "parameters": {"c": {"kind": "stiffness"}, "F": {"kind": "force"}},
+            "unknowns": {"th": "angle", "x": "length"},
+            "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"], "S": ["x", 0]},
+            "supports": {"O": "pin", "S": "slider x"},
+            "springs": [{"between": ["P", "S"], "k": 1, "free": "1/10"}, {"between": ["O", "S"], "k": 1}],
+            "torsion": [{"angle": "th", "k": "c", "rest": "pi/2"}],
+            "loads": {"S": ["F", 0]},
+        },
+        "axes": {"F": ["-1/8", "1/8"], "c": ["1/10", 1]},
+    })  # fmt: skip
+    found = ptmcad.pose_paths(slider, "F", {"c": "1/5"}, 0)
+    assert [
+        (len(point.sides), path.upright) for path in found.paths for point in path.points[:1]
+    ] == [(1, True)] * 2
+
+
+@pytest.mark.slow
+def test_a_pose_that_is_jumped_to_has_angles_within_half_a_turn() -> None:
+    """The way down leads th1 on to 272 degrees, which is -88."""
+    end = ptmcad.pose_paths(slice_of(window="9/20:1"), "rho", {"L2": "3/2"}, "3/4").paths[1].low
+    assert end.fate is Fate.SNAP and end.target is not None
+    assert [round(degrees(float(angle)), 4) for angle in end.target.angles] == [-87.9555, -48.4477]
