@@ -23,7 +23,7 @@ from ptmcad.ask.changes import Members
 from ptmcad.ask.members import Common, Restored, in_common
 from ptmcad.ask.sheets import Joined, mesh_of
 from ptmcad.errors import ConfigError
-from ptmcad.exact.strips import BoundaryStrips
+from ptmcad.exact.slicearrangement import BoundaryStrips
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.text.flint_numbers import simplest_fraction

@@ -22,8 +22,7 @@ from ptmcad.answer.family import FamilyMap, SpaceTerms
 from ptmcad.ask import boundarysurface as asking
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.exact.arrangement import picture_of
-from ptmcad.exact.strips import BoundaryStrips
+from ptmcad.exact.slicearrangement import BoundaryStrips, picture_of
 from ptmcad.question.config import family_from, slice_from
 from ptmcad.text.flint_numbers import from_fraction
 

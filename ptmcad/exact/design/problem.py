@@ -18,9 +18,9 @@ from ptmcad.algebra.real_roots import Interval
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.exact.design.cover import Space
 from ptmcad.exact.family import family_variety
+from ptmcad.exact.familyprojection import surfaces_of
 from ptmcad.exact.models.system import SystemOnAxes
 from ptmcad.exact.stages import SliceProblem, count_at
-from ptmcad.exact.surfaces import surfaces_of
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.text.numerals import equalities
 

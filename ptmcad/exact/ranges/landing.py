@@ -19,7 +19,7 @@ from math import pi
 from flint import arb, ctx
 
 from ptmcad.answer.paths import Landing, Target
-from ptmcad.exact.poses import exact_poses
+from ptmcad.exact.exactposes import exact_poses
 from ptmcad.exact.ranges.equations import LineSystem
 from ptmcad.exact.ranges.meeting import Meeting, what_meets
 from ptmcad.formulas.continuation import BITS, Reached, in_the_limit, nearer, over_range

@@ -25,7 +25,7 @@ from flint import ctx
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
-from ptmcad.exact.poses import exact_poses
+from ptmcad.exact.exactposes import exact_poses
 from ptmcad.exact.ranges.equations import LineSystem, line_system
 from ptmcad.exact.ranges.landing import DIGITS, beside, ends_from, landing
 from ptmcad.exact.ranges.line import critical_values, is_regular

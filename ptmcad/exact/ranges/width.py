@@ -38,8 +38,8 @@ from typing import NamedTuple
 
 from flint import arb, fmpq
 
+from ptmcad.algebra.algebraic_numbers import algebraic_number, compare
 from ptmcad.algebra.chords import slope_over
-from ptmcad.algebra.numbers import algebraic_number, compare
 from ptmcad.algebra.real_roots import Interval
 from ptmcad.answer.intervals import End, Span
 from ptmcad.answer.widths import Maximum, Place
