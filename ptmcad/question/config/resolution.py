@@ -22,7 +22,7 @@ from ptmcad.question.config.windows import Window
 from ptmcad.question.counts import usual_count
 from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part
 from ptmcad.question.examples import AXES
-from ptmcad.question.positivity import READING_WORK, window_of
+from ptmcad.question.positivity import window_of
 from ptmcad.question.signs import PROVED, Finding, Subject
 from ptmcad.question.slice import Axes, Axis, Slice, count_fault, have_free_lengths
 from ptmcad.text.entry import Scalar, Tree
@@ -201,7 +201,7 @@ def _judged(record: Record, faults: Faults) -> tuple[Axes, dict[str, Expression]
     for part in record.model.parts:
         with faults:
             if window is not None and not doubtful & {*names_of(part.tree)}:
-                sign = sign_of_part(record.model, part, values, window, READING_WORK)
+                sign = sign_of_part(record.model, part, values, window)
                 signs.append(_accepted(sign, record.place_of_part(part.key)))
     if window is None:
         faults.check()
@@ -418,7 +418,7 @@ def _signs_of_value(
         return ()
     if expression.is_constant:
         return (Finding(subject, window_of(axes), PROVED),)
-    return (_accepted(sign_of(subject, axes, READING_WORK), place),)
+    return (_accepted(sign_of(subject, axes), place),)
 
 
 def _accepted(sign: Finding, place: Place) -> Finding:
