@@ -45,7 +45,8 @@ class TreeValues(Generic[R]):
         """Cosine and sine of an angle."""
         raise NotImplementedError
 
-    def root(self, square: R) -> R:
+    def root(self, square: R, tree: Tree) -> R:
+        """The value of a root, given that of its argument."""
         raise NotImplementedError("the checker knows no roots")
 
     def value(self, tree: Tree) -> R:
@@ -67,7 +68,7 @@ class TreeValues(Generic[R]):
                 power: R = self.value(base) ** int(_number(multiples(exponent)))
                 return power
             case Call("sqrt", argument):
-                return self.root(self.value(argument))
+                return self.root(self.value(argument), tree)
             case Call(function, argument):
                 return self.circle(argument)[0 if function == "cos" else 1]
 

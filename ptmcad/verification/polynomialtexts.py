@@ -20,6 +20,7 @@ moment works on it.
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -29,7 +30,7 @@ from flint import fmpq, fmpq_mpoly, fmpz, fmpz_mod, fmpz_mod_ctx
 
 from ptmcad.errors import ExpressionError
 from ptmcad.text.syntax import parse
-from ptmcad.text.tree import FUNCTIONS, Call, Chain, Name, Negative, Number, Power, Tree
+from ptmcad.text.tree import FUNCTIONS, Call, Chain, Name, Negative, Number, Power, Tree, to_text
 from ptmcad.verification.coordinates import TreeValues, circle_names, multiples
 from ptmcad.verification.derivation import Derivation, SpringVector
 from ptmcad.verification.report import Violation
@@ -42,6 +43,10 @@ MOST_LENGTHS = 10
 """Different lengths of springs beyond which not all choices of signs are tried."""
 _LARGEST_ANGLE = 10_000
 """Bits of the argument of a cosine or a sine, and its multiples of angles."""
+
+
+_UNUSUAL = re.compile(r"(?:^|[-+*/^(]) *\+|\*\*")
+"""Signs that records may have."""
 
 
 class TooLarge(Exception):
@@ -103,9 +108,10 @@ class ResiduePoint(TreeValues[fmpz_mod]):
         cosine, sine = (self.values[name] for name in circle_names(angle))
         return cosine, sine
 
-    def root(self, square: fmpz_mod) -> fmpz_mod:
+    def root(self, square: fmpz_mod, tree: Tree) -> fmpz_mod:
         if int(square) not in self.roots:
-            raise Violation("has a root of what is no spring's length")
+            shown = to_text(tree)[:60]
+            raise Violation(f"has a root of what is no spring's length: {shown!r}")
         return self.roots[int(square)]
 
     def of(self, p: fmpq_mpoly, ring: Sequence[str]) -> fmpz_mod:
@@ -198,6 +204,8 @@ class Texts:
         if len(text) > LARGEST_TEXT:
             return f"the stored {what} is longer than {LARGEST_TEXT} letters"
         try:
+            if _UNUSUAL.search(text):
+                raise Violation("cannot be read: there is a sign + or ** that no result has")
             tree = parse(text, (*FUNCTIONS, "sqrt"), LARGEST_TEXT)
             if _size(tree) > LARGEST_SIZE:
                 raise TooLarge("has too high a degree or too long numbers")
@@ -238,7 +246,7 @@ class Texts:
             names, (c, s) = circle_names(unknown), point.circle_of(unknown)
             circle = c - s * self.prime, s + c * self.prime
             step |= dict(zip(names, circle, strict=True))
-        lengths = [point.root(point.of(p, self.ring.names)) for p in self.squares]
+        lengths = [point.roots[int(point.of(p, self.ring.names))] for p in self.squares]
         moved = self._rooted(replace(point, values={**point.values, **step}), lengths)
         return int(self._work(tree, moved) - self._work(tree, point)) // self.prime
 
@@ -251,7 +259,7 @@ class Texts:
             pull, collapsed, square = (
                 point.of(p, names) for p in (spring.pull, spring.collapsed, spring.squared)
             )
-            energy += collapsed - pull * point.root(square)
+            energy += collapsed - pull * point.roots[int(square)]
         return energy - point.value(tree)
 
     def _signed(self) -> Iterator[ResiduePoint]:

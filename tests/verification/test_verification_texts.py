@@ -274,7 +274,7 @@ FALSE = [
     ("$", " + 0*9^9^9^9", "a part that is no formula"),
     ("$", " + 0.5", "differs from the mechanism"),
     ("$", "*(L1 + L2)^9*(L1 + L2)^9", "differs from the mechanism"),
-    ("$", " + rho**2", "differs from the mechanism"),
+    ("$", " + rho**2", "cannot be read: "),
     ("$", " + (", "cannot be read"),
     ("$", " + " + "(" * 2000 + "1" + ")" * 2000, "cannot be read"),
     (
