@@ -59,7 +59,7 @@ _HOMES = {
     "design": "workbench.designs.bestdesign",
     "family": "workbench.familymaps",
     "FamilyMap": "answer.family",
-    "slice_variety": "exact.slicevariety",
+    "slice_variety": "exact.eliminationsystem",
     "Pose": "answer.poses",
     "Poses": "answer.poses",
     "solve": "ask.solving",
