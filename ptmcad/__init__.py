@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ptmcad.ask.ranges import intervals, operation_widths
     from ptmcad.ask.solving import solve
     from ptmcad.ask.stepwise import counts_at, discriminant_variety, open_cad
-    from ptmcad.exact.slicevariety import slice_variety
+    from ptmcad.exact.eliminationsystem import slice_variety
     from ptmcad.question.config import load, slice_from_mapping, slice_from_options
     from ptmcad.question.config import make_mechanism as Mechanism
     from ptmcad.question.config import make_system as System
@@ -59,7 +59,7 @@ _HOMES = {
     "design": "workbench.designs.bestdesign",
     "family": "workbench.familymaps",
     "FamilyMap": "answer.family",
-    "slice_variety": "exact.slicevariety",
+    "slice_variety": "exact.eliminationsystem",
     "Pose": "answer.poses",
     "Poses": "answer.poses",
     "solve": "ask.solving",

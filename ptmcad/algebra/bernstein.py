@@ -18,8 +18,8 @@ from typing import Any, NamedTuple
 
 from flint import fmpq, fmpz_mat, fmpz_poly
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial, integral
-from ptmcad.algebra.real_roots import Interval
+from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, integral
+from ptmcad.algebra.real_roots import Interval, isolate, squarefree_part
 
 Terms = Iterable[tuple[tuple[Any, ...], Any]]
 """Exponents of three variables, with coefficients."""
@@ -172,3 +172,32 @@ def _columns(polynomials: Sequence[fmpz_poly]) -> fmpz_mat:
         for row, c in enumerate(p.coeffs()):
             found[row, column] = c
     return found
+
+
+def nowhere_zero(p: Coefficient, box: Sequence[Interval], depth: int = 4) -> bool:
+    """Whether a polynomial in two or three variables is proved to have no zero in an open box, by the
+    signs of its Bernstein coefficients.
+
+    False means that the test did not decide, not that there is a zero. Undecided rectangles of the
+    plane are cut in four, ``depth`` times; then the cuts must be free of zeros too, so strict signs
+    are asked for. A p in one variable of two is decided exactly.
+    """
+    if len(box) == 3:
+        return sign(over(table_of(p.terms()), box)) != 0
+    n, m = (int(d) for d in p.degrees())
+    if n == 0 or m == 0:
+        only = 0 if m == 0 else 1
+        return not isolate(squarefree_part(coefficients_in(p, 1 - only)[0]), *box[only])
+    table = over(table_of(((i, j, 0), c) for (i, j), c in p.terms()), (*box, box[0]))
+    return bool(sign(table)) or _is_free(table, depth)
+
+
+def _is_free(table: Table, depth: int) -> bool:
+    """Whether the quarters of a rectangle are proved to be free of zeros, their boundaries too."""
+    corners = table.layers[0].entries()
+    if depth == 0 or corners[0] * corners[-1] <= 0:
+        return False
+    return all(
+        (sign(part) and all(part.layers[0].entries())) or _is_free(part, depth - 1)
+        for part in quarters(table)
+    )

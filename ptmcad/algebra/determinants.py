@@ -1,10 +1,12 @@
 """Determinants of matrices over Q(x, y), by fraction-free elimination or by values at integers
-modulo primes.
+modulo primes; and the assignment problem, which bounds their orders and degrees.
 
 Guarantee: exact.
 
 References: Bareiss, Math. Comp. 22 (1968); von zur Gathen & Gerhard, Modern Computer Algebra,
-section 5.5 (determinants by evaluation and interpolation).
+section 5.5 (determinants by evaluation and interpolation); Kuhn, Naval Research Logistics Quarterly
+2 (1955), and for the assignment with potentials of rows and columns Jonker & Volgenant, Computing 38
+(1987).
 """
 
 from __future__ import annotations
@@ -16,7 +18,6 @@ from typing import Any
 
 from flint import fmpz, fmpz_mat, fmpz_poly, nmod_mat
 
-from ptmcad.algebra.assignment import least_assignment
 from ptmcad.algebra.polynomials import (
     Coefficient,
     Ratio,
@@ -26,7 +27,7 @@ from ptmcad.algebra.polynomials import (
     lcm,
     ratio,
 )
-from ptmcad.algebra.residues import PRIME_BITS, primes
+from ptmcad.algebra.resultants import PRIME_BITS, primes
 
 OVERHEAD = 5000
 """Of a value, in steps of an elimination in numbers."""
@@ -262,3 +263,52 @@ def _bareiss(matrix: list[list[Coefficient]], most: float) -> Coefficient | None
                 ) / previous
         previous = matrix[k][k]
     return matrix[-1][-1] * sign
+
+
+def least_assignment(costs: Sequence[Sequence[int | None]]) -> int | None:
+    """The least sum of entries of a square matrix in different rows and columns; None stands for
+    infinity. The time grows with the cube of the size.
+    """
+    size = len(costs)
+    row_of: list[int | None] = [None] * size  # for each column
+    above, beside = (
+        [0] * size,
+        [0] * size,
+    )  # potentials: no cost is less than above[row] + beside[column]
+    for start in range(size):
+        distance: list[float] = [math.inf] * size
+        before: list[int | None] = [None] * size
+        done: list[int] = []
+        waiting = set(range(size))
+        row, column, reached = start, None, 0
+        while True:
+            for j in waiting:
+                cost = costs[row][j]
+                if (
+                    cost is not None
+                    and (found := reached + cost - above[row] - beside[j]) < distance[j]
+                ):
+                    distance[j], before[j] = found, column
+            nearest = min(waiting, key=lambda j: distance[j], default=None)
+            if nearest is None or distance[nearest] == math.inf:
+                return None
+            reached = int(distance[nearest])
+            waiting.discard(nearest)
+            column, following = nearest, row_of[nearest]
+            if following is None:
+                break
+            done.append(nearest)
+            row = following
+        above[start] += reached
+        for j in done:
+            taken = row_of[j]
+            assert taken is not None
+            above[taken] += reached - int(distance[j])
+            beside[j] -= reached - int(distance[j])
+        while column is not None:
+            origin = before[column]
+            row_of[column] = start if origin is None else row_of[origin]
+            column = origin
+    return sum(
+        cost for j, i in enumerate(row_of) if i is not None and (cost := costs[i][j]) is not None
+    )

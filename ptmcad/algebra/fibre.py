@@ -15,8 +15,6 @@ from typing import Any, NamedTuple
 
 from flint import (
     Ordering,
-    arb,
-    arb_poly,
     fmpq,
     fmpq_mat,
     fmpq_poly,
@@ -337,27 +335,6 @@ def _basis_traces(algebra: FibreAlgebra) -> tuple[fmpz_mat, fmpz]:
     return row, denominator
 
 
-class CoordinatesInBalls(NamedTuple):
-    """The coordinates' numerators and their denominator in balls of the precision at which this was
-    made.
-    """
-
-    numerators: tuple[arb_poly, ...]
-    slope: arb_poly
-
-    @classmethod
-    def of(cls, representation: UnivariateRepresentation) -> CoordinatesInBalls:
-        """Of a representation, at the working precision."""
-        return cls(tuple(map(arb_poly, representation.coordinates)), arb_poly(representation.slope))
-
-    def at(self, value: arb) -> list[arb] | None:
-        """The unknowns at the roots of ``minimal`` that a ball contains; None when the ball is too
-        wide.
-        """
-        slope = self.slope(value)
-        return None if slope.contains(0) else [p(value) / slope for p in self.numerators]
-
-
 def hermite_matrix(algebra: FibreAlgebra, weight: fmpq_mat) -> fmpq_mat:
     """The matrix trace(weight b_i b_j), weight being a multiplication matrix.
 
@@ -374,3 +351,33 @@ def hermite_matrix(algebra: FibreAlgebra, weight: fmpq_mat) -> fmpq_mat:
     # the first basis monomial is 1, so the first column is the weight's own normal form
     weighted = traces_of_products * fmpq_mat(size, 1, [weight[i, 0] for i in range(size)])
     return fmpq_mat(size, size, [value for m in products for value in (m * weighted).entries()])
+
+
+Divisor = fmpz_poly
+"""In Z[T], of the representation's minimal polynomial."""
+
+
+def vanishing_divisor(
+    algebra: FibreAlgebra, representation: UnivariateRepresentation, p: RationalPolynomial
+) -> Divisor | None:
+    """The divisor whose roots are those at which p vanishes; None when there are none.
+
+    Parameters
+    ----------
+    p : in the unknowns; it may have fewer than the algebra.
+    """
+    if evaluate(algebra, p).det() != 0:
+        return None
+    degree = max((sum(m) for m in p), default=0)
+    minimal = fmpq_poly(representation.minimal)
+    powers = [fmpq_poly([1])]
+    for _ in range(degree):
+        powers.append(powers[-1] * representation.slope % minimal)
+    total = fmpq_poly([0])
+    for monomial, c in p.items():
+        term = powers[degree - sum(monomial)] * c
+        for coordinate, e in zip(representation.coordinates, monomial, strict=False):
+            for _ in range(e):
+                term = term * coordinate % minimal
+        total += term
+    return fmpz_poly(total.numer()).gcd(representation.minimal)

@@ -1,4 +1,5 @@
-"""Real number fields Q(a), a being a real root of an irreducible polynomial, and their elements.
+"""Real number fields Q(a), a being a real root of an irreducible polynomial, their elements, and
+rational roots of polynomials over them.
 
 Guarantee: exact. Whether an element is zero, or rational, is decided by its residue and never by an
 enclosure; `ball` encloses its value, as narrowly as the precision allows.
@@ -12,11 +13,11 @@ over Q is computed when the prime does not tell.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly, nmod, nmod_poly
 
@@ -231,3 +232,45 @@ def polynomial_at(
         return total
 
     return FieldElement(field, value)
+
+
+_Polynomial = TypeVar("_Polynomial", fmpq_poly, nmod_poly)
+
+
+def rational_roots(lower: Sequence[FieldElement]) -> Iterator[tuple[Fraction, int]]:
+    """The rational roots of a polynomial with leading coefficient 1, with multiplicities.
+
+    With coefficients in powers of the field's generator, a rational root is one of each power's
+    polynomial, so of their greatest common divisor. Where that is constant modulo a prime it is so
+    over Q; most often this settles the matter.
+
+    Parameters
+    ----------
+    lower : the other coefficients, from the constant one on.
+    """
+    images = [total.image_coefficients() for total in lower]
+    known = [image for image in images if image is not None]
+    if len(known) == len(images) and known:
+        p = known[0][0].modulus()
+        columns = [
+            nmod_poly([int(image[j]) for image in known] + [int(j == 0)], p)
+            for j in range(len(known[0]))
+        ]
+        if _common(columns).degree() < 1:
+            return
+    rows = [total.coefficients() for total in lower]
+    exact = (
+        [fmpq_poly([row[j] for row in rows] + [fmpq(int(j == 0))]) for j in range(len(rows[0]))]
+        if rows
+        else []
+    )
+    for factor, multiplicity in _common(exact).numer().factor()[1] if exact else []:
+        if factor.degree() == 1:
+            yield Fraction(-int(factor[0]), int(factor[1])), multiplicity
+
+
+def _common(polynomials: Sequence[_Polynomial]) -> _Polynomial:
+    total = polynomials[0]
+    for p in polynomials[1:]:
+        total = total.gcd(p)
+    return total

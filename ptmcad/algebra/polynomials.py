@@ -18,6 +18,7 @@ from flint import (
     fmpq_mpoly,
     fmpq_mpoly_ctx,
     fmpq_poly,
+    fmpz_mat,
     fmpz_mpoly,
     fmpz_mpoly_ctx,
     fmpz_poly,
@@ -226,3 +227,37 @@ def point_values(parameters: Ratios, at: Sequence[fmpq]) -> dict[str, fmpq]:
         name: evaluate(above, *at) / evaluate(below, *at)
         for name, (above, below) in parameters.items()
     }
+
+
+class Restrictions:
+    """sum_j c_j(u) v^j for given u, in hundreds of places.
+
+    The coefficients are a matrix, and one place is one product with the powers of its number: three
+    to five times faster than evaluating each coefficient, which reduces fractions.
+
+    Parameters
+    ----------
+    rows : c_j in Z[u], the last one not zero.
+    """
+
+    __slots__ = ("_matrix", "_rows")
+
+    def __init__(self, rows: tuple[UnivariatePolynomial, ...]) -> None:
+        self._rows = rows
+        self._matrix: fmpz_mat | None = None
+
+    def at(self, u: fmpq) -> UnivariatePolynomial:
+        """A positive multiple of the polynomial in Z[v]."""
+        if self._matrix is None:
+            length = 1 + max(row.degree() for row in self._rows)
+            self._matrix = fmpz_mat([[row[i] for i in range(length)] for row in self._rows])
+        # u^i times the largest power of the denominator
+        p, q = int(u.p), int(u.q)
+        powers = [1]
+        for _ in range(self._matrix.ncols() - 1):
+            powers.append(powers[-1] * p)
+        factor = 1
+        for i in range(len(powers) - 1, -1, -1):
+            powers[i] *= factor
+            factor *= q
+        return fmpz_poly((self._matrix * fmpz_mat(len(powers), 1, powers)).entries())

@@ -16,8 +16,7 @@ from functools import lru_cache
 from operator import add
 from typing import NamedTuple
 
-from ptmcad.algebra.assignment import least_assignment
-from ptmcad.algebra.determinants import characteristic, determinant
+from ptmcad.algebra.determinants import characteristic, determinant, least_assignment
 from ptmcad.algebra.groebner import GroebnerBasis, divides, shifted
 from ptmcad.algebra.polynomials import (
     Coefficient,

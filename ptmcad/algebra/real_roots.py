@@ -275,3 +275,55 @@ def gaps(isolated: Sequence[Any], window: tuple[Any, Any]) -> list[tuple[Any, An
         window[1],
     ]
     return list(zip(ends[::2], ends[1::2], strict=True))
+
+
+_HALVINGS = 12
+"""How often an interval is halved before it is refined as fast as a cluster of roots needs."""
+
+
+def newton_ball(value: arb_poly, slope: arb_poly, root: RealRoot) -> arb:
+    """A ball around a root, about as narrow as the working precision allows, by the interval Newton
+    operator.
+
+    With a root in X and 0 not in p'(X), it lies in m - p(m) / p'(X) for any m in X, by the mean value
+    theorem (Moore, Interval Analysis, 1966).
+
+    Parameters
+    ----------
+    value, slope : the root's polynomial and its derivative in balls of that precision.
+    """
+    low, high = root.low, root.high
+    if low == high:
+        return arb(low)
+    rising = sign_at(root.polynomial, high) > 0
+    for _ in range(_HALVINGS):
+        found = _narrowed(value, slope, arb(low).union(arb(high)))
+        if found is not None:
+            return found
+        middle = (low + high) / 2
+        there = value(arb(middle))
+        if there > 0 if rising else there < 0:
+            high = middle
+        elif there < 0 if rising else there > 0:
+            low = middle
+        else:  # the root, or too near to it to tell
+            break
+    # by its own means as far as the ball is to be narrow, where Newton's would not be at this
+    # precision
+    return refine(root, fmpq(1, 2 ** (ctx.prec - 8)) * (abs(root.middle) + 1)).ball
+
+
+def _narrowed(value: arb_poly, slope: arb_poly, ball: arb) -> arb | None:
+    """The root of a ball in one of at most the square root of the precision's unit; None when
+    that fails.
+    """
+    while True:
+        steepness = slope(ball)
+        if steepness.contains(0):
+            return None
+        middle = ball.mid()
+        found = middle - value(middle) / steepness
+        if not 2 * found.rad() < ball.rad():
+            small = ball.rad() * 2 ** (ctx.prec // 2) < abs(middle) + 1
+            return ball if small else None
+        ball = found

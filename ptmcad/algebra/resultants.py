@@ -1,13 +1,20 @@
 """Discriminants and resultants in Z[u] of polynomials in Z[u][v], by evaluation at integers and
 interpolation.
 
-Guarantee: exact. The number of evaluation points comes from a proved bound for the degree, see
-`orders`: nothing is left to chance. Long values are taken modulo primes, as many as a proved bound
+Guarantee: exact. The number of evaluation points comes from a proved bound for the degree: nothing
+is left to chance. Long values are taken modulo primes, as many as a proved bound
 for the coefficients asks for; no prime is a bad one, as the formal discriminant commutes with every
 map of rings. Of a long polynomial that a reflection v to 2 m(u) - v maps to itself, the
 discriminant in (v - m)^2 is computed, of half the degree; where m = 0 that is left to the caller.
 
-The bound: a coefficient in Z[u] is at most the largest value on the circle |u| = 1, where |c(u)| is
+The degree is the negative of the order o at infinity. That extends to the roots of
+p = sum_i c_i v^i over an algebraic closure, and the slopes of the lower convex hull of the points
+(i, o(c_i)) are the orders of the roots, with a change of sign (Newton's polygon). Now
+disc p = c_n^(2n-2) prod_{i<j} (r_i - r_j)^2 and res(p, q) = c_n^m d_m^n prod (r_i - s_j), and
+o(r - s) is at least the smaller one of o(r) and o(s). The bound is sharp where roots of the same
+order have different leading terms.
+
+The bound for coefficients: one in Z[u] is at most the largest value on the circle |u| = 1, where |c(u)| is
 at most the sum
 |c|_1 of c's absolute coefficients. There Hadamard's inequality for Sylvester's matrix, with t v in place of v, says
 
@@ -24,16 +31,28 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
 from functools import lru_cache
 from itertools import count, islice, pairwise
 from typing import Any
 
 from flint import fmpq_poly, fmpz, fmpz_poly, nmod_poly
 
-from ptmcad.algebra.orders import discriminant_degree, resultant_degree
 from ptmcad.algebra.reflections import axis_of, squared
-from ptmcad.algebra.residues import PRIME_BITS, primes
+
+PRIME_BITS = 63
+"""FLINT's arithmetic is fastest where two residues add up without overflow."""
+
+
+def primes() -> Iterator[int]:
+    """Primes, from the largest of `PRIME_BITS` bits downwards."""
+    candidate = fmpz(2**PRIME_BITS - 1)
+    while True:
+        if candidate.is_prime():
+            yield int(candidate)
+        candidate -= 2
+
 
 Coefficients = Sequence[fmpz_poly]
 Check = Callable[[], None]
@@ -297,3 +316,62 @@ def interpolate_rows(
         row = interpolate(lambda k, column=column: column[k - first], degree, check)  # type: ignore[misc]
         found.update({(i, j): c for i, c in enumerate(row.coeffs()) if c})
     return found
+
+
+def discriminant_degree(p: Coefficients) -> int:
+    """A bound for the degree of the formal discriminant with respect to v; negative where that is
+    zero.
+    """
+    order = _of_discriminant(_degrees(p), len(p) - 1)
+    return -1 if order is None else -order
+
+
+def resultant_degree(p: Coefficients, q: Coefficients) -> int:
+    """A bound for the degree of the formal resultant with respect to v; negative where that is
+    zero.
+    """
+    left, right = _degrees(p), _degrees(q)
+    if not left or not right:
+        return -1
+    n, m = max(left), max(right)
+    first, second = _roots(left), _roots(right)
+    far, further = len(p) - 1 - n, len(q) - 1 - m
+    if (far and further) or (len(first) < n and len(second) < m):
+        return -1  # both have the root infinity, or both 0
+    # the n - len(first) roots 0 are of infinite order, and the smaller order is the other root's
+    total = (m + further) * left[n] + (n + far) * right[m] + sum(second) * (n - len(first))
+    total += sum(first) * (m - len(second)) + sum(
+        (min(r, s) for r in first for s in second), Fraction(0)
+    )
+    return -math.ceil(total)
+
+
+def _degrees(p: Coefficients) -> dict[int, int]:
+    """The orders at infinity of the coefficients that are not zero."""
+    return {i: -int(c.degree()) for i, c in enumerate(p) if c}
+
+
+def _of_discriminant(orders: Mapping[int, int], degree: int) -> int | None:
+    """A bound from below for the formal discriminant's order; None where 0 or infinity is a
+    multiple root.
+    """
+    n = max(orders, default=0)
+    if not orders or min(orders) > 1 or degree - n > 1:
+        return None
+    # of formal degree n + 1 it is c_n^2 times that of degree n
+    total = Fraction((2 * n - 2 + 2 * (degree - n)) * orders[n])
+    return math.ceil(total + 2 * sum(r * (n - 1 - i) for i, r in enumerate(sorted(_roots(orders)))))
+
+
+def _roots(orders: Mapping[int, int]) -> list[Fraction]:
+    """The orders of the roots that are not 0."""
+    hull: list[tuple[int, int]] = []
+    for point in sorted(orders.items()):
+        while len(hull) > 1 and _slope(hull[-1], point) <= _slope(hull[-2], hull[-1]):
+            hull.pop()
+        hull.append(point)
+    return [-_slope(a, b) for a, b in pairwise(hull) for _ in range(b[0] - a[0])]
+
+
+def _slope(left: tuple[int, int], right: tuple[int, int]) -> Fraction:
+    return Fraction(right[1] - left[1], right[0] - left[0])

@@ -15,8 +15,7 @@ from math import gcd
 
 from flint import fmpq, fmpz_poly
 
-from ptmcad.algebra import orders, resultants
-from ptmcad.algebra.bernstein import over, sign, table_of
+from ptmcad.algebra import resultants
 from ptmcad.algebra.polynomials import (
     PLANE,
     Coefficient,
@@ -24,7 +23,6 @@ from ptmcad.algebra.polynomials import (
     coefficients_in,
     irreducible_factors,
 )
-from ptmcad.algebra.real_roots import Interval
 from ptmcad.algebra.resultants import Check, interpolate_rows, nothing
 
 Rows = Sequence[Coefficient]
@@ -102,15 +100,6 @@ def common_zeros(rows: Rows, check: Check = nothing) -> list[UnivariatePolynomia
     return found
 
 
-def nowhere_zero(p: Coefficient, box: Sequence[Interval]) -> bool:
-    """Whether an element of Z[x, y, z] is proved to have no zero in an open box, by its Bernstein
-    coefficients there.
-
-    False means that the test did not decide.
-    """
-    return sign(over(table_of(p.terms()), box)) != 0
-
-
 def _bits(row: Coefficient) -> int:
     return max((int(c).bit_length() for _, c in row.terms()), default=0)
 
@@ -126,11 +115,11 @@ def _degrees(rows: Rows, variable: int) -> tuple[UnivariatePolynomial, ...]:
 
 
 def _of_one(ps: _Univariate) -> int:
-    return orders.discriminant_degree(ps[0])
+    return resultants.discriminant_degree(ps[0])
 
 
 def _of_two(ps: _Univariate) -> int:
-    return orders.resultant_degree(ps[0], ps[1])
+    return resultants.resultant_degree(ps[0], ps[1])
 
 
 def _interpolated(

@@ -1,6 +1,6 @@
 """The boundaries of a map's regions as polylines, for other programs to draw.
 
-Guarantee: each curve is within `Boundary.distance` of its polyline, as `ptmcad.exact.cad.chains`
+Guarantee: each curve is within `Boundary.distance` of its polyline, as `ptmcad.exact.cad.polyline`
 proves, and the distance is at most the tolerance unless it is said to be more; a certified map's
 polylines are its cells' own outlines.
 """
@@ -23,8 +23,8 @@ from ptmcad.cover.connectivity import shown
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
-from ptmcad.exact.cad.chains import WallPolyline, chains, critical_shares
-from ptmcad.exact.cad.curves import lines_of
+from ptmcad.exact.cad.polyline import WallPolyline, chains, critical_shares
+from ptmcad.exact.cad.projection import lines_of
 from ptmcad.question.slice import within_doubles
 from ptmcad.text.parsing import share_for
 

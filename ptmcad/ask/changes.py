@@ -15,7 +15,7 @@ from time import perf_counter
 
 from flint import fmpq
 
-from ptmcad.algebra.numbers import algebraic_number
+from ptmcad.algebra.algebraic_numbers import algebraic_number
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.changes import TOLERANCE, Change, Changes
@@ -24,9 +24,8 @@ from ptmcad.ask.classification import check_count
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.members import AskedFamily, Common, in_common, in_space
 from ptmcad.errors import ConfigError, HypothesisError, LimitReached
-from ptmcad.exact.arrangement import Picture, picture_of
-from ptmcad.exact.familyprojection import critical_values
-from ptmcad.exact.surfaces import surfaces_of
+from ptmcad.exact.familyprojection import critical_values, surfaces_of
+from ptmcad.exact.slicearrangement import Picture, picture_of
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.config import Family, family_from
 from ptmcad.question.shipped import RecordSource

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from ptmcad.answer.arrangement import SIDES
 from ptmcad.answer.counts import key_text
 from ptmcad.answer.words import index_words, noun
-from ptmcad.exact.arrangement import Picture
-from ptmcad.exact.regions import Link, members, merge
+from ptmcad.exact.decomposition import Link, members, merge
+from ptmcad.exact.slicearrangement import Picture
 from ptmcad.text.numerals import text_of
 
 _Same = tuple[list[int], list[int]]

@@ -31,11 +31,10 @@ from ptmcad.ask.forecast import cost_text as in_figures
 from ptmcad.ask.quantities import open_chain
 from ptmcad.ask.timed import returns_within
 from ptmcad.errors import ConfigError, DegenerateSliceError, LimitReached, shown
+from ptmcad.exact.curvesizes import Survey, sizes, survey
 from ptmcad.exact.models import ParametricSystem
 from ptmcad.exact.point_system import degree_bound, none_is_stable, solutions_at
-from ptmcad.exact.sizes import sizes
 from ptmcad.exact.stages import SliceProblem, problem_of, prove_regular
-from ptmcad.exact.survey import Survey, survey
 from ptmcad.exact.witness import SHARES, points
 from ptmcad.model import ptm
 from ptmcad.model.closed import terms_of

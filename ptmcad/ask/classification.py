@@ -161,7 +161,7 @@ def region_map(slice: Slice, options: Options, known: Known | None = None) -> Re
         raise ConfigError("only the certified engine can go on from an earlier map", key="resume")
     if "imports" in options.without:
         load_all()
-    from ptmcad.exact.engine import exact_map
+    from ptmcad.exact.exactmap import exact_map
 
     return exact_map(slice, options, known)
 

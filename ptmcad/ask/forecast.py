@@ -8,7 +8,7 @@ Equations become a curve by arithmetic with the entries of multiplication tables
 square of the number of solutions, each product of which takes time as the square of their terms;
 and by an interpolation of the norm. The curve's discriminant follows the product of its degrees.
 All that comes after grows with the cells of the window and the walls between them. Where the curve
-and its discriminant are quick they are computed, and the cells counted (`ptmcad.exact.survey`);
+and its discriminant are quick they are computed, and the cells counted (`ptmcad.exact.curvesizes`);
 where they are not, the number of cells is not known, and what is usual at the curve's size is
 taken.
 """
@@ -18,8 +18,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ptmcad.exact.sizes import CurveSizes
-from ptmcad.exact.survey import Survey
+from ptmcad.exact.curvesizes import CurveSizes, Survey
 
 MAX_DEGREE = 50
 """Of the curve in an axis, in the mean of both: beyond, the map may take hours."""

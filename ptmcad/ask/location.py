@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import fmpq
 
-from ptmcad.algebra.numbers import root_of
+from ptmcad.algebra.algebraic_numbers import root_of
 from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_plane, univariate
 from ptmcad.algebra.real_roots import has_root_between, isolate, order, sign_at, squarefree_part
 from ptmcad.answer.location import Location
@@ -22,7 +22,7 @@ from ptmcad.answer.words import noun
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, DegenerateSliceError, expect
-from ptmcad.exact.cad.curves import FibredCurve, curves_of
+from ptmcad.exact.cad.projection import FibredCurve, curves_of
 from ptmcad.exact.cad.stacks import level_at
 from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import on_axes

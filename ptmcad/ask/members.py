@@ -124,7 +124,7 @@ def in_space(asked: AskedFamily) -> SystemOnAxes:
         When they are too large to be expanded in three variables.
     """
     from ptmcad.exact.models import system_from
-    from ptmcad.exact.models.space import space_parameters
+    from ptmcad.exact.models.familyparameters import space_parameters
     from ptmcad.exact.models.system import SystemOnAxes
 
     system = system_from(asked.model)

@@ -20,7 +20,7 @@ from ptmcad.ask.location import component_cells, in_steps, locate, stack_over
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
-from ptmcad.exact.cad.curves import by_component, curves_of, lines_of
+from ptmcad.exact.cad.projection import by_component, curves_of, lines_of
 from ptmcad.question.slice import within_doubles
 from ptmcad.text.flint_numbers import from_fraction, interval_of
 

@@ -94,7 +94,7 @@ def poses_at(model: Model, parameters: Numbers, digits: int) -> Poses:
         with loading("the certified engine"):
             from ptmcad.certified.plain.certifiedposes import plain_poses
         return plain_poses(model, parameters, digits)
-    from ptmcad.exact.poses import exact_poses
+    from ptmcad.exact.exactposes import exact_poses
 
     given = {n: v for n, v in parameters.items() if n not in model.free_lengths}
     most = None if model.whole is None else work_for(model)

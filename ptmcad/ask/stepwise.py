@@ -17,8 +17,8 @@ from ptmcad.answer.slicevariety import SliceVariety
 from ptmcad.ask.manyangles import counts_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.exact.counting import equilibria
+from ptmcad.exact.eliminationsystem import slice_variety
 from ptmcad.exact.models import system_from
-from ptmcad.exact.slicevariety import slice_variety
 from ptmcad.exact.stages import decomposition_of, problem_of
 from ptmcad.model import Model
 from ptmcad.question.config import point_from_mapping, slice_from

@@ -19,6 +19,7 @@ import numba
 import numpy as np
 
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.certified.coverassembly import Assembler
 from ptmcad.certified.covering import (
     Lattice,
     Thinning,
@@ -28,7 +29,6 @@ from ptmcad.certified.covering import (
     thinning,
 )
 from ptmcad.certified.loading import load, may_be_slanted
-from ptmcad.certified.mapassembly import Assembler
 from ptmcad.certified.pace import PARTS, SAFETY, Pace, SearchProgress
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.mirrors import halving

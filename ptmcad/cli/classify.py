@@ -184,7 +184,7 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
         For a name that no saving of the engine has.
     """
     from ptmcad.ask.engines import is_certified
-    from ptmcad.exact import plan
+    from ptmcad.exact import exactplan
 
     certified = is_certified(slice, options.engine)
     off = switched_off(options.without, certified)
@@ -193,7 +193,7 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
 
         steps = beforehand(slice, off)
     else:
-        steps = plan.beforehand(slice, off, options.areas)
+        steps = exactplan.beforehand(slice, off, options.areas)
     click.echo(
         f"plan of {slice.name}, {'certified' if certified else 'exact'} engine, before it starts:"
     )
@@ -202,7 +202,7 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
         from ptmcad.ask.checking import foretold
 
         click.echo("\n".join(f"foretold: {text}" for text in foretold(slice)))
-    later = () if certified else tuple(name for name in plan.LATER if name not in off)
+    later = () if certified else tuple(name for name in exactplan.LATER if name not in off)
     if later:
         click.echo(f"to be decided on the way: {', '.join(later)}")
     return steps

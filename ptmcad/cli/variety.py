@@ -52,7 +52,7 @@ def command(
         portable_file(out.name, "--out")
         check_writable(out.parent, (out.name,))
     with held(limits), ProgressBar():
-        from ptmcad.exact.slicevariety import slice_variety
+        from ptmcad.exact.eliminationsystem import slice_variety
 
         text = slice_variety(slice).text(format)
     if out is None:

@@ -17,16 +17,14 @@ from collections.abc import Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from flint import arb, ctx, fmpq
+from flint import arb, arb_poly, ctx, fmpq
 
-from ptmcad.algebra.fibre import CoordinatesInBalls, UnivariateRepresentation, WorkLimit
+from ptmcad.algebra.fibre import Divisor, UnivariateRepresentation, WorkLimit, vanishing_divisor
 from ptmcad.algebra.inertia import negative_eigenvalues
 from ptmcad.algebra.isolation import root_bound
-from ptmcad.algebra.newton import Newton
 from ptmcad.algebra.polynomials import Values
-from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate
+from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate, newton_ball
 from ptmcad.algebra.trigonometric import RationalPolynomial
-from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
 from ptmcad.answer.counts import Counts, counts_of_signs, euler_sum
 from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_point
@@ -123,18 +121,21 @@ def _enclosed(
     """
     found: list[Equilibrium] = []
     with ctx.workprec(bits):
-        newton = Newton.of(representation.minimal)
-        coordinates = CoordinatesInBalls.of(representation)
+        minimal = representation.minimal
+        value, derivative = arb_poly(minimal), arb_poly(minimal.derivative())
+        slope = arb_poly(representation.slope)
+        numerators = [arb_poly(p) for p in representation.coordinates[: system.ring.width]]
         conditions = tuple(map(_in_balls, point.conditions))
         size = system.criterion.order
         hessian = [
             (i, j, _in_balls(point.jacobian[i][j])) for i in range(size) for j in range(i, size)
         ]
         for root in roots:
-            at = coordinates.at(newton.ball(root))
-            if at is None:
+            at = newton_ball(value, derivative, root)
+            below = slope(at)
+            if below.contains(0):
                 return None
-            unknowns = at[: system.ring.width]
+            unknowns = [p(at) / below for p in numerators]
             signs = _condition_signs(conditions, root, unknowns, zeros)
             if signs is None:
                 return None

@@ -1,10 +1,13 @@
-"""A window cut along curves: stacks of cells over a base axis, and which of the cells are
-neighbours.
+"""A window cut along curves: stacks of cells over a base axis, which of the cells are neighbours, and
+the regions that they make up.
 
-Guarantee: no step decides anything by rounding without an error bound.
+Guarantee: no step decides anything by rounding without an error bound. Two cells are in one region
+exactly when a chain of neighbours with equal counts joins them: across artefacts of the
+decomposition, where counts must agree, and across walls. The regions do not depend on which axis was
+the base.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from itertools import islice, pairwise
 from typing import NamedTuple, TypeVar
 
@@ -14,13 +17,70 @@ from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import Interval, Window, order, sign_at
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
-from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
-from ptmcad.exact.cad.curves import FibredCurve, curves_of, lines_of
-from ptmcad.exact.cad.projection import Projection, predicted_cost, project
+from ptmcad.exact.cad.crossings import Crossing, Separator, cross
+from ptmcad.exact.cad.projection import (
+    FibredCurve,
+    Projection,
+    curves_of,
+    lines_of,
+    predicted_cost,
+    project,
+)
 from ptmcad.exact.cad.stacks import Avoided, StackData, level_at, lift
-from ptmcad.exact.regions import Link, merge
 from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import to_fraction
+
+
+class Link(NamedTuple):
+    """Cells ``first`` and ``second`` share an open arc; ``component`` is the variety's component on
+    it, or None.
+    """
+
+    first: int
+    second: int
+    component: int | None
+
+
+def merge(keys: Sequence[Hashable], links: Sequence[Link]) -> tuple[int, ...]:
+    """The region of every cell, numbered from 0 in the order of their first cells.
+
+    Parameters
+    ----------
+    keys : the count by which regions are distinguished, for each cell.
+
+    Raises
+    ------
+    ArithmeticError
+        When an open link joins cells of different counts: the decomposition contradicts itself.
+    """
+    parent = list(range(len(keys)))
+
+    def root(i: int) -> int:
+        while parent[i] != i:
+            parent[i] = parent[parent[i]]
+            i = parent[i]
+        return i
+
+    for link in links:
+        equal = keys[link.first] == keys[link.second]
+        if link.component is None and not equal:
+            raise ArithmeticError(
+                f"cells {link.first} and {link.second} are joined off the variety but differ in count"
+            )
+        if equal:
+            a, b = root(link.first), root(link.second)
+            parent[max(a, b)] = min(a, b)
+    numbers: dict[int, int] = {}
+    return tuple(numbers.setdefault(root(i), len(numbers)) for i in range(len(keys)))
+
+
+def members(region_of: Sequence[int]) -> tuple[tuple[int, ...], ...]:
+    """The cells of every region."""
+    cells: list[list[int]] = [[] for _ in range(1 + max(region_of))]
+    for n, number in enumerate(region_of):
+        cells[number].append(n)
+    return tuple(map(tuple, cells))
+
 
 _T = TypeVar("_T")
 Sample = tuple[fmpq, fmpq]

@@ -1,11 +1,16 @@
-"""The values of a family's free parameter at which the arrangement of its members' regions can
-change.
+"""The discriminant variety of a family in three dimensions, and the values of its free parameter at
+which the arrangement of its members' regions can change.
 
 Guarantee: between neighbouring values of a complete list the members' maps are the same up to a
 continuous motion that keeps the window's sides: cells, counts, what is adjacent, and in which order
 regions lie along the sides.
 
-Why. Let the surfaces p be irreducible in Z[x, y, z], and let them be projected along v, one of x
+Why. What `variety` says of curves holds over Q(x, y, z) word for word. Surfaces at infinity are taken
+by what they divide, the denominators of the multiplication matrices, unless solutions are proved to
+stay regular near almost all of their points: the exceptional points form curves, which do not cut a
+part of space in two.
+
+Let the surfaces p be irreducible in Z[x, y, z], and let them be projected along v, one of x
 and y, the other one being w. Let E be the curves in the plane of (z, w) that are given by the
 irreducible factors of disc_v p, of res_v(p, q), of p on the window's two edges v = const, and of p
 itself where v is not in it; and D the values of z that the projection of E along w gives in the
@@ -26,12 +31,14 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from math import gcd
 
+from ptmcad.algebra.bernstein import nowhere_zero
 from ptmcad.algebra.polynomials import (
     Coefficient,
     UnivariatePolynomial,
     coefficients_in,
     irreducible_factors,
 )
+from ptmcad.algebra.quotient import multiples, multiplication_denominator, quotient_algebra
 from ptmcad.algebra.real_roots import Interval, RealRoot
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.space import (
@@ -43,8 +50,10 @@ from ptmcad.algebra.space import (
     resultant,
     rows_in,
 )
-from ptmcad.exact.cad.curves import curve, deflation
-from ptmcad.exact.cad.projection import predicted_cost, project
+from ptmcad.exact.cad.projection import curve, deflation, predicted_cost, project
+from ptmcad.exact.familyvariety import FamilyVariety
+from ptmcad.exact.models.system import SystemOnAxes
+from ptmcad.exact.variety import harmless, settles, sign_changes
 
 MAX_WORK = 5 * 10**10
 """Of all discriminants and resultants in three variables together, by `space.predicted_work`; a
@@ -137,3 +146,33 @@ def _deflated(rows: Rows) -> tuple[Rows, int]:
     """
     power = deflation(rows)
     return rows[::power], power
+
+
+def surfaces_of(
+    on: SystemOnAxes, known: FamilyVariety, box: Sequence[Interval]
+) -> tuple[Coefficient, ...]:
+    """The irreducible surfaces that may have a point in an open box.
+
+    Parameters
+    ----------
+    on : the system on the axes x, y and z.
+    known : the variety over Q(x, y, z).
+    box : the ranges of x, y and z.
+    """
+    equations = on.equations
+    algebra = quotient_algebra(known.basis)
+    assert algebra is not None  # it was, when the variety was computed
+    given = [
+        known.jacobian_norm[0],
+        *equations.boundary,
+        *on.limits,
+        *sign_changes(equations, algebra),
+    ]
+    found = irreducible_factors(*given)
+    everywhere = irreducible_factors(multiplication_denominator(algebra))
+    suspects = [f for f in everywhere if f not in found and not nowhere_zero(f, box)]
+    if suspects and settles(equations):
+        rows = multiples(algebra, equations.jacobian)
+        proved = harmless(equations, rows, known.jacobian_norm, suspects)
+        suspects = [f for f in suspects if f not in proved]
+    return (*(f for f in found if not nowhere_zero(f, box)), *suspects)

@@ -28,6 +28,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from ptmcad.algebra.bernstein import nowhere_zero
 from ptmcad.algebra.determinants import determinant
 from ptmcad.algebra.groebner import GroebnerBasis, MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import (
@@ -50,7 +51,6 @@ from ptmcad.algebra.quotient import (
     trace_form,
 )
 from ptmcad.algebra.real_roots import Window
-from ptmcad.algebra.window import nowhere_zero
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError, NothingToCountError
 from ptmcad.exact.continua import continuum
@@ -164,7 +164,7 @@ class _Components:
         """Why a curve is left out that has no point in the window, or the empty string."""
         return (
             NO_POINT
-            if "no-real-points" not in self.without and nowhere_zero(factor, *self.window)
+            if "no-real-points" not in self.without and nowhere_zero(factor, self.window)
             else ""
         )
 

@@ -39,16 +39,11 @@ def need(kind: Kind, expression: Expression) -> Need:
     return Need.NOT_NEGATIVE if kind.may_vanish else Need.NO_POLE
 
 
-def sign_of(subject: Subject, axes: Axes, max_work: int | None = None) -> Finding:
-    """The sign of a subject: a pole or a point that contradicts it, or else what is proved.
-
-    Parameters
-    ----------
-    max_work : see `ptmcad.question.positivity.decide`.
-    """
+def sign_of(subject: Subject, axes: Axes) -> Finding:
+    """The sign of a subject: a pole or a point that contradicts it, or else what is proved."""
     found = Finding(subject, window_of(axes), PROVED)
     for asked in dict.fromkeys((Need.NO_POLE, need(subject.kind, subject.value))):
-        verdict = decide(subject.value, axes, asked, max_work)
+        verdict = decide(subject.value, axes, asked)
         if isinstance(verdict, Witness):
             return found._replace(
                 verdict=verdict, problem=_refutation(subject, asked, verdict, axes), is_final=True
@@ -81,7 +76,6 @@ def sign_of_part(
     part: Part,
     parameters: Expressions,
     axes: Axes,
-    max_work: int | None = None,
     known: Mapping[Subject, Finding] = _NOTHING,
 ) -> Finding:
     """The same of what a spring is given; free lengths that a slice does not name are zero.
@@ -106,7 +100,7 @@ def sign_of_part(
     if value.degree > MAX_DEGREE:
         problem = f"{part.text} has degree {value.degree} in the axes: at most {MAX_DEGREE} can be computed"
         return Finding(subject, window, Undecided(()), problem)
-    return known.get(subject) or sign_of(subject, axes, max_work)
+    return known.get(subject) or sign_of(subject, axes)
 
 
 def signs_of(slice: Slice) -> Iterator[Finding]:

@@ -5,11 +5,11 @@ Guarantee: `Proved` is a theorem, and a `Witness` is exact: the function has the
 stated point, or is zero within the stated distance of it. What is neither is `Undecided`, a value
 of its own and never taken for a proof.
 
-Two methods, the cheap one first. Bernstein coefficients on boxes: those on a box bound the
-polynomial there, and those at its corners are its values; the box with the lowest bound is halved
-next, so that the work gathers where a dip may be. What `MAX_SPLITS` and `MAX_WORK` leave open
-(zeros that only touch, thin dips, valleys) is decided by algebra, `ptmcad.algebra.definite`, which
-is loaded for this only: FLINT takes longer to load than a record to read.
+Bernstein coefficients on boxes bound the polynomial there, and those at its corners are its values;
+the box with the lowest bound is halved next, so that the work gathers where a dip may be. Where
+`MAX_SPLITS` and `MAX_WORK` leave a polynomial open, its irreducible factors are looked at in the
+same way, as a power changes its sign nowhere, or with its base; FLINT, which takes longer to load
+than a record to read, is loaded for this only. Thin dips, and sums that touch zero, stay undecided.
 
 References: Farouki, "The Bernstein polynomial basis: a centennial retrospective", CAGD 29 (2012),
 section 4.
@@ -33,13 +33,10 @@ from ptmcad.text.numerals import approximate_text
 MAX_SPLITS = 400
 MAX_WORK = 2_000_000
 """Additions of Bernstein coefficients; less than a second."""
-READING_WORK = 10**8
-"""Work of algebra, in the unit of `ptmcad.algebra.definite.MAX_WORK`, while a record is read: some
-tenth of a second.
-
-A reader answers at once and knows no time limit; an engine, which does, asks again without this
-bound.
-"""
+_HALVINGS = 60
+"""Of a segment, in which a zero is enclosed."""
+_SIMPLE = 10**6
+"""Denominators up to which a zero is looked for exactly."""
 MAX_SHOWN = 10**40
 """Numerators and denominators from here on are shown rounded."""
 
@@ -54,12 +51,8 @@ class Need(Enum):
 
 
 @lru_cache(maxsize=256)
-def decide(expression: Expression, axes: Axes, need: Need, max_work: int | None = None) -> Verdict:
+def decide(expression: Expression, axes: Axes, need: Need) -> Verdict:
     """Whether a rational function is in the whole open window what it needs to be.
-
-    Parameters
-    ----------
-    max_work : of algebra, `ptmcad.algebra.definite.MAX_WORK` when None.
 
     Guarantee
     ---------
@@ -73,12 +66,12 @@ def decide(expression: Expression, axes: Axes, need: Need, max_work: int | None 
         return Witness(middle, denominator) if need is Need.NO_POLE else Undecided((window,))
     side = 1 if denominator > 0 else -1
     if need is Need.NO_POLE:
-        verdict = _decided(_times(expression.denominator, side), window, True, max_work)
+        verdict = _decided(_times(expression.denominator, side), window, True)
         if isinstance(verdict, Witness):
             other = middle if verdict.value < 0 else None
             return Witness(verdict.point, side * verdict.value, verdict.distance, other)
         return verdict
-    verdict = _decided(_times(expression.numerator, side), window, need is Need.POSITIVE, max_work)
+    verdict = _decided(_times(expression.numerator, side), window, need is Need.POSITIVE)
     if isinstance(verdict, Witness) and verdict.value:
         denominator = polynomial_value(expression.denominator, *verdict.point)
         if denominator == 0:
@@ -114,16 +107,12 @@ def number(value: Fraction) -> str:
     return f"about {approximate_text(value)}"
 
 
-def _decided(terms: tuple[Term, ...], window: Box, strict: bool, max_work: int | None) -> Verdict:
+def _decided(terms: tuple[Term, ...], window: Box, strict: bool) -> Verdict:
     """Whether a polynomial is positive, or not negative, in the open window."""
     if not terms:
         return Witness(middle_of(window), Fraction(0)) if strict else PROVED
     found = _by_halving(terms, window, strict)
-    return (
-        _by_algebra(terms, window, strict, found, max_work)
-        if isinstance(found, Undecided)
-        else found
-    )
+    return _by_factors(terms, window, strict, found) if isinstance(found, Undecided) else found
 
 
 # --------------------------------------------------------------------------------------------------- by halving
@@ -289,31 +278,56 @@ def _power_in_bernstein(power: int, degree: int, interval: Interval) -> list[Fra
     ]
 
 
-# --------------------------------------------------------------------------------------------------- by algebra
+# --------------------------------------------------------------------------------------------------- by factors
 
 
-def _by_algebra(
-    terms: tuple[Term, ...], window: Box, strict: bool, left: Undecided, max_work: int | None
-) -> Verdict:
-    """The same, for what halving has left."""
-    from ptmcad.algebra import (
-        definite,
-    )  # only here: few records need it, and FLINT takes long to load
-    from ptmcad.algebra.polynomials import from_terms
-    from ptmcad.text.flint_numbers import from_fraction, to_fraction
+def _by_factors(terms: tuple[Term, ...], window: Box, strict: bool, left: Undecided) -> Verdict:
+    """The same, for what halving has left: the polynomial has one sign where each factor has."""
+    from ptmcad.algebra.polynomials import factors_with_multiplicity, from_terms
 
-    x, y = ((from_fraction(low), from_fraction(high)) for low, high in window)
-    bound = definite.MAX_WORK if max_work is None else max_work
-    answer = definite.negative_or_zero(from_terms(terms)[0], x, y, strict, bound)
-    if answer is definite.SignAnswer.PROVED:
-        return PROVED
-    if answer is definite.SignAnswer.OPEN:
+    factors = factors_with_multiplicity(from_terms(terms)[0])
+    if len(factors) == 1 and factors[0][1] == 1:
         return left
-    point = to_fraction(answer.point[0]), to_fraction(answer.point[1])
-    if isinstance(answer, definite.Near):
-        return Undecided(((_around(point[0]), _around(point[1])),))
-    value = polynomial_value(terms, *point) if answer.exact else Fraction(0)
-    return Witness(point, value, to_fraction(answer.distance))
+    for factor, power in factors:
+        if power % 2 or strict:
+            own = tuple((int(i), int(j), Fraction(int(c))) for (i, j), c in factor.terms())
+            signs = [_by_halving(_times(own, side), window, strict) for side in (1, -1)]
+            if PROVED in signs:
+                continue
+            low, high = signs
+            if isinstance(low, Witness) and isinstance(high, Witness):
+                for point in (low.point, high.point):
+                    if (value := polynomial_value(terms, *point)) < 0:
+                        return Witness(point, value)
+                if strict:
+                    return _zero_between(own, low.point, high.point)
+            return left
+    (x0, x1), (y0, y1) = window
+    points = (
+        (x0 + (x1 - x0) * Fraction(i, n), y0 + (y1 - y0) * Fraction(j, n))
+        for n in count(3)
+        for i, j in product(range(1, n), repeat=2)
+    )
+    values = ((point, polynomial_value(terms, *point)) for point in points)
+    point, value = next((point, value) for point, value in values if value)
+    return PROVED if value > 0 else Witness(point, value)
+
+
+def _zero_between(terms: tuple[Term, ...], low: Corner, high: Corner) -> Witness:
+    """A zero on the segment between a point where a polynomial is at most zero and one where it is
+    at least that.
+    """
+    middle = low
+    for _ in range(_HALVINGS):
+        middle = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2)
+        value = polynomial_value(terms, *middle)
+        if value == 0:
+            return Witness(middle, value)
+        low, high = (middle, high) if value < 0 else (low, middle)
+    near = (middle[0].limit_denominator(_SIMPLE), middle[1].limit_denominator(_SIMPLE))
+    if polynomial_value(terms, *near) == 0:
+        return Witness(near, Fraction(0))
+    return Witness(middle, Fraction(0), max(abs(a - b) for a, b in zip(low, high, strict=True)))
 
 
 def _around(value: Fraction) -> Interval:

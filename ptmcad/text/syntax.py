@@ -14,7 +14,7 @@ by a tree or by an `ExpressionError` with the position of the offending characte
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -81,19 +81,24 @@ class _Token(NamedTuple):
     position: int
 
 
-def parse(text: str) -> Tree:
+def parse(text: str, functions: Collection[str] = FUNCTIONS, longest: int = MAX_TEXT) -> Tree:
     """Read an arithmetic expression: numbers, names, ``+ - * /``, powers ``^`` or ``**``,
     parentheses, `FUNCTIONS`.
 
     ``^`` binds tighter than a sign on its left and groups to the right, as in mathematics: ``-x^2``
     is -(x^2).
 
+    Parameters
+    ----------
+    functions : names that are functions where a parenthesis follows.
+    longest : characters that a text may have.
+
     Raises
     ------
     ExpressionError With the position of the offending character: not arithmetic, or one of the
         limits of this module (length, depth, digits, decimal exponent).
     """
-    return _Parser(text).run()
+    return _Parser(text, functions, longest).run()
 
 
 def names_in(text: str) -> tuple[str, ...]:
@@ -137,9 +142,9 @@ def unknown_name(name: str, position: int, known: Iterable[str]) -> ExpressionEr
     return ExpressionError(f"unknown name '{_short(name)}'{did_you_mean(name, known)}", position)
 
 
-def _tokens(text: str) -> list[_Token]:
-    if len(text) > MAX_TEXT:
-        raise ExpressionError(f"the expression has {len(text)} characters, more than {MAX_TEXT}")
+def _tokens(text: str, longest: int = MAX_TEXT) -> list[_Token]:
+    if len(text) > longest:
+        raise ExpressionError(f"the expression has {len(text)} characters, more than {longest}")
     tokens: list[_Token] = []
     position = _blank(text, 0)
     while position < len(text):
@@ -203,8 +208,8 @@ def _short(text: str) -> str:
 class _Parser:
     """Precedence climbing, in one pass."""
 
-    def __init__(self, text: str):
-        self.tokens = _tokens(text)
+    def __init__(self, text: str, functions: Collection[str], longest: int):
+        self.tokens, self.functions = _tokens(text, longest), functions
         self.index = 0
 
     def run(self) -> Tree:
@@ -254,7 +259,9 @@ class _Parser:
         if token.kind == "number":
             tree = Number(_number(token), token.position)
         elif (
-            token.kind == "name" and token.text in FUNCTIONS and self.tokens[self.index].text == "("
+            token.kind == "name"
+            and token.text in self.functions
+            and self.tokens[self.index].text == "("
         ):
             tree = Call(token.text, self.enclosed(self.next(), depth), token.position)
         elif token.kind == "name":

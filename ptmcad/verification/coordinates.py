@@ -12,7 +12,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, TypeVar
+from operator import add, mul, sub, truediv
+from typing import Any, Generic, TypeVar
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
@@ -23,6 +24,7 @@ _SHOWN = 400
 Circle = tuple[fmpq_mpoly, fmpq_mpoly]
 """Cosine and sine of an angle."""
 R = TypeVar("R", bound=Any)
+_OPERATORS = {"+": add, "-": sub, "*": mul, "/": truediv}
 
 
 def circle_names(angle: str) -> tuple[str, str]:
@@ -30,8 +32,63 @@ def circle_names(angle: str) -> tuple[str, str]:
     return f"cos({angle})", f"sin({angle})"
 
 
+class TreeValues(Generic[R]):
+    """A ring in which trees have values."""
+
+    def constant(self, value: Fraction) -> R:
+        raise NotImplementedError
+
+    def named(self, name: str) -> R:
+        raise NotImplementedError
+
+    def circle_of(self, angle: str) -> tuple[R, R]:
+        """Cosine and sine of an angle."""
+        raise NotImplementedError
+
+    def root(self, square: R, tree: Tree) -> R:
+        """The value of a root, given that of its argument."""
+        raise NotImplementedError("the checker knows no roots")
+
+    def value(self, tree: Tree) -> R:
+        """What a tree of the description is."""
+        match tree:
+            case Number(number):
+                return self.constant(number)
+            case Name(name):
+                return self.named(name)
+            case Negative(operand):
+                opposite: R = -self.value(operand)
+                return opposite
+            case Chain(first, steps):
+                total = self.value(first)
+                for step in steps:
+                    total = _OPERATORS[step.operator](total, self.value(step.operand))
+                return total
+            case Power(base, exponent):
+                power: R = self.value(base) ** int(_number(multiples(exponent)))
+                return power
+            case Call("sqrt", argument):
+                return self.root(self.value(argument), tree)
+            case Call(function, argument):
+                return self.circle(argument)[0 if function == "cos" else 1]
+
+    def circle(self, argument: Tree) -> tuple[R, R]:
+        """Cosine and sine of a sum of multiples of angles."""
+        cosine, sine = self.constant(Fraction(1)), self.constant(Fraction(0))
+        for angle, multiple in multiples(argument).items():
+            if multiple.denominator != 1 or (multiple and not angle):
+                raise NotImplementedError(
+                    "the checker knows sums of whole multiples of angles, such as 2*a - b, only"
+                )
+            for _ in range(abs(int(multiple))):
+                c, s = self.circle_of(angle)
+                up = s if multiple > 0 else -s
+                cosine, sine = cosine * c - sine * up, sine * c + cosine * up
+        return cosine, sine
+
+
 @dataclass(frozen=True)
-class CoordinateRing:
+class CoordinateRing(TreeValues[fmpq_mpoly]):
     """A ring of polynomials.
 
     Attributes
@@ -105,54 +162,14 @@ class CoordinateRing:
         """The beginning of a polynomial's text."""
         return re.sub(r"x([0-9]+)", lambda found: self.names[int(found[1])], str(p)[:_SHOWN])[:80]
 
-    def value(self, tree: Tree) -> fmpq_mpoly:
-        """What a tree of the description is."""
-        match tree:
-            case Number(number):
-                return self.context.constant(from_fraction(number))
-            case Name(name):
-                return self.elements[name]
-            case Negative(operand):
-                return -self.value(operand)
-            case Chain(first, steps):
-                total = self.value(first)
-                for step in steps:
-                    one = self.value(step.operand)
-                    match step.operator:
-                        case "+":
-                            total = total + one
-                        case "-":
-                            total = total - one
-                        case "*":
-                            total = total * one
-                        case _:
-                            total = total / one
-                return total
-            case Power(base, exponent):
-                return self.value(base) ** int(_number(multiples(exponent)))
-            case Call(function, argument):
-                return self.circle(argument)[0 if function == "cos" else 1]
+    def constant(self, value: Fraction) -> fmpq_mpoly:
+        return self.context.constant(from_fraction(value))
 
-    def circle(self, argument: Tree) -> Circle:
-        """Cosine and sine of a sum of multiples of angles."""
-        found = self.context.constant(1), self.context.constant(0)
-        for angle, multiple in multiples(argument).items():
-            if multiple.denominator != 1 or (multiple and not angle):
-                raise NotImplementedError(
-                    "the checker knows sums of whole multiples of angles, such as 2*a - b, only"
-                )
-            if angle:
-                found = turned(found, self.circles[angle], int(multiple))
-        return found
+    def named(self, name: str) -> fmpq_mpoly:
+        return self.elements[name]
 
-
-def turned(circle: tuple[R, R], by: tuple[R, R], times: int) -> tuple[R, R]:
-    """Cosine and sine of an angle and some times another one, in any ring."""
-    (cosine, sine), (c, s) = circle, by
-    for _ in range(abs(times)):
-        up = s if times > 0 else -s
-        cosine, sine = cosine * c - sine * up, sine * c + cosine * up
-    return cosine, sine
+    def circle_of(self, angle: str) -> Circle:
+        return self.circles[angle]
 
 
 def multiples(tree: Tree) -> dict[str, Fraction]:

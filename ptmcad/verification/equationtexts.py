@@ -33,7 +33,7 @@ def check_system(claims: Claims, seed: str = "") -> str:
         if text != relation:
             raise Violation(f"relation {k} is {relation}, not {text[:60]}")
     names = dict(zip((*unknowns, *ring.names[len(unknowns) :]), ring.names, strict=True))
-    texts = Texts(true, names, seed or drawn(None), outside=ring.names)
+    texts = Texts(true, names, seed or drawn(None))
     reasons = []
     if true.potential is not None:
         reasons.append(texts.compare_potential(system.potential, true.moments, varying=True))
@@ -74,10 +74,9 @@ def check_potential(claims: Claims, seed: str = "", *, closed: bool = False) -> 
     has_work = stated and true.moved and not true.apart
     texts = Texts(
         true,
-        {name: name for name in names},
+        {name: name for name in names if has_work or name not in true.ring.angles},
         seed or drawn(None),
-        springs=true.springs if stated else (),
-        outside=names - (set() if has_work else {*true.ring.angles}),
+        true.springs if stated else (),
     )
     reasons = []
     if stated:

@@ -4,40 +4,34 @@ point modulo a random prime.
 At a point each parameter and each real unknown is a random residue, and the cosine and the sine of
 each angle are a point of the circle. Each spring's length is a root of its squared length d.d:
 points are drawn until there are such roots, and all choices of their signs are tried. So each
-coefficient of a product of lengths is compared by itself. It is a polynomial over Q; of degree d,
-not zero and modulo a prime p, it is zero at a random point with a probability under d/p.
+coefficient of a product of lengths is compared by itself. It is a rational function over Q; where
+its numerator has degree d, and is not zero modulo a prime p, it is zero at a random point with a
+probability under d/p.
+
+Residues are modulo p^2: a function's slope by an unknown is what changes if p is added to the
+unknown, divided by p. So the work of moments is known by its slopes, and no moment is integrated.
 
 Guarantee: no true text is refused. A false one passes with a probability under 2^-60: p is over
-2^60 times the degree, the bits of coefficients, and the share of points that have roots. No
-denominator is zero at a point: divisions are by numbers alone, which are no multiples of p. A root
-is read only where it is a spring's length, and an angle stands outside of cosines and sines only
-where a moment works on it.
+2^60 times the degree, the bits of coefficients, and what the choice of points costs. A root is read
+only where it is a spring's length, and an angle stands outside of cosines and sines only where a
+moment works on it.
 """
 
 from __future__ import annotations
 
 import random
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import product
 
-from flint import fmpq, fmpq_mpoly, fmpz
+from flint import fmpq, fmpq_mpoly, fmpz, fmpz_mod, fmpz_mod_ctx
 
-from ptmcad.text.tree import (
-    Call,
-    Chain,
-    Name,
-    Negative,
-    Number,
-    Power,
-    Step,
-    Tree,
-    names_of,
-    to_text,
-)
-from ptmcad.verification.coordinates import circle_names, multiples, turned
+from ptmcad.errors import ExpressionError
+from ptmcad.text.syntax import parse
+from ptmcad.text.tree import FUNCTIONS, Call, Chain, Name, Negative, Number, Power, Tree, to_text
+from ptmcad.verification.coordinates import TreeValues, circle_names, multiples
 from ptmcad.verification.derivation import Derivation, SpringVector
 from ptmcad.verification.report import Violation
 
@@ -47,205 +41,83 @@ LARGEST_SIZE = 2**32
 """Of the degree and of the bits of numbers, beyond which a text is not compared."""
 MOST_LENGTHS = 10
 """Different lengths of springs beyond which not all choices of signs are tried."""
-_DEEPEST = 200
 _LARGEST_ANGLE = 10_000
-_TOKEN = re.compile(
-    r" *(?:(?P<number>[0-9]{1,4000}(?:\.[0-9]{1,400})?(?:e[+-]?[0-9]{1,3})?(?![A-Za-z0-9_.]))"
-    r"|(?P<name>[A-Za-z][A-Za-z0-9_]{0,80})|(?P<sign>[-+*/^()]))",
-    re.ASCII,
-)
+"""Bits of the argument of a cosine or a sine, and its multiples of angles."""
+
+
+_UNUSUAL = re.compile(r"(?:^|[-+*/^(]) *\+|\*\*")
+"""Signs that records may have."""
 
 
 class TooLarge(Exception):
     """Why a text is not compared."""
 
 
-class _Reader:
-    """A text as a tree: sums and products of any length, and parentheses to some depth."""
-
-    def __init__(self, text: str, what: str) -> None:
-        if len(text) > LARGEST_TEXT:
-            raise TooLarge(f"the stored {what} is longer than {LARGEST_TEXT} letters")
-        self.what, self.next, place = what, 0, 0
-        self.tokens: list[tuple[str, str]] = []
-        while place < len(text):
-            found = _TOKEN.match(text, place)
-            if found is None:
-                raise _unread(what, text[place:])
-            self.tokens.append((str(found.lastgroup), found[0].strip()))
-            place = found.end()
-        self.tokens.append(("end", ""))
-
-    def whole(self) -> Tree:
-        tree = self._sum(0)
-        kind, token = self.tokens[self.next]
-        if kind != "end":
-            raise _unread(self.what, token)
-        return tree
-
-    def _taken(self, signs: str) -> str:
-        """The next token, if it is one of some signs."""
-        kind, token = self.tokens[self.next]
-        if kind != "sign" or token not in signs:
-            return ""
-        self.next += 1
-        return token
-
-    def _sum(self, depth: int) -> Tree:
-        first = Negative(self._product(depth)) if self._taken("-") else self._product(depth)
-        steps = []
-        while sign := self._taken("+-"):
-            steps.append(Step(sign, self._product(depth)))
-        return Chain(first, tuple(steps)) if steps else first
-
-    def _product(self, depth: int) -> Tree:
-        first, steps = self._factor(depth), []
-        while sign := self._taken("*/"):
-            steps.append(Step(sign, self._factor(depth)))
-        return Chain(first, tuple(steps)) if steps else first
-
-    def _factor(self, depth: int) -> Tree:
-        base = self._atom(depth)
-        if not self._taken("^"):
-            return base
-        kind, token = self.tokens[self.next]
-        if kind != "number" or not token.isdigit() or len(token) > 9:
-            raise _unread(self.what, f"^{token}")
-        self.next += 1
-        return Power(base, Number(Fraction(token)))
-
-    def _atom(self, depth: int) -> Tree:
-        kind, token = self.tokens[self.next]
-        if kind == "end" or (kind == "sign" and token != "(") or depth == _DEEPEST:
-            raise _unread(self.what, token)
-        self.next += 1
-        if kind == "number":
-            return Number(Fraction(token))
-        if kind == "name" and not self._taken("("):
-            return Name(token)
-        inner = self._sum(depth + 1)
-        if not self._taken(")"):
-            raise _unread(self.what, self.tokens[self.next][1])
-        return Call(token, inner) if kind == "name" else inner
-
-
-def _unread(what: str, rest: str) -> Violation:
-    place = f"at {rest[:30]!r}" if rest else "to its end"
-    return Violation(f"the stored {what} cannot be read {place}")
-
-
-def _read(what: str, text: str) -> Tree:
-    """A text as a tree.
+def _size(tree: Tree) -> int:
+    """A bound of the degree and of the bits of all coefficients, numerators and denominators.
 
     Raises
     ------
-    Violation, TooLarge
+    TooLarge, NotImplementedError
     """
-    tree = _Reader(text, what).whole()
-    if _size(tree) > LARGEST_SIZE:
-        raise TooLarge(f"the stored {what} has too high a degree or too long numbers")
-    return tree
-
-
-def _size(tree: Tree) -> int:
-    """A bound of the degree and of the bits of all coefficients, numerators and denominators."""
     match tree:
         case Number(value):
             return value.numerator.bit_length() + value.denominator.bit_length()
         case Name():
             return 1
-        case Negative(operand):
+        case Negative(operand) | Call("sqrt", operand):
             return _size(operand)
         case Call(_, argument):
-            return _LARGEST_ANGLE + _size(argument)
+            if _size(argument) > _LARGEST_ANGLE or _times(argument) > _LARGEST_ANGLE:
+                raise TooLarge("has too large a multiple of an angle")
+            return _LARGEST_ANGLE
         case Chain(first, steps):
             return _size(first) + sum(_size(step.operand) for step in steps)
-        case Power(base, exponent):
-            return _size(base) * int(_number_in(exponent))
+        case Power(base, Number(value)):
+            return _size(base) * int(value)
+    raise NotImplementedError("it has an exponent that is no number")
 
 
-def _number_in(tree: Tree) -> Fraction:
-    assert isinstance(tree, Number)  # the reader knows no other exponents
-    return tree.value
-
-
-@dataclass(frozen=True, slots=True)
-class Residue:
-    """A residue modulo a prime, and its slope by one unknown."""
-
-    value: int
-    slope: int
-    prime: int
-
-    def __add__(self, other: Residue) -> Residue:
-        return self._made(self.value + other.value, self.slope + other.slope)
-
-    def __neg__(self) -> Residue:
-        return self._made(-self.value, -self.slope)
-
-    def __sub__(self, other: Residue) -> Residue:
-        return self._made(self.value - other.value, self.slope - other.slope)
-
-    def __mul__(self, other: Residue) -> Residue:
-        slope = self.value * other.slope + self.slope * other.value
-        return self._made(self.value * other.value, slope)
-
-    def power(self, exponent: int) -> Residue:
-        """A power; the exponent may be negative for a number that is not zero."""
-        if exponent == 0:
-            return self._made(1, 0)
-        below = pow(self.value, exponent - 1, self.prime)
-        return self._made(below * self.value, exponent * below * self.slope)
-
-    def _made(self, value: int, slope: int) -> Residue:
-        return Residue(value % self.prime, slope % self.prime, self.prime)
+def _times(argument: Tree) -> Fraction:
+    return sum(map(abs, multiples(argument).values()), Fraction(0))
 
 
 @dataclass(frozen=True)
-class ResiduePoint:
+class ResiduePoint(TreeValues[fmpz_mod]):
     """Residues at a point.
 
     Attributes
     ----------
     values : of the ring's variables and of its angles, by name.
+    names : for the names in texts those of values, outside of cosines and sines.
     roots : of the springs' squared lengths, by the residues of these.
-    by : the unknown by which slopes are.
     """
 
-    prime: int
-    values: Mapping[str, int]
-    roots: Mapping[int, int] = field(default_factory=dict)
-    by: str = ""
+    residues: fmpz_mod_ctx
+    values: Mapping[str, fmpz_mod]
+    names: Mapping[str, str]
+    roots: Mapping[int, fmpz_mod] = field(default_factory=dict)
 
-    def constant(self, value: Fraction) -> Residue:
-        number = value.numerator * pow(value.denominator, -1, self.prime)
-        return Residue(number % self.prime, 0, self.prime)
+    def constant(self, value: Fraction) -> fmpz_mod:
+        return self.residues(value.numerator) / self.residues(value.denominator)
 
-    def named(self, name: str) -> Residue:
-        cosine, sine = circle_names(self.by)
-        slope = int(name == self.by)
-        if name == cosine:
-            slope = -self.values[sine] % self.prime
-        elif name == sine:
-            slope = self.values[cosine]
-        return Residue(self.values[name], slope, self.prime)
+    def named(self, name: str) -> fmpz_mod:
+        return self.values[self.names[name]]
 
-    def circle(self, angle: str) -> tuple[Residue, Residue]:
-        """Cosine and sine of an angle."""
-        cosine, sine = map(self.named, circle_names(angle))
+    def circle_of(self, angle: str) -> tuple[fmpz_mod, fmpz_mod]:
+        cosine, sine = (self.values[name] for name in circle_names(angle))
         return cosine, sine
 
-    def length(self, square: Residue) -> Residue:
-        """The length whose square is given.
+    def root(self, square: fmpz_mod, tree: Tree) -> fmpz_mod:
+        if int(square) not in self.roots:
+            shown = to_text(tree)[:60]
+            raise Violation(f"has a root of what is no spring's length: {shown!r}")
+        return self.roots[int(square)]
 
-        Raises
-        ------
-        KeyError
-            When no spring has it.
-        """
-        root = self.roots[square.value]
-        slope = square.slope * pow(2 * root, -1, self.prime) if square.slope else 0
-        return Residue(root, slope % self.prime, self.prime)
+    def of(self, p: fmpq_mpoly, ring: Sequence[str]) -> fmpz_mod:
+        """The value of a polynomial in variables of these names."""
+        found = fmpq(p(*(fmpq(int(self.values[name])) for name in ring)))
+        return self.residues(found.p) / self.residues(found.q)
 
 
 class Texts:
@@ -254,9 +126,9 @@ class Texts:
     Parameters
     ----------
     true : the polynomials of the model, in all parameters.
-    names : for the names in texts those of the ring's variables and of angles.
+    names : for the names in texts those of the ring's variables, and of angles that may stand
+        outside of cosines and sines.
     springs : those whose lengths are in the energy.
-    outside : the names that may stand outside of cosines and sines.
     """
 
     def __init__(
@@ -264,11 +136,9 @@ class Texts:
         true: Derivation,
         names: Mapping[str, str],
         seed: str,
-        springs: Sequence[SpringVector] = (),
-        outside: Collection[str] = (),
+        springs: Collection[SpringVector] = (),
     ) -> None:
-        self.true, self.ring, self.names, self.outside = true, true.ring, names, outside
-        self.springs = springs
+        self.true, self.ring, self.names, self.springs = true, true.ring, names, springs
         self.squares: list[fmpq_mpoly] = []
         for square in (self.ring.normal(s.squared) for s in springs):
             if square not in self.squares:
@@ -277,7 +147,8 @@ class Texts:
         bits = 2 * LARGEST_SIZE.bit_length() + 2 * len(self.squares) + 32
         self.prime = self.source.getrandbits(bits) | 1 << bits | 3
         while not fmpz(self.prime).is_prime():
-            self.prime += 4  # 3 modulo 4, so that roots are powers
+            self.prime += 4  # 3 modulo 4, so that roots are powers, and -1 is no square
+        self.residues = fmpz_mod_ctx(self.prime**2)
         self._point: ResiduePoint | None = None
 
     def compare(self, what: str, text: str, true: fmpq_mpoly) -> str:
@@ -288,18 +159,14 @@ class Texts:
         Violation
             When they differ.
         """
-        try:
-            tree = _read(what, text)
-            differs = any(
-                self._value(what, tree, point).value != self._polynomial(true, point).value
-                for point in self._signed()
-            )
-        except TooLarge as reason:
-            return str(reason)
-        if differs:
-            expected = self.ring.text(true)
-            raise Violation(f"the stored {what} differs from the mechanism's, {expected}")
-        return ""
+        return self._judged(
+            what,
+            text,
+            lambda tree: (
+                any(p.value(tree) != p.of(true, self.ring.names) for p in self._signed())
+                and f"differs from the mechanism's, {self.ring.text(true)}"
+            ),
+        )
 
     def compare_potential(
         self, text: str, moments: Mapping[str, fmpq_mpoly], *, varying: bool = False
@@ -311,68 +178,96 @@ class Texts:
         varying : whether the work of moments' constant parts is not in it: of a force along a line
             that is its value where the unknown is zero.
         """
+
+        energy = "" if self.true.energy is None else self.ring.text(self.true.energy)
+
+        def fault(tree: Tree) -> str | bool:
+            if all(moment.is_zero() for moment in moments.values()):
+                differs = any(int(self._work(tree, point)) for point in self._signed())
+                return differs and f"differs from the mechanism's, {energy}"
+            for unknown, moment in moments.items():
+                if not self._is_work(tree, unknown, moment, varying):
+                    return f"differs from the mechanism's in its slope by {unknown}"
+            at_zero = int(self._work(tree, self._drawn(at_zero=True)))
+            return at_zero != 0 and "differs from the mechanism's where all unknowns are zero"
+
+        return self._judged("potential", text, fault)
+
+    def _judged(self, what: str, text: str, fault: Callable[[Tree], str | bool]) -> str:
+        """Why a text was not compared.
+
+        Raises
+        ------
+        Violation
+            When it is no formula, or one with a fault.
+        """
+        if len(text) > LARGEST_TEXT:
+            return f"the stored {what} is longer than {LARGEST_TEXT} letters"
         try:
-            fault = self._fault_in_work(_read("potential", text), moments, varying)
+            if _UNUSUAL.search(text):
+                raise Violation("cannot be read: there is a sign + or ** that no result has")
+            tree = parse(text, (*FUNCTIONS, "sqrt"), LARGEST_TEXT)
+            if _size(tree) > LARGEST_SIZE:
+                raise TooLarge("has too high a degree or too long numbers")
+            found = fault(tree)
         except TooLarge as reason:
-            return str(reason)
-        if fault is not None:
-            raise Violation(f"the stored potential differs from the mechanism's{fault}")
+            return f"the stored {what} {reason}"
+        except ExpressionError as error:
+            raise Violation(f"the stored {what} cannot be read: {error}") from None
+        except KeyError as name:
+            raise Violation(f"the stored {what} names {name}, which is nothing there") from None
+        except (NotImplementedError, ZeroDivisionError) as reason:
+            raise Violation(f"the stored {what} has a part that is no formula: {reason}") from None
+        except Violation as violation:
+            raise Violation(f"the stored {what} {violation}") from None
+        if found:
+            raise Violation(f"the stored {what} {found}")
         return ""
 
-    def _fault_in_work(
-        self, tree: Tree, moments: Mapping[str, fmpq_mpoly], varying: bool
-    ) -> str | None:
-        """In which slope the work is wrong, which is the energy less the potential: so no moment is
-        integrated. None where nothing is wrong.
-        """
-        if all(moment.is_zero() for moment in moments.values()):
-            differs = any(self._work(tree, point).value for point in self._signed())
-            assert self.true.energy is not None
-            return f", {self.ring.text(self.true.energy)}" if differs else None
-        for unknown, moment in moments.items():
-            points = list(self._signed(unknown))
-            missing = {
-                (self._polynomial(moment, p).value - self._work(tree, p).slope) % self.prime
-                for p in points
-            }
-            if varying:
-                other = self._moved(points[0])
-                slope = self._work(tree, other).slope
-                missing.add((self._polynomial(moment, other).value - slope) % self.prime)
-                is_steady = (
-                    unknown in self.ring.angles
-                    or not self._work(
-                        tree, replace(other, values={**other.values, unknown: 0})
-                    ).slope
-                )
-            else:
-                missing.add(0)
-                is_steady = True
-            if len(missing) > 1 or not is_steady:
-                return f" in its slope by {unknown}"
-        at_zero = self._drawn(at_zero=True)
-        return " where all unknowns are zero" if self._work(tree, at_zero).value else None
+    def _is_work(self, tree: Tree, unknown: str, moment: fmpq_mpoly, varying: bool) -> bool:
+        """Whether the work has the slope that is the moment on an unknown."""
 
-    def _work(self, tree: Tree, point: ResiduePoint) -> Residue:
+        def missing(point: ResiduePoint) -> int:
+            of_moment = int(point.of(moment, self.ring.names))
+            return (of_moment - self._slope(tree, point, unknown)) % self.prime
+
+        points = list(self._signed())
+        if not varying:
+            return not any(map(missing, points))
+        other = replace(points[0], values={**points[0].values, **self._unknowns()})
+        rest = replace(other, values={**other.values, unknown: self.residues(0)})
+        is_steady = unknown in self.ring.angles or not self._slope(tree, rest, unknown)
+        return is_steady and len({missing(point) for point in (*points, other)}) == 1
+
+    def _slope(self, tree: Tree, point: ResiduePoint, unknown: str) -> int:
+        """Of the work by an unknown, modulo the prime."""
+        step = {unknown: point.values[unknown] + self.prime}
+        if unknown in self.ring.angles:
+            names, (c, s) = circle_names(unknown), point.circle_of(unknown)
+            circle = c - s * self.prime, s + c * self.prime
+            step |= dict(zip(names, circle, strict=True))
+        lengths = [point.roots[int(point.of(p, self.ring.names))] for p in self.squares]
+        moved = self._rooted(replace(point, values={**point.values, **step}), lengths)
+        return int(self._work(tree, moved) - self._work(tree, point)) // self.prime
+
+    def _work(self, tree: Tree, point: ResiduePoint) -> fmpz_mod:
         """The energy less the potential."""
         assert self.true.energy is not None
-        energy = self._polynomial(self.true.energy, point)
+        names = self.ring.names
+        energy = point.of(self.true.energy, names)
         for spring in self.springs:
             pull, collapsed, square = (
-                self._polynomial(p, point) for p in (spring.pull, spring.collapsed, spring.squared)
+                point.of(p, names) for p in (spring.pull, spring.collapsed, spring.squared)
             )
-            energy += collapsed - pull * point.length(square)
-        return energy - self._value("potential", tree, point)
+            energy += collapsed - pull * point.roots[int(square)]
+        return energy - point.value(tree)
 
-    def _signed(self, by: str = "") -> Iterator[ResiduePoint]:
+    def _signed(self) -> Iterator[ResiduePoint]:
         """The point of all texts, with each choice of the lengths' signs."""
         point = self._point = self._point or self._drawn()
         for signs in product((1, -1), repeat=len(point.roots)):
-            roots = {
-                square: sign * root
-                for sign, (square, root) in zip(signs, point.roots.items(), strict=True)
-            }
-            yield replace(point, roots=roots, by=by)
+            signed = zip(signs, point.roots.items(), strict=True)
+            yield replace(point, roots={square: root * sign for sign, (square, root) in signed})
 
     def _drawn(self, *, at_zero: bool = False) -> ResiduePoint:
         """A random point at which springs have lengths; or one where all unknowns are zero.
@@ -382,122 +277,39 @@ class Texts:
         TooLarge
         """
         if len(self.squares) > MOST_LENGTHS:
-            raise TooLarge(f"springs have more than {MOST_LENGTHS} different lengths")
-        names = self.ring.names[self.true.coordinates :]
+            raise TooLarge(f"has more than {MOST_LENGTHS} different lengths of springs")
         while True:
-            values = {name: self.source.randrange(self.prime) for name in names}
+            values = {name: self._random() for name in self.ring.names[self.true.coordinates :]}
             values |= self._unknowns(at_zero)
-            point, roots = ResiduePoint(self.prime, values), dict[int, int]()
+            point = ResiduePoint(self.residues, values, self.names)
+            roots = []
             for p in self.squares:
-                square = self._polynomial(p, point).value
-                root = pow(square, (self.prime + 1) // 4, self.prime)
-                if root * root % self.prime != square:
+                square = int(point.of(p, self.ring.names))
+                root = self.residues(pow(square, (self.prime + 1) // 4, self.prime))
+                if (int(root) ** 2 - square) % self.prime:
                     break
-                roots[square] = root
+                roots.append(root)
             else:
-                return replace(point, roots=roots)
+                return self._rooted(point, roots)
 
-    def _moved(self, point: ResiduePoint) -> ResiduePoint:
-        """With the same parameters, and other unknowns."""
-        return replace(point, values={**point.values, **self._unknowns()})
+    def _rooted(self, point: ResiduePoint, near: Sequence[fmpz_mod]) -> ResiduePoint:
+        """With the roots that are those near by modulo the prime, by one step of Newton's."""
+        roots = {}
+        for p, root in zip(self.squares, near, strict=True):
+            square = point.of(p, self.ring.names)
+            roots[int(square)] = root - (root * root - square) / (2 * root) if int(root) else root
+        return replace(point, roots=roots)
 
-    def _unknowns(self, at_zero: bool = False) -> dict[str, int]:
+    def _unknowns(self, at_zero: bool = False) -> dict[str, fmpz_mod]:
         found = {}
         for unknown in self.true.unknowns:
-            t = 0 if at_zero else self.source.randrange(self.prime)
-            found[unknown] = t
+            found[unknown] = t = self.residues(0) if at_zero else self._random()
             if unknown in self.ring.angles:
-                below = pow(1 + t * t, -1, self.prime)  # -1 is no square
-                circle = (1 - t * t) * below % self.prime, 2 * t * below % self.prime
+                below = 1 + t * t
+                circle = (1 - t * t) / below, 2 * t / below
                 found |= dict(zip(circle_names(unknown), circle, strict=True))
-                found[unknown] = 0 if at_zero else self.source.randrange(self.prime)
+                found[unknown] = t if at_zero else self._random()
         return found
 
-    def _polynomial(self, p: fmpq_mpoly, point: ResiduePoint) -> Residue:
-        values = [fmpq(point.values[name]) for name in self.ring.names]
-
-        def residue(q: fmpq_mpoly) -> int:
-            found = fmpq(q(*values))
-            return int(found.p) * pow(int(found.q), -1, self.prime) % self.prime
-
-        slope = residue(self.ring.by(p, point.by)) if point.by else 0
-        return Residue(residue(p), slope, self.prime)
-
-    def _value(self, what: str, tree: Tree, point: ResiduePoint) -> Residue:
-        """The residue of a text.
-
-        Raises
-        ------
-        Violation
-            When a part of it is no formula.
-        """
-
-        def value(tree: Tree) -> Residue:
-            match tree:
-                case Number(number):
-                    return point.constant(number)
-                case Name(name) if self.names.get(name) in self.outside:
-                    return point.named(self.names[name])
-                case Negative(operand):
-                    return -value(operand)
-                case Chain(first, steps):
-                    total = value(first)
-                    for step in steps:
-                        total = joined(total, step)
-                    return total
-                case Power(base, exponent):
-                    return value(base).power(int(_number_in(exponent)))
-                case Call("sqrt", argument):
-                    try:
-                        return point.length(value(argument))
-                    except KeyError:
-                        raise Violation(
-                            f"the stored {what} has a root of what is no spring's length: "
-                            f"{to_text(tree)[:60]!r}"
-                        ) from None
-                case Call("cos" | "sin" as function, argument):
-                    return circle(argument)[0 if function == "cos" else 1]
-            raise _no_formula(what, tree)
-
-        def joined(total: Residue, step: Step) -> Residue:
-            one = value(step.operand)
-            match step.operator:
-                case "+":
-                    return total + one
-                case "-":
-                    return total - one
-                case "*":
-                    return total * one
-            if not _is_number(step.operand) or not one.value:
-                raise _no_formula(what, step.operand)
-            return total * one.power(-1)
-
-        def circle(argument: Tree) -> tuple[Residue, Residue]:
-            found = point.constant(Fraction(1)), point.constant(Fraction(0))
-            try:
-                turns = (
-                    multiples(argument) if _size(argument) < _LARGEST_ANGLE else {"": Fraction(1)}
-                )
-            except NotImplementedError:
-                raise _no_formula(what, argument) from None
-            for name, multiple in turns.items():
-                angle = self.names.get(name)
-                if not multiple:
-                    continue
-                if angle not in self.ring.angles or multiple.denominator != 1:
-                    raise _no_formula(what, argument)
-                if abs(multiple) > _LARGEST_ANGLE:
-                    raise TooLarge(f"the stored {what} has too large a multiple of an angle")
-                found = turned(found, point.circle(angle), int(multiple))
-            return found
-
-        return value(tree)
-
-
-def _no_formula(what: str, tree: Tree) -> Violation:
-    return Violation(f"the stored {what} has a part that is no formula: {to_text(tree)[:60]!r}")
-
-
-def _is_number(tree: Tree) -> bool:
-    """Whether a tree has no names."""
-    return not names_of(tree)
+    def _random(self) -> fmpz_mod:
+        return self.residues(self.source.randrange(self.prime))

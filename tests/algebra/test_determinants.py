@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from support.examples import examples
 
 from ptmcad.algebra import determinants
-from ptmcad.algebra.assignment import least_assignment
+from ptmcad.algebra.determinants import least_assignment
 from ptmcad.algebra.polynomials import PLANE
 
 X, Y = PLANE.gens()

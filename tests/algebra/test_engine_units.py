@@ -18,6 +18,7 @@ from support.poles import power_trace_denominators
 from support.signatures import signature
 
 from ptmcad import load
+from ptmcad.algebra.bernstein import nowhere_zero
 from ptmcad.algebra.determinants import determinant
 from ptmcad.algebra.fibre import evaluate as multiplication
 from ptmcad.algebra.fibre import fibre
@@ -49,10 +50,9 @@ from ptmcad.algebra.real_roots import (
     squarefree_part,
 )
 from ptmcad.algebra.resultants import discriminant, interpolate, nothing, resultant
-from ptmcad.algebra.window import nowhere_zero
 from ptmcad.answer.regionmap import Kind
-from ptmcad.exact.cad.curves import curve
-from ptmcad.exact.cad.points import _discriminant
+from ptmcad.exact.cad.criticalpoints import _discriminant
+from ptmcad.exact.cad.projection import curve
 from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
 from ptmcad.exact.stages import problem_of
@@ -494,14 +494,14 @@ BOTH = (fmpq(-1), fmpq(1))
 def test_nowhere_zero(
     p: fmpz_mpoly, x: tuple[fmpq, fmpq], y: tuple[fmpq, fmpq], proved: bool
 ) -> None:
-    assert nowhere_zero(p, x, y) == proved
+    assert nowhere_zero(p, (x, y)) == proved
 
 
 @given(degree_3_by_3)
 @settings(max_examples=examples(100))
 def test_nowhere_zero_is_never_wrong(p: fmpz_mpoly) -> None:
     assume(p.total_degree() > 0)
-    if nowhere_zero(p, BOTH, BOTH):
+    if nowhere_zero(p, (BOTH, BOTH)):
         grid = [fmpq(k, 9) for k in range(-8, 9)]
         values = [evaluate(p, a, b) for a in grid for b in grid]
         assert all(v > 0 for v in values) or all(v < 0 for v in values)
@@ -514,7 +514,7 @@ def test_a_zero_in_the_window_is_never_denied(p: fmpz_mpoly, a: int, b: int) -> 
     value = evaluate(p, x, y)
     through = p * int(value.q) - int(value.p)  # has a zero at (x, y)
     assume(through.total_degree() > 0)
-    assert not nowhere_zero(through, BOTH, BOTH)
+    assert not nowhere_zero(through, (BOTH, BOTH))
 
 
 def test_pairs_of_components_are_different() -> None:

@@ -6,11 +6,10 @@ import random
 from itertools import pairwise
 
 import pytest
-from flint import arb, ctx, fmpq, fmpz_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
 from ptmcad.algebra import isolation
-from ptmcad.algebra.newton import Newton
-from ptmcad.algebra.real_roots import isolate, sign_at
+from ptmcad.algebra.real_roots import RealRoot, isolate, newton_ball, sign_at
 
 
 def _squarefree(source: random.Random) -> fmpz_poly:
@@ -53,14 +52,18 @@ def _holds(ball: arb, p: fmpz_poly) -> bool:
     return sign_at(p, low) * sign_at(p, high) <= 0
 
 
+def ball_of(root: RealRoot) -> arb:
+    p = root.polynomial
+    return newton_ball(arb_poly(p), arb_poly(p.derivative()), root)
+
+
 @pytest.mark.parametrize("bits", [64, 128])
 def test_a_ball_holds_the_root_and_is_as_narrow_as_the_precision_allows(bits: int) -> None:
     source = random.Random(bits)
     for _ in range(60):
         p = _squarefree(source)
         with ctx.workprec(bits):
-            newton = Newton.of(p)
-            balls = [newton.ball(root) for root in isolate(p, fmpq(-(10**5)), fmpq(10**5))]
+            balls = [ball_of(root) for root in isolate(p, fmpq(-(10**5)), fmpq(10**5))]
         with ctx.workprec(4 * bits):
             for ball in balls:
                 assert _holds(ball, p)
@@ -71,7 +74,7 @@ def test_roots_that_nearly_coincide_are_in_balls_of_their_own_once_the_precision
     near = fmpz_poly([-(10**40) - 1, 10**40]) * fmpz_poly([-1, 1]) * fmpz_poly([-2, 0, 1])
     roots = isolate(near, fmpq(-2), fmpq(2))
     with ctx.workprec(400):
-        balls = [Newton.of(near).ball(root) for root in roots]
+        balls = [ball_of(root) for root in roots]
         assert len(balls) == 4
         assert not any(a.overlaps(b) for a, b in pairwise(balls))
         assert all(_holds(ball, near) for ball in balls)

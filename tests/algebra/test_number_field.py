@@ -17,8 +17,8 @@ from ptmcad.algebra.number_field import (
     RealField,
     RingEvaluation,
     polynomial_at,
+    rational_roots,
 )
-from ptmcad.algebra.rational_roots import rational_roots
 from ptmcad.algebra.real_roots import isolate
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 

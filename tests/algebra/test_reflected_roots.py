@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
-from ptmcad.algebra import reflected_roots
+from ptmcad.algebra import reflections
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
-from ptmcad.algebra.reflected_roots import isolate_reflected
+from ptmcad.algebra.reflections import isolate_reflected
 from ptmcad.text.flint_numbers import from_fraction
 
 SMALL = st.fractions(min_value=-4, max_value=4, max_denominator=6)
@@ -97,7 +97,7 @@ def test_a_root_on_an_edge_is_outside(monkeypatch: pytest.MonkeyPatch) -> None:
         asked.append(polynomial)
         return isolate(polynomial, low, high)
 
-    monkeypatch.setattr(reflected_roots, "isolate", watched)
+    monkeypatch.setattr(reflections, "isolate", watched)
 
     def inside(low: int, high: int) -> int:
         return len(isolate_reflected(p, q, fmpq(0), 1, fmpq(low), fmpq(high)))

@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
-from ptmcad.algebra.polynomials import univariate
-from ptmcad.algebra.restrictions import Restrictions
+from ptmcad.algebra.polynomials import Restrictions, univariate
 
 ROWS = st.lists(
     st.lists(st.integers(-(2**70), 2**70), max_size=6).map(fmpz_poly), min_size=1, max_size=6

@@ -9,12 +9,12 @@ import random
 import pytest
 from flint import fmpq, fmpz_poly
 
+from ptmcad.algebra.bernstein import nowhere_zero
 from ptmcad.algebra.polynomials import PLANE, SPACE, Coefficient
 from ptmcad.algebra.space import (
     at_value,
     common_zeros,
     discriminant,
-    nowhere_zero,
     predicted_work,
     resultant,
     rows_in,

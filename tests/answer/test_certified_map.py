@@ -24,7 +24,7 @@ from ptmcad.cli import run
 from ptmcad.cover import union_area
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
-from ptmcad.exact.engine import exact_map
+from ptmcad.exact.exactmap import exact_map
 from ptmcad.exact.ranges.strips import strips
 from ptmcad.question.slice import Count, Slice
 

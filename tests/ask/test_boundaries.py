@@ -17,7 +17,7 @@ import ptmcad
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import ConfigError
-from ptmcad.exact.cad.chains import chains
+from ptmcad.exact.cad.polyline import chains
 
 SLICES = ("fig2", "fig3", "fig4", "forces")
 

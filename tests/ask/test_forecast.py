@@ -9,8 +9,7 @@ import pytest
 from ptmcad.ask.checking import check as checked
 from ptmcad.ask.checking import cost_text, foretold
 from ptmcad.ask.forecast import WITHIN, forecast
-from ptmcad.exact.sizes import CurveSizes
-from ptmcad.exact.survey import Survey
+from ptmcad.exact.curvesizes import CurveSizes, Survey
 from ptmcad.question.config import load
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"

@@ -22,7 +22,7 @@ from ptmcad.algebra.real_roots import isolate, refine
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask import location
 from ptmcad.errors import ConfigError
-from ptmcad.exact.cad.curves import curve
+from ptmcad.exact.cad.projection import curve
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 TINY = Fraction(1, 10**40)

@@ -22,7 +22,7 @@ from support.oracle import count
 
 from ptmcad import Enclosure, Pose, Poses, slice_from_mapping, solve
 from ptmcad.algebra.fibre import fibre
-from ptmcad.algebra.points import points
+from ptmcad.algebra.fibre_points import points
 from ptmcad.answer.regionmap import Status
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import point_from_mapping

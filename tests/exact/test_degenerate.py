@@ -291,9 +291,9 @@ def test_wrong_options(options: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(
-    "stage", ["stages.discriminant_variety", "decomposition.project", "areas.region_areas"]
+    "stage", ["stages.discriminant_variety", "decomposition.project", "regionareas.region_areas"]
 )
-@pytest.mark.slow_cases("stages.discriminant_variety", "areas.region_areas")
+@pytest.mark.slow_cases("stages.discriminant_variety", "regionareas.region_areas")
 def test_a_limit_leaves_the_best_map_so_far(stage: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever was reached is a partial map that can be written, read and asked, and gives no
     undecided count.

@@ -13,7 +13,7 @@ from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import SPACE, UnknownPolynomial, at_third
 from ptmcad.ask.members import Common, in_common, member_map
 from ptmcad.errors import PtmcadError
-from ptmcad.exact.models.space import space_parameters
+from ptmcad.exact.models.familyparameters import space_parameters
 from ptmcad.options import Options
 from ptmcad.question.config import Family, family_from
 

@@ -15,7 +15,7 @@ import ptmcad
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import DegenerateSliceError, GeometryError
-from ptmcad.exact.engine import exact_map
+from ptmcad.exact.exactmap import exact_map
 from ptmcad.exact.stages import Sample, SliceProblem, problem_of
 from ptmcad.options import Options
 from ptmcad.question.config import load, slice_from_mapping
@@ -101,7 +101,7 @@ def test_the_plan_says_which_involution_makes_one_half_enough(name: str, moves: 
 def test_the_plan_says_nothing_of_a_half_where_areas_are_those_of_the_whole_window(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("ptmcad.exact.areas._images", lambda *given: None)
+    monkeypatch.setattr("ptmcad.exact.regionareas._images", lambda *given: None)
     found = exact_map(_record("rods"))
     assert not [step for step in found.plan if "half" in step.what]
 

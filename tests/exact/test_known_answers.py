@@ -21,7 +21,7 @@ from ptmcad import Count, RegionMap, load
 from ptmcad.algebra.polynomials import from_plane
 from ptmcad.algebra.real_roots import disjoint, isolate, refine, squarefree_part
 from ptmcad.answer.regionmap import Status
-from ptmcad.exact.cad.curves import curve
+from ptmcad.exact.cad.projection import curve
 from ptmcad.text.expressions import axis
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.parsing import parse

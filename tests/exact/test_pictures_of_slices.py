@@ -11,7 +11,7 @@ from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Merge
 from ptmcad.errors import ConfigError
-from ptmcad.exact.arrangement import picture_of
+from ptmcad.exact.slicearrangement import picture_of
 from ptmcad.text.flint_numbers import from_fraction
 
 SLICES = ("fig2", "fig4", "fig5-caption", "rods", "systems/kuramoto", "systems/cubic-and-quadratic")

@@ -24,7 +24,7 @@ from ptmcad.algebra.polynomials import from_plane
 from ptmcad.algebra.real_roots import isolate, refine, squarefree_part
 from ptmcad.answer.regionmap import Status
 from ptmcad.errors import ConfigError, HypothesisError
-from ptmcad.exact.cad.curves import curve
+from ptmcad.exact.cad.projection import curve
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.text.flint_numbers import from_fraction, to_fraction

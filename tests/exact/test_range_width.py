@@ -18,7 +18,7 @@ from ptmcad.algebra.real_roots import isolate
 from ptmcad.algebra.slopes import slope_over
 from ptmcad.answer.widths import Maximum
 from ptmcad.ask.ranges import Place, intervals, operation_widths
-from ptmcad.exact.cad.curves import curve
+from ptmcad.exact.cad.projection import curve
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.strips import RangeEnd, RangeStrip, strips
 from ptmcad.exact.ranges.width import largest

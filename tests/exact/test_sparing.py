@@ -11,7 +11,7 @@ from support.maps import CONFIGS, shipped
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.classification import region_map
 from ptmcad.ask.members import in_common, member_map
-from ptmcad.exact import sparing
+from ptmcad.exact import stages
 from ptmcad.options import Options
 from ptmcad.question.config import family_from, load
 from ptmcad.show.render.outline import outline
@@ -66,7 +66,7 @@ def test_forty_members_of_each_family() -> None:
 def test_only_what_is_proved_to_be_joined_shares_a_count(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fig. 4 has regions that a curve parts although counts are equal: these are counted apart."""
     found: list[tuple[int, ...]] = []
-    whole = sparing.counts_by_component
+    whole = stages.counts_by_component
 
     def noted(
         problem: object, stacks: object, component_of: tuple[int, ...], report: object
@@ -74,7 +74,7 @@ def test_only_what_is_proved_to_be_joined_shares_a_count(monkeypatch: pytest.Mon
         found.append(component_of)
         return whole(problem, stacks, component_of, report)  # type: ignore[arg-type]
 
-    monkeypatch.setattr("ptmcad.exact.engine.counts_by_component", noted)
+    monkeypatch.setattr("ptmcad.exact.exactmap.counts_by_component", noted)
     result = region_map(load(CONFIGS / "fig4.yaml"), SPARING)
     (component_of,) = found
     for link in result.adjacencies:

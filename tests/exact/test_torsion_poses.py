@@ -17,7 +17,7 @@ from ptmcad import Poses, solve
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
 from ptmcad.certified.plain.certifiedposes import plain_poses
-from ptmcad.exact.poses import exact_poses
+from ptmcad.exact.exactposes import exact_poses
 from ptmcad.model import Mechanism, described
 from ptmcad.model.evaluate import multiples
 from ptmcad.text.balls import ball_of

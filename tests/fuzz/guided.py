@@ -18,7 +18,7 @@ import atheris
 # everything of ptmcad that a case reaches must be imported here, or coverage does not see it
 with atheris.instrument_imports(include=["ptmcad"]):
     import ptmcad.ask.location
-    import ptmcad.exact.engine
+    import ptmcad.exact.exactmap
     import ptmcad.show.table
     import ptmcad.verification  # noqa: F401
     from fuzz import targets

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from support.shipped_records import CONFIGS
 
-from ptmcad.exact.models.potential import system_from
+from ptmcad.exact.models.modelsystem import system_from
 from ptmcad.formulas.graph import Graph
 from ptmcad.formulas.values import values
 from ptmcad.model import Model, described

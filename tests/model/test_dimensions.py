@@ -18,10 +18,10 @@ from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
 from ptmcad.algebra.trigonometric import TrigonometricRing
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Kind
+from ptmcad.exact.exactposes import exact_poses
 from ptmcad.exact.models import ParametricSystem, system_from, system_of
 from ptmcad.exact.models.system import SystemOnAxes, from_equations
 from ptmcad.exact.point_system import solutions_at
-from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.model import described
 from ptmcad.model.criterion import by_hessian

@@ -20,7 +20,7 @@ from flint import fmpq
 import ptmcad
 from ptmcad.answer.regionmap import Component, Kind, Status
 from ptmcad.errors import ConfigError, DegenerateSliceError
-from ptmcad.exact.models.potential import elements_of, system_from
+from ptmcad.exact.models.modelsystem import elements_of, system_from
 from ptmcad.exact.models.system import at_point, polynomial_at
 from ptmcad.exact.stages import problem_of, variety_of
 from ptmcad.model import ClosedMechanism

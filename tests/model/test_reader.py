@@ -18,7 +18,7 @@ from support.signatures import count_by_isolation, count_by_signature
 
 from ptmcad import RegionMap, classify, slice_from_mapping
 from ptmcad.errors import MAX_FAULTS, ConfigError, Faults
-from ptmcad.exact.models.potential import system_from
+from ptmcad.exact.models.modelsystem import system_from
 from ptmcad.model import Mechanism, described, described_system, ptm, recognised, work
 from ptmcad.model.closed import without_loops
 from ptmcad.model.mechanisms import RECORD

@@ -18,7 +18,7 @@ from support.programs import needs_msolve, real_solutions
 
 import ptmcad
 from ptmcad.errors import ConfigError
-from ptmcad.exact.models.potential import system_from
+from ptmcad.exact.models.modelsystem import system_from
 from ptmcad.exact.models.system import at_point, polynomial_at
 from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.stages import problem_of

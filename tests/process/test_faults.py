@@ -304,7 +304,7 @@ INTERRUPTED = {
         ("animate", "configs/fig4.yaml", "--path", "rho=3/4:6/5,L2=3/2", "--pose", "stable:2"),
     ),
     "classify, areas": (
-        "ptmcad.exact.engine areas_of",
+        "ptmcad.exact.exactmap areas_of",
         (
             "classify",
             "configs/mechanisms/two-bar-chain.yaml",
@@ -315,7 +315,7 @@ INTERRUPTED = {
         ),
     ),
     "classify, a slice of high degree": (
-        "ptmcad.exact.engine projection_of",
+        "ptmcad.exact.exactmap projection_of",
         ("classify", *HIGH_DEGREE),
     ),
 }
@@ -703,7 +703,7 @@ def begun(out: Path, formats: str, count: str) -> Started:
     return start(
         program,
         ["classify", str(FIG2), *options],
-        (*ALWAYS, "ptmcad.ask.classification", "ptmcad.exact.engine"),
+        (*ALWAYS, "ptmcad.ask.classification", "ptmcad.exact.exactmap"),
     )
 
 

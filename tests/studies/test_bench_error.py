@@ -21,9 +21,8 @@ from support.maps import shipped
 import ptmcad
 from ptmcad.algebra.polynomials import from_plane
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.exact.cad.chains import chains
-from ptmcad.exact.cad.curves import curve
-from ptmcad.exact.cad.polyline import FLAT, WallBranch, chords
+from ptmcad.exact.cad.polyline import FLAT, WallBranch, chains, chords
+from ptmcad.exact.cad.projection import curve
 from ptmcad.studies import byhand
 from ptmcad.studies.bench.error import (
     COUNTS,

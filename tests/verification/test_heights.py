@@ -17,8 +17,8 @@ from support.examples import examples
 from ptmcad.algebra.polynomials import from_plane
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.regionmap import CriticalValue
-from ptmcad.exact.cad.curves import curve
-from ptmcad.exact.cad.points import PointsOver
+from ptmcad.exact.cad.criticalpoints import PointsOver
+from ptmcad.exact.cad.projection import curve
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import PlaneCurve
@@ -87,7 +87,7 @@ def test_a_double_point_is_one_point_without_a_polynomial_in_v(
         raise AssertionError("the long way")
 
     monkeypatch.setattr("ptmcad.verification.projections.points_over", fail)
-    monkeypatch.setattr("ptmcad.exact.cad.points.squarefree_part", fail)
+    monkeypatch.setattr("ptmcad.exact.cad.criticalpoints.squarefree_part", fail)
     assert checker(known).between(LOW, HIGH) == 2
     assert len(engine(known).between(LOW, HIGH, [])) == 2
 

@@ -21,8 +21,7 @@ from ptmcad.answer.boundarysurface import ACCURACY, BoundarySurface
 from ptmcad.answer.family import FamilyMap, SpaceTerms
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.exact.arrangement import picture_of
-from ptmcad.exact.strips import BoundaryStrips
+from ptmcad.exact.slicearrangement import BoundaryStrips, picture_of
 from ptmcad.question.config import family_from, slice_from
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.workbench import boundarymesh as asking

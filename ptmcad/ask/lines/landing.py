@@ -21,7 +21,7 @@ from flint import arb, ctx
 from ptmcad.answer.paths import Landing, Target
 from ptmcad.ask.lines.linesystem import DIGITS, LineSystem
 from ptmcad.ask.lines.meeting import Meeting, what_meets
-from ptmcad.exact.poses import exact_poses
+from ptmcad.exact.exactposes import exact_poses
 from ptmcad.formulas.continuation import BITS, Reached, in_the_limit, nearer, over_range
 from ptmcad.text.balls import ball_over, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure

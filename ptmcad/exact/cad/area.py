@@ -22,8 +22,8 @@ from ptmcad.algebra.branches import TooFewBits
 from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.exact.cad.curves import FibredCurve, by_component, max_height_bits
 from ptmcad.exact.cad.panels import Border, PanelEffort, WallPanel, halves, panels
+from ptmcad.exact.cad.projection import FibredCurve, by_component, max_height_bits
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.text.balls import exact
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction

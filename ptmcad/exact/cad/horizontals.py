@@ -12,7 +12,7 @@ from flint import fmpq
 
 from ptmcad.algebra.branches import avoids
 from ptmcad.algebra.real_roots import Interval, RealRoot, refine
-from ptmcad.exact.cad.curves import FibredCurve
+from ptmcad.exact.cad.projection import FibredCurve
 from ptmcad.text.flint_numbers import simplest_between
 
 

@@ -13,12 +13,11 @@ from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.arcs import arc_integral
+from ptmcad.algebra.arcs import arc_integral, graph_integral
 from ptmcad.algebra.branches import Integral, TooFewBits, branch_integral
-from ptmcad.algebra.graphs import graph_integral
 from ptmcad.algebra.real_roots import Interval, RealRoot, order, refine
-from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.exact.cad.horizontals import horizontals
+from ptmcad.exact.cad.projection import FibredCurve
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.text.balls import exact
 from ptmcad.text.flint_numbers import simplest_between

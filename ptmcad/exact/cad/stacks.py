@@ -15,7 +15,7 @@ from flint import fmpq
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, disjoint, gaps, inside, isolate, sign_at
 from ptmcad.answer.regionmap import Wall
-from ptmcad.exact.cad.curves import FibredCurve
+from ptmcad.exact.cad.projection import FibredCurve
 from ptmcad.text.flint_numbers import simplest_between
 
 

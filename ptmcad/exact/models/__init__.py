@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ptmcad.exact.models.potential import system_counted, system_from
+from ptmcad.exact.models.modelsystem import system_counted, system_from
 from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.model import mechanism_of
 

@@ -22,9 +22,9 @@ from typing import NamedTuple
 
 from flint import fmpq
 
+from ptmcad.algebra.algebraic_numbers import algebraic_number, in_order
 from ptmcad.algebra.determinants import determinant
-from ptmcad.algebra.numbers import algebraic_number, in_order
-from ptmcad.algebra.points import RealPoint, points, value_at
+from ptmcad.algebra.fibre_points import RealPoint, points, value_at
 from ptmcad.algebra.polynomials import (
     ONE,
     PLANE,

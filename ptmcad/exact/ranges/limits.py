@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from flint import fmpq
 
-from ptmcad.algebra.numbers import fibre_roots, refined
+from ptmcad.algebra.algebraic_numbers import fibre_roots, refined
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, isolate, refine, sign
 from ptmcad.algebra.resultants import resultant

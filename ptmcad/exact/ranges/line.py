@@ -20,19 +20,18 @@ from typing import Any
 
 from flint import fmpq
 
-from ptmcad.algebra.numbers import in_order, roots_in
+from ptmcad.algebra.algebraic_numbers import in_order, roots_in
 from ptmcad.algebra.real_roots import gaps
 from ptmcad.answer.counts import Counts, operation_number
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
 from ptmcad.answer.regionmap import Component
 from ptmcad.answer.words import noun
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
-from ptmcad.exact.folds import with_folds
 from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import SystemOnAxes, on_axes
 from ptmcad.exact.stages import count_at
 from ptmcad.exact.variety import discriminant_variety
-from ptmcad.exact.witness import points
+from ptmcad.exact.witness import points, with_folds
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber

@@ -18,8 +18,8 @@ from flint import fmpq
 from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, isolate, refine
 from ptmcad.answer.counts import operation_number
-from ptmcad.exact.cad.adjacency import Crossing, cross
-from ptmcad.exact.cad.curves import FibredCurve, by_component
+from ptmcad.exact.cad.crossings import Crossing, cross
+from ptmcad.exact.cad.projection import FibredCurve, by_component
 from ptmcad.exact.cad.stacks import BaseEnd, StackData
 from ptmcad.exact.ranges.line import runs
 from ptmcad.exact.stages import counts_of, decomposition_of, problem_of

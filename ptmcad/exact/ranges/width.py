@@ -36,7 +36,7 @@ from typing import NamedTuple
 
 from flint import arb, fmpq
 
-from ptmcad.algebra.numbers import algebraic_number, compare
+from ptmcad.algebra.algebraic_numbers import algebraic_number, compare
 from ptmcad.algebra.real_roots import Interval
 from ptmcad.algebra.slopes import slope_over
 from ptmcad.answer.intervals import End, Span

@@ -20,7 +20,7 @@ from ptmcad.question.config.problemrecord import Record, read_record, swept_name
 from ptmcad.question.config.scalars import Window, names_in_scalar, number_of
 from ptmcad.question.counts import usual_count
 from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part
-from ptmcad.question.positivity import READING_WORK, window_of
+from ptmcad.question.positivity import window_of
 from ptmcad.question.shipped import AXES
 from ptmcad.question.signs import PROVED, Finding, Subject
 from ptmcad.question.slice import Axes, Axis, Slice, count_fault, have_free_lengths
@@ -200,7 +200,7 @@ def _judged(record: Record, faults: Faults) -> tuple[Axes, dict[str, Expression]
     for part in record.model.parts:
         with faults:
             if window is not None and not doubtful & {*names_of(part.tree)}:
-                sign = sign_of_part(record.model, part, values, window, READING_WORK)
+                sign = sign_of_part(record.model, part, values, window)
                 signs.append(_accepted(sign, record.place_of_part(part.key)))
     if window is None:
         faults.check()
@@ -417,7 +417,7 @@ def _signs_of_value(
         return ()
     if expression.is_constant:
         return (Finding(subject, window_of(axes), PROVED),)
-    return (_accepted(sign_of(subject, axes, READING_WORK), place),)
+    return (_accepted(sign_of(subject, axes), place),)
 
 
 def _accepted(sign: Finding, place: Place) -> Finding:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from ptmcad.algebra.numbers import refined
+from ptmcad.algebra.algebraic_numbers import refined
 from ptmcad.answer.intervals import End, Span
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import Enclosure

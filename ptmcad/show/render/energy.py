@@ -16,7 +16,7 @@ import numpy as np
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import moments_work
-from ptmcad.exact.models.potential import elements_of, system_from
+from ptmcad.exact.models.modelsystem import elements_of, system_from
 from ptmcad.exact.models.system import polynomial_at
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from ptmcad.algebra.polynomials import coefficients_in, from_plane
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.answer.regionmap import RegionMap, Stack
-from ptmcad.exact.cad.curves import FibredCurve, by_component, curves_of
+from ptmcad.exact.cad.projection import FibredCurve, by_component, curves_of
 from ptmcad.show.render.simplification import simplified_line
 from ptmcad.show.render.view import CellShape, Floats, Interval, Same, View, WallShape
 from ptmcad.text.flint_numbers import from_fraction, to_fraction

@@ -19,8 +19,7 @@ from functools import partial
 from ptmcad.algebra import msolve
 from ptmcad.algebra.polynomials import common_factor, from_terms, irreducible_factors, to_plane
 from ptmcad.answer.regionmap import Kind, RegionMap
-from ptmcad.exact.models.elimination import elimination_system
-from ptmcad.exact.slicevariety import slice_variety
+from ptmcad.exact.eliminationsystem import elimination_system, slice_variety
 from ptmcad.exact.stages import problem_of
 from ptmcad.question.slice import Slice
 from ptmcad.studies.bench.harness import Asked, Case, Job, Row

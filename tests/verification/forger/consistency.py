@@ -25,7 +25,7 @@ from ptmcad.answer.regionmap import (
     RegionMap,
     Stack,
 )
-from ptmcad.exact.plan import plan_of
+from ptmcad.exact.exactplan import plan_of
 from ptmcad.question.slice import Count
 
 Alteration = Callable[[], RegionMap]

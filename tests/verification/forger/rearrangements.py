@@ -17,7 +17,7 @@ from forger.consistency import (
     with_plan,
 )
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.exact.assembly import _solutions
+from ptmcad.exact.mapassembly import _solutions
 from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import on_axes
 from ptmcad.exact.stages import count_at

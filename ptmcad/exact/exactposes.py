@@ -16,14 +16,14 @@ from itertools import pairwise
 from flint import ctx, fmpq
 
 from ptmcad.algebra.fibre import WorkLimit
-from ptmcad.algebra.points import FibrePoints, RealPoint, points, real_values
+from ptmcad.algebra.fibre_points import FibrePoints, RealPoint, points, real_values
 from ptmcad.algebra.polynomials import Values
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import noun
 from ptmcad.exact.continua import is_free
-from ptmcad.exact.models.potential import elements_of, system_from
+from ptmcad.exact.models.modelsystem import elements_of, system_from
 from ptmcad.exact.models.system import ParametricSystem, polynomial_at
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_systems
 from ptmcad.exact.statics import ExactSolution, pose_of, solution_at

@@ -1,4 +1,4 @@
-"""The polynomial system of a model, from its compiled formulas.
+"""The polynomial system of a model, from its compiled formulas, and its text for the stored result.
 
 Guarantee: potential, equations and conditions are those of the formulas, expanded; no equation is
 typed in. Springs are of free length zero: their energy is a polynomial.
@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from functools import lru_cache, partial
 
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
+from ptmcad.answer.regionmap import System
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models.system import ParametricSystem, from_equations
 from ptmcad.exact.models.turns import with_turns
@@ -71,3 +72,17 @@ def system_counted(model: Model, count: Count) -> ParametricSystem:
         ring.reduce(evaluate(margin.value, ring)) for margin in predicate.margins(mechanism)
     )
     return with_turns(system._replace(stability=margins, turns=None))
+
+
+def system_text(system: ParametricSystem) -> System:
+    """The system's polynomials as text in the parameters and the coordinates of the unknowns."""
+    ring = system.ring
+    return System(
+        unknowns=ring.coordinates,
+        relations=tuple(f"cos_{angle}^2 + sin_{angle}^2 - 1" for angle in ring.angles),
+        potential="" if system.potential is None else str(system.potential),
+        gradient=tuple(str(e) for e in system.equations),
+        hessian=tuple(tuple(str(d) for d in row) for row in system.jacobian),
+        inequalities=tuple(str(p) for p in system.inequalities),
+        stability=tuple(str(p) for p in system.stability),
+    )

@@ -1,5 +1,5 @@
-"""The elimination system of a slice: equilibria with a singular Hessian, as polynomials with
-integer coefficients.
+"""The discriminant variety of a slice as an answer of its own, and the elimination system behind it:
+equilibria with a singular Hessian, as polynomials with integer coefficients.
 
 Guarantee: the ideal that they generate, cut with Q[x, y], vanishes on every CRITICAL component of
 the slice. It has no solution where the slice's equations lose their meaning, nor one that an
@@ -13,9 +13,14 @@ from itertools import count
 from math import prod
 
 from ptmcad.algebra.polynomials import ONE, UnknownPolynomial, irreducible_factors
-from ptmcad.answer.slicevariety import EliminationSystem, Term
+from ptmcad.answer.slicevariety import EliminationSystem, SliceVariety, Term
+from ptmcad.errors import A_SLICE, expect
+from ptmcad.exact.mapassembly import versions
+from ptmcad.exact.models.modelsystem import system_text
 from ptmcad.exact.models.system import SystemOnAxes, on_slice, saturated
-from ptmcad.exact.models.text import system_text
+from ptmcad.exact.stages import problem_of, variety_of
+from ptmcad.question.domain import proved
+from ptmcad.question.slice import Slice, without_free_lengths
 
 INVERSE = "inverse"
 """The name of the unknown that is one, with a number where the name is taken."""
@@ -54,3 +59,30 @@ def _terms(p: UnknownPolynomial) -> tuple[Term, ...]:
         for (i, j), c in q.terms()
     ]
     return tuple(sorted(terms, reverse=True))
+
+
+def slice_variety(slice: Slice, without: frozenset[str] = frozenset()) -> SliceVariety:
+    """The discriminant variety of a slice, the first stage of `exact_map` alone.
+
+    Parameters
+    ----------
+    without : names of savings to switch off, of `ptmcad.question.savings`.
+
+    Raises
+    ------
+    ConfigError
+        When springs have a free length: then the variety is out of algebra's reach.
+    HypothesisError When the slice is degenerate, has infinitely many equilibria, or leaves the
+        domain of the geometry.
+    """
+    expect(slice, Slice, "slice", A_SLICE)
+    without_free_lengths(slice.model, slice.parameters, "the discriminant variety is")
+    problem = problem_of(proved(slice))
+    variety = variety_of(problem, without)
+    return SliceVariety(
+        slice,
+        variety.components,
+        variety.complex_solutions,
+        elimination_system(problem.on, slice.axis_names, variety.excludes),
+        versions(),
+    )

@@ -34,7 +34,7 @@ from ptmcad.algebra.real_roots import (
     vanishes_at,
 )
 from ptmcad.algebra.resultants import Check, nothing, resultant
-from ptmcad.exact.cad.curves import (
+from ptmcad.exact.cad.projection import (
     FibredCurve,
     deflation,
     short_discriminant,

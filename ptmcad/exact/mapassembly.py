@@ -27,14 +27,13 @@ from ptmcad.answer.regionmap import (
     Stack,
     Status,
 )
-from ptmcad.exact.cad.adjacency import Crossing
+from ptmcad.exact.cad.crossings import Crossing
 from ptmcad.exact.cad.projection import Projection
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.exact.counting import Equilibria
-from ptmcad.exact.decomposition import Variety, segment_of
-from ptmcad.exact.models.text import system_text
-from ptmcad.exact.plan import plan_of
-from ptmcad.exact.regions import members
+from ptmcad.exact.decomposition import Variety, members, segment_of
+from ptmcad.exact.exactplan import plan_of
+from ptmcad.exact.models.modelsystem import system_text
 from ptmcad.exact.stages import Areas, Cells, SliceProblem
 from ptmcad.options import Options
 from ptmcad.question.slice import Point

@@ -28,8 +28,8 @@ from flint import fmpq
 from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, refine, vanishes_at
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.regionmap import Reason
-from ptmcad.exact.cad.curves import FibredCurve, max_height_bits
-from ptmcad.exact.cad.points import PointsOver
+from ptmcad.exact.cad.criticalpoints import PointsOver
+from ptmcad.exact.cad.projection import FibredCurve, max_height_bits
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, roots_over
 from ptmcad.text.flint_numbers import simplest_between
 

@@ -1,5 +1,5 @@
 """The size of a slice's critical curve before it is computed: its degrees, from solutions at points
-of three lines.
+of three lines; and of its decomposition, from the engine's first stages.
 
 Not guaranteed: the degrees are those of the norm of the Jacobian's determinant on the lines x = c,
 y = c and y = 3 x + c modulo one prime, without multiplicities and without what bounds the slice's
@@ -26,13 +26,13 @@ from ptmcad.algebra.fibre import FibreAlgebra, WorkLimit
 from ptmcad.algebra.groebner import powers_of
 from ptmcad.algebra.polynomials import Monomial
 from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
-from ptmcad.algebra.residues import primes
+from ptmcad.algebra.resultants import Check, nothing, primes
 from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.errors import LimitReached
 from ptmcad.exact.decomposition import Sample
 from ptmcad.exact.models.system import SystemOnAxes
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
-from ptmcad.exact.stages import SliceProblem
+from ptmcad.exact.stages import SliceProblem, decomposition_of
 
 MAX_POINTS = 256
 """On a line; they tell degrees of 60 and more, and tell of more that they are more."""
@@ -227,3 +227,38 @@ def _sizes_on(
         if len(seen) < asked:
             return None
         asked = min(asked * 3 // 2, MAX_POINTS) if asked < MAX_POINTS else asked + 1
+
+
+class Survey(NamedTuple):
+    """The decomposition of the window, as far as the cost of what comes after depends on it.
+
+    Attributes
+    ----------
+    walls : between a cell and the next one above it, of all stacks.
+    degree : the largest of a curve along the fibres.
+    """
+
+    cells: int
+    walls: int
+    degree: int
+
+
+def survey(problem: SliceProblem, check: Check = nothing) -> Survey:
+    """The decomposition's sizes.
+
+    Parameters
+    ----------
+    check : called during the projection; may raise to stop.
+
+    Raises
+    ------
+    DegenerateSliceError, InfiniteSolutionsError
+        When every point of the slice is exceptional.
+    """
+    cut = decomposition_of(problem, check=check)
+    cells = len(cut.points)
+    return Survey(
+        cells,
+        cells - len(cut.stacks),
+        max((len(c.in_v) - 1 for c in cut.variety.curves), default=0),
+    )

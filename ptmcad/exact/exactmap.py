@@ -14,9 +14,7 @@ from time import perf_counter
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import LimitReached
-from ptmcad.exact.areas import areas_of
-from ptmcad.exact.assembly import PartialMap, assemble
-from ptmcad.exact.cad.adjacency import Crossing
+from ptmcad.exact.cad.crossings import Crossing
 from ptmcad.exact.decomposition import (
     Decomposition,
     crossings_of,
@@ -25,8 +23,16 @@ from ptmcad.exact.decomposition import (
     projection_of,
     stacks_of,
 )
-from ptmcad.exact.sparing import counts_by_component
-from ptmcad.exact.stages import Cells, SliceProblem, counts_of, problem_of, variety_of
+from ptmcad.exact.mapassembly import PartialMap, assemble
+from ptmcad.exact.regionareas import areas_of
+from ptmcad.exact.stages import (
+    Cells,
+    SliceProblem,
+    counts_by_component,
+    counts_of,
+    problem_of,
+    variety_of,
+)
 from ptmcad.exact.variety import Known
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.question.domain import proved
