@@ -22,6 +22,10 @@ VERBS = re.compile(r"_?(tell|told)")
 VAGUE = re.compile(r"(?i)_?(utils?|helpers?|manager)|.*_(impl|safe)")
 RENAMED = re.compile(r"(?i)\bdear\b|\bcan not\b|--keep\b")
 """Expensive, cannot, --without."""
+DIALECT = re.compile(
+    r"(?i)\b(?:fore)?told\b|\bforetell|\bdearer\b|\bwhat is halved\b|\bof which none\b"
+)
+"""Reported, predicted, more expensive: the manual is written as an editor would leave it."""
 
 
 def old_names(tree: ast.Module) -> Iterator[str]:
@@ -64,3 +68,10 @@ def test_prose_and_messages_use_no_renamed_word() -> None:
     read = [p for p in prose if p != own and docs / "generated" not in p.parents]
     found = [f"{p}: {m[0]}" for p in read for m in RENAMED.finditer(p.read_text("utf-8"))]
     assert not found
+
+
+def test_the_manual_is_in_the_fields_english() -> None:
+    docs = ROOT / "docs"
+    manual = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted(docs.rglob("*.md"))]
+    read = [p for p in manual if docs / "generated" not in p.parents]
+    assert not [f"{p}: {m[0]}" for p in read for m in DIALECT.finditer(p.read_text("utf-8"))]
