@@ -20,10 +20,10 @@ from ptmcad.options import Progress
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Axis, Point, Slice
 from ptmcad.text.expressions import constant
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.points import check_cell, check_listed, counting_of
-from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified.cellsamples import check_cell, check_listed
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.derivation import meaning_of, parameters_of
+from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
 from ptmcad.verification.solutions import check_disjoint, signs_of
 
@@ -53,9 +53,9 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
     if result.slice.has_free_lengths and found.equilibria:
         try:
             if found.status is Status.UNDECIDED:
-                number = check_listed(claims, counting_of(claims), cell)
+                number = check_listed(claims, cell)
                 return Unchecked(f"whether there are more than the {number} listed, which hold")
-            number = check_cell(claims, counting_of(claims), cell)
+            number = check_cell(claims, cell)
             untold = (
                 ""
                 if cell.stable == found.stable

@@ -24,7 +24,7 @@ from flint import arb, ctx
 from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.model import Model
 from ptmcad.text.numerals import approximate_text
-from ptmcad.verification.certified.field import Matrix
+from ptmcad.verification.certified.ballequations import Matrix
 from ptmcad.verification.certified.narrow import narrowed, precisions, tested
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Derivation

@@ -17,8 +17,8 @@ from ptmcad.cover import components, tubes, union_area
 from ptmcad.cover.rectangles import Cover, Patch, Tube
 from ptmcad.cover.slanted import shown, stepped
 from ptmcad.cover.subdivision import FREE
-from ptmcad.verification.certified.slanted import SlantedFrame
-from ptmcad.verification.certified.sweep import sweep
+from ptmcad.verification.certified.coversweep import sweep
+from ptmcad.verification.certified.slantedframes import SlantedFrame
 from ptmcad.verification.report import Violation
 
 STEPS = 2**20

@@ -22,7 +22,7 @@ from itertools import pairwise
 from typing import Any
 
 from ptmcad.cover.rectangles import Cover
-from ptmcad.verification.certified.slanted import Part, SlantedFrame
+from ptmcad.verification.certified.slantedframes import Part, SlantedFrame
 from ptmcad.verification.report import Violation
 
 Entry = tuple[int, int, int]
@@ -136,7 +136,7 @@ def sweep(cover: Cover) -> CoverSweep:
 
     Parameters
     ----------
-    cover : whose rectangles lie in the window (`ptmcad.verification.certified.structure` checks
+    cover : whose rectangles lie in the window (`ptmcad.verification.certified.coverclaims` checks
         it).
 
     Raises

@@ -10,7 +10,7 @@ coefficients have one sign, and the constant one is not zero, there is no soluti
 signs of unknowns are tried. Coefficients are balls over all angles and all other real unknowns as
 far as they are bounded; the part of a spring with a free length is at most its pull times the
 slope, of either sign. Where unknowns bound one another, x_j = t_j g^w_j with |t_j| at most 1, and
-the same is tried for g; where springs hold several, `ptmcad.verification.certified.held` is. The
+the same is tried for g; where springs hold several, `ptmcad.verification.normalform.held` is. The
 second engine evaluates by Horner's rule on unbounded intervals.
 """
 
@@ -24,10 +24,9 @@ from typing import NamedTuple
 
 from flint import arb
 
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.field import size
-from ptmcad.verification.certified.held import bounds_of
-from ptmcad.verification.certified.waves import Form, Key, Waves
+from ptmcad.verification.normalform.boxes import Unproved, size
+from ptmcad.verification.normalform.held import bounds_of
+from ptmcad.verification.normalform.waves import Form, Key, Waves
 from ptmcad.verification.terms import ball, power
 
 HALF_TURN = 101 / 32

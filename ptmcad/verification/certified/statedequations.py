@@ -20,10 +20,10 @@ from collections.abc import Mapping, Sequence
 from flint import fmpq, fmpq_mpoly
 
 from ptmcad.verification.certified.decimals import in_quotients
-from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import CoordinateRing, turned
 from ptmcad.verification.derivation import Derivation, derivation_of
+from ptmcad.verification.normalform.waves import form_of
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.work import fault_in_work
 
