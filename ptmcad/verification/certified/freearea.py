@@ -7,7 +7,7 @@ no critical point over it. A violation is a point of a cell with other counts th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
@@ -62,18 +62,18 @@ def check_free_area(
         return Unchecked("not asked for (effort 0)")
     # here, as they load numba
     from ptmcad.verification.exclusion.criticalsystems import systems_of
-    from ptmcad.verification.exclusion.running import search, share_over
+    from ptmcad.verification.exclusion.running import search
 
     try:
         systems = systems_of(claims.lattice)
     except Unproved as reason:
         return Unchecked(str(reason))
     wider = claims.sweep.steps >> (BESIDE_AT_FIRST + BESIDE * effort)
-    pieces, left, looked = pieces_of(claims, wider), [], 0
-    beside = widened(claims, wider)
+    pieces, beside = pieces_of(claims, wider), widened(claims, wider)
     budget = (
         BOXES_AT_FIRST * GROWTH ** (effort - 1) // len(systems) if effort < MAX_EFFORT else 2**62
     )
+    left, looked = list[Any](), 0
     for k, system in enumerate(systems):
 
         def progress(share: float, k: int = k) -> None:
@@ -88,8 +88,16 @@ def check_free_area(
             left += [finer.open, finer.stuck]
             looked += finer.looked
         left.append(rest.open)
+    return _in_words(claims, left, pieces, beside, f"{looked} boxes, effort {effort}")
+
+
+def _in_words(
+    claims: CertifiedClaims, left: Sequence[Any], pieces: Pieces, beside: float, text: str
+) -> str:
+    """What share of the free area is proved, with boxes left by the searches."""
+    from ptmcad.verification.exclusion.running import share_over  # loads numba
+
     places = [boxes for boxes in left if len(boxes)]
-    text = f"{looked} boxes, effort {effort}"
     if not places and not beside:
         return f"100 % of the free area is proved free of critical curves; {text}"
     free = sum(claims.sweep.areas[component] for component in claims.cell_of) - claims.slack

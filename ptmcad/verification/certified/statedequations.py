@@ -19,7 +19,6 @@ from collections.abc import Mapping, Sequence
 
 from flint import fmpq, fmpq_mpoly
 
-from ptmcad.verification.certified.decimals import in_quotients
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import CoordinateRing, turned
 from ptmcad.verification.derivation import Derivation, derivation_of
@@ -27,6 +26,11 @@ from ptmcad.verification.normalform.waves import form_of
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.work import fault_in_work
 
+_DECIMAL = re.compile(
+    r"(?<![A-Za-z0-9_.])([0-9]{1,60})(?:\.([0-9]{1,60}))?(?:e([+-]?[0-9]{1,3}))?(?![A-Za-z0-9_.])",
+    re.ASCII,
+)
+"""A decimal number, which a parser of Python would round."""
 _LARGE_TEXT = 100_000
 """Letters beyond which a text is not checked."""
 _SIGNS = re.compile(r"[A-Za-z0-9_ ()^*/+-]*", re.ASCII)
@@ -286,7 +290,7 @@ def _plain(name: str) -> str:
 def _parsed(what: str, text: str) -> ast.expr:
     if len(text) > _LARGE_TEXT:
         raise _TooLarge(f"the stored {what} is longer than {_LARGE_TEXT} letters")
-    text = in_quotients(text)
+    text = _in_quotients(text)
     if _SIGNS.fullmatch(text) is None or _WRONG.search(text):
         raise Violation(f"the stored {what} is not a formula in the names of problem records")
     try:
@@ -313,3 +317,21 @@ def _bounded(p: fmpq_mpoly) -> fmpq_mpoly:
             "the stored potential has a part of too many terms, too high a degree or too long numbers"
         )
     return p
+
+
+def _in_quotients(text: str) -> str:
+    """A formula without decimal numbers.
+
+    >>> _in_quotients("0.5*x1 + 2e-3 - 12*x")
+    '(5/10)*x1 + (2/1000) - 12*x'
+    """
+    return _DECIMAL.sub(_quotient, text)
+
+
+def _quotient(number: re.Match[str]) -> str:
+    whole, behind, exponent = number.groups()
+    if behind is None and exponent is None:
+        return str(whole)
+    shift = int(exponent or 0) - len(behind or "")
+    digits = int(whole + (behind or ""))
+    return f"({digits * 10**shift})" if shift >= 0 else f"({digits}/{10**-shift})"
