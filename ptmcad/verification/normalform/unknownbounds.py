@@ -10,7 +10,7 @@ coefficients have one sign, and the constant one is not zero, there is no soluti
 signs of unknowns are tried. Coefficients are balls over all angles and all other real unknowns as
 far as they are bounded; the part of a spring with a free length is at most its pull times the
 slope, of either sign. Where unknowns bound one another, x_j = t_j g^w_j with |t_j| at most 1, and
-the same is tried for g; where springs hold several, `ptmcad.verification.certified.held` is. The
+the same is tried for g; where springs hold several, `ptmcad.verification.normalform.held` is. The
 second engine evaluates by Horner's rule on unbounded intervals.
 """
 
@@ -24,10 +24,9 @@ from typing import NamedTuple
 
 from flint import arb
 
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.field import size
-from ptmcad.verification.certified.held import bounds_of
-from ptmcad.verification.certified.waves import Form, Key, Waves
+from ptmcad.verification.normalform.boxes import Unproved, size
+from ptmcad.verification.normalform.held import bounds_of
+from ptmcad.verification.normalform.waves import Form, Key, Waves
 from ptmcad.verification.terms import ball, power
 
 HALF_TURN = 101 / 32
@@ -38,7 +37,6 @@ FINE_POWERS = (4, 10, 20, 40)
 """... and those that are tried with angles in parts, where none will do for all angles at once."""
 MAX_PARTS = 400
 MAX_WEIGHT = 3
-_MAX_COMBINED = 40
 
 Row = Mapping[Key, arb]
 """A polynomial by its waves."""
@@ -128,7 +126,7 @@ class _Bounds:
     far.
     """
 
-    def __init__(self, form: Form, values: Mapping[str, arb], with_products: bool):
+    def __init__(self, form: Form, values: Mapping[str, arb]):
         def row(waves: Waves) -> Row:
             return {key: ball(terms, values) for key, terms in waves.items()}
 
@@ -138,15 +136,9 @@ class _Bounds:
             for k in range(form.size)
         ]
         self.equations = list(map(_Equation, rows, springs))
-        rigid = rows[: len(form.rigid)]
-        if rigid:
-            more = [row(waves) for waves in form.multiples]
-            if with_products:
-                more += [
-                    _times(f, k) for f in rigid for k in range(form.size) if not form.is_circle[k]
-                ]
-            self.equations += [_Equation(f) for f in (*more, *_combined([*rigid, *more]))]
-        self.has_polynomials = bool(rigid)
+        if form.rigid:
+            self.equations += [_Equation(row(waves)) for waves in form.multiples]
+        self.has_polynomials = bool(form.rigid)
         self.inequalities = [row(waves) for waves in form.inequalities]
         unit = [
             (((0,) * form.size, tuple(int(j == k) for j in range(form.size)), 0), k)
@@ -309,29 +301,6 @@ def _is_positive(terms: Monomials, lead: int, bound: arb, sign: int) -> bool:
     )
 
 
-def _times(f: Row, k: int) -> Row:
-    return {
-        (turned, (*raised[:k], raised[k] + 1, *raised[k + 1 :]), sine): c
-        for (turned, raised, sine), c in f.items()
-    }
-
-
-def _combined(rows: Sequence[Row]) -> list[Row]:
-    """Combinations that lack a term common to two rows; they are zero where these are."""
-    found: list[Row] = []
-    for _ in range(2):
-        for f, g in combinations((*rows, *found), 2):
-            for key in f.keys() & g.keys():
-                others = (f.keys() | g.keys()) - {key}
-                both = {
-                    k: f.get(k, _ZERO) * g[key] - g.get(k, _ZERO) * f[key] for k in sorted(others)
-                }
-                both = {k: c for k, c in both.items() if not (c == 0)}  # noqa: SIM201 (a ball that is not exactly zero)
-                if both and len(both) <= max(len(f), len(g)) and len(found) < _MAX_COMBINED:
-                    found.append(both)
-    return found
-
-
 def half_widths(form: Form, values: Mapping[str, arb]) -> tuple[float, ...]:
     """For each unknown half the width of a range around 0 that has all solutions, or a whole turn.
 
@@ -342,11 +311,9 @@ def half_widths(form: Form, values: Mapping[str, arb]) -> tuple[float, ...]:
     """
     if all(form.is_circle):
         return (HALF_TURN,) * form.size
-    for with_products in (False, True):
-        bounds = _Bounds(form, values, with_products)
-        found = _all_bounds(bounds)
-        if None not in found:
-            return tuple(half for half in found if half is not None)
+    found = _all_bounds(_Bounds(form, values))
+    if None not in found:
+        return tuple(half for half in found if half is not None)
     raise Unproved(f"no bound of the unknown {form.unknowns[found.index(None)]} could be proved")
 
 

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.options import Progress
 from ptmcad.question.slice import Slice
-from ptmcad.verification.certified.counted import Places
-from ptmcad.verification.certified.parameters import check_domain
-from ptmcad.verification.certified.points import check_points
-from ptmcad.verification.certified.sampling import check_boxes
-from ptmcad.verification.certified.structure import (
+from ptmcad.verification.certified.cellsamples import check_points
+from ptmcad.verification.certified.coverclaims import (
     CertifiedClaims,
     check_components,
     check_form,
     check_regions,
 )
-from ptmcad.verification.certified.waves import form_of
+from ptmcad.verification.certified.freearea import EFFORT, check_free_area
+from ptmcad.verification.certified.parameterdomain import check_domain
+from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.equationtexts import check_potential
+from ptmcad.verification.normalform.waves import form_of
 from ptmcad.verification.parameters import check_text
 from ptmcad.verification.report import Check, CheckProgress, VerifyReport, Violation, checked, drawn
 
@@ -33,36 +32,19 @@ NOT_CHECKED = (
 )
 
 
-FreeArea = Callable[[CertifiedClaims, Callable[[int, int], None]], str]
-"""What proves a share of the free area, and tells how far it is."""
-
-
-PlacesOf = Callable[[CertifiedClaims], Places | None]
-"""What tells where solutions may be, if anything does."""
-
-
 def verify_certified(
     result: RegionMap,
     seed: int | None,
     boxes: int | None,
-    free_area: FreeArea,
-    places_of: PlacesOf,
+    effort: int | None,
     progress: Progress | None = None,
 ) -> VerifyReport:
-    """Check a map with a cover; see `ptmcad.verification.verify`.
-
-    Solutions are looked for in balls where compiled code leaves places, if that is installed.
-    """
+    """Check a map with a cover; see `ptmcad.verification.verify`."""
     claims = CertifiedClaims(result)
     chosen = drawn(seed)
     number = BOXES if boxes is None else boxes
     headway = CheckProgress(progress)
     within = headway.within
-
-    @cache
-    def places() -> Places | None:
-        return places_of(claims)
-
     steps: tuple[tuple[str, str, Callable[[CertifiedClaims], str]], ...] = (
         ("form", "comparison", check_form),
         ("parameters as written", "expressions compared", check_text),
@@ -77,14 +59,18 @@ def verify_certified(
         (
             "counts and solutions",
             "Krawczyk's test and exclusion in balls",
-            lambda of: check_points(of, places(), within),
+            lambda of: check_points(of, within),
         ),
         (
             "random boxes",
             "Krawczyk's test over boxes of parameters",
-            lambda of: check_boxes(of, chosen, number, places(), within),
+            lambda of: check_boxes(of, chosen, number, within),
         ),
-        ("the whole free area", "exclusion of critical points", lambda of: free_area(of, within)),
+        (
+            "the whole free area",
+            "exclusion of critical points",
+            lambda of: check_free_area(EFFORT if effort is None else effort, of, within),
+        ),
     )
     checks = checked(claims, steps, headway=headway)
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]

@@ -8,17 +8,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from fractions import Fraction
 
 from ptmcad.answer.regionmap import Cell
-from ptmcad.verification.certified.boxes import Unproved, Zero
-from ptmcad.verification.certified.counted import CountedPoint, Places, differs, stored
-from ptmcad.verification.certified.models import ModelCounting
-from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.waves import form_of
-from ptmcad.verification.claims import Claims
+from ptmcad.verification.certified.counted import differs, stored
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.kinds import kind_of, numbers_for
+from ptmcad.verification.normalform.boxes import Unproved, Zero
+from ptmcad.verification.normalform.waves import form_of
 from ptmcad.verification.report import Unchecked, Violation
 
 HOPELESS = 16
@@ -47,24 +44,19 @@ class _InBoxes(Unproved):
 
 def check_points(
     claims: CertifiedClaims,
-    places: Places | None = None,
     report: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> str:
     """Counts and stored solutions of every cell; and for how many cells nothing was proved.
 
     Where a sample cannot be decided, the counts beside it are those of its cell.
-
-    Parameters
-    ----------
-    places : as `ptmcad.verification.certified.sampling.check_boxes` has them.
     """
-    counting, number, uncounted = counting_of(claims), 0, 0
+    number = uncounted = 0
     undecided: list[str] = []
     for n, cell in enumerate(claims.result.cells):
         report(n, len(claims.result.cells))
         where = f"at {claims.place(*cell.sample)}"
         try:
-            found = check_cell(claims, counting, cell, places)
+            found = check_cell(claims, cell)
         except Unproved as reason:
             undecided.append(f"cell {n} {where}: {reason}")
             uncounted += not isinstance(reason, _InBoxes)
@@ -83,14 +75,7 @@ def check_points(
     return f"{samples} samples, {number} equilibria"
 
 
-def counting_of(claims: Claims) -> ModelCounting:
-    """How the solutions of the map's model are counted."""
-    return ModelCounting(form_of(claims.result.slice))
-
-
-def check_cell(
-    claims: CertifiedClaims, counting: ModelCounting, cell: Cell, places: Places | None = None
-) -> int:
+def check_cell(claims: CertifiedClaims, cell: Cell) -> int:
     """Counts and stored solutions of one cell; how many these are.
 
     Raises
@@ -98,9 +83,9 @@ def check_cell(
     Violation, Unproved
     """
     try:
-        there = _counted_at(claims, counting, cell.sample, places)
+        there = claims.counting.at(*cell.sample)
     except Unproved as reason:
-        return _check_beside(claims, counting, cell, reason, places)
+        return _check_beside(claims, cell, reason)
     if differs(cell, there.counts):
         raise Violation(f"said to have {stored(cell)}; there are {there.counts}")
     kept = [
@@ -111,7 +96,7 @@ def check_cell(
     if len(cell.solutions) != len(kept):
         raise Violation(f"{len(cell.solutions)} boxes of solutions for {len(kept)} equilibria")
     try:
-        _check_boxes(claims, counting, cell, replace(there, found=kept))
+        _check_boxes(claims, cell, kept)
     except Unproved as reason:
         raise _InBoxes(str(reason)) from reason
     return len(kept)
@@ -121,27 +106,17 @@ def _near(claims: CertifiedClaims, cell: Cell) -> list[tuple[Fraction, Fraction]
     """Points of a sample's cell near the sample; none where it is very near to a rectangle of the
     cover.
     """
-    u, v = claims.on_lattice(*cell.sample)
+    u, v = claims.lattice.on(*cell.sample)
     half = claims.room(
         u, v, Fraction(claims.sweep.steps, _PARTS), Fraction(claims.sweep.steps, _MIN_PARTS)
     )
     return [
-        claims.off_lattice(u + half * i / 4, v + half * j / 4) for i, j in (_PLACES if half else ())
+        claims.lattice.off(u + half * i / 4, v + half * j / 4) for i, j in (_PLACES if half else ())
     ]
 
 
-def _counted_at(
-    claims: CertifiedClaims, counting: ModelCounting, at: Sequence[Fraction], places: Places | None
-) -> CountedPoint:
-    (x, y), (u, v) = at, claims.on_lattice(*at)
-    return counting.at(claims, x, y, places and places((u, u), (v, v)))
-
-
-def _decided(
-    claims: CertifiedClaims, counting: ModelCounting, cell: Cell, places: Places | None
-) -> tuple[tuple[Fraction, Fraction], CountedPoint] | None:
-    """The first point beside an undecided sample at which the counts are decided, and what is
-    counted there.
+def _decided(claims: CertifiedClaims, cell: Cell) -> tuple[Fraction, Fraction] | None:
+    """The first point next to an undecided sample at which the counts are decided.
 
     Raises
     ------
@@ -150,31 +125,28 @@ def _decided(
     """
     for at in _near(claims, cell)[:MAX_NEAR]:
         try:
-            there = _counted_at(claims, counting, at, places)
+            there = claims.counting.at(*at)
         except Unproved:
             continue
         if differs(cell, there.counts):
             raise Violation(
                 f"said to have {stored(cell)}; at {claims.place(*at)}, in the same cell, there are {there.counts}"
             )
-        return at, there
+        return at
     return None
 
 
-def _check_boxes(
-    claims: CertifiedClaims, counting: ModelCounting, cell: Cell, there: CountedPoint
-) -> None:
+def _check_boxes(claims: CertifiedClaims, cell: Cell, kept: Sequence[Zero]) -> None:
     """Each stored box holds one solution, each another one, and these are those that are kept.
 
     Raises
     ------
     Violation, Unproved
     """
-    taken, kept = set[int](), there.found
-    for k, (solution, e) in enumerate(
-        zip(cell.solutions, counting.within(there.values, cell.solutions), strict=True)
-    ):
-        match = [i for i, other in enumerate(kept) if counting.same(e, other)]
+    taken = set[int]()
+    for k, solution in enumerate(cell.solutions):
+        e = claims.counting.in_box(*cell.sample, solution, k)
+        match = [i for i, other in enumerate(kept) if claims.counting.same(e, other)]
         if len(match) != 1 or match[0] in taken:
             near = ", ".join(f"{x:.6g}" for x in e.center)
             raise Violation(f"the solution {k} near ({near}) is stored twice, or not asked for")
@@ -198,13 +170,7 @@ def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
         raise Violation(claims.meaning.at_solution.format(k, true, said))
 
 
-def _check_beside(
-    claims: CertifiedClaims,
-    counting: ModelCounting,
-    cell: Cell,
-    reason: Unproved,
-    places: Places | None,
-) -> int:
+def _check_beside(claims: CertifiedClaims, cell: Cell, reason: Unproved) -> int:
     """The counts are those at a point beside the sample, and each stored box holds one solution,
     each another one.
 
@@ -222,15 +188,15 @@ def _check_beside(
         raise Violation(
             f"the signs of the listed solutions are not those of the index {cell.index}"
         )
-    in_boxes = _listed(claims, counting, cell)
-    if (found := _decided(claims, counting, cell, places)) is None:
+    in_boxes = _listed(claims, cell)
+    if (found := _decided(claims, cell)) is None:
         raise reason
     if in_boxes is not None:
-        raise _InBoxes(f"{reason}; the counts are those at {claims.place(*found[0])}") from in_boxes
+        raise _InBoxes(f"{reason}; the counts are those at {claims.place(*found)}") from in_boxes
     return len(cell.solutions)
 
 
-def check_listed(claims: CertifiedClaims, counting: ModelCounting, cell: Cell) -> int:
+def check_listed(claims: CertifiedClaims, cell: Cell) -> int:
     """Each stored box holds one solution of its signs at the sample, each another one; how many
     these are.
 
@@ -238,12 +204,12 @@ def check_listed(claims: CertifiedClaims, counting: ModelCounting, cell: Cell) -
     ------
     Violation, Unproved
     """
-    if (reason := _listed(claims, counting, cell)) is not None:
+    if (reason := _listed(claims, cell)) is not None:
         raise reason
     return len(cell.solutions)
 
 
-def _listed(claims: CertifiedClaims, counting: ModelCounting, cell: Cell) -> Unproved | None:
+def _listed(claims: CertifiedClaims, cell: Cell) -> Unproved | None:
     """Why it is not decided of a stored box that it holds one solution of its signs; None where all
     do.
 
@@ -252,11 +218,12 @@ def _listed(claims: CertifiedClaims, counting: ModelCounting, cell: Cell) -> Unp
     Violation
         When one does not, or two hold the same.
     """
+    counting = claims.counting
     undecided: Unproved | None = None
     known = list[Zero]()
     for k, solution in enumerate(cell.solutions):
         try:
-            zero = counting.in_box(claims, cell.sample, solution, k)
+            zero = counting.in_box(*cell.sample, solution, k)
             if counting.form.is_gradient:
                 _check_signs(claims, zero.signs, solution.signs, k)
             if any(counting.same(zero, other) for other in known):

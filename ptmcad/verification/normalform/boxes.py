@@ -112,3 +112,9 @@ def is_same(one: Zero, two: Zero, circles: Sequence[bool]) -> bool:
     if disjoint(one, two, circles):
         return False
     raise Unproved("a stored box may have one of two solutions")
+
+
+def size(x: arb, y: arb) -> arb:
+    """An upper bound of a vector's length."""
+    a, b = x.abs_upper(), y.abs_upper()
+    return (a * a + b * b).sqrt().upper()

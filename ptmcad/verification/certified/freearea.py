@@ -7,14 +7,17 @@ no critical point over it. A violation is a point of a cell with other counts th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.counted import Places
+from ptmcad.cover.rectangles import Patch
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
+from ptmcad.verification.certified.coversweep import CoverSweep
 from ptmcad.verification.certified.sampling import check_point
-from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.exclusion.pieces import MAX_CONTROLS, Bound, PieceRow, Pieces, pieces_in
+from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.report import Unchecked
 
 EFFORT, MAX_EFFORT = 2, 10
@@ -34,7 +37,6 @@ _PLACES = 12
 _STEPS_AWAY = (4, 64)
 _SQUARES = 1024
 """Of the window's width: boxes that are left in one square are one place."""
-NUMBA_NEEDED = "compiled code is needed for it: install numba (ptmcad[certified])"
 
 
 def check_free_area(
@@ -53,30 +55,25 @@ def check_free_area(
     ------
     Violation
         With a point whose counts are not those of its cell.
-    ImportError
-        Where something other than numba is missing, or numba is installed and does not work.
     """
     if not claims.result.cells:
         return "there are no cells"
     if effort <= 0:
         return Unchecked("not asked for (effort 0)")
+    # here, as they load numba
+    from ptmcad.verification.exclusion.criticalsystems import systems_of
+    from ptmcad.verification.exclusion.running import search
+
     try:
-        from ptmcad.verification.exclusion.pieces import pieces_of, widened
-        from ptmcad.verification.exclusion.running import search, share_over
-        from ptmcad.verification.exclusion.systems import systems_of
-    except ModuleNotFoundError as missing:
-        _check_is_numba(missing)
-        return Unchecked(NUMBA_NEEDED)
-    try:
-        systems = systems_of(claims)
+        systems = systems_of(claims.lattice)
     except Unproved as reason:
         return Unchecked(str(reason))
     wider = claims.sweep.steps >> (BESIDE_AT_FIRST + BESIDE * effort)
-    pieces, left, looked = pieces_of(claims, wider), [], 0
-    beside = widened(claims, wider)
+    pieces, beside = pieces_of(claims, wider), widened(claims, wider)
     budget = (
         BOXES_AT_FIRST * GROWTH ** (effort - 1) // len(systems) if effort < MAX_EFFORT else 2**62
     )
+    left, looked = list[Any](), 0
     for k, system in enumerate(systems):
 
         def progress(share: float, k: int = k) -> None:
@@ -91,8 +88,16 @@ def check_free_area(
             left += [finer.open, finer.stuck]
             looked += finer.looked
         left.append(rest.open)
+    return _in_words(claims, left, pieces, beside, f"{looked} boxes, effort {effort}")
+
+
+def _in_words(
+    claims: CertifiedClaims, left: Sequence[Any], pieces: Pieces, beside: float, text: str
+) -> str:
+    """What share of the free area is proved, with boxes left by the searches."""
+    from ptmcad.verification.exclusion.running import share_over  # loads numba
+
     places = [boxes for boxes in left if len(boxes)]
-    text = f"{looked} boxes, effort {effort}"
     if not places and not beside:
         return f"100 % of the free area is proved free of critical curves; {text}"
     free = sum(claims.sweep.areas[component] for component in claims.cell_of) - claims.slack
@@ -107,29 +112,6 @@ def check_free_area(
     return Unchecked(text)
 
 
-def _check_is_numba(missing: ModuleNotFoundError) -> None:
-    """Raise it again where it is a part of numba that is missing, or a package that it needs
-    itself.
-    """
-    if missing.name != "numba":
-        raise missing
-
-
-def places_of(claims: CertifiedClaims) -> Places | None:
-    """What tells where a map's solutions may be; None without compiled code, or where their
-    equations are not known.
-    """
-    try:
-        from ptmcad.verification.exclusion.places import SolutionPlaces as Isolated
-    except ModuleNotFoundError as missing:
-        _check_is_numba(missing)
-        return None
-    try:
-        return Isolated(claims)
-    except Unproved:
-        return None
-
-
 def _percent(share: float) -> str:
     """Rounded down, with so many digits that it is not 100."""
     share = max(0.0, share)
@@ -142,7 +124,7 @@ def _percent(share: float) -> str:
 
 
 def _where(claims: CertifiedClaims, u: Fraction, v: Fraction) -> str:
-    x, y = claims.off_lattice(u, v)
+    x, y = claims.lattice.off(u, v)
     one, two = claims.result.slice.axis_names
     return f"{one}={float(x):.9g}, {two}={float(y):.9g}"
 
@@ -188,3 +170,76 @@ def _check_at(claims: CertifiedClaims, u: Fraction, v: Fraction) -> None:
     """The counts at a point are those of its cell, if it is in one and they can be proved."""
     if (cell := claims.cell_at(u, v)) is not None:
         check_point(claims, cell, u, v, reason="; a critical curve was found there")
+
+
+def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
+    """The pieces of a map's cover, and the components that have no cell.
+
+    Parameters
+    ----------
+    wider : lattice steps by which tubes and their frames are made wider on all sides; what this
+        adds is not proved.
+    """
+    cover = claims.cover
+    rows: list[PieceRow] = [PieceRow(r) for r in cover.rectangles]
+    for patch in cover.patches:
+        left, right, bottom, top = patch.frame
+        frame = left - wider, right + wider, bottom - wider, top + wider
+        rows += [
+            PieceRow(
+                frame,
+                patch.along,
+                (-t.half - wider, t.controls),
+                (t.half + wider, t.controls),
+                wider,
+            )
+            for t in patch.tubes
+            if len(t.controls) <= MAX_CONTROLS
+        ]
+    cells, found = claims.cell_of, claims.sweep
+    rows += _open_in_strips(found, cells) + _open_in_frames(found, cells)
+    return pieces_in(rows, cover.steps)
+
+
+def widened(claims: CertifiedClaims, wider: int) -> float:
+    """At most this share of the window is added to tubes by making them wider."""
+    cover = claims.cover
+    total = 0
+    for patch in cover.patches:
+        length = patch.frame[2 * patch.along + 1] - patch.frame[2 * patch.along]
+        for t in patch.tubes:
+            total += 2 * (t.half + wider) * (length + 2 * wider) - 2 * t.half * length
+    return total / cover.steps**2 * (1 + 1e-9)
+
+
+def _open_in_strips(found: CoverSweep, cells: dict[int, int]) -> list[PieceRow]:
+    return [
+        PieceRow((item.left, item.right, low, high))
+        for (low, high), row in zip(pairwise(found.lines), found.rows, strict=True)
+        for item in row
+        if item.frame < 0 and item.free and found.component_of[item.node] not in cells
+    ]
+
+
+def _open_in_frames(found: CoverSweep, cells: dict[int, int]) -> list[PieceRow]:
+    rows = []
+    for frame, first in zip(found.frames, found.first_part, strict=True):
+        patch = frame.patch
+        for k in range(len(patch.tubes) + 1):
+            if (
+                found.component_of[first + k] not in cells
+                and len(patch.tubes[0].controls) <= MAX_CONTROLS
+            ):
+                rows.append(PieceRow(patch.frame, patch.along, *_between(patch, k)))
+    return rows
+
+
+def _between(patch: Patch, k: int) -> tuple[Bound, Bound]:
+    """What bounds the part of a frame that has so many tubes below it, together with the tubes
+    beside it.
+    """
+    below, above = patch.tubes[k - 1 : k], patch.tubes[k : k + 1]
+    return (
+        (-below[0].half, below[0].controls) if k else None,
+        (above[0].half, above[0].controls) if above else None,
+    )

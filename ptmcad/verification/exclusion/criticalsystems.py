@@ -18,25 +18,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ptmcad.errors import ExpressionError
-from ptmcad.verification.certified.boxes import Floats
-from ptmcad.verification.certified.equations import Equations, Pair, bases
-from ptmcad.verification.certified.formulas import Formulas
-from ptmcad.verification.certified.kinks import sides
-from ptmcad.verification.certified.parameters import values_over
-from ptmcad.verification.certified.ranges import half_widths
-from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.waves import Waves, form_of
-from ptmcad.verification.exclusion.tapes import IntervalTape, tape_of
+from ptmcad.verification.exclusion.forms import IntervalTape, tape_of
 from ptmcad.verification.kinds import kind_of
+from ptmcad.verification.normalform.boxes import Floats
+from ptmcad.verification.normalform.lattice import Range, SliceLattice
+from ptmcad.verification.normalform.modelequations import Equations, Pair, bases
+from ptmcad.verification.normalform.operations import Formulas
+from ptmcad.verification.normalform.unknownbounds import half_widths
+from ptmcad.verification.normalform.waves import Waves, form_of, sides
 from ptmcad.verification.terms import evaluated
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its
 vector's factors.
 """
-
-
-Range = tuple[Fraction, Fraction]
 
 
 class Compiled(NamedTuple):
@@ -152,18 +147,18 @@ def _of_formulas(
 _ANGLE = (-pi - 1e-6, pi + 1e-6)
 
 
-def systems_of(claims: CertifiedClaims) -> list[CriticalSystem]:
+def systems_of(lattice: SliceLattice) -> list[CriticalSystem]:
     """All systems of a map.
 
     Raises
     ------
-    Unproved When real unknowns have no bound over the window that can be proved, or where the
-        systems are not known.
+    Unproved
+        When real unknowns have no bound over the window that can be proved.
     """
-    return list(_Systems(claims, halves_over(claims)).all())
+    return list(_Systems(lattice, halves_over(lattice, lattice.window, lattice.window)).all())
 
 
-def solutions_of(claims: CertifiedClaims, halves: Floats | None) -> list[CriticalSystem]:
+def solutions_of(lattice: SliceLattice, halves: Floats | None) -> list[CriticalSystem]:
     """What is zero at the solutions that a map counts: a system for each choice of sides, in the
     order of these.
 
@@ -174,39 +169,32 @@ def solutions_of(claims: CertifiedClaims, halves: Floats | None) -> list[Critica
     ----------
     halves : as `halves_over` has them; None where there are none, and unknowns may be anything
         until they are `within` others.
-
-    Raises
-    ------
-    Unproved
-        Where the systems are not known.
     """
-    return list(_Systems(claims, halves or (inf,) * form_of(claims.result.slice).size).solutions())
+    return list(_Systems(lattice, halves or (inf,) * form_of(lattice.slice).size).solutions())
 
 
-def halves_over(claims: CertifiedClaims, u: Range | None = None, v: Range | None = None) -> Floats:
+def halves_over(lattice: SliceLattice, u: Range, v: Range) -> Floats:
     """Half the widths of ranges around zero that have the unknowns of all solutions, over a part of
-    the window or all.
+    the window.
 
     Raises
     ------
     Unproved
         When real unknowns have no bound over it that can be proved.
     """
-    slice = claims.result.slice
-    form = form_of(slice)
+    form = form_of(lattice.slice)
     if all(form.is_circle):
         return (_ANGLE[1],) * form.size
-    whole = (Fraction(0), Fraction(claims.cover.steps))
-    return half_widths(form, values_over(slice, *claims.balls(u or whole, v or whole)))
+    return half_widths(form, lattice.values(u, v))
 
 
-def window_equations(claims: CertifiedClaims) -> Equations:
+def window_equations(lattice: SliceLattice) -> Equations:
     """The formulas of a map's equations, over the window in lattice steps and its unknowns."""
-    f, slice = Formulas(), claims.result.slice
+    f, slice = Formulas(), lattice.slice
     axes = [
         f.add(
             f.number(a.low),
-            f.multiply(f.variable(k), f.number((a.high - a.low) / claims.cover.steps)),
+            f.multiply(f.variable(k), f.number((a.high - a.low) / lattice.steps)),
         )
         for k, a in enumerate(slice.axes)
     ]
@@ -217,20 +205,20 @@ def window_equations(claims: CertifiedClaims) -> Equations:
             for i, j, c in terms
         )
 
-    parameters = {n: f.number(0) for n in claims.model.free_lengths}
+    parameters = {n: f.number(0) for n in slice.model.free_lengths}
     parameters |= {
         n: f.divide(polynomial(e.numerator), polynomial(e.denominator))
         for n, e in slice.parameters.items()
     }
-    return Equations(form_of(slice), f, parameters, claims.model.positive)
+    return Equations(form_of(slice), f, parameters, slice.model.positive)
 
 
 class _Systems:
     """The systems of one map, and what they have in common."""
 
-    def __init__(self, claims: CertifiedClaims, halves: Floats):
-        self.claims, self.model, self._halves = claims, window_equations(claims), halves
-        self.count, self.form = claims.result.slice.count, self.model.form
+    def __init__(self, lattice: SliceLattice, halves: Floats):
+        self.lattice, self.model, self._halves = lattice, window_equations(lattice), halves
+        self.count, self.form = lattice.slice.count, self.model.form
         self.minima = self.form.is_gradient and kind_of(self.count).is_of_stable
         stable = self.form.stability if kind_of(self.count).is_of_stable else ()
         self.conditions: list[Waves] = [*self.form.inequalities, *stable]
@@ -338,10 +326,10 @@ class _Systems:
         """About the largest length of a spring: the sum of the factors of its vector in the middle
         of the window.
         """
-        at = [(a.low + a.high) / 2 for a in self.claims.result.slice.axes]
-        values = {name: Fraction(0) for name in self.claims.model.free_lengths}
+        at = [(a.low + a.high) / 2 for a in self.lattice.slice.axes]
+        values = {name: Fraction(0) for name in self.lattice.slice.model.free_lengths}
         try:
-            values |= {n: e.evaluate(*at) for n, e in self.claims.result.slice.parameters.items()}
+            values |= {n: e.evaluate(*at) for n, e in self.lattice.slice.parameters.items()}
         except ExpressionError:
             return Fraction(1)
         factors = (
@@ -429,8 +417,7 @@ class _Systems:
         unknowns: int | None = None,
     ) -> CriticalSystem:
         """A system, of whose formulas that are zero the first ones are evaluated before all others."""
-        cover = self.claims.cover
-        ranges = [(0.0, float(cover.steps))] * 2
+        ranges = [(0.0, float(self.lattice.steps))] * 2
         number = self.form.size if unknowns is None else unknowns
         if number:
             ranges += [(-half, half) for half in self._halves] + [_ANGLE] * (
@@ -444,6 +431,3 @@ class _Systems:
             len(first),
             np.array(ranges),
         )
-
-
-__all__ = ["Compiled", "CriticalSystem", "halves_over", "solutions_of", "systems_of"]

@@ -8,9 +8,10 @@ with powers of the real unknowns.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import product
 from typing import NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
@@ -19,11 +20,10 @@ from ptmcad.model import Model
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression
-from ptmcad.verification.certified.lines import SpringLine, line_of
-from ptmcad.verification.certified.parallel import Parameters
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
 from ptmcad.verification.derivation import Derivation, derivation_of
 from ptmcad.verification.kinds import CheckedMargin, kind_of
+from ptmcad.verification.normalform.springlines import Parameters, SpringLine, line_of
 
 Multi = tuple[int, ...]
 """For each unknown the multiple of an angle, or the power of a real unknown."""
@@ -33,6 +33,8 @@ Waves = Mapping[Key, fmpq_mpoly]
 """Factors of the waves, polynomials in the parameters; the first multiple that is not zero is
 positive, and there is no sine of nothing."""
 Vector = tuple[Waves, Waves]
+Sides = Mapping[str, int]
+"""1 or -1 by the name of each spring on a line: the sign of s."""
 _Side = tuple[str, Waves, Vector, Vector | None]
 """Springs side by side: their names, and the pull and the vector, with its derivative along loops,
 of the one that they are together."""
@@ -348,3 +350,17 @@ def _joined(one: _Side, other: _Side, parameters: Parameters) -> _Side | None:
 def _divided_by(f: fmpq_mpoly, vector: Vector, look: Callable[[Waves], Waves]) -> Vector:
     across, up = ({key: c / f for key, c in look(d).items()} for d in vector)
     return across, up
+
+
+def sides(form: Form) -> Iterator[Sides]:
+    """All choices of sides; a single empty one where no spring is on a line.
+
+    Where d = s e with a fixed e, or one that is turned by a sum of angles, a spring's direction is
+    e/|e| or -e/|e| wherever it has a length, so that solutions are those of the equations with
+    either one, at which s is positive or negative. Springs without length are no solutions. Where
+    half an angle is in that sum, a full turn of the angle changes sides: each side has its own part
+    of any box of the angles, and one configuration is on both sides at the box's two ends.
+    """
+    names = [cone.name for cone in form.cones if cone.line is not None]
+    for chosen in product((1, -1), repeat=len(names)):
+        yield dict(zip(names, chosen, strict=True))

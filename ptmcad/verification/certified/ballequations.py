@@ -24,9 +24,9 @@ from types import MappingProxyType
 from flint import arb
 
 from ptmcad.text.balls import ball_of
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.equations import Equations
-from ptmcad.verification.certified.formulas import (
+from ptmcad.verification.normalform.boxes import Unproved
+from ptmcad.verification.normalform.modelequations import Equations
+from ptmcad.verification.normalform.operations import (
     ADD,
     COSINE,
     DIRECTION,
@@ -41,8 +41,7 @@ from ptmcad.verification.certified.formulas import (
     VARIABLE,
     Formulas,
 )
-from ptmcad.verification.certified.kinks import Sides
-from ptmcad.verification.certified.waves import Form
+from ptmcad.verification.normalform.waves import Form, Sides
 from ptmcad.verification.terms import ball, power, square
 
 Matrix = list[list[arb]]
@@ -100,8 +99,6 @@ class _FormFormulas:
     Attributes
     ----------
     squared : of each spring |d|^2.
-    bends : negative where the Hessian has a negative eigenvalue, wherever a short spring has a
-        length.
     steady : the operations in which no unknown is.
     """
 
@@ -121,9 +118,6 @@ class _FormFormulas:
             else []
         )
         self.squared = [f.dot(s.vector, s.vector) for s in m.cones]
-        self.balances = [m.balances(k) for k in range(len(m.cones))]
-        has_bends = form.is_gradient and form.size > 1
-        self.bends = [[m.bend(k)] if has_bends else [] for k in range(len(m.cones))]
         self.may_be_short = [k for k, s in enumerate(m.cones) if s.name not in sides]
         ahead = [m.ahead(k) for k, s in enumerate(m.cones) if s.name in sides]
         self.conditions = {
@@ -212,36 +206,6 @@ class BallJet:
         n, entries = len(self.values), self.evaluated(self.formulas.jacobian)
         return [entries[n * i : n * i + n] for i in range(n)]
 
-    @property
-    def pulling(self) -> range:
-        """The numbers of the springs that pull."""
-        return range(len(self.formulas.squared))
-
-    def length(self, k: int) -> arb:
-        """That of a spring; an upper bound where it may have none."""
-        squared = self.known[self.formulas.squared[k]]
-        return (squared if squared > 0 else squared.abs_upper()).sqrt()
-
-    def slopes(self, k: int) -> list[arb]:
-        """How fast a spring's vector turns with each unknown, at most."""
-        pairs = self.formulas.model.cones[k].slopes
-        found = self.evaluated([x for pair in pairs for x in pair])
-        return [abs(a) + abs(b) for a, b in zip(found[::2], found[1::2], strict=True)]
-
-    def pull(self, k: int) -> arb:
-        """Of a spring."""
-        return self.known[self.formulas.model.cones[k].pull]
-
-    def balances(self, k: int) -> list[arb]:
-        """Numbers that are zero at every solution, whatever the direction of a spring
-        (`Equations.balances`).
-        """
-        return self.evaluated(self.formulas.balances[k])
-
-    def bends_down(self, k: int) -> bool:
-        """Whether the Hessian has a negative eigenvalue wherever the one short spring has a length."""
-        return any(bend < 0 for bend in self.evaluated(self.formulas.bends[k]))
-
 
 class BallEquations:
     """The equations at given parameters as functions of the unknowns.
@@ -320,12 +284,3 @@ class BallEquations:
         if self._with_determinant:
             jet.conditions.extend([arb(0, inf)] if short else jet.evaluated(of.determinant))
         return jet
-
-
-def size(x: arb, y: arb) -> arb:
-    """An upper bound of a vector's length."""
-    a, b = x.abs_upper(), y.abs_upper()
-    return (a * a + b * b).sqrt().upper()
-
-
-__all__ = ["BallEquations", "BallJet", "Matrix", "size"]

@@ -20,7 +20,7 @@ from collections.abc import Sequence
 
 from flint import arb, arb_mat
 
-from ptmcad.verification.certified.field import size
+from ptmcad.verification.normalform.boxes import size
 
 MAX_SHARE = 0.5
 """Of q: a wider box of what A depends on is halved, as bounds grow like 1/(1 - q)."""

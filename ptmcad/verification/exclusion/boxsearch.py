@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ptmcad.verification.exclusion.compiled import compiled, inlined
+from ptmcad.verification.exclusion.arithmetic import compiled, inlined
 from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate
 from ptmcad.verification.exclusion.holding import holds
 
@@ -49,7 +49,7 @@ def look(
 
     Parameters
     ----------
-    system : `ptmcad.verification.exclusion.systems.Compiled`.
+    system : `ptmcad.verification.exclusion.criticalsystems.Compiled`.
     boxes : (number, variables, 2), made smaller; outcome : (number,), as above.
     rest : (number, variables, 2), the second halves of those that are `HALVED`; `boxes` has the
         first ones.

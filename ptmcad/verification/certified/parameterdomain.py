@@ -6,21 +6,19 @@ Guarantee: what is said to be proved of signs is; a ball has the values at all p
 
 from __future__ import annotations
 
-from flint import arb, fmpq
+from flint import fmpq
 
 from ptmcad.errors import ExpressionError
 from ptmcad.model import Kind
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import derivation_of
+from ptmcad.verification.normalform.waves import form_of
 from ptmcad.verification.parameters import auxiliary, written
-from ptmcad.verification.planecurves import PLANE, polynomial
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.terms import ball, evaluated, monomials
+from ptmcad.verification.terms import evaluated, monomials
 from ptmcad.verification.windowsigns import Sign, Window, has_no_pole, is_in_domain
 
 
@@ -114,32 +112,3 @@ def _expressions(slice: Slice) -> dict[str, Expression]:
         if name in auxiliary(slice.model)
     }
     return {**named, **written(slice), **slice.parameters}
-
-
-def values_over(slice: Slice, x: arb, y: arb) -> dict[str, arb]:
-    """The values of all parameters over a box; of free lengths that are none 0.
-
-    Raises
-    ------
-    Unproved
-        When one may have a pole there.
-    """
-    zeros = {name: arb(0) for name in slice.model.free_lengths}
-    return zeros | {name: over(expression, x, y) for name, expression in slice.parameters.items()}
-
-
-def over(expression: Expression, x: arb, y: arb) -> arb:
-    """A parameter's values over a box.
-
-    Raises
-    ------
-    Unproved
-        When it may have a pole there.
-    """
-    at = dict(zip(PLANE.names(), (x, y), strict=True))
-    numerator, denominator = (
-        ball(polynomial(terms), at) for terms in (expression.numerator, expression.denominator)
-    )
-    if denominator.contains(0):
-        raise Unproved("a parameter may have a pole")
-    return numerator / denominator

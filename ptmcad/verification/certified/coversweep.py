@@ -22,7 +22,7 @@ from itertools import pairwise
 from typing import Any
 
 from ptmcad.cover.rectangles import Cover
-from ptmcad.verification.certified.slanted import Part, SlantedFrame
+from ptmcad.verification.certified.slantedframes import Part, SlantedFrame
 from ptmcad.verification.report import Violation
 
 Entry = tuple[int, int, int]
@@ -136,7 +136,7 @@ def sweep(cover: Cover) -> CoverSweep:
 
     Parameters
     ----------
-    cover : whose rectangles lie in the window (`ptmcad.verification.certified.structure` checks
+    cover : whose rectangles lie in the window (`ptmcad.verification.certified.coverclaims` checks
         it).
 
     Raises
@@ -144,7 +144,6 @@ def sweep(cover: Cover) -> CoverSweep:
     Violation
         When a patch is none, or a frame meets something else.
     """
-    frames = tuple(SlantedFrame(patch, k) for k, patch in enumerate(cover.patches))
     begin: dict[int, list[Entry]] = defaultdict(list)
     end: dict[int, list[Entry]] = defaultdict(list)
     pieces = [(r, -1) for r in cover.rectangles] + [
@@ -154,118 +153,143 @@ def sweep(cover: Cover) -> CoverSweep:
         begin[bottom].append((left, right, number))
         end[top].append((left, right, number))
     lines = sorted({0, cover.steps, *begin, *end})
-    sets = _Sets([], [], [])
-    first_part, first_tube = [], []
-    for frame in frames:
-        first_part.append(len(sets.free))
-        for area in frame.parts:
-            sets.add(True, area)
-        first_tube.append(len(sets.free))
-        rest = (frame.high - frame.low) * (frame.top - frame.bottom) - sum(frame.parts)
-        for k in range(len(frame.centers)):
-            # all of what no part has is the first one's: where tubes are not in one cluster the
-            # rest is at least 0
-            sets.add(False, max(rest, 0) if k == 0 and len(frame.centers) == 1 else 0)
-    pairs = {
-        (part, tube + k)
-        for frame, first, tube in zip(frames, first_part, first_tube, strict=True)
-        for k in range(len(frame.centers))
-        for part in (first + k, first + k + 1)
-        if sets.areas[part] >= 1
-    }
-
-    def meet(
-        below: Sequence[Part], above: Sequence[Part], low: Fraction | int, high: Fraction | int
-    ) -> None:
-        for a, b, open_one, one in below:
-            for c, d, open_two, two in above:
-                start, stop = max(a, c, low), min(b, d, high)
-                if open_one and open_two:
-                    if start < stop:
-                        sets.join(one, two)
-                elif start <= stop:
-                    if open_one == open_two:
-                        sets.join(one, two)
-                    else:
-                        pairs.add((one, two) if open_one else (two, one))
-
-    def parts(item: Item, axis: int, side: int, ends: tuple[int, int]) -> Sequence[Part]:
-        if item.frame < 0:
-            return ((*ends, item.free, item.node),)
-        return [
-            (a, b, is_open, (first_part if is_open else first_tube)[item.frame] + number)
-            for a, b, is_open, number in frames[item.frame].side(axis, side)
-        ]
-
-    def grow(items: Sequence[Item], height: int) -> None:
-        """What begins or ends at a line: of areas what is below the line is taken off, or added."""
-        for item in items:
-            if item.frame < 0:
-                sets.areas[item.node] += (item.right - item.left) * height
-
-    rows: list[tuple[Item, ...]] = []
-    row: list[Item] = []
+    found = _Strips(cover)
     active: list[Entry] = []
     for low, high in pairwise(lines):
         for entry in end[low]:
             del active[bisect_left(active, entry)]
         for entry in begin[low]:
             insort(active, entry)
+        found.add(low, high, [*end[low], *begin[low]], active)
+    return found.result(tuple(lines))
+
+
+class _Strips:
+    """The strips so far, and how what is in them hangs together."""
+
+    def __init__(self, cover: Cover) -> None:
+        self._steps = cover.steps
+        self._frames = tuple(SlantedFrame(patch, k) for k, patch in enumerate(cover.patches))
+        self._sets = _Sets([], [], [])
+        self._first_part: list[int] = []
+        self._first_tube: list[int] = []
+        self._pairs: set[tuple[int, int]] = set()
+        self._rows: list[tuple[Item, ...]] = []
+        self._row: list[Item] = []
+        for frame in self._frames:
+            self._add_frame(frame)
+
+    def _add_frame(self, frame: SlantedFrame) -> None:
+        sets, first = self._sets, len(self._sets.free)
+        for area in frame.parts:
+            sets.add(True, area)
+        tube = len(sets.free)
+        self._first_part.append(first)
+        self._first_tube.append(tube)
+        rest = (frame.high - frame.low) * (frame.top - frame.bottom) - sum(frame.parts)
+        for k in range(len(frame.centers)):
+            # all of what no part has is the first one's: where tubes are not in one cluster the
+            # rest is at least 0
+            sets.add(False, max(rest, 0) if k == 0 and len(frame.centers) == 1 else 0)
+            for part in (first + k, first + k + 1):
+                if sets.areas[part] >= 1:
+                    self._pairs.add((part, tube + k))
+
+    def add(self, low: int, high: int, changed: Sequence[Entry], active: list[Entry]) -> None:
+        """The strip between two lines.
+
+        Parameters
+        ----------
+        changed : what ends or begins at the lower one.
+        active : all that is in the strip, sorted.
+        """
+        row = self._row
+        whole = self._frames or not row
         # from the right, so that the numbers of what is left of a zone stay
-        for first, last in (
-            [(0, len(row))]
-            if frames or not row
-            else reversed(_zones([*end[low], *begin[low]], row))
-        ):
+        for first, last in [(0, len(row))] if whole else reversed(_zones(changed, row)):
             old = row[first:last]
-            bottom, top = (old[0].left, old[-1].right) if old else (0, cover.steps)
+            bottom, top = (old[0].left, old[-1].right) if old else (0, self._steps)
             inner = active[bisect_left(active, (bottom,)) : bisect_left(active, (top,))]
-            new = [
-                Item(
-                    left,
-                    right,
-                    free,
-                    -1 if number >= 0 else sets.add(free, -(right - left) * low),
-                    number,
-                )
-                for left, right, free, number in _row(inner, bottom, top)
-            ]
-            grow(old, low)
-            for one, two in pairwise(
-                [*row[max(first - 1, 0) : first], *new, *row[last : last + 1]]
-            ):
-                meet(parts(one, 0, 1, (low, high)), parts(two, 0, 0, (low, high)), low, high)
-            for one, two in _touching(old, new):
-                # what a frame that goes on across the line meets there, it meets along its upright
-                # sides in one strip
-                if _ends(one, frames, low, 3) and _ends(two, frames, low, 2):
-                    span = max(one.left, two.left), min(one.right, two.right)
-                    meet(
-                        parts(one, 1, 1, (one.left, one.right)),
-                        parts(two, 1, 0, (two.left, two.right)),
-                        *span,
-                    )
+            new = [self._new_item(entry, low) for entry in _row(inner, bottom, top)]
+            self._grow(old, low)
+            beside = [*row[max(first - 1, 0) : first], *new, *row[last : last + 1]]
+            for one, two in pairwise(beside):
+                ends = low, high
+                self._meet(self._parts(one, 0, 1, ends), self._parts(two, 0, 0, ends), *ends)
+            self._meet_below(old, new, low)
             row[first:last] = new
-        rows.append(tuple(row))
-    grow(row, cover.steps)
-    component_of = tuple(map(sets.top, sets.parent))
-    found: tuple[dict[int, Fraction], dict[int, Fraction]] = (
-        defaultdict(Fraction),
-        defaultdict(Fraction),
-    )
-    for n, is_free in enumerate(sets.free):
-        found[not is_free][component_of[n]] += sets.areas[n]
-    return CoverSweep(
-        cover.steps,
-        tuple(lines),
-        tuple(rows),
-        frames,
-        component_of,
-        tuple(first_part),
-        {n: area for n, area in found[0].items() if area > 0},
-        dict(found[1]),
-        frozenset((component_of[a], component_of[b]) for a, b in pairs),
-    )
+        self._rows.append(tuple(row))
+
+    def _new_item(self, entry: tuple[int, int, bool, int], low: int) -> Item:
+        left, right, free, number = entry
+        node = -1 if number >= 0 else self._sets.add(free, -(right - left) * low)
+        return Item(left, right, free, node, number)
+
+    def _meet_below(self, old: Sequence[Item], new: Sequence[Item], line: int) -> None:
+        for one, two in _touching(old, new):
+            # what a frame that goes on across the line meets there, it meets along its upright
+            # sides in one strip
+            if _ends(one, self._frames, line, 3) and _ends(two, self._frames, line, 2):
+                self._meet(
+                    self._parts(one, 1, 1, (one.left, one.right)),
+                    self._parts(two, 1, 0, (two.left, two.right)),
+                    max(one.left, two.left),
+                    min(one.right, two.right),
+                )
+
+    def _meet(
+        self,
+        below: Sequence[Part],
+        above: Sequence[Part],
+        low: Fraction | int,
+        high: Fraction | int,
+    ) -> None:
+        for a, b, open_one, one in below:
+            for c, d, open_two, two in above:
+                start, stop = max(a, c, low), min(b, d, high)
+                if open_one and open_two:
+                    if start < stop:
+                        self._sets.join(one, two)
+                elif start <= stop:
+                    if open_one == open_two:
+                        self._sets.join(one, two)
+                    else:
+                        self._pairs.add((one, two) if open_one else (two, one))
+
+    def _parts(self, item: Item, axis: int, side: int, ends: tuple[int, int]) -> Sequence[Part]:
+        if item.frame < 0:
+            return ((*ends, item.free, item.node),)
+        return [
+            (a, b, is_open, (self._first_part if is_open else self._first_tube)[item.frame] + n)
+            for a, b, is_open, n in self._frames[item.frame].side(axis, side)
+        ]
+
+    def _grow(self, items: Sequence[Item], height: int) -> None:
+        """What begins or ends at a line: of areas what is below the line is taken off, or added."""
+        for item in items:
+            if item.frame < 0:
+                self._sets.areas[item.node] += (item.right - item.left) * height
+
+    def result(self, lines: tuple[int, ...]) -> CoverSweep:
+        """All of it, once the last strip is there."""
+        sets = self._sets
+        self._grow(self._row, self._steps)
+        component_of = tuple(map(sets.top, sets.parent))
+        areas: dict[int, Fraction] = defaultdict(Fraction)
+        cluster_areas: dict[int, Fraction] = defaultdict(Fraction)
+        for n, is_free in enumerate(sets.free):
+            (areas if is_free else cluster_areas)[component_of[n]] += sets.areas[n]
+        return CoverSweep(
+            self._steps,
+            lines,
+            tuple(self._rows),
+            self._frames,
+            component_of,
+            tuple(self._first_part),
+            {n: area for n, area in areas.items() if area > 0},
+            dict(cluster_areas),
+            frozenset((component_of[a], component_of[b]) for a, b in self._pairs),
+        )
 
 
 def _zones(changed: Sequence[Entry], row: Sequence[Item]) -> list[tuple[int, int]]:

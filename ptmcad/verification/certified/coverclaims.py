@@ -1,7 +1,7 @@
 """Checks of a certified map's form: cover, cells and regions, and what there must not be.
 
 Guarantee: exact; the components of the cover's complement are found by
-`ptmcad.verification.certified.sweep`.
+`ptmcad.verification.certified.coversweep`.
 """
 
 from __future__ import annotations
@@ -11,18 +11,17 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
-from flint import arb
-
 from ptmcad.answer.regionmap import Status
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Slice
-from ptmcad.text.balls import ball_of
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.counted import check_region, contradiction_in, numbers_in
-from ptmcad.verification.certified.sweep import CoverSweep, sweep
+from ptmcad.verification.certified.coversweep import CoverSweep, sweep
+from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import shorthands_of
 from ptmcad.verification.kinds import kind_of, numbers_for
+from ptmcad.verification.normalform.lattice import SliceLattice
 from ptmcad.verification.report import Violation
 
 MAX_STEPS = 2**40
@@ -56,32 +55,20 @@ class CertifiedClaims(Claims):
         return SLACK * sum(sides)
 
     @property
-    def _square(self) -> tuple[Fraction, Fraction]:
-        """The sides of a square of the lattice."""
-        one, two = ((axis.high - axis.low) / self.cover.steps for axis in self.result.slice.axes)
-        return one, two
+    def lattice(self) -> SliceLattice:
+        """That of the cover."""
+        return SliceLattice(self.result.slice, self.cover.steps)
+
+    @cached_property
+    def counting(self) -> ModelCounting:
+        """How the solutions of the map's model are counted."""
+        return ModelCounting(self.lattice)
 
     @cached_property
     def square(self) -> Fraction:
         """The area of a square of the lattice."""
-        width, height = self._square
+        width, height = self.lattice.square
         return width * height
-
-    def on_lattice(self, x: Fraction, y: Fraction) -> tuple[Fraction, Fraction]:
-        """A point of the plane in lattice steps."""
-        (one, two), (width, height) = self.result.slice.axes, self._square
-        return (x - one.low) / width, (y - two.low) / height
-
-    def off_lattice(self, u: Fraction, v: Fraction) -> tuple[Fraction, Fraction]:
-        """The inverse."""
-        (one, two), (width, height) = self.result.slice.axes, self._square
-        return one.low + u * width, two.low + v * height
-
-    def balls(self, u: tuple[Fraction, Fraction], v: tuple[Fraction, Fraction]) -> tuple[arb, arb]:
-        """Of both axes, over a rectangle in lattice steps."""
-        low, high = (self.off_lattice(*corner) for corner in zip(u, v, strict=True))
-        x, y = (ball_of(a).union(ball_of(b)) for a, b in zip(low, high, strict=True))
-        return x, y
 
     def cell_at(self, u: Fraction, v: Fraction) -> int | None:
         """The cell of a point in lattice steps; None where it is in none."""
@@ -121,7 +108,7 @@ class CertifiedClaims(Claims):
         """
         found: dict[int, int] = {}
         for n, cell in enumerate(self.result.cells):
-            u, v = self.on_lattice(*cell.sample)
+            u, v = self.lattice.on(*cell.sample)
             if not (0 < u < self.sweep.steps and 0 < v < self.sweep.steps):
                 raise Violation(f"the sample of cell {n} is not in the window")
             component = self.sweep.locate(u, v)
