@@ -188,18 +188,13 @@ def test_panels_that_are_halved_come_near_to_a_critical_value(name: str) -> None
 
 def test_a_root_is_found_in_a_window_of_any_size(monkeypatch: pytest.MonkeyPatch) -> None:
     """In few steps: the window is cut to what may hold roots at first."""
-    asked, true = [], sturm.changes_of
+    asked, true = [], sturm.roots_above
 
-    def changes_of(p: fmpz_poly) -> Callable[[fmpq], int]:
-        changes = true(p)
+    def counted(coefficients: tuple[int, ...], at: fmpq) -> int:
+        asked.append(at)
+        return true(coefficients, at)
 
-        def counted(at: fmpq) -> int:
-            asked.append(at)
-            return changes(at)
-
-        return counted
-
-    monkeypatch.setattr(sturm, "changes_of", changes_of)
+    monkeypatch.setattr(sturm, "roots_above", counted)
     far = fmpq(10) ** 300
     for p, expected in (
         (fmpz_poly([-1, 3]), [fmpq(1, 3)]),
@@ -210,7 +205,7 @@ def test_a_root_is_found_in_a_window_of_any_size(monkeypatch: pytest.MonkeyPatch
     ):
         for number, value in enumerate(expected):
             asked.clear()
-            sturm._changes_of.cache_clear()
+            sturm._counted_above.cache_clear()
             found = numbered_root(p, -far, far, number)
             assert found is not None
             assert abs(found - value) < arb(2) ** -40 * abs(arb(value)) + arb(2) ** -400
