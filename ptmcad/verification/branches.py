@@ -213,6 +213,7 @@ _NEWTON = 8
 """Steps to a point at which branches meet, from a place that is very near to it."""
 _SPREAD = 2**20
 """So many times as large as what is left out beside a critical value is a panel there at least."""
+_FEW_BITS = 40
 _NEAREST = 2**40
 """Part of a panel beside a critical value that is a rational number: so much is left out."""
 
@@ -332,11 +333,14 @@ def _from_point(
     divided = [_divided(row, k, j * n, j * multiplicity, sigma) for n, row in enumerate(rows)]
     there = (height - slope * near) / sigma**j
     root = _simple_root(arb_poly([row[0] for row in divided]), there.mid())
-    whole = arb(far).root(k).mid().fmpq()
+    with ctx.workprec(_FEW_BITS):
+        whole = arb(far).root(k).mid().fmpq()
     if root is None:
         return None
     try:
-        found = disk(divided, simple(whole, whole / _NEAREST), root, effort.degrees[0])
+        found = disk(
+            divided, whole, root, effort.degrees[0]
+        )
     except BallsTooWide:
         return None  # halved panels may do with what precision there is
     # the branch is that of the disk over the nearest place, and so over all others
@@ -381,9 +385,3 @@ def _divided(row: arb_poly, k: int, height: int, order: int, sigma: arb) -> arb_
 
 _ROUNDED_BITS = 20
 """By so many bits is a series to be better known than by the disk's size."""
-
-
-def simple(value: fmpq, error: fmpq) -> fmpq:
-    """A dyadic number near a value."""
-    scale = 1 << max(0, int(1 / error).bit_length())
-    return fmpq((value * scale).floor(), scale)
