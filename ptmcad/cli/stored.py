@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, blamed, shown
-from ptmcad.show.document.regionmap import FORMAT
+from ptmcad.show.document.mapdocument import FORMAT
 from ptmcad.show.style import PictureStyle
 from ptmcad.text.node import NEWER, is_newer
 from ptmcad.text.textfile import format_named, json_data, read_text

@@ -13,7 +13,7 @@ from ptmcad.cli.slices import SliceOptions, slice_options
 from ptmcad.errors import shown_path
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import portable_file
-from ptmcad.show.export import FORMATS
+from ptmcad.show.varietytext import FORMATS
 
 
 @click.command("variety")

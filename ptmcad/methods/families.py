@@ -99,14 +99,14 @@ def _family_boundary_surface(
 
 def _surface_to_obj(self: BoundarySurface) -> str:
     """The mesh as Wavefront OBJ, a group for each sheet."""
-    from ptmcad.show.export.mesh import obj_text
+    from ptmcad.show.mesh import obj_text
 
     return obj_text(self)
 
 
 def _surface_to_ply(self: BoundarySurface) -> str:
     """The mesh as Stanford PLY, with each face's sheet and the counts on both of its sides."""
-    from ptmcad.show.export.mesh import ply_text
+    from ptmcad.show.mesh import ply_text
 
     return ply_text(self)
 
@@ -131,7 +131,7 @@ def _family_repr_png(self: FamilyMap) -> bytes:
 
 def _changes_table(self: Changes) -> str:
     """A line for each change, for the terminal: its value, how it is known, and what changes."""
-    from ptmcad.show.changestable import changes_table
+    from ptmcad.show.familytable import changes_table
 
     return changes_table(self)
 
@@ -151,7 +151,7 @@ def _design_table(self: BestDesign) -> str:
 
 def _design_to_json(self: BestDesign) -> str:
     """The answer as JSON text, docs/design.schema.json; the same text for the same answer."""
-    from ptmcad.show.document.design import write_design
+    from ptmcad.show.document.designdocument import write_design
 
     return write_design(self)
 
@@ -164,7 +164,7 @@ def _design_from_json(_cls: type[BestDesign], text: str) -> BestDesign:
     ValueError
         When the text is not such an answer.
     """
-    from ptmcad.show.document.design import read_design
+    from ptmcad.show.document.designdocument import read_design
 
     return read_design(text)
 
@@ -198,7 +198,7 @@ def _sweep_getitem(self: Sweep, number: int) -> Member:
 
 def _sweep_table(self: Sweep) -> str:
     """One screen: what has become of the members, and some of them."""
-    from ptmcad.show.sweeps.table import table
+    from ptmcad.show.sweeptable import table
 
     return table(self, self.__iter__)
 
@@ -218,7 +218,7 @@ def _sweep_result(self: Sweep, number: int) -> RegionMap:
 
 def _sweep_to_csv(self: Sweep) -> str:
     """All members as CSV, in their order: the same text however the sweep was computed."""
-    from ptmcad.show.sweeps.table import csv_text
+    from ptmcad.show.sweeptable import csv_text
 
     return csv_text(self, self.__iter__)
 
@@ -232,7 +232,7 @@ def _sweep_to_dataframe(self: Sweep) -> DataFrame:
         When pandas is not installed.
     """
     from ptmcad.show.data import pandas_frame
-    from ptmcad.show.sweeps.table import columns, counts_in, frame_rows
+    from ptmcad.show.sweeptable import columns, counts_in, frame_rows
 
     names = [*columns(self, counts_in(self)), "seconds", "attempts"]
     return pandas_frame(

@@ -42,7 +42,7 @@ def _locate(self: RegionMap, point: Any = None, /, **at: Any) -> Location:
 
 def _map_to_json(self: RegionMap, timings: bool = True) -> str:
     """The map as JSON text; the same text for the same slice when ``timings`` is False."""
-    from ptmcad.show.document.regionmap import write
+    from ptmcad.show.document.mapdocument import write
 
     return write(self, timings)
 
@@ -55,7 +55,7 @@ def _map_from_json(_cls: type[RegionMap], text: str) -> RegionMap:
     ValueError
         When the text is not such a map; the message names the place.
     """
-    from ptmcad.show.document.regionmap import read
+    from ptmcad.show.document.mapdocument import read
 
     return read(text)
 

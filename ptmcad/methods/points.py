@@ -30,14 +30,14 @@ def _variety_repr_html(self: SliceVariety) -> str:
 
 
 def _variety_text(self: SliceVariety, format: str = "text") -> str:
-    """The variety in one of the formats of `ptmcad.show.export.FORMATS`.
+    """The variety in one of the formats of `ptmcad.show.varietytext.FORMATS`.
 
     Raises
     ------
     ConfigError
         For an unknown format.
     """
-    from ptmcad.show.export import variety_text
+    from ptmcad.show.varietytext import variety_text
 
     return variety_text(self, format)
 
@@ -51,7 +51,7 @@ def _poses_table(self: Poses, digits: int | None = None) -> str:
 
 def _poses_to_json(self: Poses) -> str:
     """The poses as JSON text (docs/poses.schema.json)."""
-    from ptmcad.show.document.poses import write_poses
+    from ptmcad.show.document.posedocument import write_poses
 
     return write_poses(self)
 
@@ -64,7 +64,7 @@ def _poses_from_json(_cls: type[Poses], text: str) -> Poses:
     ValueError
         When the text is not such a document; the message names the place.
     """
-    from ptmcad.show.document.poses import read_poses
+    from ptmcad.show.document.posedocument import read_poses
 
     return read_poses(text)
 

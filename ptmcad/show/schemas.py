@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from ptmcad.show.document import design, poses, regionmap
-from ptmcad.show.export.document import FORMAT as VARIETY
-from ptmcad.show.export.document import variety_codec
+from ptmcad.show.document.varietydocument import FORMAT as VARIETY
+from ptmcad.show.document.varietydocument import variety_codec
 from ptmcad.show.ranges import document as ranges
 from ptmcad.text.codec import Schema, document_schema
 

@@ -198,7 +198,7 @@ def _values_data(values: Values) -> list[str]:
 
 def _slice_data(slice: Slice) -> Any:
     """All of a slice as data that JSON writes."""
-    from ptmcad.show.document.slice import SLICE
+    from ptmcad.show.document.slicedocument import SLICE
 
     return SLICE.write(slice)
 

@@ -18,7 +18,7 @@ from ptmcad.sweeping.pool import Pool
 from ptmcad.sweeping.run import processors
 
 if TYPE_CHECKING:
-    from ptmcad.show.sweeps.sketch import Thumbnail
+    from ptmcad.show.report.atlas import Thumbnail
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class Drawing:
 
     def answer(self, number: int) -> Thumbnail:
         """The drawing of a member."""
-        from ptmcad.show.sweeps.sketch import sketch
+        from ptmcad.show.report.atlas import sketch
 
         return sketch(read_sweep(self.folder).result(number))
 

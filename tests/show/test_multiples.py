@@ -15,9 +15,9 @@ import ptmcad
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.multiples import multiples_figure
+from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.panels import multiples_figure
 from ptmcad.show.render.printing import content, save
-from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import MAX_SIDE, camera_of, halved
 from ptmcad.show.render.solid import MAX_FLOORS, solid_figure
 from ptmcad.show.style import DEFAULT

@@ -12,7 +12,7 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.poses import Poses
-from ptmcad.show.document.poses import read_poses
+from ptmcad.show.document.posedocument import read_poses
 
 MECHANISMS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
 AT = {

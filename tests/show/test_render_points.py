@@ -19,7 +19,7 @@ from ptmcad.cli import run
 from ptmcad.cli.points import measured, places, poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.around import draw_around
-from ptmcad.show.render.clearance import Stroke, crosses
+from ptmcad.show.render.labels import Stroke, crosses
 from ptmcad.show.render.leaders import Berth, meet, routed
 from ptmcad.show.render.overlay import Agreement
 from ptmcad.show.render.printing import settings

@@ -28,9 +28,9 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count
 from ptmcad.show.render import draw
-from ptmcad.show.render.clearance import overlap
 from ptmcad.show.render.colours import GREYS, Fill, filler
 from ptmcad.show.render.fitting import rewrapped
+from ptmcad.show.render.labels import overlap
 from ptmcad.show.render.layout import (
     BOTTOM,
     INSET_ABOVE,

@@ -27,9 +27,8 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields.equations import state_at
 from ptmcad.ask.fields.field import exact_at
 from ptmcad.show.report import page
-from ptmcad.show.report.chart import SLACK
-from ptmcad.show.report.frame import SIDE
-from ptmcad.show.report.tape import tape
+from ptmcad.show.report.mapsvg import SIDE, SLACK
+from ptmcad.show.report.scripttape import tape
 
 pytestmark = pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
 

@@ -10,20 +10,18 @@ _FUNCTIONS = {
     "comparing": ("comparison_figure", "difference_words", "traced"),
     "design": ("figure_of_design",),
     "field": ("description", "field_figure"),
-    "film": ("gif_bytes", "save_film", "save_pictures"),
-    "fonts": ("check_families",),
+    "film": ("SweepFilm", "gif_bytes", "save_film", "save_pictures"),
     "landscape": ("draw_landscape",),
     "mechanism": ("draw_mechanism",),
-    "multiples": ("multiples_figure",),
+    "panels": ("multiples_figure",),
     "paths": ("draw_paths",),
     "pixelmap": ("field_png", "grid_png"),
     "plotting": ("draw_with_poses", "plot"),
     "poses": ("draw_poses",),
-    "printing": ("content", "save"),
+    "printing": ("check_families", "content", "save"),
     "ranges": ("draw_range", "draw_widths"),
     "regionmap": ("draw",),
     "solid": ("solid_figure",),
-    "sweepfilm": ("SweepFilm",),
 }
 """What other rooms draw with, by the modules that have it: the report needs outlines and colours
 only.

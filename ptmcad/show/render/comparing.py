@@ -16,17 +16,15 @@ from ptmcad.answer.comparison import Bounds, Change, Comparison
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, symbol
-from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
+from ptmcad.show.render.colours import GREYS, HATCHES, Fill, Paint, paint_of, undetermined_fill
 from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang, rewrapped
-from ptmcad.show.render.legend import Entry, Type, Wording, entries, hidden_words
-from ptmcad.show.render.painting import Paint, paint_of
+from ptmcad.show.render.inches import few, wrapped
+from ptmcad.show.render.legend import Entry, Type, entries, hidden_entries
+from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.panels import LINE, Panel, PanelGrid
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import whole_title
-from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.slivers import seen_thin_walls
-from ptmcad.show.render.textwidth import few, wrapped
-from ptmcad.show.render.thinmarks import Marks, marks_of
+from ptmcad.show.render.slivers import Arrow, arrows_of, seen_thin_walls
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, count_text
@@ -147,18 +145,16 @@ def _panels(
 ) -> list[Panel]:
     """The two maps and the difference, with text as wide as they are."""
     type, side = Type.of(style), sides[0]
-    found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], Marks]] = []
+    found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], list[Arrow]]] = []
     pair = (comparison.first, comparison.second)
     for letter, own, result, seen in zip(
         LETTERS, own_words(*pair), pair, (first, shapes(pair[1])), strict=True
     ):
         paint = paint_of(style, result)
-        marks = marks_of(seen, sides, dpi, type.detail)
+        marks, hidden = arrows_of(seen, sides, dpi, type.detail)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
         paint = replace(paint, thin_walls=thin)
-        told = list(
-            entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined))
-        )
+        told = [*entries(result, thin, paint), *hidden_entries(hidden)]
         title = whole_title(result) if style.title is None else own
         found.append((seen, paint, f"{letter}: {title}" if title else letter, told, {}, marks))
     fills = _fills(comparison, style)
@@ -178,10 +174,10 @@ def _panels(
     names = [""] * len(decomposition.regions)
     for change in comparison.changes:
         names[change.region] = change_text(comparison, change)
-    marks = marks_of(whole, sides, dpi, type.detail, names)
+    marks, hidden = arrows_of(whole, sides, dpi, type.detail, names)
     changes = [
         *_differences(comparison, style),
-        *([Entry((hidden_words(marks.hidden),))] if marks.hidden else []),
+        *hidden_entries(hidden),
     ]
     found.append((whole, bare, f"Difference, {' → '.join(LETTERS)}", changes, fills, marks))
     untold = style.legend is LegendPlace.NONE

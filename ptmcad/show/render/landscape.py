@@ -37,10 +37,11 @@ from ptmcad.model import Model
 from ptmcad.model.work import moments_at
 from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import scale_of, symbol
-from ptmcad.show.render.clearance import Box, Label, Position, Stroke, place
+from ptmcad.show.render.colours import INK
 from ptmcad.show.render.energy import Energy, drawn, energy_of, is_cut
 from ptmcad.show.render.inches import axes_at
-from ptmcad.show.render.legend import INK, Entry, draw_legend, point_mark
+from ptmcad.show.render.labels import Box, Label, Position, Stroke, place
+from ptmcad.show.render.legend import Entry, draw_legend, point_mark
 from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, kind, titled, value_text
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.view import Floats

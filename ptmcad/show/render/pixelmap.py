@@ -20,9 +20,8 @@ from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.field import Field
 from ptmcad.show.render.axes import symbol
-from ptmcad.show.render.colours import UNDETERMINED, fill_of_counts
+from ptmcad.show.render.colours import INK, UNDETERMINED, fill_of_counts
 from ptmcad.show.render.field import COLOURS, bar_text, description, fill_empty, show_pixels
-from ptmcad.show.render.legend import INK
 from ptmcad.show.render.printing import printed, settings
 
 SIZE = 5.2, 4.2

@@ -28,9 +28,10 @@ from ptmcad.model.work import PointForce, loads_at
 from ptmcad.question.slice import merged
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols
-from ptmcad.show.render.clearance import Position
+from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import axes_at, stroke, write, write_lines
-from ptmcad.show.render.legend import INK, Entry, Type, draw_legend
+from ptmcad.show.render.labels import Position
+from ptmcad.show.render.legend import Entry, Type, draw_legend
 from ptmcad.show.render.mechanism import (
     PALE,
     STRONG,

@@ -15,9 +15,8 @@ from ptmcad.answer.intervals import End
 from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
-from ptmcad.show.render.inches import Box, axes_at, write_lines
+from ptmcad.show.render.inches import Box, axes_at, wrapped, write_lines
 from ptmcad.show.render.legend import Entry, Type, draw_legend
-from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.style import Size
 from ptmcad.show.units import unit, with_unit
 from ptmcad.text.enclosure import Enclosure

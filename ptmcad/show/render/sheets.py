@@ -20,9 +20,8 @@ from ptmcad.answer.counts import key_text
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import Region
 from ptmcad.question.counts import Count, Shades
-from ptmcad.show.render.colours import Fill
-from ptmcad.show.render.legend import INK, THIN, Entry
-from ptmcad.show.render.painting import Paint
+from ptmcad.show.render.colours import INK, THIN, Fill, Paint
+from ptmcad.show.render.legend import Entry
 from ptmcad.show.render.view import Floats
 
 Pair = tuple[tuple[int, ...], tuple[int, ...]]
