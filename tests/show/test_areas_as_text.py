@@ -17,8 +17,8 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.notebook import map_html
 from ptmcad.show.render.comparing import comparison_figure, difference_words
 from ptmcad.show.render.legend import Entry, entries
+from ptmcad.show.render.mappicture import description
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import description
 from ptmcad.show.report import page
 from ptmcad.show.report.sections import regions
 from ptmcad.show.style import DEFAULT

@@ -40,8 +40,8 @@ from ptmcad.show.render import draw
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of, fill_of_index
 from ptmcad.show.render.labels import Label, overlap, place
+from ptmcad.show.render.mappicture import MapDrawing
 from ptmcad.show.render.outline import outline
-from ptmcad.show.render.regionmap import MapDrawing
 from ptmcad.show.render.slivers import thin_regions, zooms
 from ptmcad.show.render.view import View
 from ptmcad.show.units import unit

@@ -30,9 +30,9 @@ from ptmcad.show.render import coveroutline, draw, polylines
 from ptmcad.show.render.colours import CORE, ONE_MAXIMUM, RIM, TWO_MAXIMA, UNDETERMINED, fill_of
 from ptmcad.show.render.coveroutline import TOLERANCE
 from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
+from ptmcad.show.render.mappicture import MapDrawing, _zoomed
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.polylines import simplified_polygons
-from ptmcad.show.render.regionmap import MapDrawing, _zoomed
 from ptmcad.show.render.view import Floats, View
 from ptmcad.show.report import page
 

@@ -41,8 +41,8 @@ from ptmcad.show.render.layout import (
     flowing,
 )
 from ptmcad.show.render.legend import Entry, Type, entries
+from ptmcad.show.render.mappicture import MapDrawing, left_out
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import MapDrawing, left_out
 from ptmcad.show.render.slivers import told_apart
 from ptmcad.show.style import MIN_FONT, PRESETS, LegendPlace, PictureStyle, styled
 from ptmcad.show.table import area_text

@@ -8,8 +8,8 @@ from typing import Any
 _FUNCTIONS = {
     "branches": ("draw_branches", "draw_paths_and_branches"),
     "comparing": ("comparison_figure", "difference_words", "traced"),
-    "design": ("figure_of_design",),
-    "field": ("description", "field_figure"),
+    "designpicture": ("figure_of_design",),
+    "fieldpicture": ("description", "field_figure"),
     "film": ("SweepFilm", "gif_bytes", "save_film", "save_pictures"),
     "landscape": ("draw_landscape",),
     "mechanism": ("draw_mechanism",),
@@ -17,10 +17,10 @@ _FUNCTIONS = {
     "paths": ("draw_paths",),
     "pixelmap": ("field_png", "grid_png"),
     "plotting": ("draw_with_poses", "plot"),
-    "poses": ("draw_poses",),
+    "posepicture": ("draw_poses",),
     "printing": ("check_families", "content", "save"),
     "ranges": ("draw_range", "draw_widths"),
-    "regionmap": ("draw",),
+    "mappicture": ("draw",),
     "solid": ("solid_figure",),
 }
 """What other rooms draw with, by the modules that have it: the report needs outlines and colours

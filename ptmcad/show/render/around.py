@@ -24,9 +24,9 @@ from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.labels import Box, Position
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.leaders import Course, routed
+from ptmcad.show.render.mappicture import MapDrawing, left_out
 from ptmcad.show.render.mechanism import STRONG, draw_sketch
-from ptmcad.show.render.poses import pose_axes
-from ptmcad.show.render.regionmap import MapDrawing, left_out
+from ptmcad.show.render.posepicture import pose_axes
 from ptmcad.show.render.sketch import Scene, arrow_lengths
 from ptmcad.show.style import MAX_SIDE, PictureStyle, Size, styled
 

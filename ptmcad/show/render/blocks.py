@@ -19,7 +19,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.render.inches import wrapped
 from ptmcad.show.render.labels import Position
 from ptmcad.show.render.leaders import Berth, Order
-from ptmcad.show.render.poses import assigned
+from ptmcad.show.render.posepicture import assigned
 from ptmcad.show.render.sketch import PanelFrame, frame_of
 from ptmcad.show.render.view import Point
 from ptmcad.show.style import PAGE_HEIGHT, LegendPlace, PictureStyle, Size

@@ -20,10 +20,10 @@ from ptmcad.show.render.colours import GREYS, HATCHES, Fill, Paint, paint_of, un
 from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang, rewrapped
 from ptmcad.show.render.inches import few, wrapped
 from ptmcad.show.render.legend import Entry, Type, entries, hidden_entries
+from ptmcad.show.render.mappicture import whole_title
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.panels import LINE, Panel, PanelGrid
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.slivers import Arrow, arrows_of, seen_thin_walls
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size

@@ -6,7 +6,7 @@ Where moments work, the energy less their work is drawn, in which the equilibria
 angle it is not periodic: it is cut at 180 degrees, and a title says so.
 
 Guarantee: every equilibrium is marked, at both edges where an angle is 180 degrees, with its number
-in the picture of `ptmcad.show.render.poses.draw_poses`. Contours pass through saddles and
+in the picture of `ptmcad.show.render.posepicture.draw_poses`. Contours pass through saddles and
 degenerate equilibria, also where the energy is large and its differences are small, because its
 constant part is taken out exactly before anything is rounded.
 
@@ -42,7 +42,15 @@ from ptmcad.show.render.energy import Energy, drawn, energy_of, is_cut
 from ptmcad.show.render.inches import axes_at
 from ptmcad.show.render.labels import Box, Label, Position, Stroke, place
 from ptmcad.show.render.legend import Entry, draw_legend, point_mark
-from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, kind, titled, value_text
+from ptmcad.show.render.posepicture import (
+    TITLE_LINE,
+    describe,
+    empty,
+    heading,
+    kind,
+    titled,
+    value_text,
+)
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.view import Floats
 from ptmcad.show.units import energy_unit, unit_of_unknown, with_unit

@@ -2,7 +2,7 @@
 they are of.
 
 Guarantee: every pixel has the colour of its own value. Lines are between pixels of different
-regions; the map itself (`ptmcad.show.render.regionmap`, `ptmcad.show.render.field`) has the exact
+regions; the map itself (`ptmcad.show.render.mappicture`, `ptmcad.show.render.fieldpicture`) has the exact
 curves.
 """
 
@@ -21,7 +21,7 @@ from ptmcad.answer.counts import Counts
 from ptmcad.answer.field import Field
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import INK, UNDETERMINED, fill_of_counts
-from ptmcad.show.render.field import COLOURS, bar_text, description, fill_empty, show_pixels
+from ptmcad.show.render.fieldpicture import COLOURS, bar_text, description, fill_empty, show_pixels
 from ptmcad.show.render.printing import printed, settings
 
 SIZE = 5.2, 4.2

@@ -18,12 +18,12 @@ from ptmcad.show.render.axes import axis_name
 from ptmcad.show.render.blocks import PointPoses
 from ptmcad.show.render.colours import INK, fills_by_count, paint_of
 from ptmcad.show.render.legend import head_of
+from ptmcad.show.render.mappicture import MapDrawing, description, whole_title
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.overlay import Overlay
 from ptmcad.show.render.painting import paint_map
-from ptmcad.show.render.poses import describe
+from ptmcad.show.render.posepicture import describe
 from ptmcad.show.render.printing import save, settings
-from ptmcad.show.render.regionmap import MapDrawing, description, whole_title
 from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, styled
 
 

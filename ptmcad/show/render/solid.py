@@ -25,7 +25,7 @@ from ptmcad.show.render.legend import Entry, Type
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.panels import HeadAndFoot, family_entries, in_words, title_of, value_text
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
+from ptmcad.show.render.surfacepicture import BOX, add_sheets, sheet_colours, sheet_entries
 from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.units import unit_of_free, with_unit
 
