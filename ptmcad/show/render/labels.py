@@ -109,7 +109,9 @@ def _best(
     distances: Sequence[float],
 ) -> Placed:
     least, best = (len(strokes) + len(boxes) + 1, 0, 0.0), Placed(label, label.at)
-    for distance, center in _candidates(label, distances):
+    for distance, wanted in _candidates(label, distances):
+        # a point at the bounds has room beside itself, along them
+        center = _within(wanted, label.half, bounds) if label.cost else wanted
         box = around(center, label.half)
         if box[0] < bounds[0] or box[1] < bounds[1] or box[2] > bounds[2] or box[3] > bounds[3]:
             continue
@@ -150,6 +152,14 @@ def _beside(label: Label, angle: float, distance: float) -> Position:
         width / abs(dx) if abs(dx) > 1e-9 else 1e9, height / abs(dy) if abs(dy) > 1e-9 else 1e9
     )
     return label.at[0] + dx * (reach + distance), label.at[1] + dy * (reach + distance)
+
+
+def _within(center: Position, half: Position, bounds: Box) -> Position:
+    """The nearest centre of a label that does not leave the bounds, if it is not larger than they
+    are.
+    """
+    x, y = (min(max(center[k], bounds[k] + half[k]), bounds[k + 2] - half[k]) for k in (0, 1))
+    return x, y
 
 
 def _edge(at: Position, box: Box) -> Position:
