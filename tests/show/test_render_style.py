@@ -468,7 +468,7 @@ def test_a_palette_with_one_colour_twice_is_refused(palette: str) -> None:
 @pytest.mark.parametrize("number", range(13))
 def test_however_much_is_zoomed_a_picture_is_at_most_so_wide(number: int) -> None:
     legend = [Entry(("count", "area"), Fill("#ffffff"))] * 8
-    made = flowing(["title"], legend, Type(), number, 0.0, 0.0)
+    made = flowing(["title"], legend, Type(), number)
     assert len(made.insets) == number and made.size[0] <= WIDEST < 11.1
     boxes = [
         (x - INSET_LEFT, y - INSET_BELOW, x + w, y + h + INSET_ABOVE) for x, y, w, h in made.insets

@@ -32,11 +32,10 @@ from ptmcad.errors import ConfigError
 from ptmcad.model import known_of
 from ptmcad.question.config import load, slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Point
-from ptmcad.show.render.axes import scale_of
+from ptmcad.show.render.axes import scale_of, ticks
 from ptmcad.show.report import page
 from ptmcad.show.report.equilibria import at_sample, decimal_text, degrees, potential_at
 from ptmcad.show.report.error_curve import read_error_curve
-from ptmcad.show.report.mapsvg import ticks
 from ptmcad.show.report.reportpage import harmless, packed
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.report.sections import question

@@ -36,7 +36,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.model import Model
 from ptmcad.model.work import moments_at
 from ptmcad.show.drawable import no_landscape
-from ptmcad.show.render.axes import scale_of, symbol
+from ptmcad.show.render.axes import scale_of, symbol, ticks
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.energy import Energy, drawn, energy_of, is_cut
 from ptmcad.show.render.inches import axes_at
@@ -364,22 +364,14 @@ def _kind(pose: Pose) -> str:
 
 def _energy_ticks(axes: Any, energy: Energy, low: float, high: float, unit: str) -> None:
     """Energies along a vertical axis between two levels."""
-    least, largest = (energy.offset + energy.unit * Fraction(v) for v in (low, high))
-    scale = scale_of(least, largest)
-    power = Fraction(10) ** scale.exponent
-
-    def position(shown: float) -> float:
-        return energy.scaled(Fraction(shown) * power + scale.offset)
-
-    from matplotlib.ticker import MaxNLocator
-
-    ticks = [
-        t for t in MaxNLocator(nbins=7, steps=[1, 2, 2.5, 5, 10]).tick_values(scale.low, scale.high)
-        if scale.low <= t <= scale.high
-    ]  # fmt: skip
-    axes.yaxis.set_ticks(
-        [position(t) for t in ticks], [f"{t:.6g}".replace("-", "−") for t in ticks]
+    ends = (
+        energy.offset + energy.unit * Fraction(low),
+        energy.offset + energy.unit * Fraction(high),
     )
+    scale = scale_of(*ends)
+    found = ticks(ends, scale, 7)
+    at = [low + float(share) * (high - low) for _, share in found]
+    axes.yaxis.set_ticks(at, [text for text, _ in found])
     axes.minorticks_off()
     axes.tick_params(labelsize=9, direction="out", length=3.5)
     axes.set_ylabel(with_unit(scale.name("V" if energy.slopes else "U"), unit), fontsize=10)

@@ -23,15 +23,15 @@ from ptmcad.answer.regionmap import Cell, Region
 from ptmcad.answer.words import stable_of
 from ptmcad.model import Model
 from ptmcad.question.counts import Count
-from ptmcad.show.render.axes import Scale, fixed, scale_of, symbol
+from ptmcad.show.render.axes import scale_of, symbol, ticks
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.labels import Position
 from ptmcad.show.render.polylines import GRID, path_data
 from ptmcad.show.render.slivers import innermost, thin_regions, zooms
-from ptmcad.show.render.view import Floats, Interval, Shapes, from_above
+from ptmcad.show.render.view import Floats, Shapes, from_above
 from ptmcad.show.table import count_text
 from ptmcad.show.units import unit, with_unit
-from ptmcad.text.numerals import magnitude, shortest_text
+from ptmcad.text.numerals import shortest_text
 
 SIDE, RIM = 600, 24
 """In the picture's own units: the window's side, the rim."""
@@ -43,7 +43,6 @@ thin regions.
 """
 _WIDTHS = {".": 0.32, "−": 0.84}
 """Of characters against the type's size; digits are 0.64 wide."""
-_MAX_TICKS = 6
 _MAX_NAME = 24
 
 Mark = tuple[str, Position]
@@ -385,21 +384,3 @@ def frame(seen: Shapes, room: Margins) -> Iterator[str]:
         else:
             place = f"translate({room.name - room.left:g} {SIDE / 2}) rotate(-90)"
             yield f'<text class="name" transform="{place}">{text}</text>'
-
-
-def ticks(interval: Interval, scale: Scale) -> list[tuple[str, Fraction]]:
-    """At most `_MAX_TICKS` + 1 round numbers of a scale, as text, and where they are between the
-    ends (0 to 1).
-    """
-    low, high = interval
-    power = Fraction(10) ** scale.exponent
-    shown = ((low - scale.offset) / power, (high - scale.offset) / power)
-    step = Fraction(10) ** magnitude((shown[1] - shown[0]) / _MAX_TICKS)
-    factor = next(
-        f for f in (1, 2, Fraction(5, 2), 5, 10) if (shown[1] - shown[0]) / (step * f) <= _MAX_TICKS
-    )
-    step *= factor
-    first, last = -(-shown[0] // step), shown[1] // step
-    values = [k * step for k in range(int(first), int(last) + 1)]
-    decimals = max((len(shortest_text(v).partition(".")[2]) for v in values), default=0)
-    return [(fixed(v, decimals), (v - shown[0]) / (shown[1] - shown[0])) for v in values]
