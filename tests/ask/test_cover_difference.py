@@ -203,7 +203,7 @@ def test_the_picture_shows_the_changes_where_they_are() -> None:
     )
     for change in found.changes:
         (patch,) = [
-            a for a in made.axes[2].get_children() if a.get_gid() == f"region-{change.region}"
+            a for a in made.axes[2].get_children() if a.get_gid() == f"2-region-{change.region}"
         ]
         path = patch.get_path()
         inside = np.clip(path.vertices, 0, 1)  # outlines on the frame are drawn beyond it
