@@ -37,7 +37,7 @@ ONE_MAXIMUM = ("#f7f6f2", "#c7e4f6", "#eda43f", "#ca8d7a", "#45917d", "#8a5e8b",
 TWO_MAXIMA = ("#e8eacd", "#bf78a3", "#38836d", "#5d5db1", "#874120", "#4b3e62", "#253836")
 """Faces for the same with two maxima; L* = 92, 59, 50, 43, 36, 29, 22."""
 ODD_TOTALS = (*TWO_MAXIMA[:2], "#0b85be", "#6f720e", "#1252aa", "#22490b", "#4b0f2b")
-"""Faces for 1, 3, 5, ... solutions in all, told from those for 2, 4, 6, ...; from 5 on L* = 52, 46,
+"""Faces for 1, 3, 5, ... solutions in all, distinct from those for 2, 4, 6, ...; from 5 on L* = 52, 46,
 36, 27, 16.
 """
 HATCHES = ("////", "....", "xxxx", "oooo", "++++", "****", "\\\\\\\\", "----", "||||")

@@ -1,6 +1,6 @@
 """Two maps and their difference side by side, each with its own legend below.
 
-Guarantee: every area shown is certified; changes of count are told apart by colour or hatch.
+Guarantee: every area shown is certified; changes of count are distinguished by colour or hatch.
 """
 
 from __future__ import annotations
@@ -154,9 +154,9 @@ def _panels(
         marks, hidden = arrows_of(seen, sides, dpi, type.detail)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
         paint = replace(paint, thin_walls=thin)
-        told = [*entries(result, thin, paint), *hidden_entries(hidden)]
+        legend = [*entries(result, thin, paint), *hidden_entries(hidden)]
         title = whole_title(result) if style.title is None else own
-        found.append((seen, paint, f"{letter}: {title}" if title else letter, told, {}, marks))
+        found.append((seen, paint, f"{letter}: {title}" if title else letter, legend, {}, marks))
     fills = _fills(comparison, style)
     decomposition = comparison.decomposition
     of_cells = {
@@ -180,13 +180,13 @@ def _panels(
         *hidden_entries(hidden),
     ]
     found.append((whole, bare, f"Difference, {' → '.join(LETTERS)}", changes, fills, marks))
-    untold = style.legend is LegendPlace.NONE
+    without = style.legend is LegendPlace.NONE
     return [
         Panel(
             seen, paint, _head(title, side, type),
-            [] if untold else [rewrapped(entry, side, type) for entry in told], outlined, marks,
+            [] if without else [rewrapped(entry, side, type) for entry in legend], outlined, marks,
         )
-        for seen, paint, title, told, outlined, marks in found
+        for seen, paint, title, legend, outlined, marks in found
     ]  # fmt: skip
 
 
@@ -240,18 +240,20 @@ def _differences(comparison: Comparison, style: PictureStyle) -> list[Entry]:
     fills, open_part = _fills(comparison, style), _undetermined(comparison)
     if comparison.changes:
         area = _area(comparison, comparison.area)
-        told = [Entry((f"Counts differ on {_share(comparison)}", f"area {area}"), strong=True)]
+        legend = [Entry((f"Counts differ on {_share(comparison)}", f"area {area}"), strong=True)]
     else:
         where = "where both are determined" if open_part else "everywhere"
-        told = [Entry(("The counts are the same", where), strong=True)]
+        legend = [Entry(("The counts are the same", where), strong=True)]
     for change in comparison.changes:
         area = _area(comparison, change.area)
-        told.append(Entry((change_text(comparison, change), f"area {area}"), fills[change.region]))
+        legend.append(
+            Entry((change_text(comparison, change), f"area {area}"), fills[change.region])
+        )
     if open_part:
-        told.append(
+        legend.append(
             Entry(
                 (f"undetermined {open_part}", "by one map or both"),
                 undetermined_fill(style.palette),
             )
         )
-    return told
+    return legend

@@ -217,20 +217,20 @@ def _legend(
     result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: PictureStyle
 ) -> list[Entry]:
     """What lines, white and grey mean, as far as they are there."""
-    told = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
+    legend = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
     if any(jump.any() for jump in field.jumps or ()):
-        told.append(Entry((f"the branch of {pose_words(result, field)} changes",), _edge_mark))
+        legend.append(Entry((f"the branch of {pose_words(result, field)} changes",), _edge_mark))
     unknown = field.region == NONE
     if (np.isnan(field.values) & ~unknown).any() and field.known.size:
         what = "barrier" if field.quantity == "barrier" else pose_words(result, field)
-        told.append(
+        legend.append(
             Entry((f"no {what}" if not field.missed + field.beyond else "no value",), Fill(_EMPTY))
         )
     if unknown.any():
         # a pixel of an exact map is open where its centre is on a curve
         words = "on a curve" if result.cover is None else "undetermined"
-        told.append(Entry((words,), undetermined_fill(style.palette)))
-    return told
+        legend.append(Entry((words,), undetermined_fill(style.palette)))
+    return legend
 
 
 _edge_mark = line_mark(

@@ -226,8 +226,8 @@ class MapDrawing(NamedTuple):
                     raise
                 # a small picture rather has no word on the thin regions without a label, which it
                 # shows all the same
-                untold = replace(parts, legend=self.legend(seen, told=False))
-                layout = fitted(untold, style, style.size or _natural(style, untold))
+                shorter = replace(parts, legend=self.legend(seen, with_hidden=False))
+                layout = fitted(shorter, style, style.size or _natural(style, shorter))
             if seen.views and not layout.insets:
                 # what no inset shows is named by a label that an arrow leads to it, if that has
                 # room
@@ -242,15 +242,17 @@ class MapDrawing(NamedTuple):
                 return seen, layout
             seen = again
 
-    def legend(self, seen: _Seen, told: bool = True) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
-        """The legend with areas and without; ``told`` says whether it tells how many thin regions
+    def legend(
+        self, seen: _Seen, with_hidden: bool = True
+    ) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
+        """The legend with areas and without; ``with_hidden`` says whether it states how many thin regions
         have no label.
         """
         if self.style.legend is LegendPlace.NONE:
             return (), ()
         paint = paint_of(self.style, self.result)
         dots = [Entry(("sample point of a cell",), "dot")] if self.samples else []
-        rest = (*dots, *hidden_entries(seen.hidden * told), *overlay_entries(self.overlay))
+        rest = (*dots, *hidden_entries(seen.hidden * with_hidden), *overlay_entries(self.overlay))
         full, short = (
             (*entries(self.result, seen.thin_lines, paint, areas), *rest) for areas in (True, False)
         )

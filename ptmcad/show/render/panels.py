@@ -141,13 +141,13 @@ class HeadAndFoot:
 
     @classmethod
     def of(
-        cls, title: str, told: Sequence[Entry], wide: float, style: PictureStyle, type: Type
+        cls, title: str, legend: Sequence[Entry], wide: float, style: PictureStyle, type: Type
     ) -> HeadAndFoot:
         """On a page of a width in inches, as far as the style wants them."""
         inner = wide - 1.2 * type.head / 72
         titles = wrapped(title if style.title is None else style.title, inner, type.head, True)
         none = style.legend is LegendPlace.NONE
-        return cls(titles, [] if none else in_rows(told, inner, type), type)
+        return cls(titles, [] if none else in_rows(legend, inner, type), type)
 
     @property
     def head(self) -> float:
@@ -200,15 +200,17 @@ def family_entries(
     hidden : number of regions that are not seen and have no label.
     """
     head = head_of(family.members[0].slice)
-    told = [Entry(head, strong=True, heads=len(head))]
-    told += [Entry((text,), fill) for text, fill in fills_by_count(paint, *family.members).items()]
+    legend = [Entry(head, strong=True, heads=len(head))]
+    legend += [
+        Entry((text,), fill) for text, fill in fills_by_count(paint, *family.members).items()
+    ]
     if any(result.cover is not None for result in family.members):
-        told.append(Entry(("undetermined",), paint.undetermined))
+        legend.append(Entry(("undetermined",), paint.undetermined))
     if any(result.cover is None and len(result.regions) > 1 for result in family.members):
-        told.append(Entry(("the count changes",), STRONG))
+        legend.append(Entry(("the count changes",), STRONG))
     if thin:
-        told.append(Entry((" ".join(thin_entry().lines),), THIN))
-    return told + hidden_entries(hidden)
+        legend.append(Entry((" ".join(thin_entry().lines),), THIN))
+    return legend + hidden_entries(hidden)
 
 
 def value_text(family: FamilyMap, value: Fraction) -> str:
@@ -246,8 +248,8 @@ def _figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
     marks = [arrows_of(shape, (side, side), dpi, small) for shape in seen]
     thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
     paint = replace(paint_of(style, *family.members), thin_walls=thin)
-    told = family_entries(family, paint, thin, sum(hidden for _, hidden in marks))
-    around = HeadAndFoot.of(title_of(family), told, wide, style, type)
+    legend = family_entries(family, paint, thin, sum(hidden for _, hidden in marks))
+    around = HeadAndFoot.of(title_of(family), legend, wide, style, type)
     rest = around.head + rows * head + 0.5 * em * (rows - 1) + below + around.foot
     tall = (style.size[1] - rest) / rows if style.size is not None else side
     if min(side, tall) < 0.5 * MIN_SIDE * em:

@@ -30,16 +30,18 @@ _LINE = 0.8
 
 
 def grid_png(grid: Grid, dpi: int) -> bytes:
-    """The numbers of stable equilibria, or of all where stability is not told, as the content of a
+    """The numbers of stable equilibria, or of all where stability is not known, as the content of a
     PNG.
     """
-    told = bool((grid.stable != NONE).any())
-    counts = grid.stable if told else grid.total
+    stability_known = bool((grid.stable != NONE).any())
+    counts = grid.stable if stability_known else grid.total
     known = sorted({int(count) for count in np.unique(counts)} - {NONE})
     colours = [
         UNDETERMINED.face,
         *(
-            fill_of_counts(Counts(0, count, None) if told else Counts(count, None, None)).face
+            fill_of_counts(
+                Counts(0, count, None) if stability_known else Counts(count, None, None)
+            ).face
             for count in known
         ),
     ]  # pixels show no hatch
@@ -54,7 +56,7 @@ def grid_png(grid: Grid, dpi: int) -> bytes:
             image, ax=axes, boundaries=[shown[0] - 0.5, *(k + 0.5 for k in shown)], ticks=shown
         )
         bar.ax.set_yticklabels([str(known[k - 1]) if k else "undetermined" for k in shown])
-        bar.set_label("stable" if told else "in all")
+        bar.set_label("stable" if stability_known else "in all")
         return printed(figure, "png", dpi, repr(grid), "")
 
 

@@ -127,8 +127,8 @@ def with_poses(
     overlay: Overlay = (),
 ) -> tuple[Figure, tuple[str, ...]]:
     """What `draw_with_poses` writes, and what had no room, in words."""
-    told = " ".join(f"At point {n}: {describe(poses)}" for n, (_, poses) in enumerate(points, 1))
+    words = " ".join(f"At point {n}: {describe(poses)}" for n, (_, poses) in enumerate(points, 1))
     with settings(style):
         figure, missing = draw_around(MapDrawing(result, style, dpi, overlay=overlay), points)
-    figure.set_label(f"{whole_title(result)}\n{description(result)} {told}")
+    figure.set_label(f"{whole_title(result)}\n{description(result)} {words}")
     return figure, missing

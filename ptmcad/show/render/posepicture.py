@@ -348,18 +348,14 @@ def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
         yield Entry(
             (f"fixed support{'s' * (len(pins) > 1)}, at {', '.join(pins)}",), symbol_mark("support")
         )
-    if sliding := at[Support.SLIDER_X]:
-        on = (
-            "slider on the base"
-            if pins and len(sliding) == 1
-            else "slider" + "s" * (len(sliding) > 1)
-        )
-        yield Entry((f"{on}, at {', '.join(sliding)}",), symbol_mark("slider"))
-    if rising := at[Support.SLIDER_Y]:
-        yield Entry(
-            (f"vertical slider{'s' * (len(rising) > 1)}, at {', '.join(rising)}",),
-            symbol_mark("slider"),
-        )
+    on_base = pins and len(at[Support.SLIDER_X]) == 1
+    words = {Support.SLIDER_X: "slider", Support.SLIDER_Y: "vertical slider"}
+    for kind, what in words.items():
+        if names := at[kind]:
+            many = (
+                " on the base" if kind is Support.SLIDER_X and on_base else "s" * (len(names) > 1)
+            )
+            yield Entry((f"{what}{many}, at {', '.join(names)}",), symbol_mark("slider"))
 
 
 def _load_texts(mechanism: Mechanism, acting: Sequence[PointForce]) -> Iterator[str]:

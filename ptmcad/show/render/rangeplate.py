@@ -37,7 +37,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 }
 """Lines of solutions, by what these are called: stable ones are solid, and no others are."""
 EACH = ("#0b5394", "#2a9d8f", "#741b47", "#7d9be0", "#274e13", "#c27ba0")
-"""Of solutions of one kind that are told from each other; no other kind has one of these colours.
+"""Of solutions of one kind that are distinguished from each other; no other kind has one of these colours.
 """
 
 

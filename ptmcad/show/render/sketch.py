@@ -35,7 +35,7 @@ from ptmcad.show.render.view import Point
 from ptmcad.show.spiral import spirals
 
 BAR_WIDTHS = (5.5, 3.2)
-"""Of two bars, which are told apart; more are alike."""
+"""Of two bars, which are distinguished; more are alike."""
 MANY_BARS = 4.2
 WIDTH, MAX_HEIGHT, MIN_HEIGHT, MARGIN = 200.0, 210.0, 112.0, 36.0
 PIN = 2.4

@@ -323,7 +323,7 @@ def arrows(
     sides: Size,
     size: float,
     skip: bool = True,
-    told: Sequence[str] | None = None,
+    said: Sequence[str] | None = None,
 ) -> list[Arrow]:
     """Arrows with these names to slivers.
 
@@ -334,10 +334,10 @@ def arrows(
     sides : width and height of the picture, in points.
     size : of the texts, in points.
     skip : whether labels that are not clear are not to be drawn.
-    told : what is said of each region of the map, if not its count: the label of one best stands
+    said : what is said of each region of the map, if not its count: the label of one best stands
         where the same is true.
     """
-    told = counts_of(whole.result) if told is None else told
+    said = counts_of(whole.result) if said is None else said
     image = whole.raster(96, 96) if slivers else np.zeros((1, 1), dtype=np.int64)
     tips = [whole.view.approximate_position(sliver.at) for sliver in slivers]
     points = [(x * sides[0], y * sides[1]) for x, y in tips]
@@ -355,7 +355,7 @@ def arrows(
 
     labels = []
     for sliver, name, tip in zip(slivers, names, points, strict=True):
-        homes = {n for n, text in enumerate(told) if text == told[sliver.region]}
+        homes = {n for n, text in enumerate(said) if text == said[sliver.region]}
         half = (36 * text_width(name, size) + 0.25 * size + 1, 0.85 * size + 1)
         labels.append(Label(name, tip, half, cost=cost(tip, homes)))
     bounds = (_EDGE, _EDGE, sides[0] - _EDGE, sides[1] - _EDGE)
@@ -386,12 +386,12 @@ def arrows_of(
         Regions with names are drawn with rims of their own colour, so that thinner ones are seen.
     """
     resolved = RESOLVED if names is None else RIMMED
-    told = names if names is not None else counts_of(whole.result)
-    thin = [n for n in thin_regions(whole, round(min(sides) * min(dpi, resolved))) if told[n]]
+    said = names if names is not None else counts_of(whole.result)
+    thin = [n for n in thin_regions(whole, round(min(sides) * min(dpi, resolved))) if said[n]]
     slivers = ranked(whole, [Sliver(n, inside(whole, n)) for n in thin], thin)
-    labels = [told[sliver.region] for sliver in slivers]
+    labels = [said[sliver.region] for sliver in slivers]
     points = (72 * sides[0], 72 * sides[1])
-    found = [a for a in arrows(whole, slivers, labels, points, size, told=told) if a.clear]
+    found = [a for a in arrows(whole, slivers, labels, points, size, said=said) if a.clear]
     return found, len(thin) - len(found)
 
 
