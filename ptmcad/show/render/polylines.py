@@ -1,7 +1,9 @@
-"""Polygons and polylines with fewer corners, for drawing.
+"""Polygons and polylines with fewer corners, and as the data of SVG paths in few characters.
 
 Guarantee: every corner that is left out is within the tolerance of the side that takes its place,
-and none is moved.
+and none is moved. In a path's data, whole steps of a grid from corner to corner, every corner is
+within half a step of its place in each direction, and corners at one place are drawn alike:
+browsers add the steps up in single precision, in which whole numbers of this size are exact.
 """
 
 from __future__ import annotations
@@ -30,44 +32,26 @@ def simplified_polygons(points: Floats, sizes: Integers, tolerance: float) -> li
     """Closed polygons with fewer corners, their own, from which they depart by at most the
     tolerance.
 
-    Many of them take little longer than one. Method: Ramer, Douglas and Peucker; the two halves are
-    those between the first corner and the one farthest from it.
+    Method: Ramer, Douglas and Peucker; the two halves are those between the first corner and the
+    one farthest from it.
 
     Parameters
     ----------
     points : shape (n, 2), the corners of all of them, one polygon after the other.
     sizes : the number of corners of each.
     """
-    number = np.repeat(np.arange(len(sizes)), sizes)
-    filled = np.flatnonzero(sizes)
-    ends = np.cumsum(sizes)[filled]
-    before = np.arange(len(points)) - 1
-    before[ends - sizes[filled]] = ends - 1
-    distinct = (points != points[before]).any(axis=1)
-    points, number = points[distinct], number[distinct]
-    sizes = np.bincount(number, minlength=len(sizes))
-    filled = np.flatnonzero(sizes)
-    if not len(filled):
-        return [points] * len(sizes)
-    ends = np.cumsum(sizes)[filled]
-    starts = ends - sizes[filled]
-    group = np.repeat(np.arange(len(filled)), sizes[filled])
-    reach = ((points - points[starts[group]]) ** 2).sum(axis=1)
-    far = np.flatnonzero(reach == np.maximum.reduceat(reach, starts)[group])
-    far = far[np.diff(group[far], prepend=-1) != 0]
-    # all of them as one polyline, in which each goes back to its first corner; what joins two of
-    # them has no corners
-    line = points[np.insert(np.arange(len(points)), ends, starts)]
-    shift = np.arange(len(filled))
-    small = np.flatnonzero(sizes[number] < 4)
-    kept = _kept(
-        line,
-        np.concatenate([starts + shift, far + shift, ends + shift, small + group[small]]),
-        tolerance,
-    )
-    kept = np.delete(kept, ends + shift)
-    left = np.bincount(number[kept], minlength=len(sizes))
-    return np.split(points[kept], np.cumsum(left)[:-1])
+    parts = np.split(points, np.cumsum(sizes)[:-1]) if len(sizes) else []
+    return [_simplified_polygon(part, tolerance) for part in parts]
+
+
+def _simplified_polygon(corners: Floats, tolerance: float) -> Floats:
+    corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]
+    if len(corners) < 4:
+        return corners
+    far = int(((corners - corners[0]) ** 2).sum(axis=1).argmax())
+    line = np.vstack([corners, corners[:1]])
+    few: Floats = line[_kept(line, np.array([0, far, len(corners)]), tolerance)][:-1]
+    return few
 
 
 def simplified_line(points: Floats, tolerance: float) -> Floats:
@@ -122,3 +106,51 @@ def _distances(points: Floats, a: Floats, b: Floats) -> Floats:
     offset = offset - np.clip(share, 0.0, 1.0)[:, None] * along
     distances: Floats = np.hypot(offset[:, 0], offset[:, 1])
     return distances
+
+
+GRID = 20
+"""Steps of the grid in one of the picture's units; what is drawn by such data is scaled down by as
+much.
+"""
+
+
+def path_data(line: Floats, *, closed: bool = False) -> str:
+    """The data of a polyline, or of a polygon; corners within a side along an axis are left out.
+
+    A line that is shorter than a step is drawn one step long: a browser leaves out one without
+    length.
+
+    >>> path_data(np.array([[0, 10], [2.5, 10], [3, 10], [3, 9.75], [2, 9.1], [1.5, 8.5]]))
+    'M0 200h60v-5l-20-13-10-12'
+    """
+    corners = _needed(np.rint(line * GRID).astype(np.int64))
+    if len(corners) == 1:
+        corners = np.concatenate([corners, corners + np.array([[1, 0]])])
+    x, y = corners[0].tolist()
+    parts, last = [f"M{x}{_after(y)}"], "M"
+    for dx, dy in np.diff(corners, axis=0).tolist():
+        command, numbers = (
+            ("v", f"{dy}") if not dx else ("h", f"{dx}") if not dy else ("l", f"{dx}{_after(dy)}")
+        )
+        parts.append(command if command != last else "" if numbers[0] == "-" else " ")
+        parts.append(numbers)
+        last = command
+    return "".join(parts) + "z" * closed
+
+
+def _after(steps: int) -> str:
+    """A number after another one: a minus sign parts them, too."""
+    return str(steps) if steps < 0 else f" {steps}"
+
+
+def _needed(corners: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Without corners that are where the one before them is, or on the way along an axis to the
+    next one.
+    """
+    corners = distinct(corners)
+    if len(corners) < 3:
+        return corners
+    steps = np.sign(np.diff(corners, axis=0))
+    straight = (steps[1:] == steps[:-1]).all(axis=1) & (steps[1:] == 0).any(axis=1)
+    kept: NDArray[np.int64] = corners[np.concatenate([[True], ~straight, [True]])]
+    return kept

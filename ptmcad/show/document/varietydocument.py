@@ -11,7 +11,7 @@ from typing import Any
 from ptmcad.answer.regionmap import Component
 from ptmcad.answer.slicevariety import EliminationSystem, SliceVariety
 from ptmcad.question.slice import Slice
-from ptmcad.show.document.slice import polynomial_over, slice_over
+from ptmcad.show.document.slicedocument import polynomial_over, slice_over
 from ptmcad.text.codec import (
     NATURAL,
     POSITIVE,

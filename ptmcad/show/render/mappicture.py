@@ -25,39 +25,27 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import noun, several
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import dress, heading_of
+from ptmcad.show.render.colours import INK, STRONG, THIN, Paint, paint_of
 from ptmcad.show.render.fitting import PageParts, fitted
 from ptmcad.show.render.inches import Box, axes_at, write_lines
 from ptmcad.show.render.layout import SIDE, Layout, flowing
-from ptmcad.show.render.legend import (
-    INK,
-    STRONG,
-    THIN,
-    Entry,
-    Type,
-    Wording,
-    draw_legend,
-    entries,
-)
+from ptmcad.show.render.legend import Entry, Type, draw_legend, entries, hidden_entries
+from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.overlay import Overlay, draw_overlay, overlay_entries
-from ptmcad.show.render.painting import Paint, paint_map, paint_of
+from ptmcad.show.render.painting import paint_map
 from ptmcad.show.render.printing import save, settings
-from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import (
     MAX_ZOOMS,
+    RESOLVED,
     Sliver,
     Zoom,
+    arrows,
+    draw_arrows,
+    ranked,
     seen_thin_walls,
     thin_regions,
     unstable_zooms,
     zooms,
-)
-from ptmcad.show.render.thinmarks import (
-    RESOLVED,
-    Marks,
-    counts_of,
-    draw_marks,
-    placed_marks,
-    ranked,
 )
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, Size
@@ -129,11 +117,7 @@ class _Seen:
         """
         ranked = self.ranked
         names = [_name_of(self.whole.result, sliver, None) for sliver in ranked]
-        marks = Marks(ranked, names=names)
-        marks = placed_marks(
-            self.whole, marks, counts_of(self.whole.result), sides, size, skip=True
-        )
-        kept = [sliver for sliver, mark in zip(ranked, marks.placed, strict=True) if mark.clear]
+        kept = [a.sliver for a in arrows(self.whole, ranked, names, sides, size) if a.clear]
         if len(kept) == len(ranked):
             return self
         views = tuple(
@@ -242,8 +226,8 @@ class MapDrawing(NamedTuple):
                     raise
                 # a small picture rather has no word on the thin regions without a label, which it
                 # shows all the same
-                untold = replace(parts, legend=self.legend(seen, told=False))
-                layout = fitted(untold, style, style.size or _natural(style, untold))
+                shorter = replace(parts, legend=self.legend(seen, with_hidden=False))
+                layout = fitted(shorter, style, style.size or _natural(style, shorter))
             if seen.views and not layout.insets:
                 # what no inset shows is named by a label that an arrow leads to it, if that has
                 # room
@@ -258,25 +242,21 @@ class MapDrawing(NamedTuple):
                 return seen, layout
             seen = again
 
-    def legend(self, seen: _Seen, told: bool = True) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
-        """The legend with areas and without; ``told`` says whether it tells how many thin regions
+    def legend(
+        self, seen: _Seen, with_hidden: bool = True
+    ) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
+        """The legend with areas and without; ``with_hidden`` says whether it states how many thin regions
         have no label.
         """
         if self.style.legend is LegendPlace.NONE:
             return (), ()
-        paint, hidden = paint_of(self.style, self.result), seen.hidden * told
-        further = overlay_entries(self.overlay)
-        with_areas, without = (
-            entries(
-                self.result,
-                seen.thin_lines,
-                self.samples,
-                hidden,
-                Wording(paint.fill, paint.undetermined, areas),
-            )
-            for areas in (True, False)
+        paint = paint_of(self.style, self.result)
+        dots = [Entry(("sample point of a cell",), "dot")] if self.samples else []
+        rest = (*dots, *hidden_entries(seen.hidden * with_hidden), *overlay_entries(self.overlay))
+        full, short = (
+            (*entries(self.result, seen.thin_lines, paint, areas), *rest) for areas in (True, False)
         )
-        return (*with_areas, *further), (*without, *further)
+        return full, short
 
     def draw_parts(self, figure: Figure, seen: _Seen, layout: Layout) -> Any:
         """Everything in its place; the map's axes."""
@@ -304,7 +284,9 @@ class MapDrawing(NamedTuple):
         rest = iter(names)
         for zoom, box in zip(seen.views, layout.insets, strict=False):
             _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
-        _mark(axes, seen, marked, names, layout, paint)
+        sides, size = (layout.chart[2] * 72, layout.chart[3] * 72), layout.texts.arrow
+        led = arrows(seen.whole, marked, names, sides, size, skip=not layout.insets)
+        draw_arrows(axes, led, paint.scale)
         draw_overlay(axes, seen.whole.view, self.overlay, paint.scale, layout.texts.arrow)
         return axes
 
@@ -386,18 +368,6 @@ def _zoomed(name: str, area: str) -> str:
         return f"{name}, zoomed\narea {area}"
     low, _, high = area.partition(" to ")
     return f"{name}, zoomed, area {low}\nto {high}"
-
-
-def _mark(
-    axes: Any, seen: _Seen, slivers: Sequence[Sliver], names: Sequence[str], layout: Layout, paint: Paint
-) -> None:  # fmt: skip
-    """An arrow to every sliver, labels apart from each other."""
-    sides, told = (layout.chart[2] * 72, layout.chart[3] * 72), counts_of(seen.whole.result)
-    skip = not layout.insets
-    marks = placed_marks(
-        seen.whole, Marks(slivers, names=names), told, sides, layout.texts.arrow, skip
-    )
-    draw_marks(axes, marks, paint.scale)
 
 
 def description(result: RegionMap) -> str:

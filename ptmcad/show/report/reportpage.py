@@ -10,6 +10,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+from collections.abc import Mapping, Sequence
 from html import escape
 from importlib.resources import files
 from string import Template
@@ -25,17 +26,15 @@ from ptmcad.model.work import split_moments
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import heading_of, symbol, with_symbols
 from ptmcad.show.render.colours import fill_of
-from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.polylines import GRID
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.report import sections
-from ptmcad.show.report.chart import SLACK, MapPictures, chart, counts_text, pattern_defs
 from ptmcad.show.report.equilibria import at_sample, both
 from ptmcad.show.report.error_curve import ErrorCurve, error_section
-from ptmcad.show.report.formulas import curves
-from ptmcad.show.report.frame import SIDE
-from ptmcad.show.report.packing import packed
-from ptmcad.show.report.pathdata import GRID
-from ptmcad.show.report.tape import tape
+from ptmcad.show.report.mapsvg import SIDE, SLACK, MapPictures, chart, counts_text, pattern_defs
+from ptmcad.show.report.scripttape import tape
+from ptmcad.show.report.sections import curves
 from ptmcad.show.table import region_area
 from ptmcad.show.units import declared_units
 from ptmcad.version import __version__
@@ -266,3 +265,40 @@ def _data(result: RegionMap, drawn: MapPictures) -> dict[str, Any]:
             inner=("equilibria",),
         ),
     }
+
+
+Row = Mapping[str, Any]
+
+
+def packed(rows: Sequence[Row], inner: Sequence[str] = ()) -> dict[str, Any]:
+    """Rows with the same names as a mapping of columns.
+
+    A column is ``{"of": entries}``, or ``{"of": distinct, "at": numbers}`` with the number of each
+    row's entry, none at all where the distinct entry is one. One of tables is ``{"many": lengths,
+    "rows": packed}``.
+
+    Parameters
+    ----------
+    inner : names of entries that are such rows themselves.
+
+    >>> packed([{"a": "equilibria", "b": 1}, {"a": "equilibria", "b": 2}])
+    {'length': 2, 'columns': {'a': {'of': ['equilibria'], 'at': []}, 'b': {'of': [1, 2]}}}
+    """
+    columns: dict[str, Any] = {}
+    for name in rows[0] if rows else ():
+        entries = [row[name] for row in rows]
+        if name in inner:
+            flat = packed([row for entry in entries for row in entry])
+            columns[name] = {"many": [len(entry) for entry in entries], "rows": flat}
+        else:
+            columns[name] = _column(entries)
+    return {"length": len(rows), "columns": columns}
+
+
+def _column(entries: list[Any]) -> dict[str, Any]:
+    """Of the two ways to write a column the shorter one."""
+    numbers: dict[str, int] = {}
+    at = [numbers.setdefault(json.dumps(entry), len(numbers)) for entry in entries]
+    distinct = {"of": [json.loads(text) for text in numbers], "at": at if len(numbers) > 1 else []}
+    plain = {"of": entries}
+    return min(plain, distinct, key=lambda column: len(json.dumps(column, separators=(",", ":"))))

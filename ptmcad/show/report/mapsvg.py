@@ -23,14 +23,27 @@ from ptmcad.answer.regionmap import Cell, Region
 from ptmcad.answer.words import stable_of
 from ptmcad.model import Model
 from ptmcad.question.counts import Count
-from ptmcad.show.render.clearance import Position
+from ptmcad.show.render.axes import scale_of, symbol, ticks
 from ptmcad.show.render.colours import Fill, fill_of
+from ptmcad.show.render.labels import Position
+from ptmcad.show.render.polylines import GRID, path_data
 from ptmcad.show.render.slivers import innermost, thin_regions, zooms
 from ptmcad.show.render.view import Floats, Shapes, from_above
-from ptmcad.show.report.frame import SIDE, frame, room
-from ptmcad.show.report.pathdata import GRID, path_data
 from ptmcad.show.table import count_text
+from ptmcad.show.units import unit, with_unit
 from ptmcad.text.numerals import shortest_text
+
+SIDE, RIM = 600, 24
+"""In the picture's own units: the window's side, the rim."""
+_LEFT, _BOTTOM = 110, 100
+"""The least room for the axes' numbers and names."""
+_NUMBER, _NAME, _DETAIL = 29, 31, 36
+"""The sizes of their type on phones, as page.css has them: in the map, and of both in a view of
+thin regions.
+"""
+_WIDTHS = {".": 0.32, "−": 0.84}
+"""Of characters against the type's size; digits are 0.64 wide."""
+_MAX_NAME = 24
 
 Mark = tuple[str, Position]
 """A letter and its place in the view, as fractions of the sides."""
@@ -218,9 +231,15 @@ def region_outlines(seen: Shapes, simpler: bool = True) -> Iterator[tuple[int, s
     tolerance = (_WALLS if seen.result.cover is None else _RIMS) / SIDE if simpler else 0.0
     for number in range(len(seen.result.regions)):
         # one path for all parts: where two of them share an edge no seam is left
-        outline = "".join(_closed(p) for p in seen.polygons(number, tolerance))
+        outline = outline_data(seen, number, tolerance)
         if outline:
             yield number, outline
+
+
+def outline_data(seen: Shapes, region: int, tolerance: float, side: float = SIDE) -> str:
+    """A region's outline as such data, of a picture whose sides are so many units."""
+    polygons = seen.polygons(region, tolerance)
+    return "".join(path_data(from_above(polygon, side), closed=True) for polygon in polygons)
 
 
 def wall_lines(seen: Shapes, simpler: bool = True) -> dict[tuple[bool, int], str]:
@@ -293,3 +312,75 @@ def region_labels(seen: Shapes) -> list[Label]:
         if depth >= 0:
             found.append((number, (column + 0.5) / pixels, (row + 0.5) / pixels))
     return found
+
+
+@dataclass(frozen=True, slots=True)
+class Margins:
+    """What is left around the window for numbers and names, and the size of the names' type on
+    phones.
+    """
+
+    left: float
+    right: float
+    bottom: float
+    name: float
+
+    @property
+    def view(self) -> str:
+        """The picture's own coordinates, as SVG has them."""
+        return f"0 0 {self.left + SIDE + self.right} {RIM + SIDE + self.bottom}"
+
+    @property
+    def place(self) -> str:
+        """Where the window begins."""
+        return f"translate({self.left} {RIM})"
+
+
+def room(seen: Shapes, detail: bool) -> Margins:
+    """The room that the numbers of a view need: of the whole window, or of thin regions, where the
+    type is larger.
+    """
+    number, name = (_DETAIL, _DETAIL) if detail else (_NUMBER, _NAME)
+    across, up = (ticks(interval, scale_of(*interval)) for interval in (seen.view.x, seen.view.y))
+    beside = max((_width(text) for text, _ in up), default=0) * number
+    beyond = max(
+        ((float(at) - 1) * SIDE + _width(text) * number / 2 for text, at in across), default=0
+    )
+    return Margins(
+        left=ceil(max(_LEFT, 14 + beside + 6 + 1.3 * name)),
+        right=ceil(max(RIM, beyond + 2)),
+        bottom=ceil(max(_BOTTOM, 18 + 1.1 * number + 1.1 * name + 20)),
+        name=name,
+    )
+
+
+def _width(text: str) -> float:
+    """Of a number, against its type's size."""
+    return sum(_WIDTHS.get(character, 0.64) for character in text)
+
+
+def frame(seen: Shapes, room: Margins) -> Iterator[str]:
+    """The frame with ticks, numbers and names, as elements of a group whose origin is its upper
+    left corner.
+    """
+    yield f'<rect class="frame" width="{SIDE}" height="{SIDE}"/>'
+    slice = seen.result.slice
+    for number, interval in enumerate((seen.view.x, seen.view.y)):
+        scale = scale_of(*interval)
+        for value, position in ticks(interval, scale):
+            at = float(position) * SIDE
+            if number == 0:
+                yield f'<path class="tick" d="M{at:.1f} {SIDE}v8"/>'
+                yield f'<text class="number x" x="{at:.1f}" y="{SIDE + 18}" dy=".8em">{value}</text>'
+            else:
+                yield f'<path class="tick" d="M0 {SIDE - at:.1f}h-8"/>'
+                yield f'<text class="number y" x="-14" y="{SIDE - at:.1f}" dy=".36em">{value}</text>'
+        name = slice.axes[number].name
+        text = scale.name(symbol(name if len(name) <= _MAX_NAME else name[: _MAX_NAME - 1] + "…"))
+        known = unit(slice, number)
+        text = escape(with_unit(text, known))
+        if number == 0:
+            yield f'<text class="name" x="{SIDE / 2}" y="{SIDE + room.bottom - 16}">{text}</text>'
+        else:
+            place = f"translate({room.name - room.left:g} {SIDE / 2}) rotate(-90)"
+            yield f'<text class="name" transform="{place}">{text}</text>'

@@ -16,8 +16,8 @@ from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Status
 from ptmcad.question.counts import POSE_COLUMNS
 from ptmcad.question.slice import check_names
-from ptmcad.show.document.numbers import merged
-from ptmcad.show.document.slice import MODEL, UNITS
+from ptmcad.show.document.exactnumbers import merged
+from ptmcad.show.document.slicedocument import MODEL, UNITS
 from ptmcad.text.codec import (
     COUNT,
     NATURAL,

@@ -10,7 +10,6 @@ Everything is on the page, in text of at least `ptmcad.show.style.MIN_FONT` poin
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,24 +22,15 @@ from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, scale_of, with_symbols
-from ptmcad.show.render.colours import Fill, undetermined_fill
+from ptmcad.show.render.colours import INK, RIM_INK, STRONG, Fill, undetermined_fill
 from ptmcad.show.render.fieldlines import branch_edges, contour_lines
 from ptmcad.show.render.fitting import MIN_SIDE, beside, dressed
 from ptmcad.show.render.inches import Box
-from ptmcad.show.render.legend import (
-    INK,
-    RIM_INK,
-    STRONG,
-    Entry,
-    Type,
-    draw_rows,
-    in_rows,
-    line_mark,
-)
+from ptmcad.show.render.legend import Entry, Type, line_mark
+from ptmcad.show.render.panels import HeadAndFoot
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.textwidth import text_width, wrapped
 from ptmcad.show.render.view import Floats, View
-from ptmcad.show.style import DEFAULT, MIN_FONT, LegendPlace, PictureStyle, Size
+from ptmcad.show.style import DEFAULT, MIN_FONT, PictureStyle, Size
 from ptmcad.show.units import with_unit
 
 SIDE, GAP, BAR = 4.6, 0.2, 0.2
@@ -128,15 +118,8 @@ def _figure(
             axes.plot(*shares.T, color=INK, linewidth=style.strong, transform=axes.transAxes)
     chart = (SIDE, SIDE) if style.size is None else (0.6 * style.size[0], 0.6 * style.size[1])
     dress(axes, result.slice, view.x, view.y, Dress() if style.flows else dressed(font, chart))
-    legend = [] if style.legend is LegendPlace.NONE else _legend(result, field, boundaries, style)
-    _FieldPage(
-        figure,
-        axes,
-        bar_axes,
-        title_of(result, field) if style.title is None else style.title,
-        legend,
-        style,
-    ).set()
+    legend = _legend(result, field, boundaries, style)
+    _set_page(figure, axes, bar_axes, title_of(result, field), legend, style)
     figure.set_label(f"{title_of(result, field)}\n{description(field)}")
     return figure
 
@@ -234,20 +217,20 @@ def _legend(
     result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: PictureStyle
 ) -> list[Entry]:
     """What lines, white and grey mean, as far as they are there."""
-    told = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
+    legend = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
     if any(jump.any() for jump in field.jumps or ()):
-        told.append(Entry((f"the branch of {pose_words(result, field)} changes",), _edge_mark))
+        legend.append(Entry((f"the branch of {pose_words(result, field)} changes",), _edge_mark))
     unknown = field.region == NONE
     if (np.isnan(field.values) & ~unknown).any() and field.known.size:
         what = "barrier" if field.quantity == "barrier" else pose_words(result, field)
-        told.append(
+        legend.append(
             Entry((f"no {what}" if not field.missed + field.beyond else "no value",), Fill(_EMPTY))
         )
     if unknown.any():
         # a pixel of an exact map is open where its centre is on a curve
         words = "on a curve" if result.cover is None else "undetermined"
-        told.append(Entry((words,), undetermined_fill(style.palette)))
-    return told
+        legend.append(Entry((words,), undetermined_fill(style.palette)))
+    return legend
 
 
 _edge_mark = line_mark(
@@ -255,73 +238,46 @@ _edge_mark = line_mark(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class _FieldPage:
-    """The parts of a picture, which are set where they have room: what stands beside axes is
-    measured.
+def _set_page(
+    figure: Figure, axes: Any, bar: Any, title: str, legend: Sequence[Entry], style: PictureStyle
+) -> None:
+    """Give all parts their places; a page without a size gets the one that it needs.
+
+    What stands beside axes is measured, thrice, as how many numbers an axis has depends on its
+    length.
+
+    Raises
+    ------
+    ConfigError
+        When a size leaves too little to the map.
     """
-
-    figure: Figure
-    axes: Any
-    bar: Any
-    title: str
-    legend: Sequence[Entry]
-    style: PictureStyle
-
-    def set(self) -> None:
-        """Give all parts their places; a page without a size gets the one that it needs.
-
-        Raises
-        ------
-        ConfigError
-            When a size leaves too little to the map.
-        """
-        font, size = self.style.base_font, self.style.size
-        em, scale = font / 72, font / 9
-        type = Type.of(self.style)
-        side = SIDE * scale
-        wide, tall = size or (side + 2.2 * scale, side + 1.5 * scale)
-        title_font = max(MIN_FONT, 1.22 * font)
-        lines = wrapped(self.title, wide - 1.5 * em, title_font)
-        rows = in_rows(self.legend, wide - 1.5 * em, type)
-        head = 1.35 * title_font / 72 * len(lines) + (0.7 if lines else 0.4) * em
-        foot = 1.35 * type.line * len([row for row in rows if row]) + 0.5 * em
-        for _ in range(3):  # how many numbers an axis has depends on its length
-            left, below, right, above = beside(self.figure, self.axes)
-            gap, after = (
-                (0.0, 0.0) if self.bar is None else (GAP * scale, beside(self.figure, self.bar)[2])
-            )
-            bar = gap and BAR * scale
-            rest = (left + max(right, gap + bar + after) + 0.8 * em, below + above + head + foot)
-            if size is None:
-                wide, tall = side + rest[0], side + rest[1]
-                self.figure.set_size_inches(wide, tall)
-            chart = (wide - rest[0], tall - rest[1])
-            if min(chart) < MIN_SIDE * em:
-                least = (
-                    rest[0] + max(MIN_SIDE * em, chart[0]),
-                    rest[1] + max(MIN_SIDE * em, chart[1]),
-                )
-                raise ConfigError(
-                    f"the map with its scale does not fit into {wide:.2f}x{tall:.2f}in in text of {font:g} points; "
-                    f"it needs at least {least[0] + 0.01:.2f}x{least[1] + 0.01:.2f}in", key="size",
-                )  # fmt: skip
-            corner = (0.4 * em + left, foot + below)
-            _place(self.axes, (*corner, *chart), (wide, tall))
-            if self.bar is not None:
-                _place(
-                    self.bar, (corner[0] + chart[0] + gap, corner[1], bar, chart[1]), (wide, tall)
-                )
-                _thin_numbers(self.bar, chart[1])
-        if lines:
-            title = self.axes.annotate(
-                "\n".join(lines), (0, 1), xycoords="axes fraction", xytext=(0, 72 * above + 0.5 * font),
-                textcoords="offset points", fontsize=title_font, va="bottom", color=INK, annotation_clip=False,
+    font, size = style.base_font, style.size
+    em, scale = font / 72, font / 9
+    side, least = SIDE * scale, MIN_SIDE * em
+    wide, tall = size or (side + 2.2 * scale, side + 1.5 * scale)
+    around = HeadAndFoot.of(title, legend, wide, style, Type.of(style))
+    for _ in range(3):
+        left, below, right, above = beside(figure, axes)
+        if bar is not None:
+            right = max(right, (GAP + BAR) * scale + beside(figure, bar)[2])
+        rest = (left + right + 0.8 * em, below + above + around.head + around.foot)
+        if size is None:
+            wide, tall = side + rest[0], side + rest[1]
+            figure.set_size_inches(wide, tall)
+        chart = (wide - rest[0], tall - rest[1])
+        if min(chart) < least:
+            needed = (rest[0] + max(least, chart[0]), rest[1] + max(least, chart[1]))
+            raise ConfigError(
+                f"the map with its scale does not fit into {wide:.2f}x{tall:.2f}in in text of {font:g} points; "
+                f"it needs at least {needed[0] + 0.01:.2f}x{needed[1] + 0.01:.2f}in", key="size",
             )  # fmt: skip
-            if max(text_width(line, title_font) for line in lines) > wide - corner[0] - 0.5 * em:
-                title.set_position((72 * (0.75 * em - corner[0]), 72 * above + 0.5 * font))
-        step = 1.35 * type.line
-        draw_rows(self.figure, rows, (0.75 * em, 0.35 * em + step * (len(rows) - 0.15)), step, type)
+        corner = (0.4 * em + left, around.foot + below)
+        _place(axes, (*corner, *chart), (wide, tall))
+        if bar is not None:
+            at = (corner[0] + chart[0] + GAP * scale, corner[1], BAR * scale, chart[1])
+            _place(bar, at, (wide, tall))
+            _thin_numbers(bar, chart[1])
+    around.draw(figure)
 
 
 def _place(axes: Any, box: Box, size: Size) -> None:

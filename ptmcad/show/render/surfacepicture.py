@@ -20,9 +20,8 @@ from ptmcad.answer.counts import key_text
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import Region
 from ptmcad.question.counts import Count, Shades
-from ptmcad.show.render.colours import Fill
-from ptmcad.show.render.legend import INK, THIN, Entry
-from ptmcad.show.render.painting import Paint
+from ptmcad.show.render.colours import INK, THIN, Fill, Paint
+from ptmcad.show.render.legend import Entry
 from ptmcad.show.render.view import Floats
 
 Pair = tuple[tuple[int, ...], tuple[int, ...]]
@@ -50,7 +49,7 @@ _OTHER = 0.15
 """Of a sheet's colour, what comes from the smaller count's."""
 _LIGHTEST, _DEEPER = 0.75, 0.9
 """The lightness of sheets' colours, and what is left at most of a mixed colour's: so that shades
-are seen on sheets, and they are told from the regions that they enclose."""
+are seen on sheets, and they are distinct from the regions that they enclose."""
 _SEAM = 0.3
 """Points by which triangles overlap, so that no gap is seen between them."""
 
@@ -115,15 +114,15 @@ def _with_count(region: Region, count: Count, key: tuple[int, ...]) -> Region:
 
 
 def sheet_entries(
-    surface: BoundarySurface, colours: Mapping[Pair, str], told: Sequence[Entry]
+    surface: BoundarySurface, colours: Mapping[Pair, str], legend: Sequence[Entry]
 ) -> list[Entry]:
     """The legend: which counts the sheets part, and how the surface was made.
 
     Parameters
     ----------
-    told : the entries above: what is counted, and the fills of a map on the floor.
+    legend : the entries above: what is counted, and the fills of a map on the floor.
     """
-    found = list(told)
+    found = list(legend)
     found += [
         Entry((f"between {' and '.join(map(key_text, pair))}",), Fill(face))
         for pair, face in colours.items()

@@ -21,8 +21,8 @@ from ptmcad.answer.design import BestDesign
 from ptmcad.question.slice import Axis
 from ptmcad.show.designtable import design_table, value_text
 from ptmcad.show.render.axes import scale_of, symbol
+from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import write_lines
-from ptmcad.show.render.legend import INK
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.rangeplate import LEFT, RIGHT, SIZE, WIDE, axes_in, figure_of, scaled
 

@@ -1,4 +1,5 @@
-"""The best design as a JSON document, docs/design.schema.json, and back.
+"""The best design as a JSON document, docs/design.schema.json, and back; with largest widths of ranges,
+which documents of ranges have too.
 
 Guarantee: numbers are exact; reading what was written gives an equal `BestDesign`.
 """
@@ -9,14 +10,37 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.answer.design import BestDesign
-from ptmcad.answer.widths import Maximum
+from ptmcad.answer.intervals import End
+from ptmcad.answer.widths import Attainment, Maximum, Place
 from ptmcad.model import Model, built_in, known_of
 from ptmcad.question.slice import Axis
-from ptmcad.show.document.maxima import maximum
-from ptmcad.show.document.numbers import AXIS, INTERVAL, LINE
-from ptmcad.show.document.slice import model_from, stored_model
-from ptmcad.text.codec import TEXT, WHOLE, Codec, Key, document_text, listed, named, record_of
-from ptmcad.text.enclosure import Enclosure
+from ptmcad.show.document.exactnumbers import (
+    ALGEBRAIC,
+    AXIS,
+    INTERVAL,
+    LINE,
+    algebraic_with_decimal,
+    itself,
+    with_decimal,
+)
+from ptmcad.show.document.slicedocument import model_from, stored_model
+from ptmcad.text.codec import (
+    TEXT,
+    WHOLE,
+    Codec,
+    Key,
+    by_name,
+    choice,
+    converted,
+    derived,
+    document_text,
+    listed,
+    named,
+    optional,
+    record,
+    record_of,
+)
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.node import Node, opened
 from ptmcad.version import __version__
 
@@ -114,3 +138,42 @@ _MODEL: Codec[Model] = Codec(
     _model_of,
     {"anyOf": [{"type": "string"}, {"type": "object", "minProperties": 1, "maxProperties": 1}]},
 )
+
+
+def maximum(over: str, digits: int) -> Codec[Maximum]:
+    """The codec of a largest width; attainment is not decided where it is not told, as in older
+    documents.
+
+    Parameters
+    ----------
+    over : the name of the other axis.
+    """
+
+    def text(value: End) -> str:
+        return AlgebraicNumber.of(value).text(digits)
+
+    def decimal(value: Enclosure) -> str:
+        return next((value.text(n) for n in range(digits, 0, -1) if value.settles(n)), "")
+
+    def made(attainment: Attainment, **entries: Any) -> Maximum:
+        decided = attainment is not Attainment.UNDECIDED
+        return Maximum(
+            attained=attainment is not Attainment.APPROACHED if decided else None, **entries
+        )
+
+    number: Codec[End] = converted(
+        algebraic_with_decimal(text),
+        AlgebraicNumber.of,
+        lambda n: n if n.exact is None else n.exact,
+    )
+    enclosed: Codec[Enclosure] = record(
+        lambda enclosure: enclosure, decimal=derived(decimal), enclosure=Key(INTERVAL, itself)
+    )
+    return record_of(
+        Maximum, {Enclosure: enclosed}, made, place=choice(Place, by_name), attained=None,
+        attainment=Key(choice(Attainment), default=Attainment.UNDECIDED, always=True, checked=True),
+        text=derived(lambda found: found.words(over, digits)), critical=optional(ALGEBRAIC),
+        ends=optional(listed(with_decimal(text), 2)),
+        **{"except": Key(listed(number), default=(), field="exceptions", always=True)},
+        undecided=Key(listed(number), default=(), field="doubtful", always=True),
+    )  # fmt: skip

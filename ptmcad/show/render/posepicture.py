@@ -28,9 +28,10 @@ from ptmcad.model.work import PointForce, loads_at
 from ptmcad.question.slice import merged
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols
-from ptmcad.show.render.clearance import Position
+from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import axes_at, stroke, write, write_lines
-from ptmcad.show.render.legend import INK, Entry, Type, draw_legend
+from ptmcad.show.render.labels import Position
+from ptmcad.show.render.legend import Entry, Type, draw_legend
 from ptmcad.show.render.mechanism import (
     PALE,
     STRONG,
@@ -347,18 +348,14 @@ def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
         yield Entry(
             (f"fixed support{'s' * (len(pins) > 1)}, at {', '.join(pins)}",), symbol_mark("support")
         )
-    if sliding := at[Support.SLIDER_X]:
-        on = (
-            "slider on the base"
-            if pins and len(sliding) == 1
-            else "slider" + "s" * (len(sliding) > 1)
-        )
-        yield Entry((f"{on}, at {', '.join(sliding)}",), symbol_mark("slider"))
-    if rising := at[Support.SLIDER_Y]:
-        yield Entry(
-            (f"vertical slider{'s' * (len(rising) > 1)}, at {', '.join(rising)}",),
-            symbol_mark("slider"),
-        )
+    on_base = pins and len(at[Support.SLIDER_X]) == 1
+    words = {Support.SLIDER_X: "slider", Support.SLIDER_Y: "vertical slider"}
+    for kind, what in words.items():
+        if names := at[kind]:
+            many = (
+                " on the base" if kind is Support.SLIDER_X and on_base else "s" * (len(names) > 1)
+            )
+            yield Entry((f"{what}{many}, at {', '.join(names)}",), symbol_mark("slider"))
 
 
 def _load_texts(mechanism: Mechanism, acting: Sequence[PointForce]) -> Iterator[str]:

@@ -19,7 +19,7 @@ from ptmcad.answer.arrangement import SIDES, Arrangement
 from ptmcad.answer.changes import TOLERANCE, Changes
 from ptmcad.answer.family import FamilyMap, SpaceTerms
 from ptmcad.question.slice import Axis
-from ptmcad.show.document.numbers import ALGEBRAIC, AXIS, LINE, NUMBER
+from ptmcad.show.document.exactnumbers import ALGEBRAIC, AXIS, LINE, NUMBER
 from ptmcad.text.codec import (
     NATURAL,
     RATIONAL,
