@@ -19,11 +19,10 @@ from ptmcad.cli.commonoptions import (
     record_argument,
     report_idle,
 )
-from ptmcad.cli.drawing import share_of
+from ptmcad.cli.completion import names, settings
+from ptmcad.cli.drawing import figure, report_written, share_of, write_result
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
-from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.proposals import names, settings
 from ptmcad.cli.slices import question_in
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name

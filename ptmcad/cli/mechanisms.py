@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.commonoptions import PATH
-from ptmcad.cli.proposals import mechanisms as known_mechanisms
+from ptmcad.cli.completion import mechanisms as known_mechanisms
 from ptmcad.errors import ConfigError, quoted
 from ptmcad.model import Model
 from ptmcad.process.output import check_writable, text_writer, write_files

@@ -22,11 +22,11 @@ from ptmcad.cli.commonoptions import (
     record_argument,
     report_idle,
 )
+from ptmcad.cli.completion import names, pair_of_names, point, quantity_names
+from ptmcad.cli.drawing import figure, report_written, write_result
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.proposals import names, pair_of_names, point, quantity_names
 from ptmcad.cli.range_answers import RangeAnswer, RangeRequest, answer, is_enclosed, request_codec
 from ptmcad.cli.slices import range_option, set_option
 from ptmcad.errors import ConfigError, ExpressionError

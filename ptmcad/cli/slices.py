@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import click
 
 from ptmcad.cli.commonoptions import F, gathered, record_argument
-from ptmcad.cli.proposals import mechanisms, pair_of_names, settings
+from ptmcad.cli.completion import mechanisms, pair_of_names, settings
 from ptmcad.errors import ConfigError, HypothesisError, PtmcadError, shown
 from ptmcad.model import Model
 from ptmcad.question.config import (

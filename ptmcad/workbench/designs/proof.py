@@ -38,7 +38,7 @@ from ptmcad.workbench.designs.designbounds import (
     Point,
     search,
 )
-from ptmcad.workbench.designs.designspace import Axes, space_of_family, space_of_slice
+from ptmcad.workbench.designs.designlines import Axes, space_of_family, space_of_slice
 
 Look = Callable[[Mapping[str, Fraction]], Fraction]
 """From a design to a lower bound of the best value that is known after it was evaluated."""

@@ -11,7 +11,7 @@ What is not done in this way is left to exact poses, one by one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -192,15 +192,8 @@ class PixelSolver:
         return good
 
 
-def filled(
-    result: RegionMap, follower: PixelSolver, check: Callable[[], None] = lambda: None
-) -> Filling:
-    """The solutions at every pixel, as far as neighbours lead to them.
-
-    Parameters
-    ----------
-    check : called again and again; may raise to stop.
-    """
+def filled(result: RegionMap, follower: PixelSolver) -> Filling:
+    """The solutions at every pixel, as far as neighbours lead to them."""
     wanted = follower.wanted
     most = max(int(wanted.total.max()), 1)
     rows, columns = wanted.total.shape
@@ -210,9 +203,9 @@ def filled(
     for stride in _strides(max(rows, columns)):
         seen = np.zeros((rows, columns), dtype=np.bool_)
         seen[::stride, ::stride] = True
-        _spread(filling, follower, seen, stride, check)
-        _begin(result, filling, follower, seen, check)
-        _spread(filling, follower, seen, stride, check)
+        _spread(filling, follower, seen, stride)
+        _begin(result, filling, follower, seen)
+        _spread(filling, follower, seen, stride)
     return filling
 
 
@@ -230,7 +223,6 @@ def _begin(
     filling: Filling,
     follower: PixelSolver,
     seen: Flags,
-    check: Callable[[], None],
 ) -> None:
     """In each cell of which no pixel is done: from the sample's solutions to the pixels that are
     nearest to it.
@@ -238,7 +230,6 @@ def _begin(
     cells = follower.wanted.cell
     finished = set(np.unique(cells[filling.done & (cells != NONE)]).tolist())
     for number in np.unique(cells[seen & ~filling.done & (cells != NONE)]).tolist():
-        check()
         cell = result.cells[number]
         start = starting_points(result.slice.model, cell, follower.wanted.only_stable)
         if number in finished or not start.shape[1]:
@@ -258,9 +249,7 @@ def _begin(
             _take(filling, follower, rows[nearest], columns[nearest], guess)
 
 
-def _spread(
-    filling: Filling, follower: PixelSolver, seen: Flags, stride: int, check: Callable[[], None]
-) -> None:
+def _spread(filling: Filling, follower: PixelSolver, seen: Flags, stride: int) -> None:
     """From pixels that are done to their neighbours of the same count, until none is left that this
     helps.
     """
@@ -274,7 +263,6 @@ def _spread(
     while moved:
         moved = False
         for step in steps:
-            check()
             rows, columns = np.nonzero(~tried[step] & ~filling.done)
             s, t = rows + step[0], columns + step[1]
             inside = (s >= 0) & (s < total.shape[0]) & (t >= 0) & (t < total.shape[1])

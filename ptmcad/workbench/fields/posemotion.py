@@ -145,7 +145,7 @@ def _stops(walk: _Walk, frames: int) -> list[_Stop]:
     places = GridPoints(x, y, np.array([cells], dtype=np.int64))
     follower = PixelSolver(result, places)
     solutions, wanted = filled(result, follower), follower.wanted
-    complete(result, lambda _, column: points[column], solutions, wanted.total, lambda: None)
+    complete(result, lambda _, column: points[column], solutions, wanted.total)
     stops: list[_Stop] = []
     for k, (share, point, number) in enumerate(zip(shares, points, cells, strict=True)):
         step = Step(float(share), point, (), None)

@@ -141,7 +141,6 @@ def field_of(
     columns: int = 400,
     rows: int | None = None,
     checks: int = CHECKS,
-    check: Callable[[], None] = lambda: None,
     progress: Progress = lambda _stage, _done, _total: None,
 ) -> Field:
     """A quantity of a pose at the centres of columns x rows pixels.
@@ -150,7 +149,6 @@ def field_of(
     ----------
     request : of the map's slice.
     checks : number of pixels that are compared with exact poses.
-    check : called again and again; may raise to stop.
     progress : called as progress(stage, done, total).
 
     Raises
@@ -170,10 +168,8 @@ def field_of(
         raise ConfigError(
             "this map knows the stable equilibria only, and a barrier is a saddle's", key=OPTION
         )
-    solutions = filled(result, follower, check)
-    missed = complete(
-        result, lambda r, c: centre(result, grid, r, c), solutions, wanted.total, check
-    )
+    solutions = filled(result, follower)
+    missed = complete(result, lambda r, c: centre(result, grid, r, c), solutions, wanted.total)
     values, chosen = (
         np.full(grid.region.shape, np.nan),
         np.full(grid.region.shape, NONE, dtype=np.int64),
@@ -181,7 +177,6 @@ def field_of(
     places = np.nonzero(solutions.done & (wanted.total > 0))
     batch = LARGE_BATCH if quantity.is_barrier else BATCH
     for first in range(0, len(places[0]), batch):
-        check()
         progress("pixels", first, len(places[0]))
         r, c = (p[first : first + batch] for p in places)
         values[r, c], chosen[r, c] = _at_pixels(
@@ -193,7 +188,7 @@ def field_of(
         )
     beyond = np.isinf(values)
     values[beyond] = np.nan
-    other = jumps(result, follower, solutions, chosen, grid.region, check)
+    other = jumps(result, follower, solutions, chosen, grid.region)
     number, difference = _checked(result, quantity, choice, values, follower, checks)
     return Field(
         quantity.name,
@@ -330,7 +325,6 @@ def complete(
     point: Callable[[int, int], tuple[Fraction, Fraction]],
     solutions: Filling,
     total: Integers,
-    check: Callable[[], None],
 ) -> int:
     """Exact poses where neighbours led nowhere; the number of places that stay without their
     solutions.
@@ -341,7 +335,6 @@ def complete(
     """
     rows, columns = np.nonzero(~solutions.done & (total > 0))
     for row, column in list(zip(rows.tolist(), columns.tolist(), strict=True))[:MAX_LEFT]:
-        check()
         poses = exact_at(result, *point(row, column))
         points = [unknowns_of(p) for p in poses.equilibria]
         if len(points) != total[row, column]:  # of a map of the stable ones only

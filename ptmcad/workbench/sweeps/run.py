@@ -38,7 +38,7 @@ from ptmcad.workbench.sweeps.pool import Pool, answers_of
 
 if TYPE_CHECKING:
     from ptmcad.show.sweeps.sketch import Thumbnail
-    from ptmcad.workbench.sweeps.cluster import Cluster
+    from ptmcad.workbench.sweeps.pool import Cluster
 
 RETRIES = 2
 """How often a member is tried again that has failed."""
@@ -156,7 +156,7 @@ def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[]
             return Pool(work, jobs or processors(), work.wanted.timeout)
 
         return pool
-    from ptmcad.workbench.sweeps.cluster import Cluster
+    from ptmcad.workbench.sweeps.pool import Cluster
 
     require(
         Extra.distributed, key="--scheduler"
