@@ -116,7 +116,7 @@ def command(
         )  # what means nothing is refused before anything is computed
         options = Options(areas=False, progress=progress, timeout=limits.timeout)
         result = stored or made_map(slice, options, tolerance)
-        expect_somewhere(result, request.choice)
+        expect_somewhere(result, request[1])
         with stored_in(asked.config if stored else None):
             field = field_of(result, request, *pixels, checks=checks, progress=progress)
             _expect_values(field)

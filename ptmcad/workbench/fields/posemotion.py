@@ -144,15 +144,15 @@ def _stops(walk: _Walk, frames: int) -> list[_Stop]:
     x, y = (np.array([[float(point[k]) for point in points]]) for k in (0, 1))
     places = GridPoints(x, y, np.array([cells], dtype=np.int64))
     follower = PixelSolver(result, places)
-    solutions, wanted = filled(result, follower), follower.wanted
-    complete(result, lambda _, column: points[column], solutions, wanted.total)
+    solutions = filled(result, follower)
+    complete(result, lambda _, column: points[column], solutions, follower.total)
     stops: list[_Stop] = []
     for k, (share, point, number) in enumerate(zip(shares, points, cells, strict=True)):
         step = Step(float(share), point, (), None)
         if number == NONE:
             stops.append(_open(walk, share, step))
             continue
-        counts, many = result.cells[number], int(wanted.total[0, k])
+        counts, many = result.cells[number], int(follower.total[0, k])
         known = solutions.at[:, 0, k, :many] if solutions.done[0, k] and many >= 0 else None
         told = replace(step, total=counts.total, stable=counts.stable)
         stops.append((share, _with_others(walk, told, known), known))

@@ -98,12 +98,8 @@ def choice_of(text: str, model: Model) -> Choice:
     return Choice(match[1], int(match[2] or 1))
 
 
-@dataclass(frozen=True, slots=True)
-class FieldRequest:
-    """A quantity of a pose, both of which have a meaning for the slice."""
-
-    quantity: Valued
-    choice: Choice
+FieldRequest = tuple[Valued, Choice]
+"""A quantity of a pose, both of which have a meaning for the slice."""
 
 
 def request_of(slice: Slice, value: str, pose: str) -> FieldRequest:
@@ -132,7 +128,7 @@ def request_of(slice: Slice, value: str, pose: str) -> FieldRequest:
                 f"under the {what} a pose's energy is not what a barrier is counted from",
                 key=OPTION,
             )
-    return FieldRequest(quantity, choice)
+    return quantity, choice
 
 
 def field_of(
@@ -156,25 +152,24 @@ def field_of(
     ConfigError
         For what this map does not know, or a map without cells.
     """
-    model, quantity, choice = result.slice.model, request.quantity, request.choice
+    model, (quantity, choice) = result.slice.model, request
     grid = grid_of(result, columns, rows)
     follower = PixelSolver(result, places_of(grid))
-    wanted = follower.wanted
-    if wanted.only_stable and choice.kind != "stable":
+    if follower.only_stable and choice.kind != "stable":
         raise ConfigError(
             "this map knows the stable equilibria only: ask for stable:1", key="--pose"
         )
-    if wanted.only_stable and quantity.is_barrier:
+    if follower.only_stable and quantity.is_barrier:
         raise ConfigError(
             "this map knows the stable equilibria only, and a barrier is a saddle's", key=OPTION
         )
     solutions = filled(result, follower)
-    missed = complete(result, lambda r, c: centre(result, grid, r, c), solutions, wanted.total)
+    missed = complete(result, lambda r, c: centre(result, grid, r, c), solutions, follower.total)
     values, chosen = (
         np.full(grid.region.shape, np.nan),
         np.full(grid.region.shape, NONE, dtype=np.int64),
     )
-    places = np.nonzero(solutions.done & (wanted.total > 0))
+    places = np.nonzero(solutions.done & (follower.total > 0))
     batch = LARGE_BATCH if quantity.is_barrier else BATCH
     for first in range(0, len(places[0]), batch):
         progress("pixels", first, len(places[0]))
