@@ -47,14 +47,15 @@ class Third(NamedTuple):
         return self.members == BETWEEN
 
 
-def _typed(
-    config: Path | None,
-    axes: str | None,
-    sets: tuple[str, ...],
-    ranges: tuple[str, ...],
-    mechanism: str | None,
+def typed_line(
+    config: Path | None, axes: str | None, sets: tuple[str, ...], ranges: tuple[str, ...]
 ) -> Typed:
-    return Typed(config, axes, sets, ranges, mechanism=mechanism)
+    """A record and what changes it, as they were typed."""
+    return Typed(config, axes, sets, ranges)
+
+
+def _typed(mechanism: str | None, **line: Any) -> Typed:
+    return typed_line(**line)._replace(mechanism=mechanism)
 
 
 def question_asked(asked: Typed, count: str | None, third: Third) -> Slice | Family:
@@ -115,7 +116,9 @@ def slice_options(command: F) -> F:
 
     What an engine finds wrong with the question is told with its place in the record.
     """
-    command = gathered(asked=_typed)(_with_places(command))
+    command = gathered(asked=(("config", "axes", "sets", "ranges", "mechanism"), _typed))(
+        _with_places(command)
+    )
     for add in (
         range_option,
         set_option,
