@@ -50,7 +50,7 @@ def _style(size: str | None, palette: str | None, title: str | None) -> PictureS
 @click.option("--pose", default="stable:1", show_default=True, metavar="KIND:N",
               help="Which pose is followed, as `ptmcad map` numbers them, at the path's start.")  # fmt: skip
 @click.option("--frames", type=click.IntRange(2, 600), default=90, show_default=True,
-              help="Pictures along the path; each fall has a third of that beside.")  # fmt: skip
+              help="Pictures along the path; each fall has a third of that in addition.")  # fmt: skip
 @click.option(
     "--fps",
     type=click.IntRange(1, MAX_FPS),

@@ -1,4 +1,4 @@
-"""What commands write beside the JSON of a result: pictures, and tables of numbers for other programs;
+"""What commands write in addition to the JSON of a result: pictures, and tables of numbers for other programs;
 and the names of what was written.
 
 Guarantee: the names of all files are known before anything is computed. Whatever a picture fails
@@ -182,7 +182,7 @@ class DrawingOptions(NamedTuple):
 
 
 class Output(NamedTuple):
-    """What is to be printed and written beside the table, and where."""
+    """What is to be printed and written besides the table, and where."""
 
     out: Path
     formats: Formats

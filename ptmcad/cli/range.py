@@ -89,7 +89,7 @@ def slice_and_line(
 
 
 def _other_axis(along: str, given: tuple[str, ...], at: Mapping[str, str]) -> str:
-    """The name of the axis that does not vary along the line; empty when nothing tells it."""
+    """The name of the axis that does not vary along the line; empty when nothing says which."""
     if along in given:
         return given[1 - given.index(along)]
     return next((n for n in given if n in at), next(iter(at), ""))

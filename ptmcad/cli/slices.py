@@ -114,7 +114,7 @@ def slice_options(command: F) -> F:
     """Add CONFIG, ``--mechanism``, ``--slice``, ``--set`` and ``--range``, which the command gets
     as ``asked``.
 
-    What an engine finds wrong with the question is told with its place in the record.
+    What an engine finds wrong with the question is reported with its place in the record.
     """
     command = gathered(asked=(("config", "axes", "sets", "ranges", "mechanism"), _typed))(
         _with_places(command)

@@ -57,7 +57,7 @@ def _wanted(
 @click.option("--out", type=PATH, help="Folder of the sweep.  [default: NAME-sweep]")
 @format_option(
     FORMATS,
-    "What to write of the whole sweep beside the index and the results: csv (a line for each member), "
+    "What to write of the whole sweep besides the index and the results: csv (a line for each member), "
     "html (an atlas), gif or mp4 (a film of the maps).  [default: none]",
 )
 @click.option(

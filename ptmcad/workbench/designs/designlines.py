@@ -13,7 +13,7 @@ without interior, the count is the wanted one; see `refined` for the proof.
 
 Why. The line's window is cut into parts. A part on which no polynomial of the discriminant variety
 has a zero, for any design in the interior of the box, is a connected piece of the parameter space
-without the variety, so that all counts are constant there, and one exact sample tells them. Two
+without the variety, so that all counts are constant there, and one exact sample has them. Two
 such parts side by side are in one piece if every polynomial has the same sign on both: an
 irreducible one that vanished on all of the common face would be the face's own equation, and of
 different signs. Parts that meet a known piece, for a box inside of the one it was known for, belong

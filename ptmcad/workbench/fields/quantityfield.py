@@ -363,7 +363,7 @@ def _checked(
 ) -> tuple[int, float]:
     """How many random pixels were compared with exact poses, and the largest difference as a share.
 
-    Where certified poses could not be told apart there is nothing to compare with.
+    Where certified poses could not be distinguished there is nothing to compare with.
     """
     rows, columns = np.nonzero(~np.isnan(values))
     if not len(rows) or not checks:
