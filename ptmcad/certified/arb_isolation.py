@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from flint import arb, arb_mat, ctx, fmpq
 
 from ptmcad.certified.equationsystem import EquationSystem
-from ptmcad.formulas.balls import EmptyMeet, run_arb
+from ptmcad.formulas.ballarithmetic import EmptyMeet, run_arb
 
 Box = tuple[arb, ...]
 """The balls of all variables, by number; those that are not searched are the same in all boxes."""

@@ -21,7 +21,7 @@ from typing import NamedTuple
 from flint import arb, ctx
 
 from ptmcad.answer.paths import Landing, PathPoint, Target
-from ptmcad.formulas.balls import evaluated, signs_of
+from ptmcad.formulas.ballarithmetic import evaluated, signs_of
 from ptmcad.formulas.continuation import (
     BranchEquations,
     Reached,
@@ -31,10 +31,9 @@ from ptmcad.formulas.continuation import (
     nearer,
     over_range,
 )
-from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.values import substituted
+from ptmcad.formulas.evaluation import substituted
+from ptmcad.formulas.graph import Formula, determinant, gradient
 from ptmcad.model import Mechanism
-from ptmcad.model.determinants import determinant, gradient
 from ptmcad.question.line import compiled_on
 from ptmcad.text.balls import ball_of, ball_over, enclosure_of
 from ptmcad.text.enclosure import Enclosure

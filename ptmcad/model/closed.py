@@ -15,7 +15,7 @@ from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.model.crossed import MAX_PRODUCTS
 from ptmcad.model.description import ClosedMechanism, Mechanism, Model, equations_in
 from ptmcad.model.identities import Ring
-from ptmcad.model.sizes import MAX_TERMS, TOO_LARGE, Sizes
+from ptmcad.model.termbounds import MAX_TERMS, TOO_LARGE, Sizes
 from ptmcad.model.work import tree_of
 from ptmcad.text.tree import Tree
 

@@ -20,14 +20,14 @@ from operator import sub
 from typing import TypeVar
 
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.graph import Formula, Graph
-from ptmcad.formulas.values import Substitution, values
-from ptmcad.formulas.values import evaluated as with_values
-from ptmcad.model import crossed, loops
+from ptmcad.formulas.evaluation import Substitution, values
+from ptmcad.formulas.evaluation import evaluated as with_values
+from ptmcad.formulas.graph import Formula, Graph, gradient
+from ptmcad.model import closedloops as loops
+from ptmcad.model import crossed
 from ptmcad.model.criterion import Criterion
 from ptmcad.model.crossed import Follower
 from ptmcad.model.description import Mechanism, Model, equations_in
-from ptmcad.model.determinants import gradient
 from ptmcad.model.elements import second_bar
 from ptmcad.model.evaluate import ByNames, Element, Ring, evaluate, evaluated
 from ptmcad.model.springs import AngularSpring, ElasticLine, Vector

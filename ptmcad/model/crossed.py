@@ -24,12 +24,11 @@ from math import prod
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.values import values
-from ptmcad.model.determinants import determinant
+from ptmcad.formulas.evaluation import values
+from ptmcad.formulas.graph import Formula, determinant
 from ptmcad.model.evaluate import ByNames
 from ptmcad.model.identities import Polynomial, Ring
-from ptmcad.model.sizes import MAX_TERMS, TOO_LARGE
+from ptmcad.model.termbounds import MAX_TERMS, TOO_LARGE
 
 MAX_PRODUCTS = 2_000_000
 """Products of terms while the energy is made: some seconds. Two joints with symbolic lengths take a

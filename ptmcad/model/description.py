@@ -3,7 +3,7 @@ expressions.
 
 And any other parametric system: equations or a potential, and what a solution has to satisfy.
 
-Guarantee: what `ptmcad.model.record` has read is consistent: every name that occurs is a parameter,
+Guarantee: what `ptmcad.model.mechanismrecord` has read is consistent: every name that occurs is a parameter,
 an unknown or a point, angles stand inside of cosines and sines only, and every tree has a value in
 any ring (`evaluate`).
 """

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from html import escape
 
 from ptmcad.errors import ConfigError
-from ptmcad.formulas.doubles import Doubles
+from ptmcad.formulas.instructions import Doubles
 from ptmcad.model import Mechanism, Support
 from ptmcad.model.compile import compiled
 from ptmcad.model.joints import joints_of

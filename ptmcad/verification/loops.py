@@ -1,6 +1,6 @@
 """What equilibria of a mechanism with closed loops satisfy.
 
-Guarantee: nothing is taken from `ptmcad.model.loops`, which has the same as formulas of one graph.
+Guarantee: nothing is taken from `ptmcad.model.closedloops`, which has the same as formulas of one graph.
 With g the squared distances that closing bars keep, less the squares of these, and U the energy, an
 equilibrium is a zero of g and of E, the determinant of the gradients of g and U; it is stable where
 the determinant of the gradients of g and E is positive. Where several degrees of freedom are left,

@@ -28,7 +28,7 @@ from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.errors import ConfigError, GeometryError
-from ptmcad.model.mechanisms import RECORD
+from ptmcad.model.builtin import RECORD
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.ranges.certified import table as interval_table

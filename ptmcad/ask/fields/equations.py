@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.formulas.doubles import Doubles
+from ptmcad.formulas.instructions import Doubles
 from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled
 

@@ -28,12 +28,11 @@ from ptmcad.certified.plain.pointcounts import BranchCounter, PlainCounter, plai
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.rational import Point, exact_eigenvalues, exact_values, rational_point
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
-from ptmcad.formulas.balls import ball, run_arb
-from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.formulas.ballarithmetic import ball, run_arb
+from ptmcad.formulas.graph import Formula, Graph, gradient
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import Mechanism, Model, ptm
 from ptmcad.model.compile import CompiledSystem, compiled_with
-from ptmcad.model.determinants import gradient
 from ptmcad.model.fourbars import flat_everywhere
 from ptmcad.question.counts import POSE_COLUMNS, Count
 from ptmcad.question.domain import proved

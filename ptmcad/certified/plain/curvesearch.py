@@ -23,7 +23,7 @@ from ptmcad.certified.plain.problem import FIRST, Condition, Problem, Range
 from ptmcad.certified.plain.springchart import SpringChart
 from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.intervalarithmetic import program, run
 from ptmcad.formulas.tape import record
 from ptmcad.question.slice import Slice
 

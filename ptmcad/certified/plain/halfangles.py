@@ -21,7 +21,7 @@ from ptmcad.certified.plain.harmonics import Multi, TrigonometricPolynomial, Vec
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem
 from ptmcad.certified.plain.zeros import PRECISIONS, PointCount, radius_between
 from ptmcad.certified.uniqueness import FULL_TURN
-from ptmcad.formulas.balls import ball
+from ptmcad.formulas.ballarithmetic import ball
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.flint_numbers import to_fraction
 

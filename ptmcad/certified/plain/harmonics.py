@@ -18,8 +18,7 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.graph import Formula, Graph, direction
+from ptmcad.formulas.graph import Formula, Graph, direction, expression_formula
 from ptmcad.text.expressions import Expression, constant
 
 Vector = tuple["TrigonometricPolynomial", "TrigonometricPolynomial"]

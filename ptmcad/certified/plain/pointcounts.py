@@ -29,9 +29,9 @@ from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.certified.plain.zeros import PRECISIONS, PointCount, Zeros, ZeroSearch, boxed
 from ptmcad.errors import DegenerateSliceError
-from ptmcad.formulas.balls import ball, run_arb
+from ptmcad.formulas.ballarithmetic import ball, run_arb
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.intervals import Indices, program, run
+from ptmcad.formulas.intervalarithmetic import Indices, program, run
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import ptm
 from ptmcad.model.criterion import by_hessian

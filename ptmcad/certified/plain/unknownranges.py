@@ -19,9 +19,8 @@ from ptmcad.certified.plain.harmonics import Multi, TrigonometricPolynomial
 from ptmcad.certified.plain.problem import FIRST, TURN, Problem, Range
 from ptmcad.certified.plain.springchart import chart
 from ptmcad.errors import ConfigError
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.graph import Formula, Graph, Operation, length
-from ptmcad.formulas.intervals import Floats, program, run
+from ptmcad.formulas.graph import Formula, Graph, Operation, expression_formula, length
+from ptmcad.formulas.intervalarithmetic import Floats, program, run
 from ptmcad.formulas.tape import Tape, enclosing_floats, record
 from ptmcad.question.slice import Axis
 

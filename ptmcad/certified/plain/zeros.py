@@ -25,7 +25,7 @@ from ptmcad.certified.branchandprune import Boxes, SearchResult, isolate
 from ptmcad.certified.equationsystem import Arguments, EquationSystem
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, Range
 from ptmcad.certified.uniqueness import FULL_TURN, distinct
-from ptmcad.formulas.balls import ball, lower, upper
+from ptmcad.formulas.ballarithmetic import ball, lower, upper
 from ptmcad.formulas.tape import enclosing_floats
 
 MANY_BOXES = 6_000_000

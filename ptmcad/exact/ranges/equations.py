@@ -14,10 +14,9 @@ from flint import arb, ctx
 from ptmcad.algebra.polynomials import Monomial
 from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import ParametricSystem, Part, Terms
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.balls import evaluated, signs_of
+from ptmcad.formulas.ballarithmetic import evaluated, signs_of
 from ptmcad.formulas.continuation import BITS, BranchEquations, Reached, Vector, branch_equations
-from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.formulas.graph import Formula, Graph, expression_formula
 from ptmcad.model.compile import CompiledSystem
 from ptmcad.question.line import Line, compiled_on
 from ptmcad.text.balls import ball_over

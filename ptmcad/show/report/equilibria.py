@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution
 from ptmcad.errors import ConfigError, PoleError
-from ptmcad.formulas.values import evaluated
+from ptmcad.formulas.evaluation import evaluated
 from ptmcad.model import Mechanism, Model
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.question.slice import merged

@@ -42,8 +42,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from ptmcad.formulas.graph import Formula
-from ptmcad.model.determinants import cofactors, determinant, gradient
+from ptmcad.formulas.graph import Formula, cofactors, determinant, gradient
 
 Row = tuple[Formula, ...]
 

@@ -13,7 +13,7 @@ from ptmcad.errors import ConfigError, Faults, Place
 from ptmcad.model.description import System
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.reading import VALUE, Context, new_name, parsed
-from ptmcad.model.sizes import check_sizes
+from ptmcad.model.termbounds import check_sizes
 from ptmcad.model.trees import PI
 from ptmcad.text.codec import Codec, listed, part, reading, record
 from ptmcad.text.entry import from_python
