@@ -25,10 +25,10 @@ from ptmcad.formulas.evaluation import evaluated as with_values
 from ptmcad.formulas.graph import Formula, Graph, gradient
 from ptmcad.model import closedloops as loops
 from ptmcad.model import crossed
+from ptmcad.model.antiparallelogram import second_bar
 from ptmcad.model.criterion import Criterion
 from ptmcad.model.crossed import Follower
 from ptmcad.model.description import Mechanism, Model, equations_in
-from ptmcad.model.elements import second_bar
 from ptmcad.model.evaluate import ByNames, Element, Ring, evaluate, evaluated
 from ptmcad.model.springs import AngularSpring, ElasticLine, Vector
 from ptmcad.model.work import split_moments
@@ -261,15 +261,15 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
 
 def _with_followers(
     known: CompiledSystem, model: Model, variables: Mapping[str, Formula]
-) -> crossed.AngleConditions:
+) -> loops.EquilibriumConditions:
     """What holds in the unknowns alone. It is multiplied out in names, which variables have in
     their own places.
     """
     if any(formula is not known.graph.variable(k) for k, formula in enumerate(variables.values())):
         own = compiled(model)
         places = {k: variables[name] for k, name in enumerate(own.names)}
-        found = own.equations, own.inequalities[len(known.inequalities) :], own.stability
-        return crossed.AngleConditions(*with_values(found, Substitution(known.graph, places)))
+        found = own.equations, own.stability, (), own.inequalities[len(known.inequalities) :]
+        return loops.EquilibriumConditions(*with_values(found, Substitution(known.graph, places)))
     assert known.smooth is not None
     moments = dict(zip(model.sorted_unknowns, known.moments, strict=True))
     return crossed.conditions(known.smooth, known.followers, moments, variables)
@@ -373,4 +373,4 @@ def _with_loops(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> Com
     own = len(known.unknowns) - len(mechanism.force_densities)
     tensions = tuple(map(known.graph.variable, known.unknowns[own:]))
     found = loops.conditions(tuple(closing), known.forces[:own], known.unknowns[:own], tensions)
-    return replace(known, **found._asdict())
+    return replace(known, **found._replace(inequalities=known.inequalities)._asdict())

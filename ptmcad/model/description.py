@@ -16,6 +16,7 @@ from functools import cached_property
 from typing import Any
 
 from ptmcad.errors import ExpressionError
+from ptmcad.model.antiparallelogram import XJoint
 from ptmcad.model.criterion import CONDITIONS, DEFINITENESS, NOTHING, Criterion, by_hessian
 from ptmcad.model.elements import (
     NAMES,
@@ -30,7 +31,6 @@ from ptmcad.model.elements import (
     TorsionSpring,
     Unit,
     UnknownKind,
-    XJoint,
 )
 from ptmcad.model.evaluate import multiples
 from ptmcad.model.parametric import UNITS, Model, Nouns

@@ -14,7 +14,7 @@ from ptmcad.show.document import design, poses, regionmap
 from ptmcad.show.export.document import FORMAT as VARIETY
 from ptmcad.show.export.document import variety_codec
 from ptmcad.show.ranges import document as ranges
-from ptmcad.text.codec import Schema, document_schema
+from ptmcad.text.documents import Schema, document_schema
 
 PROSE = ("$schema", "title", "description")
 

@@ -15,7 +15,8 @@ from ptmcad.question.slice import Axis
 from ptmcad.show.document.maxima import maximum
 from ptmcad.show.document.numbers import AXIS, INTERVAL, LINE
 from ptmcad.show.document.slice import model_from, stored_model
-from ptmcad.text.codec import TEXT, WHOLE, Codec, Key, document_text, listed, named, record_of
+from ptmcad.text.codec import TEXT, WHOLE, Codec, Key, listed, named, record_of
+from ptmcad.text.documents import document_text
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.node import Node, opened
 from ptmcad.version import __version__
