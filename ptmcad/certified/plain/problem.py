@@ -117,7 +117,7 @@ class Problem:
     further : all are positive where the predicate holds that a count is by; empty where it is by
         none.
     covering : of each of the description's unknowns its whole multiples of these, where these are
-        others (`ptmcad.certified.plain.halfangles`).
+        others (`ptmcad.certified.plain.straight`).
     """
 
     unknowns: tuple[str, ...]

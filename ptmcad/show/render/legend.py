@@ -22,7 +22,7 @@ from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
 from ptmcad.show.render.inches import stroke, write
 from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.table import area_by_count, area_text, areas_are_known, count_text
-from ptmcad.text.bounds import percent
+from ptmcad.text.numerals import percent
 
 STRONG, THIN, INK = 1.3, 0.5, "#111111"
 """Widths in points of walls that separate regions and of others, and the colour of both."""

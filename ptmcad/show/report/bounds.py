@@ -12,8 +12,7 @@ from math import atan2
 from typing import Any, NamedTuple
 
 from ptmcad.text.balls import rational_bounds
-from ptmcad.text.bounds import nearest_multiple
-from ptmcad.text.numerals import integer_text, magnitude
+from ptmcad.text.numerals import integer_text, magnitude, nearest_multiple
 
 
 class Bounds(NamedTuple):

@@ -22,8 +22,7 @@ from ptmcad.show.report.equilibria import both, distinct_parameters
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, stability_in_words
 from ptmcad.show.units import area_unit, unit, with_unit
-from ptmcad.text.bounds import certified_digits, percent
-from ptmcad.text.numerals import decimal, text_of
+from ptmcad.text.numerals import certified_digits, decimal, percent, text_of
 
 _STATUS = {
     Status.EXACT: "Exact: every point of the window off the boundary curves is in a region, and the counts are proved.",
