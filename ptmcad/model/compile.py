@@ -6,8 +6,8 @@ read it; the checker does not.
 
 Guarantee: exact, and nothing is known by name: each formula follows from the description's
 expressions. All are polynomials in the parameters, the unknowns on the line, and the cosines and
-sines of angles; what a spring with a free length takes off the energy is kept beside them, as that
-has a root.
+sines of angles; what a spring with a free length takes off the energy is kept apart, as that has a
+root.
 """
 
 from __future__ import annotations
@@ -173,7 +173,7 @@ class CompiledSystem:
         return self.energy(relaxed) if self.criterion.order else None
 
     def stored(self, relaxed: Iterable[int] | None = None) -> Formula | None:
-        """The same, whatever acts beside it."""
+        """The same, whatever else acts."""
         if self.smooth is None:
             return None
         counted = range(len(self.springs)) if relaxed is None else relaxed

@@ -151,7 +151,7 @@ class Part(NamedTuple):
 
 
 class Root(NamedTuple):
-    """What an energy lacks beside its polynomial part: pull times a length, which is a root."""
+    """The part of an energy that is no polynomial, with its sign changed: pull times a length."""
 
     pull: Tree
     squared: Tree

@@ -6,9 +6,9 @@ not turn. As complex numbers, the way from one point of a rigid part to another 
 where n are whole numbers and u the angles: n is the part's direction. A spring on the angle m.u
 belongs to a point at which parts meet whose directions differ by m or by -m.
 
-Guarantee: exact; the direction is read off the derivatives by the unknowns. A joint is told only
+Guarantee: exact; the direction is read off the derivatives by the unknowns. A joint is named only
 where there is one such point, else none: the sides of a parallelogram have the same angle at two
-points, and a description may show neither part. What is told is for drawings alone.
+points, and a description may show neither part. It is for drawings alone.
 """
 
 from __future__ import annotations

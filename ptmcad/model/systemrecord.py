@@ -47,7 +47,7 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     codec = system_codec(context)
     found = codec.read(Node.of(from_python(record, Place()), faults))
     system = System(**{**found, "parameters": context.parameters}, source=record)
-    # a key that nobody knows has been told, and may be meant for one of these
+    # an unknown key has been reported, and may be meant for one of these
     misspelt = (
         not {"equations", "potential"} & record.keys()
         and not record.keys() <= codec.schema["properties"].keys()

@@ -48,7 +48,7 @@ class Split(NamedTuple):
 
     @property
     def beside(self) -> tuple[Moment, ...]:
-        """What acts beside all energies."""
+        """The moments that act in addition to all energies."""
         return self.steady + self.coupled
 
 

@@ -315,9 +315,10 @@ def _all_bounded(
 
 
 def _proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
-    """An enclosure that settles the digits asked for, or, of a number that is still not told from
-    one halfway between two texts of so many after all that may explain it was tried, of one digit
-    more; None of a wider one.
+    """An enclosure that settles the digits asked for; None of a wider one.
+
+    A number may lie so near the middle between two texts of that many digits that no attempt tells
+    them apart: one digit more settles it.
     """
     found = enclosed(number, digits)
     return enclosed(number, digits + 1) if found is None and attempt > 1 else found
@@ -327,8 +328,8 @@ def with_further(pose: Pose) -> Pose:
     """The pose with the predicates that hold or not; without a potential nothing says what is
     stable.
     """
-    told = POSE_COLUMNS if pose.energy is not None else {}
-    found = {name: _holds(pose.stable, column.margins(pose)) for name, column in told.items()}
+    columns = POSE_COLUMNS if pose.energy is not None else {}
+    found = {name: _holds(pose.stable, column.margins(pose)) for name, column in columns.items()}
     return replace(
         pose, further={name: holds for name, holds in found.items() if holds is not None}
     )
@@ -354,7 +355,7 @@ def assembled(
     """
     mechanism = at.mechanism
 
-    def said(*whats: str) -> Callable[[Any], Any]:
+    def numbers_of(*whats: str) -> Callable[[Any], Any]:
         return lambda spring: tuple(numbers[f"{spring.name}.{what}"] for what in whats)
 
     eigenvalues = tuple(
@@ -384,8 +385,8 @@ def assembled(
         **springs_of(
             at.system.elastic,
             _number,
-            said("length", "force"),
-            said("deflection.radians", "deflection.degrees", "moment"),
+            numbers_of("length", "force"),
+            numbers_of("deflection.radians", "deflection.degrees", "moment"),
         ),
     )
 

@@ -253,7 +253,7 @@ class PlainCounter:
         return ""
 
     def _index_in_floats(self, narrow: Boxes) -> int | None:
-        """The number of negative eigenvalues all over a box; None where doubles do not tell."""
+        """The number of negative eigenvalues all over a box; None where doubles do not decide it."""
         size, variables = len(self.problem.unknowns), len(narrow) // 2
         low, high = np.empty((2, len(self.hessian)))
         run(

@@ -208,7 +208,7 @@ def _primitive(pair: Pair) -> Pair:
     x, y = (Expression(quotient(c.numerator, divisor)) if c.numerator else c for c in (x, y))
     if not (x.is_constant and y.is_constant):
         return x, y
-    # the smallest whole numbers, which are told to the user
+    # the smallest whole numbers, which the user sees
     p, q = x.constant(), y.constant()
     ratio = q / p if p else Fraction(0)
     return (

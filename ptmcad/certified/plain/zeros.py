@@ -126,7 +126,7 @@ class ZeroSearch:
         self, x: Fraction, y: Fraction, system: EquationSystem, found: SearchResult
     ) -> SearchResult:
         """The same with the zeros, if any, in the boxes that floating point left open, where more
-        digits tell them.
+        digits decide them.
         """
         for precision, budget in zip(PRECISIONS, ARB_BUDGETS, strict=True):
             with ctx.workprec(precision):
