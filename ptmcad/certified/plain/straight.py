@@ -237,13 +237,7 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
     problem : without pushes.
     turn : the multiples of its angles in that sum, of which some are odd.
     """
-    size = range(len(turn))
-    halved = min((k for k in size if turn[k] % 2), key=lambda k: abs(turn[k]))
-    others = {j: turn[halved] * turn[j] for j in size if j != halved}
-    rows = tuple(
-        tuple(2 * (j == k) - others.get(j, 0) if k == halved else int(j == k) for j in size)
-        for k in size
-    )
+    size, rows = range(len(turn)), _rows(turn)
 
     def slopes(old: Sequence[TrigonometricPolynomial]) -> tuple[TrigonometricPolynomial, ...]:
         """By the new unknowns; with closed loops the last one is along these, the first ones stay
@@ -290,6 +284,17 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
         multiples=tuple(f.substituted(rows) for f in problem.multiples),
         further=conditions(problem.further),
         covering=_product(problem.covering, rows) if problem.covering else rows,
+    )
+
+
+def _rows(turn: Multi) -> Rows:
+    """The angles as multiples of new ones, of which one is half the sum."""
+    size = range(len(turn))
+    halved = min((k for k in size if turn[k] % 2), key=lambda k: abs(turn[k]))
+    others = {j: turn[halved] * turn[j] for j in size if j != halved}
+    return tuple(
+        tuple(2 * (j == k) - others.get(j, 0) if k == halved else int(j == k) for j in size)
+        for k in size
     )
 
 
