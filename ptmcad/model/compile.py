@@ -29,12 +29,12 @@ from ptmcad.model.antiparallelogram import second_bar
 from ptmcad.model.criterion import Criterion
 from ptmcad.model.crossed import Follower
 from ptmcad.model.description import Mechanism, Model, equations_in
-from ptmcad.model.evaluate import ByNames, Element, Ring, evaluate, evaluated
+from ptmcad.model.evaluate import ByNames, Ring, RingElement, evaluate, evaluated
 from ptmcad.model.springs import AngularSpring, ElasticLine, Vector
 from ptmcad.model.work import split_moments
 from ptmcad.text.tree import Tree
 
-E = TypeVar("E", bound=Element)
+E = TypeVar("E", bound=RingElement)
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,7 +28,7 @@ from ptmcad.formulas.evaluation import values
 from ptmcad.formulas.graph import Formula, determinant
 from ptmcad.model.closedloops import EquilibriumConditions
 from ptmcad.model.evaluate import ByNames
-from ptmcad.model.identities import Polynomial, Ring
+from ptmcad.model.identities import Polynomial, PolynomialRing
 from ptmcad.model.termbounds import MAX_TERMS, TOO_LARGE
 
 MAX_PRODUCTS = 2_000_000
@@ -76,7 +76,7 @@ def conditions(
         When the equations may have too many terms.
     """
     names = tuple(variables)
-    expanded = ByNames(names, Ring(MAX_PRODUCTS))
+    expanded = ByNames(names, PolynomialRing(MAX_PRODUCTS))
     left, *steady = values([energy, *moments.values()], expanded)
     bars = [
         _SecondBar(names[f.leader], names[f.variable], *values(f[2:], expanded)) for f in followers
