@@ -25,7 +25,7 @@ from ptmcad.algebra.polynomials import Values
 from ptmcad.answer.poses import Pose, springs_of
 from ptmcad.exact.point_system import PointSystem
 from ptmcad.exact.stiffness import RealNumber, Stiffness, eigenvalues, square_root, stiffness_of
-from ptmcad.formulas.values import evaluated, values
+from ptmcad.formulas.evaluation import evaluated, values
 from ptmcad.model.compile import CompiledSystem
 from ptmcad.model.criterion import Criterion
 from ptmcad.text.balls import ball_of

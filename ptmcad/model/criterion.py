@@ -1,4 +1,4 @@
-"""What is known of a solution beside that it is one: whether it is stable, and its index.
+"""The stability and the index of a solution, as far as they are known.
 
 Guarantee: a model has one criterion, which decides, counts and names what is known in its case.
 Whoever needs a number, a word or a matrix asks for that; where nothing is known there is none.
@@ -109,7 +109,7 @@ class Criterion:
         return stable is True or not self.is_told
 
     def kind(self, stable: bool | None, index: int | None) -> str:
-        """What a solution is called where it stands beside others."""
+        """The name of a solution among others."""
         if stable is None:
             return self.undecided
         return critical_point(index, self.order) if index else "stable" if stable else "unstable"

@@ -14,8 +14,8 @@ from ptmcad.answer.regionmap import System
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models.system import ParametricSystem, from_equations
 from ptmcad.exact.models.turns import with_turns
+from ptmcad.formulas.evaluation import values
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.values import values
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
 from ptmcad.model.evaluate import ByNames, evaluate
