@@ -30,15 +30,8 @@ from ptmcad.exact.cad.stacks import Avoided, StackData, level_at, lift
 from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import to_fraction
 
-
-class Link(NamedTuple):
-    """Cells ``first`` and ``second`` share an open arc; ``component`` is the variety's component on
-    it, or None.
-    """
-
-    first: int
-    second: int
-    component: int | None
+Link = tuple[int, int, int | None]
+"""Two cells that share an open arc, and the variety's component on it, or None."""
 
 
 def merge(keys: Sequence[Hashable], links: Sequence[Link]) -> tuple[int, ...]:
@@ -61,14 +54,14 @@ def merge(keys: Sequence[Hashable], links: Sequence[Link]) -> tuple[int, ...]:
             i = parent[i]
         return i
 
-    for link in links:
-        equal = keys[link.first] == keys[link.second]
-        if link.component is None and not equal:
+    for first, second, component in links:
+        equal = keys[first] == keys[second]
+        if component is None and not equal:
             raise ArithmeticError(
-                f"cells {link.first} and {link.second} are joined off the variety but differ in count"
+                f"cells {first} and {second} are joined off the variety but differ in count"
             )
         if equal:
-            a, b = root(link.first), root(link.second)
+            a, b = root(first), root(second)
             parent[max(a, b)] = min(a, b)
     numbers: dict[int, int] = {}
     return tuple(numbers.setdefault(root(i), len(numbers)) for i in range(len(keys)))
@@ -252,7 +245,7 @@ def neighbours_of(
         When the counts contradict the decomposition.
     """
     adjacencies = tuple(adjacencies_of(cut, crossings, keys))
-    region_of = merge(keys, [Link(a.first, a.second, a.component) for a in adjacencies])
+    region_of = merge(keys, [(a.first, a.second, a.component) for a in adjacencies])
     return Neighbours(crossings, adjacencies, region_of)
 
 
@@ -266,7 +259,7 @@ def joined_cells(cut: Decomposition, crossings: Sequence[Crossing]) -> tuple[int
     """
     keys = [()] * len(cut.points)
     links = adjacencies_of(cut, crossings, keys)
-    return merge(keys, [Link(a.first, a.second, None) for a in links if a.component is None])
+    return merge(keys, [(a.first, a.second, None) for a in links if a.component is None])
 
 
 def adjacencies_of(
