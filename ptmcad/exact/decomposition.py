@@ -82,7 +82,7 @@ Report = Callable[[int, int], None]
 
 
 def unreported(_done: int, _total: int) -> None:
-    """The report that nobody asked for."""
+    """No report."""
 
 
 class Variety(NamedTuple):
@@ -237,7 +237,7 @@ def neighbours_of(
 
     Parameters
     ----------
-    keys : by which regions are told apart, of each cell.
+    keys : of each cell, distinguishing regions.
 
     Raises
     ------

@@ -61,7 +61,7 @@ class ParametricSystem(NamedTuple):
     criterion : what is known of solutions.
     inequalities : a solution counts where all of them are positive.
     stability : where there is no potential a solution is stable where all of these are positive; of
-        a potential what is asked of a stable solution besides, where a count is by a predicate.
+        a potential the additional conditions of a predicate by which solutions are counted.
     positive : parameters that must be positive (rod lengths and stiffnesses).
     nonnegative : parameters that must not be negative (the base length).
     turns : the equations in other angles, `ptmcad.exact.models.turns.Turns`, where these are
