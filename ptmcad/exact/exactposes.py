@@ -58,8 +58,7 @@ def exact_poses(
             f"infinitely many {what}{'' if is_free(system, values) else ', complex ones included'}"
         )
         return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, remark)
-    # where equations are simpler in other angles there are more coordinates than those of the
-    # unknowns
+    # where solutions are left out there is one coordinate more than those of the unknowns
     real = [replace(p, unknowns=p.unknowns[: system.ring.width]) for p in found.real]
     relaxed = dict.fromkeys(given.free_lengths, fmpq(0)) | values
     solutions = [
