@@ -26,7 +26,7 @@ from ptmcad.exact.cad.projection import (
     predicted_cost,
     project,
 )
-from ptmcad.exact.cad.stacks import Avoided, StackData, level_at, lift
+from ptmcad.exact.cad.stacks import StackData, level_at, lift
 from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import to_fraction
 
@@ -204,8 +204,14 @@ def stacks_of(window: Window, variety: Variety, projection: Projection) -> Decom
     base = variety.base
     # there real solutions stay regular but complex ones are lost, and a fibre may not be finite
     lines = lines_of(variety.components, base, HARMLESS)
-    avoided = Avoided(curves_of(variety.components, base, HARMLESS), list(lines.values()))
-    stacks = lift(variety.curves, projection.abscissae, window[base], window[1 - base], avoided)
+    stacks = lift(
+        variety.curves,
+        projection.abscissae,
+        window[base],
+        window[1 - base],
+        curves_of(variety.components, base, HARMLESS),
+        list(lines.values()),
+    )
     points = (
         ((s.sample, height) if base == 0 else (height, s.sample))
         for s in stacks

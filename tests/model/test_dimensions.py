@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 from flint import fmpq
+from support.counting import system_of
 from support.signatures import count_by_isolation, count_by_signature
 
 from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
@@ -19,7 +20,7 @@ from ptmcad.algebra.trigonometric import TrigonometricRing
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Kind
 from ptmcad.exact.exactposes import exact_poses
-from ptmcad.exact.models import ParametricSystem, system_from, system_of
+from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.models.system import SystemOnAxes, from_equations
 from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.variety import discriminant_variety

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.model import Model, known_of
+from ptmcad.exact.models import ParametricSystem, system_from
+from ptmcad.model import Model, known_of, mechanism_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.counted import CountedPoint
@@ -35,3 +36,8 @@ def counted_at(
     claims = claims_of(values, count)
     counting = counting_of(claims)
     return claims, counting, counting.at(claims, *MIDDLE)
+
+
+def system_of(mechanism: str) -> ParametricSystem:
+    """The parametric system of a built-in mechanism by its name."""
+    return system_from(mechanism_of(mechanism))
