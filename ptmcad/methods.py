@@ -337,8 +337,8 @@ METHODS |= {
         "_repr_png_": "show.notebook:family_png",
     },
     "BoundarySurface": {
-        "to_obj": "show.export.mesh:obj_text",
-        "to_ply": "show.export.mesh:ply_text",
+        "to_obj": "show.mesh:obj_text",
+        "to_ply": "show.mesh:ply_text",
         "_repr_html_": _html(lambda surface: f"{surface!r}\n{surface.words()}"),
     },
     "BestDesign": {
@@ -362,8 +362,8 @@ METHODS |= {
         "_repr_html_": _html(repr),
     },
     "SliceVariety": {
-        "text": "show.export:variety_text",
-        "_repr_html_": _html_by("show.export:variety_text"),
+        "text": "show.varietytext:variety_text",
+        "_repr_html_": _html_by("show.varietytext:variety_text"),
     },
     "Poses": {
         "table": "show.posetable:table",

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from ptmcad.text.tree import Tree, to_text
 
@@ -128,14 +128,6 @@ class Criterion:
     def entry(self, row: int, column: int) -> tuple[int, int]:
         """Which of the equal entries of the matrix stands for one."""
         return (max(row, column), min(row, column)) if self.order else (row, column)
-
-    def turned(self, equations: Sequence[Any], i: int, j: int, sign: int) -> tuple[Any, ...]:
-        """Equations where the angle i is a new one and sign times the angle j: slopes are those by
-        the new angles.
-        """
-        if not self.order:
-            return tuple(equations)
-        return tuple(e + sign * equations[i] if k == j else e for k, e in enumerate(equations))
 
     def decisive(self, conditions: tuple[T, ...]) -> tuple[T, ...]:
         """Those of the conditions for stability off whose zeros no solution loses it."""
