@@ -27,9 +27,10 @@ if TYPE_CHECKING:
     from ptmcad.ask.designs import design
     from ptmcad.ask.families import family
     from ptmcad.ask.lines.follower import pose_paths
-    from ptmcad.ask.ranges import intervals, operation_widths
+    from ptmcad.ask.lines.rangerows import operation_widths
     from ptmcad.ask.solving import solve
     from ptmcad.ask.stepwise import counts_at, discriminant_variety, open_cad
+    from ptmcad.exact.ranges.line import intervals
     from ptmcad.exact.slicevariety import slice_variety
     from ptmcad.question.config import load, slice_from_mapping, slice_from_options
     from ptmcad.question.config import make_mechanism as Mechanism
@@ -65,8 +66,8 @@ _HOMES = {
     "solve": "ask.solving",
     "Sweep": "answer.sweep",
     "sweep": "sweeping.run",
-    "intervals": "ask.ranges",
-    "operation_widths": "ask.ranges",
+    "intervals": "exact.ranges.line",
+    "operation_widths": "ask.lines.rangerows",
     "pose_paths": "ask.lines.follower",
     "RegionMap": "answer.regionmap",
     "Count": "question.counts",

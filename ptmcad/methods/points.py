@@ -71,21 +71,21 @@ def _poses_from_json(_cls: type[Poses], text: str) -> Poses:
 
 def _intervals_repr_html(self: CountIntervals) -> str:
     from ptmcad.show.notebook import text_html
-    from ptmcad.show.ranges.table import table
+    from ptmcad.show.ranges.linetable import table
 
     return text_html(table(self))
 
 
 def _paths_repr_html(self: PosePaths) -> str:
     from ptmcad.show.notebook import text_html
-    from ptmcad.show.ranges.table import path_table
+    from ptmcad.show.ranges.pathtable import path_table
 
     return text_html(path_table(self))
 
 
 def _widths_repr_html(self: OperationWidths) -> str:
     from ptmcad.show.notebook import text_html
-    from ptmcad.show.ranges.table import width_table
+    from ptmcad.show.ranges.linetable import width_table
 
     return text_html(width_table(self))
 

@@ -13,7 +13,7 @@ from typing import Any
 from ptmcad.show.document import design, poses, regionmap
 from ptmcad.show.export.document import FORMAT as VARIETY
 from ptmcad.show.export.document import variety_codec
-from ptmcad.show.ranges import document as ranges
+from ptmcad.show.ranges import rangedocument as ranges
 from ptmcad.text.codec import Schema, document_schema
 
 PROSE = ("$schema", "title", "description")

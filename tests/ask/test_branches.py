@@ -22,7 +22,7 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load
 from ptmcad.question.slice import Slice
-from ptmcad.show.ranges.branches import kind
+from ptmcad.show.ranges.pathtable import kind
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FIG4 = str(CONFIGS / "fig4.yaml")

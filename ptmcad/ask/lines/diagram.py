@@ -1,7 +1,7 @@
 """Bifurcation diagrams: all solutions at many values of one axis, joined to branches between the
 critical values.
 
-Guarantee: critical values are those of `ptmcad.ask.ranges`, or the certified engine's with free
+Guarantee: critical values are those of `ptmcad.intervals`, or the certified engine's with free
 lengths; the solutions at each value are all there are. Between two neighbouring values they are
 joined by nearness, each to one of the same Morse index; where that is ambiguous more values are
 tried in between. The joins are no claim.
@@ -60,7 +60,7 @@ def branch_diagram(
 
     Parameters
     ----------
-    along, at : as for `ptmcad.ask.ranges.intervals`.
+    along, at : as for `ptmcad.intervals`.
     names : as `ptmcad.ask.quantities.quantity` takes them.
     progress : called as progress("branches: interval", done, total).
     line : `solutions_on_line` of the same slice and line, where other questions were asked of it

@@ -30,7 +30,7 @@ from ptmcad.question.slice import Axis
 from ptmcad.show.document.design import VERSIONS
 from ptmcad.show.document.maxima import maximum
 from ptmcad.show.document.numbers import INDEX, with_decimal
-from ptmcad.show.ranges.numbers import end_text, known, narrowly_known, settled, width_text
+from ptmcad.show.ranges.endtext import end_text, known, narrowly_known, settled, width_text
 from ptmcad.text.codec import (
     COUNT,
     DATA,
