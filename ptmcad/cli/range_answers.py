@@ -106,14 +106,9 @@ def _answers(
         # before the line is asked for, whose refusal would not say what to leave out
         refuse_free_lengths(slice)
     if at:
-        if enclosed:
-            from ptmcad.certified.intervals import certified_intervals
+        from ptmcad.ask.lines.along import intervals_along
 
-            found = certified_intervals(slice, along, at, digits)
-        else:
-            from ptmcad.exact.ranges.line import intervals
-
-            found = intervals(slice, along, at)
+        found = intervals_along(slice, along, at, digits)
         yield found, linetable.table(found, digits), "", partial(render.draw_range, slice, found)
     if request.over:
         from ptmcad.ask.lines.rangerows import enclosed_widths, operation_widths
