@@ -304,8 +304,8 @@ def _html_by(home: str) -> Callable[[Any], str]:
 METHODS |= {
     "RegionMap": {
         "locate": "ask.location:locate",
-        "to_json": "show.document.regionmap:write",
-        "from_json": Method("show.document.regionmap:read", bound=False),
+        "to_json": "show.document.mapdocument:write",
+        "from_json": Method("show.document.mapdocument:read", bound=False),
         "table": "show.table:table",
         "boundaries": "ask.boundaries:boundaries",
         "grid": "ask.pixels:grid",
@@ -343,14 +343,14 @@ METHODS |= {
     },
     "BestDesign": {
         "table": "show.designtable:design_table",
-        "to_json": "show.document.design:write_design",
-        "from_json": Method("show.document.design:read_design", bound=False),
+        "to_json": "show.document.designdocument:write_design",
+        "from_json": Method("show.document.designdocument:read_design", bound=False),
         "save": _design_save,
         "_repr_html_": "show.notebook:design_html",
     },
     "Changes": {
-        "table": "show.changestable:changes_table",
-        "_repr_html_": _html_by("show.changestable:changes_table"),
+        "table": "show.familytable:changes_table",
+        "_repr_html_": _html_by("show.familytable:changes_table"),
     },
     "Sweep": {
         "__iter__": "workbench.sweeps.index:members",
@@ -367,11 +367,11 @@ METHODS |= {
     },
     "Poses": {
         "table": "show.posetable:table",
-        "to_json": "show.document.poses:write_poses",
-        "from_json": Method("show.document.poses:read_poses", bound=False),
+        "to_json": "show.document.posedocument:write_poses",
+        "from_json": Method("show.document.posedocument:read_poses", bound=False),
         "_repr_html_": "show.notebook:poses_html",
     },
-    "CountIntervals": {"_repr_html_": _html_by("show.ranges.table:table")},
-    "PosePaths": {"_repr_html_": _html_by("show.ranges.table:path_table")},
-    "OperationWidths": {"_repr_html_": _html_by("show.ranges.table:width_table")},
+    "CountIntervals": {"_repr_html_": _html_by("show.ranges.linetable:table")},
+    "PosePaths": {"_repr_html_": _html_by("show.ranges.pathtable:path_table")},
+    "OperationWidths": {"_repr_html_": _html_by("show.ranges.linetable:width_table")},
 }

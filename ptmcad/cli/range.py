@@ -264,7 +264,7 @@ def _save(
     text = ""
     if file:
         from ptmcad.show.document.slicedocument import SLICE
-        from ptmcad.show.ranges.document import document
+        from ptmcad.show.ranges.rangedocument import document
 
         asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}
         text = document(slice.name, slice.mechanism, {**found.parts, **asked})

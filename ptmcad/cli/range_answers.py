@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.cli.progress import ProgressBar
@@ -81,12 +81,12 @@ def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
     PtmcadError
         Of any kind.
     """
-    from ptmcad.show.ranges import document
+    from ptmcad.show.ranges import rangedocument
 
     texts, parts, pictures = [question_of(slice)], dict[str, Any](), dict[str, Callable[[], Any]]()
     for found, text, end, make in _answers(slice, request):
         texts.append(text)
-        parts |= document.part(found, request.digits)
+        parts |= rangedocument.part(found, request.digits)
         pictures[end] = make
     return RangeAnswer("\n\n".join(texts), parts, pictures)
 
@@ -95,52 +95,35 @@ def _answers(
     slice: Slice, request: RangeRequest
 ) -> Iterator[tuple[Any, str, str, Callable[[], Any]]]:
     """Whatever is asked for, with its table, the end of its picture's name, and what draws that."""
-    from ptmcad.show.ranges import branches, certified, table
+    from ptmcad.show.ranges import linetable, pathtable
 
     along, at, digits = request.along, request.at, request.digits
     enclosed = is_enclosed(slice, request)
+    found: Any
     if request.over and not enclosed:
         from ptmcad.exact.ranges.strips import refuse_free_lengths
 
-        refuse_free_lengths(
-            slice
-        )  # before the line is asked for, whose refusal would not say what to leave out
-    if at and enclosed:
-        from ptmcad.certified.intervals import certified_intervals
+        # before the line is asked for, whose refusal would not say what to leave out
+        refuse_free_lengths(slice)
+    if at:
+        from ptmcad.ask.lines.along import intervals_along
 
-        ends = certified_intervals(slice, along, at, digits)
-        yield ends, certified.table(ends, digits), "", lambda: None  # of which there is no picture
-    elif at:
-        from ptmcad.ask.ranges import intervals
-
-        found = intervals(slice, along, at)
-        yield found, table.table(found, digits), "", lambda: render.draw_range(slice, found)
-    if request.over and enclosed:
-        from ptmcad.ask.bands import certified_widths
+        found = intervals_along(slice, along, at, digits)
+        yield found, linetable.table(found, digits), "", partial(render.draw_range, slice, found)
+    if request.over:
+        from ptmcad.ask.lines.rangerows import enclosed_widths, operation_widths
 
         with ProgressBar() as progress:
-            bands = certified_widths(slice, along, request.rows, digits, progress)
-        yield (
-            bands,
-            certified.width_table(bands, digits),
-            "-over",
-            lambda: render.draw_widths(slice, bands),
-        )
-    elif request.over:
-        from ptmcad.ask.ranges import operation_widths
-
-        widths = operation_widths(slice, along, request.rows)
-        yield (
-            widths,
-            table.width_table(widths, digits),
-            "-over",
-            lambda: render.draw_widths(slice, widths),
-        )
+            if enclosed:
+                found = enclosed_widths(slice, along, request.rows, digits, progress)
+            else:
+                found = operation_widths(slice, along, request.rows)
+        text = linetable.width_table(found, digits)
+        yield found, text, "-over", partial(render.draw_widths, slice, found)
 
     @cache
-    def line() -> (
-        SolutionsOnLine
-    ):  # a picture of the paths shows branches too: those of the same solutions
+    def line() -> SolutionsOnLine:
+        """A picture of the paths shows branches too: those of the same solutions."""
         from ptmcad.ask.lines.diagram import solutions_on_line
 
         return solutions_on_line(slice, along, at)
@@ -149,24 +132,16 @@ def _answers(
         from ptmcad.ask.lines.follower import pose_paths
 
         with ProgressBar() as progress:
-            paths = pose_paths(slice, along, at, request.start, request.pose, progress)
-        yield (
-            paths,
-            table.path_table(paths, min(digits, 10)),
-            "-path",
-            lambda: _paths_and_branches(slice, paths, line),
-        )
+            found = pose_paths(slice, along, at, request.start, request.pose, progress)
+        text = pathtable.path_table(found, min(digits, 10))
+        yield found, text, "-path", partial(_paths_and_branches, slice, found, line)
     if request.quantities:
         from ptmcad.ask.lines.diagram import branch_diagram
 
         with ProgressBar() as progress:
-            diagram = branch_diagram(slice, along, at, request.quantities, progress, line())
-        yield (
-            diagram,
-            branches.table(diagram),
-            "-branches",
-            lambda: render.draw_branches(slice, diagram),
-        )
+            found = branch_diagram(slice, along, at, request.quantities, progress, line())
+        text = pathtable.branch_table(found)
+        yield found, text, "-branches", partial(render.draw_branches, slice, found)
 
 
 def is_enclosed(slice: Slice, request: RangeRequest) -> bool:

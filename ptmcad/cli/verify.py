@@ -316,7 +316,7 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
     from ptmcad.options import DEFAULTS
     from ptmcad.show.document.designdocument import maximum
     from ptmcad.show.document.slicedocument import SLICE
-    from ptmcad.show.ranges.document import bands_codec, document, enclosed_codec
+    from ptmcad.show.ranges.rangedocument import bands_codec, document, enclosed_codec
     from ptmcad.text.node import Node
     from ptmcad.verification import Check, VerifyReport, check_anew, verify_range
 

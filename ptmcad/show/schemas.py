@@ -13,7 +13,7 @@ from typing import Any
 from ptmcad.show.document import designdocument, mapdocument, posedocument
 from ptmcad.show.document.varietydocument import FORMAT as VARIETY
 from ptmcad.show.document.varietydocument import variety_codec
-from ptmcad.show.ranges import document as ranges
+from ptmcad.show.ranges import rangedocument as ranges
 from ptmcad.text.documents import Schema, document_schema
 
 PROSE = ("$schema", "title", "description")

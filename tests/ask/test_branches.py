@@ -20,7 +20,7 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load
 from ptmcad.question.slice import Slice
-from ptmcad.show.ranges.branches import kind
+from ptmcad.show.ranges.pathtable import kind
 from ptmcad.workbench.fields import fieldvalues as fields
 from ptmcad.workbench.fields.fieldvalues import quantity_of
 

@@ -21,7 +21,7 @@ from ptmcad.certified.intervals import certified_intervals
 from ptmcad.cli.range import command
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, slice_from_options
-from ptmcad.show.ranges.certified import table
+from ptmcad.show.ranges.linetable import table
 from ptmcad.show.render.landscape import energy_of
 
 SCHEMA = json.loads(

@@ -19,7 +19,7 @@ import ptmcad
 from ptmcad.answer.paths import Fate, PosePaths
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
-from ptmcad.show.ranges.table import path_table
+from ptmcad.show.ranges.pathtable import path_table
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
 pytest.importorskip("numba")

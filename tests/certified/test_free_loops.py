@@ -21,7 +21,7 @@ from support.loop_search import Energy, Numbers, counts_along
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.ask.bands import certified_widths
+from ptmcad.ask.lines.rangerows import enclosed_widths
 from ptmcad.certified import engine
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.intervals import certified_intervals
@@ -260,7 +260,7 @@ def test_intervals_along_a_line() -> None:
     for interval in found.intervals:
         p = values_at(slice, interval.sample, Fraction(18, 5))
         assert (interval.total, interval.stable) == counts_along(p, energy_of(p))
-    widths = certified_widths(slice, "F", rows=3, digits=6)
+    widths = enclosed_widths(slice, "F", 3, 6, lambda *_: None)
     assert widths.working == 3
     with pytest.raises(ConfigError, match="not followed where springs have free lengths"):
         ptmcad.pose_paths(slice, "F", {"G": "18/5"}, "1")

@@ -31,7 +31,7 @@ from ptmcad.errors import ConfigError, ExpressionError, GeometryError
 from ptmcad.model.builtin import RECORD
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
-from ptmcad.show.ranges.certified import table as interval_table
+from ptmcad.show.ranges.linetable import table as interval_table
 from ptmcad.text.expressions import constant
 
 VON_MISES: dict[str, Any] = {"name": "von_mises", **TRUSS}

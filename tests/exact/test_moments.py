@@ -13,14 +13,15 @@ import pytest
 from flint import fmpq
 
 import ptmcad
-from ptmcad.ask.lines.follower import Fate, pose_paths
+from ptmcad.answer.paths import Fate
+from ptmcad.ask.lines.follower import pose_paths
 from ptmcad.ask.solving import poses_at
 from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import polynomial_at
 from ptmcad.model import ptm
 from ptmcad.model.work import moments_at
 from ptmcad.question.slice import Slice
-from ptmcad.show.ranges.table import path_table
+from ptmcad.show.ranges.pathtable import path_table
 
 
 def arm(moment: object, others: Mapping[str, str] = MappingProxyType({}), **axes: Any) -> Slice:

@@ -18,7 +18,8 @@ from flint import arb, arb_mat, ctx
 from support.maps import CONFIGS
 
 import ptmcad
-from ptmcad.ask.lines.follower import Fate, PosePath, pose_paths
+from ptmcad.answer.paths import Fate, PosePath
+from ptmcad.ask.lines.follower import pose_paths
 from ptmcad.ask.lines.linesystem import line_system
 from ptmcad.ask.lines.mirror import Mirror, mirror_of
 from ptmcad.errors import ConfigError
@@ -37,8 +38,8 @@ from ptmcad.formulas.continuation import (
 from ptmcad.formulas.graph import Graph
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice
-from ptmcad.show.ranges.document import document, part
-from ptmcad.show.ranges.table import path_table
+from ptmcad.show.ranges.pathtable import path_table
+from ptmcad.show.ranges.rangedocument import document, part
 from ptmcad.text.parsing import parse
 
 ROOT = Path(__file__).resolve().parents[2]

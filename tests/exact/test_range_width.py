@@ -16,15 +16,16 @@ import ptmcad
 from ptmcad.algebra.polynomials import PLANE
 from ptmcad.algebra.real_roots import isolate
 from ptmcad.algebra.slopes import slope_over
-from ptmcad.answer.widths import Maximum
-from ptmcad.ask.ranges import Place, intervals, operation_widths
+from ptmcad.answer.widths import Maximum, Place
+from ptmcad.ask.lines.rangerows import operation_widths
 from ptmcad.exact.cad.projection import curve
 from ptmcad.exact.cad.stacks import BaseEnd
+from ptmcad.exact.ranges.line import intervals
 from ptmcad.exact.ranges.strips import RangeEnd, RangeStrip, strips
 from ptmcad.exact.ranges.width import largest
 from ptmcad.question.config import slice_from_options
-from ptmcad.show.ranges.document import document, part
-from ptmcad.show.ranges.table import width_table
+from ptmcad.show.ranges.linetable import width_table
+from ptmcad.show.ranges.rangedocument import document, part
 
 ROOT = Path(__file__).resolve().parents[2]
 X, Y = PLANE.gens()

@@ -21,13 +21,13 @@ from support.random_slices import drawn
 import ptmcad
 from ptmcad.algebra.algebraic_numbers import compare, refined
 from ptmcad.answer.counts import Counts
-from ptmcad.answer.intervals import lower, upper
-from ptmcad.ask.ranges import CountIntervals, Event, intervals
+from ptmcad.answer.intervals import CountIntervals, Event, lower, upper
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError
+from ptmcad.exact.ranges.line import intervals
 from ptmcad.question.slice import Count, Slice
-from ptmcad.show.ranges.document import document, part
-from ptmcad.show.ranges.numbers import end_text, width_text
-from ptmcad.show.ranges.table import table
+from ptmcad.show.ranges.endtext import end_text, width_text
+from ptmcad.show.ranges.linetable import table
+from ptmcad.show.ranges.rangedocument import document, part
 from ptmcad.text.enclosure import AlgebraicNumber
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,7 +8,7 @@ import ptmcad
 from ptmcad.ask.checking import _complex
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, ptm
-from ptmcad.show.ranges.table import _heights
+from ptmcad.show.ranges.pathtable import _heights
 from ptmcad.show.table import table
 
 LINE = {

@@ -11,12 +11,13 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.poses import Poses
-from ptmcad.ask.ranges import intervals, operation_widths
+from ptmcad.ask.lines.rangerows import operation_widths
 from ptmcad.ask.solving import poses_at
+from ptmcad.exact.ranges.line import intervals
 from ptmcad.question.config import point_from_mapping
 from ptmcad.question.slice import Slice
-from ptmcad.show.ranges.document import part
-from ptmcad.show.ranges.table import table, width_table
+from ptmcad.show.ranges.linetable import table, width_table
+from ptmcad.show.ranges.rangedocument import part
 from ptmcad.show.render.landscape import draw_landscape
 from ptmcad.text.expressions import axis
 from ptmcad.text.parsing import parse

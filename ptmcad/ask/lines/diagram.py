@@ -1,7 +1,7 @@
 """Bifurcation diagrams: all solutions at many values of one axis, joined to branches between the
 critical values.
 
-Guarantee: critical values are those of `ptmcad.ask.ranges`, or the certified engine's with free
+Guarantee: critical values are those of `ptmcad.intervals`, or the certified engine's with free
 lengths; the solutions at each value are all there are. Between two neighbouring values they are
 joined by nearness, each to one of the same Morse index; where that is ambiguous more values are
 tried in between. The joins are no claim.
@@ -19,11 +19,12 @@ from typing import Any
 from ptmcad.answer.branches import Branch, Branches, BranchPoint
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
+from ptmcad.ask.lines.along import intervals_along
 from ptmcad.ask.quantities import Quantity, of_pose, quantity, unit_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.model import Model
 from ptmcad.options import Progress
-from ptmcad.question.line import has_free_lengths, on_line, varying_axis
+from ptmcad.question.line import on_line, varying_axis
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expressions, values_at
 
@@ -60,7 +61,7 @@ def branch_diagram(
 
     Parameters
     ----------
-    along, at : as for `ptmcad.ask.ranges.intervals`.
+    along, at : as for `ptmcad.intervals`.
     names : as `ptmcad.ask.quantities.quantity` takes them.
     progress : called as progress("branches: interval", done, total).
     line : `solutions_on_line` of the same slice and line, where other questions were asked of it
@@ -75,7 +76,7 @@ def branch_diagram(
     varying, other, value = varying_axis(slice, along, at)
     line = line or solutions_on_line(slice, along, at)
     branches: list[Branch] = []
-    stretches = _stretches(slice, along, at)
+    stretches = intervals_along(slice, along, at, DIGITS).stretches
     for number, (low, high) in enumerate(stretches):
         if progress is not None:
             progress("branches: interval", number, len(stretches))
@@ -93,17 +94,6 @@ def branch_diagram(
         tuple(branches),
         undecided,
     )
-
-
-def _stretches(slice: Slice, along: str, at: Mapping[str, Any]) -> list[tuple[Fraction, Fraction]]:
-    """Intervals without a critical value, from the window's lower edge to its upper one."""
-    if has_free_lengths(slice, along, at):
-        from ptmcad.certified.intervals import certified_intervals
-
-        return certified_intervals(slice, along, at, DIGITS).stretches
-    from ptmcad.exact.ranges.line import intervals
-
-    return intervals(slice, along, at).stretches
 
 
 def solutions_on_line(slice: Slice, along: str, at: Mapping[str, Any]) -> SolutionsOnLine:

@@ -96,11 +96,12 @@ def pose_paths(
     line = line_of(slice, along, at, free=enclosed)
     critical = (_enclosed_values if enclosed else _exact_values)(slice, line)
     family = line_system(line)
-    here = None if any(_is_around(c.at, begin) for c in critical) else family.solutions.at(begin)
+    untold = enclosed and any(_order(c.at, begin) == 0 for c in critical)
+    here = None if untold else family.solutions.at(begin)
     if here is None:
-        untold = ", or not told from one" * enclosed
+        doubt = ", or not told from one" * enclosed
         raise ConfigError(
-            f"{along} = {begin} is a critical value{untold}: start beside it", key="--path"
+            f"{along} = {begin} is a critical value{doubt}: start beside it", key="--path"
         )
     follower = Follower(slice, family, critical, here)
     stable = [k for k, pose in enumerate(here.poses, 1) if model.criterion.works(pose.stable)]
@@ -140,21 +141,11 @@ def _enclosed_values(slice: Slice, line: Line) -> tuple[CriticalPlace, ...]:
     return tuple(CriticalPlace(change.at, change.proved) for change in changes)
 
 
-def _is_around(number: CriticalValue, value: Fraction) -> bool:
-    """Whether a value is not told from a critical one; solutions say whether it is an exact one."""
-    return isinstance(number, Enclosure) and number.low <= value <= number.high
-
-
-def _is_below(number: CriticalValue, value: Fraction) -> bool:
+def _order(number: CriticalValue, value: Fraction) -> int:
+    """The sign of a critical value less another value; 0 where they are not told apart."""
     if isinstance(number, Enclosure):
-        return number.high < value
-    return number.compare(value) < 0
-
-
-def _is_above(number: CriticalValue, value: Fraction) -> bool:
-    if isinstance(number, Enclosure):
-        return number.low > value
-    return number.compare(value) > 0
+        return (number.low > value) - (number.high < value)
+    return number.compare(value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,9 +180,9 @@ class Follower:
                 key="--path",
             )
         origin = Reached(start, box, box)
-        below = [c for c in reversed(self.critical) if _is_below(c.at, start)]
+        below = [c for c in reversed(self.critical) if _order(c.at, start) < 0]
         left = self._one_way(below, origin, -1)
-        right = self._one_way([c for c in self.critical if _is_above(c.at, start)], origin, 1)
+        right = self._one_way([c for c in self.critical if _order(c.at, start) > 0], origin, 1)
         reached = [*reversed(left[0]), origin, *right[0]]
         sides = [family.sides(r.over.low, r.over.high, r.over.hull()) for r in reached]
         return PosePath.of(

@@ -144,15 +144,6 @@ def counts_at(line: Line, value: Fraction) -> Counts:
     return count_at(line.place(value), system_on(line), (from_fraction(value), fmpq(0))).counts
 
 
-def is_regular(line: Line, value: Fraction) -> bool:
-    """Whether all solutions at a value are simple, so that each goes on beside it."""
-    try:
-        counts_at(line, value)
-    except DegenerateSliceError:
-        return False
-    return True
-
-
 def runs(here: Sequence[bool]) -> Iterator[tuple[int, int]]:
     """Where the longest runs of gaps in which something holds begin, and where they end."""
     for holds, group in groupby(range(len(here)), lambda k: here[k]):

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from ptmcad.answer.branches import Branch, Branches
 from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Slice
-from ptmcad.show.ranges.branches import kind
+from ptmcad.show.ranges.pathtable import kind
 from ptmcad.show.render.axes import with_symbols
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.legend import Entry, line_mark

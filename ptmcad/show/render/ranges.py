@@ -24,9 +24,8 @@ from ptmcad.answer.intervals import CountIntervals, End
 from ptmcad.answer.widths import CertifiedWidths, OperationWidths
 from ptmcad.answer.words import counted, noun, several, sought
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.show.ranges.certified import widest_text
-from ptmcad.show.ranges.numbers import end_text, width_text
-from ptmcad.show.ranges.table import maximum_text, operation_name, working_text
+from ptmcad.show.ranges.endtext import end_text, width_text
+from ptmcad.show.ranges.linetable import maximum_text, operation_name, widest_text, working_text
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.colours import INK, fill_of_counts, fill_of_index
 from ptmcad.show.render.inches import write, write_lines

@@ -29,7 +29,7 @@ from ptmcad.answer.widths import Attainment, CertifiedWidths, OperationWidths, W
 from ptmcad.question.slice import Axis
 from ptmcad.show.document.designdocument import VERSIONS, maximum
 from ptmcad.show.document.exactnumbers import INDEX, with_decimal
-from ptmcad.show.ranges.numbers import end_text, known, narrowly_known, settled, width_text
+from ptmcad.show.ranges.endtext import end_text, known, narrowly_known, settled, width_text
 from ptmcad.text.codec import (
     COUNT,
     DATA,
