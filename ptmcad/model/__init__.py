@@ -7,7 +7,7 @@ ring.
 
 from __future__ import annotations
 
-from ptmcad.model.builtin import built_in, known_of, mechanism_of, ptm, recognised
+from ptmcad.model.builtinmechanisms import built_in, known_of, mechanism_of, ptm, recognised
 from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System
 from ptmcad.model.elements import Kind, Parameter, Support
 from ptmcad.model.mechanismrecord import described, read_mechanism

@@ -28,7 +28,7 @@ from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.errors import ConfigError, ExpressionError, GeometryError
-from ptmcad.model.builtin import RECORD
+from ptmcad.model.builtinmechanisms import RECORD
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.ranges.linetable import table as interval_table

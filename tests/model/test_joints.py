@@ -12,7 +12,7 @@ import pytest
 from ptmcad.cli.mechanisms import description
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, described, joints, ptm
-from ptmcad.model.builtin import RECORD
+from ptmcad.model.builtinmechanisms import RECORD
 from ptmcad.model.joints import Joint, joints_of
 from ptmcad.show.linedrawing import approximate_text
 from ptmcad.show.render import draw_mechanism

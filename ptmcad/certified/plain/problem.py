@@ -21,7 +21,7 @@ from ptmcad.certified.plain.harmonics import Harmonics, TrigonometricPolynomial,
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Formula, Graph, expression_formula, length
-from ptmcad.model.builtin import title_of
+from ptmcad.model.builtinmechanisms import title_of
 from ptmcad.model.closed import conditions_of
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.model.evaluate import evaluate

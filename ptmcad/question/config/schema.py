@@ -11,7 +11,7 @@ from typing import Any
 
 from ptmcad.errors import Faults, Place
 from ptmcad.model import ptm
-from ptmcad.model.builtin import MEANINGS
+from ptmcad.model.builtinmechanisms import MEANINGS
 from ptmcad.model.mechanismrecord import mechanism_codec
 from ptmcad.model.reading import DEFINITIONS, MAX_NAME, VALUE, Context
 from ptmcad.model.systemrecord import system_codec
