@@ -84,13 +84,14 @@ def check_potential(claims: Claims, seed: str = "", *, closed: bool = False) -> 
         work = nothing if true.apart else true.moments
         reasons.append(texts.compare_potential(system.potential, work))
     moments = [true.moments[unknown] for unknown in unknowns]
-    for what, stored, polynomials in (
+    kinds = (
         ("equation", system.gradient, () if stated else true.equations),
         ("moment", system.moments, moments if stated and true.apart else ()),
         ("inequality", system.inequalities, true.inequalities),
         ("condition for stability", system.stability, () if closed else true.stability),
         ("relation", system.relations, true.closing if closed else ()),
-    ):
+    )
+    for what, stored, polynomials in kinds:
         if len(stored) != len(polynomials):
             raise Violation(f"there are {len(polynomials)} of the kind {what}, not {len(stored)}")
         named = zip(stored, polynomials, strict=True)

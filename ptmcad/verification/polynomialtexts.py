@@ -138,7 +138,8 @@ class Texts:
         seed: str,
         springs: Collection[SpringVector] = (),
     ) -> None:
-        self.true, self.ring, self.names, self.springs = true, true.ring, names, springs
+        self.true, self.ring, self.names = true, true.ring, names
+        self.lines = tuple(springs)
         self.squares: list[fmpq_mpoly] = []
         for square in (self.ring.normal(s.squared) for s in springs):
             if square not in self.squares:
@@ -255,9 +256,9 @@ class Texts:
         assert self.true.energy is not None
         names = self.ring.names
         energy = point.of(self.true.energy, names)
-        for spring in self.springs:
+        for line in self.lines:
             pull, collapsed, square = (
-                point.of(p, names) for p in (spring.pull, spring.collapsed, spring.squared)
+                point.of(p, names) for p in (line.pull, line.collapsed, line.squared)
             )
             energy += collapsed - pull * point.roots[int(square)]
         return energy - point.value(tree)
