@@ -243,7 +243,7 @@ def _sweep_getitem(self: Sweep, number: int) -> Member:
 
 def _sweep_table(self: Sweep) -> str:
     """One screen: what has become of the members, and some of them."""
-    from ptmcad.show.sweeps.table import table
+    from ptmcad.show.sweeptable import table
 
     return table(self, self.__iter__)
 
@@ -263,7 +263,7 @@ def _sweep_result(self: Sweep, number: int) -> RegionMap:
 
 def _sweep_to_csv(self: Sweep) -> str:
     """All members as CSV, in their order: the same text however the sweep was computed."""
-    from ptmcad.show.sweeps.table import csv_text
+    from ptmcad.show.sweeptable import csv_text
 
     return csv_text(self, self.__iter__)
 
@@ -277,7 +277,7 @@ def _sweep_to_dataframe(self: Sweep) -> DataFrame:
         When pandas is not installed.
     """
     from ptmcad.show.data import pandas_frame
-    from ptmcad.show.sweeps.table import columns, counts_in, frame_rows
+    from ptmcad.show.sweeptable import columns, counts_in, frame_rows
 
     names = [*columns(self, counts_in(self)), "seconds", "attempts"]
     return pandas_frame(

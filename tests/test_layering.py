@@ -162,7 +162,7 @@ def test_the_report_does_without_matplotlib(tmp_path: Path) -> None:
 
 def test_reading_poses_loads_nothing_of_the_engine(tmp_path: Path) -> None:
     """Enclosures, poses, their document and table are free of any engine."""
-    code = "import ptmcad, ptmcad.show.document.poses, ptmcad.show.posetable; ptmcad.Poses, ptmcad.Enclosure"
+    code = "import ptmcad, ptmcad.show.document.posedocument, ptmcad.show.posetable; ptmcad.Poses, ptmcad.Enclosure"
     assert not loaded_after(code, tmp_path) & {"flint", "yaml", "numpy", "matplotlib", "sympy"}
 
 

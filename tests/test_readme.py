@@ -120,7 +120,7 @@ def test_program_commands_in_their_order(
 
     monkeypatch.setattr("ptmcad.certified.engine.certified_map", certified_map)
     monkeypatch.setattr(
-        "ptmcad.verification.certified.checks.BOXES", 4
+        "ptmcad.verification.certified.certificate.BOXES", 4
     )  # of 40: enough to see that some are tried
     if part:  # a file wins over the shipped record of its name
         (tmp_path / "free02").write_text(record_of_part_of_free02(), encoding="utf-8")

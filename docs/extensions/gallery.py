@@ -13,7 +13,7 @@ import yaml
 
 import ptmcad
 from ptmcad.show.render import draw
-from ptmcad.show.render.poses import draw_poses
+from ptmcad.show.render.posepicture import draw_poses
 from ptmcad.show.render.printing import save
 
 _START = """# Gallery

@@ -23,8 +23,7 @@ from flint import fmpq, fmpq_mat, nmod, nmod_mat
 
 from ptmcad.algebra.groebner import grevlex_key, shifted
 from ptmcad.algebra.polynomials import Monomial
-from ptmcad.algebra.resultants import primes
-from ptmcad.algebra.resultants import Check
+from ptmcad.algebra.resultants import Check, primes
 
 Rational = Mapping[Monomial, fmpq]
 Rules = Mapping[Monomial, Rational]

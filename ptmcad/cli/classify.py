@@ -258,7 +258,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
     with blamed("--resume", path):
         check_resumable(slice, earlier)
     # what lies outside its cover is taken as decided: a file that contradicts itself must not be
-    from ptmcad.verification.certified.checks import contradiction
+    from ptmcad.verification.certified.certificate import contradiction
 
     found = contradiction(earlier)
     if found:

@@ -25,7 +25,7 @@ from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import Family, fault_of_member
 from ptmcad.show import render
-from ptmcad.show.document.family import FORMAT, read_family, write_family
+from ptmcad.show.document.familydocument import FORMAT, read_family, write_family
 from ptmcad.text.numerals import text_of
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def picture_writers(
 
 def mesh_writers(surface: BoundarySurface, stem: str, formats: Formats) -> dict[str, Writer]:
     """For each of `MESHES` a function that writes the surface."""
-    from ptmcad.show.export.mesh import MESHES as KNOWN
+    from ptmcad.show.mesh import MESHES as KNOWN
 
     return {f"{stem}.{kind}": text_writer(KNOWN[kind](surface)) for kind in formats}
 

@@ -268,7 +268,7 @@ def _save(
     """Write the pictures, each of a part of the answer, and, last, the JSON, where it has a file."""
     text = ""
     if file:
-        from ptmcad.show.document.slice import SLICE
+        from ptmcad.show.document.slicedocument import SLICE
         from ptmcad.show.ranges.document import document
 
         asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}

@@ -23,7 +23,7 @@ from ptmcad.errors import ConfigError, PictureError, PtmcadError, blamed, shown
 from ptmcad.options import Options
 from ptmcad.question.config.typed import Typed
 from ptmcad.question.slice import Slice
-from ptmcad.show.document.regionmap import FORMAT
+from ptmcad.show.document.mapdocument import FORMAT
 from ptmcad.show.style import PictureStyle
 from ptmcad.text.node import NEWER, is_newer
 from ptmcad.text.textfile import format_named, json_data, read_text

@@ -14,7 +14,7 @@ from ptmcad.errors import shown_path
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import portable_file, slice_from_typed
 from ptmcad.question.config.typed import Typed
-from ptmcad.show.export import FORMATS
+from ptmcad.show.varietytext import FORMATS
 
 
 @click.command("variety")

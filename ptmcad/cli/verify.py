@@ -275,7 +275,7 @@ def _verified_design(
 ) -> VerifyReport:
     """The best design, and where ranges are longest by exact critical values."""
     from ptmcad.question.config.designkey import design_from
-    from ptmcad.show.document.design import extremes_codec
+    from ptmcad.show.document.designdocument import extremes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_design
     from ptmcad.workbench.designs.proof import exact_maximum
 
@@ -314,8 +314,8 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
     from ptmcad.ask.classification import load_certified
     from ptmcad.cli.range_answers import answer, is_enclosed, request_codec
     from ptmcad.options import DEFAULTS
-    from ptmcad.show.document.maxima import maximum
-    from ptmcad.show.document.slice import SLICE
+    from ptmcad.show.document.designdocument import maximum
+    from ptmcad.show.document.slicedocument import SLICE
     from ptmcad.show.ranges.document import bands_codec, document, enclosed_codec
     from ptmcad.text.node import Node
     from ptmcad.verification import Check, VerifyReport, check_anew, verify_range
@@ -358,7 +358,7 @@ def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) ->
     from ptmcad.ask.changes import changes_of
     from ptmcad.ask.classification import region_map
     from ptmcad.ask.members import in_common, restored
-    from ptmcad.show.document.family import changes_codec
+    from ptmcad.show.document.familydocument import changes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_changes, verify_surfaces
 
     over_the_first = Options(engine="exact", areas=False, without=frozenset(("axis-order",)))

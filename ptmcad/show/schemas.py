@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ptmcad.show.document import design, poses, regionmap
-from ptmcad.show.export.document import FORMAT as VARIETY
-from ptmcad.show.export.document import variety_codec
+from ptmcad.show.document import designdocument, mapdocument, posedocument
+from ptmcad.show.document.varietydocument import FORMAT as VARIETY
+from ptmcad.show.document.varietydocument import variety_codec
 from ptmcad.show.ranges import document as ranges
 from ptmcad.text.codec import Schema, document_schema
 
@@ -22,9 +22,9 @@ PROSE = ("$schema", "title", "description")
 def schemas() -> dict[str, dict[str, Any]]:
     """The schema of each kind of document by the name of its published file, without prose."""
     made: dict[str, tuple[str, Schema]] = {
-        "region-map": (regionmap.FORMAT, regionmap.schema()),
-        "poses": (poses.FORMAT, poses.poses_codec(1).schema),
-        "design": (design.FORMAT, design.design_codec("x").schema),
+        "region-map": (mapdocument.FORMAT, mapdocument.schema()),
+        "poses": (posedocument.FORMAT, posedocument.poses_codec(1).schema),
+        "design": (designdocument.FORMAT, designdocument.design_codec("x").schema),
         "range": (ranges.FORMAT, ranges.schema()),
         "variety": (VARIETY, variety_codec(("x", "y")).schema),
     }

@@ -123,7 +123,7 @@ def _covered(cover: Cover) -> str:
 
 
 def _time(result: RegionMap) -> str:
-    """How long it took; what a machine does once, in its first run, is told apart."""
+    """How long it took; what a machine does once, in its first run, is given separately."""
     seconds, once = result.timings.get("total"), result.timings.get(COMPILATION, 0.0)
     if seconds is None:
         return "not recorded"

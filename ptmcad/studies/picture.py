@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator, SymmetricalLogLocator
 
-from ptmcad.show.render.legend import INK
+from ptmcad.show.render.colours import INK
 from ptmcad.show.render.printing import settings
 from ptmcad.text.numerals import power_of_ten
 

@@ -111,9 +111,7 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
     bounds = [(ball_of(r.area[0]), ball_of(r.area[1])) for r in result.regions]
     number = max(1, sum(len(s.walls) for s in result.stacks))
     shares = [ball_of(_width(r)).mid() * margin / number for r in result.regions]
-    effort = PanelEffort(
-        min(shares), width / 2**5, width / 2 ** (bits // 3), (low, high), (2,), (start, stop)
-    )
+    effort = PanelEffort(min(shares), width / 2 ** (bits // 3), (low, high), (2,), (start, stop))
     whole = [arb(0) for _ in result.regions]
     panels: list[_WallPanel] = []
     for s, stack in enumerate(result.stacks):

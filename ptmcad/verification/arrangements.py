@@ -37,10 +37,9 @@ from ptmcad.answer.regionmap import Kind, Merge, RegionMap
 from ptmcad.errors import HypothesisError, shown
 from ptmcad.options import Progress
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_fraction
 from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification.parameterlines import simple_between
 from ptmcad.verification.planecurves import factors, polynomial
 from ptmcad.verification.report import Check, Unchecked, Violation, drawn
 from ptmcad.verification.sturm import roots_within
@@ -130,7 +129,7 @@ def _checked(found: Changes, members: _Members, source: random.Random) -> str:
     skipped = 0
     for part, ends in enumerate(_parts(found)):
         for _ in range(RANDOM):
-            drawn = simple_between(*(ends[0] + (ends[1] - ends[0]) * n for n in _place(source)))
+            drawn = simplest_fraction(*(ends[0] + (ends[1] - ends[0]) * n for n in _place(source)))
             try:
                 members.expect(drawn, part, "between changes")
             except HypothesisError:  # none of the kinds of members of which anything is said
@@ -184,7 +183,7 @@ def _beside(value: AlgebraicNumber | Enclosure, gap: Fraction) -> tuple[Fraction
             (near.low - gap * 3 / 4, near.low - gap / 2),
             (near.high + gap / 2, near.high + gap * 3 / 4),
         )
-        return simple_between(*places[0]), simple_between(*places[1])
+        return simplest_fraction(*places[0]), simplest_fraction(*places[1])
     return value.low, value.high
 
 

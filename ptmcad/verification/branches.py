@@ -4,8 +4,7 @@ A branch is a power series in a disk that is proved by `ptmcad.verification.disk
 coefficients of at most r / R^n there (Cauchy), what lies beyond the term of order N contributes at
 most 2 h r (h/R)^N / ((N+1) (1 - (h/R)^2)) to the integral over a panel of half width h < R. Where R
 is too small for the panel, its middle part is proved for which it is large enough. Where no R does,
-the panel is halved or the branch is shut in between two heights at which the curve does not meet
-the panel.
+the panel is halved.
 
 Beside a turning point, a node or a cusp of the curve at (U, V) the branch is V + a s^k + s^j t,
 with s^k the distance from U, and t a simple root of p(U +- s^k, V + a s^k + s^j t)/s^e (`_Meeting`;
@@ -33,20 +32,15 @@ from ptmcad.verification.sturm import numbered_root
 
 @dataclass(frozen=True)
 class WallBranch:
-    """A wall: the curve, the number of its root, and the curve's coefficients, in Z[u] and in Z[v],
-    for balls.
-    """
+    """A wall: the curve, the number of its root, and the curve's coefficients in Z[u] for balls."""
 
     curve: PlaneCurve
     root: int
     value: list[arb_poly]
-    columns: list[arb_poly]
 
     @classmethod
     def of(cls, curve: PlaneCurve, root: int) -> WallBranch:
-        return cls(
-            curve, root, [arb_poly(c) for c in curve.in_v], [arb_poly(c) for c in curve.in_u]
-        )
+        return cls(curve, root, [arb_poly(c) for c in curve.in_v])
 
     def height(self, u: fmpq, low: fmpq, high: fmpq) -> arb | None:
         """The branch over u; None when there are not so many roots between the heights."""
@@ -60,7 +54,6 @@ class PanelEffort:
     Attributes
     ----------
     share : error that a panel may have.
-    shut : panels narrower than this are shut in between heights.
     narrowest : panels narrower than this are not halved at this precision.
     heights : the window's edges.
     points : approximations of the critical values, or the window's edges, at the ends of the
@@ -70,7 +63,6 @@ class PanelEffort:
     """
 
     share: arb
-    shut: fmpq
     narrowest: fmpq
     heights: tuple[fmpq, fmpq]
     degrees: tuple[int, ...]
@@ -122,14 +114,10 @@ def integrals_over(
         return [_known_by_edges(left, right, effort, True)]
     found = _more_precisely(branch, middle, half, height, effort)
     proved = fmpq(0) if found is None else found[1]
-    narrow = proved < half and 2 * half < effort.shut
-    within = _enclosed(branch, middle, half, height, effort) if narrow else None
     if found is None:
-        return [_known_by_edges(left, right, effort, True, within)]
+        return [_known_by_edges(left, right, effort, True)]
     sides = (left, middle - proved, min(run, 0) - 1), (middle + proved, right, max(run, 0) + 1)
-    rest = [
-        _known_by_edges(a, b, effort, False, within)._replace(run=k) for a, b, k in sides if a < b
-    ]
+    rest = [_known_by_edges(a, b, effort, False)._replace(run=k) for a, b, k in sides if a < b]
     return [PanelPart(middle - proved, middle + proved, found[0] - low * (2 * proved), True), *rest]
 
 
@@ -154,19 +142,10 @@ def _more_precisely(
     raise BallsTooWide
 
 
-def _known_by_edges(
-    left: fmpq,
-    right: fmpq,
-    effort: PanelEffort,
-    tried: bool,
-    within: tuple[fmpq, fmpq] | None = None,
-) -> PanelPart:
-    """A part of which nothing is known but two heights that it lies between, the window's edges or
-    closer ones.
-    """
-    low = effort.heights[0]
-    bottom, top = within or effort.heights
-    return PanelPart(left, right, arb(bottom - low).union(arb(top - low)) * (right - left), tried)
+def _known_by_edges(left: fmpq, right: fmpq, effort: PanelEffort, tried: bool) -> PanelPart:
+    """A part of which nothing is known but that it lies in the window."""
+    low, high = effort.heights
+    return PanelPart(left, right, arb(0).union(arb(high - low)) * (right - left), tried)
 
 
 _POOR = 4
@@ -234,6 +213,7 @@ _NEWTON = 8
 """Steps to a point at which branches meet, from a place that is very near to it."""
 _SPREAD = 2**20
 """So many times as large as what is left out beside a critical value is a panel there at least."""
+_FEW_BITS = 40
 _NEAREST = 2**40
 """Part of a panel beside a critical value that is a rational number: so much is left out."""
 
@@ -353,11 +333,12 @@ def _from_point(
     divided = [_divided(row, k, j * n, j * multiplicity, sigma) for n, row in enumerate(rows)]
     there = (height - slope * near) / sigma**j
     root = _simple_root(arb_poly([row[0] for row in divided]), there.mid())
-    whole = arb(far).root(k).mid().fmpq()
+    with ctx.workprec(_FEW_BITS):
+        whole = arb(far).root(k).mid().fmpq()
     if root is None:
         return None
     try:
-        found = disk(divided, simple(whole, whole / _NEAREST), root, effort.degrees[0])
+        found = disk(divided, whole, root, effort.degrees[0])
     except BallsTooWide:
         return None  # halved panels may do with what precision there is
     # the branch is that of the disk over the nearest place, and so over all others
@@ -402,46 +383,3 @@ def _divided(row: arb_poly, k: int, height: int, order: int, sigma: arb) -> arb_
 
 _ROUNDED_BITS = 20
 """By so many bits is a series to be better known than by the disk's size."""
-
-
-def _enclosed(
-    branch: WallBranch, middle: fmpq, half: fmpq, height: arb, effort: PanelEffort
-) -> tuple[fmpq, fmpq]:
-    """Heights below and above the branch at which the curve does not meet the panel."""
-    low, high = effort.heights
-    center = height.mid().fmpq()
-    start = (high - low) * min(fmpq(1, 16), half / effort.shut / 2**8)
-    bounds = []
-    for edge, direction in ((low, -1), (high, 1)):
-        best, tried, leap = edge, 0, 1
-        # doublings of the margin; longer and longer leaps, as nobody knows the branch's extent in a
-        # large window, and shorter ones back when a height was found
-        while leap and start * 2**tried < direction * (edge - center):
-            margin = start * 2**tried
-            candidate = simple(center + direction * margin, margin / 8)
-            # the height over the middle shows on which side of the candidate the branch is
-            clear = arb(candidate) < height if direction < 0 else arb(candidate) > height
-            if clear and _misses(branch, middle, half, candidate):
-                best, leap = candidate, leap // 2
-                tried -= leap
-            else:
-                leap = leap // 2 if best != edge else leap + (leap if tried > 8 else 0)
-                tried += leap
-        bounds.append(best)
-    return bounds[0], bounds[1]
-
-
-def _misses(branch: WallBranch, middle: fmpq, half: fmpq, v: fmpq) -> bool:
-    """Whether the curve is proved not to meet the panel at a height."""
-    along = arb_poly([row(v) for row in branch.columns])(arb_poly([middle, 1])).coeffs()
-    total, power = arb(0), arb(half)
-    for c in along[1:]:
-        total += abs(c) * power
-        power = power * half
-    return bool(along) and total < abs(along[0])
-
-
-def simple(value: fmpq, error: fmpq) -> fmpq:
-    """A dyadic number near a value."""
-    scale = 1 << max(0, int(1 / error).bit_length())
-    return fmpq((value * scale).floor(), scale)

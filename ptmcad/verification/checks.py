@@ -16,12 +16,11 @@ from ptmcad.verification.adjacency import (
     check_non_adjacencies,
 )
 from ptmcad.verification.areas import check_areas
-from ptmcad.verification.certified.checks import verify_certified
-from ptmcad.verification.certified.parameters import check_domain
+from ptmcad.verification.certified.certificate import verify_certified
+from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.designs import verify_design
 from ptmcad.verification.equationtexts import check_system
-from ptmcad.verification.exclusion.check import EFFORT, check_free_area, places_of
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.parameters import check_boundary, check_text
 from ptmcad.verification.plan import check_plan, refuse_ablation
@@ -75,12 +74,12 @@ def verify(
     seed : of the random points at which texts and the norm of det H are compared, and of the random
         boxes of a certified map; a fresh one when None, which the report has, so that nobody can
         fit claims to the points.
-    boxes : number of random boxes of a certified map, `ptmcad.verification.certified.checks.BOXES`
+    boxes : number of random boxes of a certified map, `ptmcad.verification.certified.certificate.BOXES`
         when None.
     progress : called as progress(what, done, total), with numbers that never fall.
     effort : how much of a certified map's free area is to be proved free of critical curves: 0 none
         of it, each number more four times as many boxes, 10 all;
-        `ptmcad.verification.exclusion.check.EFFORT` when None.
+        `ptmcad.verification.certified.freearea.EFFORT` when None.
 
     Raises
     ------
@@ -104,8 +103,7 @@ def verify(
     expect(result, RegionMap, "result", A_MAP)
     refuse_ablation(result)
     if result.cover is not None or result.status is Status.CERTIFIED:
-        free_area = partial(check_free_area, EFFORT if effort is None else effort)
-        return verify_certified(result, seed, boxes, free_area, places_of, progress)
+        return verify_certified(result, seed, boxes, effort, progress)
     steps = checks_of(seed)
     missing: set[str] = set()
     if result.status is Status.PARTIAL:

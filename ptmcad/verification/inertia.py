@@ -99,11 +99,6 @@ def inertia(h: Sequence[Sequence[arb]]) -> str | None:
     return "+" * (n - min(found)) + "-" * min(found) if len(found) == 1 else None
 
 
-def is_no_minimum(h: Sequence[Sequence[arb]]) -> bool:
-    """Whether a symmetric matrix has a negative eigenvalue, whatever it is within the balls."""
-    return any(minor < 0 for size in range(1, len(h) + 1) for minor in _principal_minors(h, size))
-
-
 def _principal_minors(h: Sequence[Sequence[arb]], size: int) -> Iterator[arb]:
     for chosen in combinations(range(len(h)), size):
         if size == 2:

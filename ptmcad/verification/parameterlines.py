@@ -41,7 +41,7 @@ from ptmcad.model import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.expressions import Expression
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, simplest_fraction, to_fraction
 from ptmcad.text.numerals import shortest_text
 from ptmcad.verification.fibrealgebra import NotFinite, fibre
 from ptmcad.verification.report import Unchecked, Violation
@@ -189,7 +189,7 @@ class ParameterLine:
         found = []
         for a, b in pairwise(ends):
             third = (lower(b) - upper(a)) / 3
-            sample = simple_between(upper(a) + third, lower(b) - third)
+            sample = simplest_fraction(upper(a) + third, lower(b) - third)
             counts = self.counts_at(sample)
             if counts is None:
                 raise NotKnown(
@@ -226,16 +226,6 @@ def _row(terms: Sequence[tuple[int, int, Fraction]]) -> fmpz_poly:
     scale = lcm(*(c.denominator for _, _, c in terms))
     row = {i: int(c * scale) for i, _, c in terms}
     return fmpz_poly([row.get(i, 0) for i in range(1 + max(row))])
-
-
-def simple_between(low: Fraction, high: Fraction) -> Fraction:
-    """A number of few digits between two others, or one of them: a fibre's numbers get long with
-    its digits.
-    """
-    middle, most = (low + high) / 2, 1
-    while not low <= (found := middle.limit_denominator(most)) <= high:
-        most *= 2
-    return found
 
 
 ACROSS = 3

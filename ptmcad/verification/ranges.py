@@ -20,17 +20,17 @@ from ptmcad.answer.intervals import End
 from ptmcad.answer.widths import Maximum
 from ptmcad.options import Progress
 from ptmcad.question.counts import Count
-from ptmcad.question.slice import Point, Slice
+from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.expressions import axis, constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import fraction_of, integer_of, shortest_text
 from ptmcad.text.parsing import parse
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.parameters import check_domain
-from ptmcad.verification.certified.points import counting_of
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
+from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import parameters_of
+from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.parameterlines import NotKnown, ParameterLine, SliceLines, check_maxima
 from ptmcad.verification.parameters import check_text
 from ptmcad.verification.report import (
@@ -236,8 +236,7 @@ def _check_enclosed(asked: _Asked) -> str:
     data, slice = asked
     found, number, unknown = data["enclosed"], 0, 0
     ((other, value),) = found["at"].items()
-    claims = Claims(map_of(replace(slice, count=Count.TOTAL), ()))
-    counting = counting_of(claims)
+    counting = CertifiedClaims(map_of(replace(slice, count=Count.TOTAL), ())).counting
     for entry in found["intervals"]:
         low, high = fraction_of(entry["low"]["high"]), fraction_of(entry["high"]["low"])
         near = (high - low) / _NEAR
@@ -250,7 +249,7 @@ def _check_enclosed(asked: _Asked) -> str:
                 else (fraction_of(value), at)
             )
             try:
-                there = counting.at(claims, *Point(slice.axis_names, *point)).counts
+                there = counting.at(*point).counts
             except Unproved:
                 unknown += 1
                 continue

@@ -47,16 +47,16 @@ from ptmcad.question.counts import Count
 from ptmcad.question.slice import Axis, Point, Slice
 from ptmcad.text.expressions import constant
 from ptmcad.text.numerals import approximate_text, text_of
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.field import Matrix
+from ptmcad.verification.certified.ballequations import Matrix
+from ptmcad.verification.certified.cellsamples import check_cell, check_listed
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.narrow import narrowed, precisions, tested
-from ptmcad.verification.certified.points import check_cell, check_listed, counting_of
-from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Derivation, parameters_of
 from ptmcad.verification.fibrealgebra import FibreAlgebra
 from ptmcad.verification.inertia import inertia
 from ptmcad.verification.kinds import kind_of, meaning_of
+from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
 from ptmcad.verification.terms import ball_at
 
@@ -300,9 +300,9 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
     if result.slice.has_free_lengths and found.equilibria:
         try:
             if found.status is Status.UNDECIDED:
-                number = check_listed(claims, counting_of(claims), cell)
+                number = check_listed(claims, cell)
                 return Unchecked(f"whether there are more than the {number} listed, which hold")
-            number = check_cell(claims, counting_of(claims), cell)
+            number = check_cell(claims, cell)
             untold = (
                 ""
                 if cell.stable == found.stable

@@ -1,61 +1,30 @@
-"""Real roots of integer polynomials, counted by Sturm sequences: of short polynomials exact ones,
-of others in balls.
+"""Real roots of integer polynomials: counted, isolated, and one by its number.
 
-In balls a sequence takes the time of as many short divisions, where exact ones have coefficients as
-long as the polynomial's discriminant. It is one of the polynomial wherever each leading coefficient
-is proved not to be zero, so that each degree is one less than that before. Where that fails at
-every precision tried (the sequence has a gap, or ends before a constant), long polynomials are left
-to FLINT's isolation of all complex roots, in disjoint balls of which the real ones are known to be
-real.
+In balls a Sturm sequence takes the time of as many short divisions, where exact ones have
+coefficients as long as the polynomial's discriminant. It is one of the polynomial wherever each
+leading coefficient is proved not to be zero, so that each degree is one less than that before. Where
+that fails at every precision tried (the sequence has a gap), FLINT isolates all complex roots, in
+disjoint balls of which the real ones are known to be real.
 
-Guarantee: exact, multiple roots counted once. (The decomposition itself isolates by Descartes'
-rule; see `ptmcad.algebra.real_roots`, which is not used here.)
-
-One real root of a polynomial, by its number among those between two heights.
-
-Guarantee: the ball that is returned contains that root and, if precision allows, is about as narrow
-as it allows.
+Guarantee: counts are exact, multiple roots counted once; a ball contains the root asked for, and is
+about as narrow as precision allows. (The decomposition itself isolates by Descartes' rule; see
+`ptmcad.algebra.real_roots`, which is not used here.)
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from itertools import pairwise
 from typing import Any
 
-from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
 
 def squarefree(p: fmpz_poly) -> fmpz_poly:
     """The squarefree part of a nonzero polynomial, up to a constant."""
     common = p.gcd(p.derivative())
     return p if common.degree() < 1 else p // common
-
-
-def _primitive(p: fmpz_poly) -> fmpz_poly:
-    return p / int(p.content()) if int(p.content()) > 1 else p
-
-
-@lru_cache(maxsize=4096)
-def _chain(coefficients: tuple[int, ...]) -> tuple[fmpz_poly, ...]:
-    first = squarefree(_primitive(fmpz_poly(list(coefficients))))
-    chain = [first, _primitive(first.derivative())]
-    while chain[-1].degree() > 0:
-        remainder = -(fmpq_poly(chain[-2]) % fmpq_poly(chain[-1]))
-        chain.append(_primitive(remainder.numer()))
-    return tuple(chain)
-
-
-def _variations(chain: tuple[fmpz_poly, ...], at: fmpq) -> int:
-    signs = [1 if value > 0 else -1 for q in chain if (value := q(at)) != 0]
-    return sum(a != b for a, b in pairwise(signs))
-
-
-BALL_DEGREE = 6
-"""From which on Sturm sequences in balls take less time than exact ones."""
-LONG_DEGREE = 64
-"""From which on exact Sturm sequences take longer than complex roots do."""
 
 
 def roots_between(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
@@ -67,70 +36,33 @@ def roots_between(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
         if power > 1:
             return roots_between(deflated, low**power, high**power)
     coefficients = tuple(int(c) for c in p.coeffs())
-    if p.degree() >= BALL_DEGREE:
-        found = _by_ball_chain(coefficients, low, high)
-        if found is not None:
-            return found
-    if p.degree() >= LONG_DEGREE:
-        return _balls_between(coefficients, low, high, [end for end in (low, high) if p(end) == 0])
-    chain = _chain(coefficients)
-    return _variations(chain, low) - _variations(chain, high) - (1 if p(high) == 0 else 0)
+    return roots_above(coefficients, low) - roots_above(coefficients, high) - (p(high) == 0)
 
 
-def _by_ball_chain(coefficients: tuple[int, ...], low: fmpq, high: fmpq) -> int | None:
-    """The number of different roots in (low, high), from a Sturm sequence in balls; None where none
-    is found.
-    """
-    p = fmpz_poly(list(coefficients))
-    counts = [_changes(p, coefficients, end) for end in (low, high)]
-    if counts[0] is None or counts[1] is None:
-        return None
-    return counts[0] - counts[1] - (1 if p(high) == 0 else 0)
-
-
-def changes_of(p: fmpz_poly) -> Callable[[fmpq], int]:
-    """A function f for which f(a) - f(b) is the number of different roots in (a, b], of a
-    polynomial not constant.
-    """
-    coefficients = tuple(int(c) for c in p.coeffs())
-
-    def changes(at: fmpq) -> int:
-        found = _changes(p, coefficients, at)
-        # both are signs of the same sequence, up to positive factors
-        return _variations(_chain(coefficients), at) if found is None else found
-
-    return changes
-
-
-def _changes(p: fmpz_poly, coefficients: tuple[int, ...], at: fmpq) -> int | None:
-    """Changes of sign in the Sturm sequence, at the least precision that tells them; None where
-    none does.
-    """
-    bits, most = 256, 8 * p.height_bits() + 64 * len(coefficients)
+def roots_above(coefficients: tuple[int, ...], at: fmpq) -> int:
+    """The number of different real roots above a number, of a polynomial that is not constant."""
+    p = _simple(coefficients)
+    bits, most = 96, 8 * p.height_bits() + 64 * len(coefficients)
     while bits < 2 * most:
-        chain = _ball_chain(coefficients, bits)
-        if chain is None:
-            return None
-        if chain:
+        if (chain := _ball_chain(coefficients, bits)) is not None:
             with ctx.workprec(bits):
-                found = _ball_variations(p, chain, at)
-            if found is not None:
-                return found
+                signs = _signs(p(at), chain, at)
+            if signs is not None:
+                return _changes(signs) - _changes_at_infinity(coefficients, bits)
         bits *= 2
-    return None
+    return _balls_above(p, coefficients, at)
 
 
-@lru_cache(maxsize=1024)
-def _ball_chain(coefficients: tuple[int, ...], bits: int) -> tuple[arb_poly, ...] | None:
-    """The sequence after the polynomial itself; empty where the precision is too low, None for
-    multiple roots.
-    """
-    p = fmpz_poly(list(coefficients))
-    if p.gcd(p.derivative()).degree() > 0:
-        return None
+@lru_cache(maxsize=4096)
+def _simple(coefficients: tuple[int, ...]) -> fmpz_poly:
+    return squarefree(fmpz_poly(list(coefficients)))
+
+
+@lru_cache(maxsize=4096)
+def _ball_chain(coefficients: tuple[int, ...], bits: int) -> list[arb_poly] | None:
+    p = _simple(coefficients)
     with ctx.workprec(bits):
-        chain = ball_chain(arb_poly(p), int(p.degree()), 0)
-    return () if chain is None else tuple(chain[1:])
+        return ball_chain(arb_poly(p), int(p.degree()), 0)
 
 
 def ball_chain(p: arb_poly, degree: int, last: int) -> list[arb_poly] | None:
@@ -155,35 +87,38 @@ def ball_chain(p: arb_poly, degree: int, last: int) -> list[arb_poly] | None:
     return chain
 
 
-def _ball_variations(p: fmpz_poly, chain: Sequence[arb_poly], at: fmpq) -> int | None:
-    """Changes of sign at a point, of the polynomial and its sequence; None where a sign is not
+def _signs(first: fmpq, chain: Sequence[arb_poly], at: fmpq) -> list[bool] | None:
+    """Whether a sequence's values at a point are positive, without zeros; None where one is not
     known.
     """
-    values = [q(arb(at)) for q in chain]
-    if any(value.contains(0) and not value.is_zero() for value in values):
-        return None
-    signs = [1 if value > 0 else -1 for value in values if not value.is_zero()]
-    if (first := p(at)) != 0:
-        signs.insert(0, 1 if first > 0 else -1)
+    signs = [first > 0] if first != 0 else []
+    ball = arb(at)
+    for q in chain[1:]:
+        value = q(ball)
+        if value > 0 or value < 0:
+            signs.append(value > 0)
+        elif not value.is_zero():
+            return None
+    return signs
+
+
+@lru_cache(maxsize=4096)
+def _changes_at_infinity(coefficients: tuple[int, ...], bits: int) -> int:
+    chain = _ball_chain(coefficients, bits) or ()
+    return _changes([q[len(chain) - 1 - k] > 0 for k, q in enumerate(chain)])
+
+
+def _changes(signs: Sequence[bool]) -> int:
     return sum(a != b for a, b in pairwise(signs))
 
 
-def _balls_between(
-    coefficients: tuple[int, ...], low: fmpq, high: fmpq, ends: Sequence[fmpq]
-) -> int:
-    """The number of roots in (low, high), of whose ends some are roots."""
-    bits = 64
+def _balls_above(p: fmpz_poly, coefficients: tuple[int, ...], at: fmpq) -> int:
+    """The same by FLINT's isolation of all roots, where a Sturm sequence has a gap."""
+    is_root, bits = p(at) == 0, 64
     while True:
-        inside = 0
-        for first, last in map(ends_of, real_roots(coefficients, bits)):
-            if any(first <= end <= last for end in ends):
-                continue  # there is one root in the ball, so it is this end
-            if low < first and last < high:
-                inside += 1
-            elif not (last < low or high < first):
-                break
-        else:
-            return inside
+        ends = [ends_of(root) for root in real_roots(coefficients, bits)]
+        if sum(first <= at <= last for first, last in ends) == is_root:
+            return sum(at < first for first, _ in ends)
         bits *= 2
 
 
@@ -269,9 +204,9 @@ def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | Non
     low, high = max(low, -bound), min(high, bound)
     if low >= high:
         return None
-    changes = _changes_of(tuple(int(c) for c in p.coeffs()))
-    first, last = changes(low), changes(high) + (p(high) == 0)
-    wanted = first - number  # changes below the root, one less above it
+    above = _counted_above(tuple(int(c) for c in p.coeffs()))
+    first, last = above(low), above(high) + (p(high) == 0)
+    wanted = first - number  # roots above a number below the root, one less above it
     if wanted <= last:
         return None
     while True:
@@ -286,7 +221,7 @@ def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | Non
             if found is not None:
                 return found
         middle = (low + high) / 2
-        beyond = changes(middle)
+        beyond = above(middle)
         if beyond >= wanted:
             low, first = middle, beyond
         elif beyond == wanted - 1 and p(middle) == 0:
@@ -296,11 +231,11 @@ def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | Non
 
 
 @lru_cache(maxsize=64)
-def _changes_of(coefficients: tuple[int, ...]) -> Callable[[fmpq], int]:
-    """`changes_of`, for walls over the same abscissa, whose roots are told apart at the same
+def _counted_above(coefficients: tuple[int, ...]) -> Callable[[fmpq], int]:
+    """`roots_above`, for walls over the same abscissa, whose roots are told apart at the same
     heights.
     """
-    return cache(changes_of(fmpz_poly(list(coefficients))))
+    return cache(partial(roots_above, coefficients))
 
 
 def _bound(p: fmpz_poly) -> fmpq:

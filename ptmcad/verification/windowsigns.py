@@ -1,22 +1,15 @@
-"""Checks of the components that are left out: they have no point in the open window, or no real
-count feels them.
+"""Signs in the open window: components that are left out have no point in it, and rational functions
+are positive there.
 
-Guarantee: the first is exact, the second up to the probability of `ptmcad.verification.variety`,
-which checks it. Signs of coefficients on boxes prove most of the first; what they do not settle is
-settled by Sturm counts over a point in each interval that the curve's discriminant and edge values
-leave, and over its roots, where isolated points would be.
+Guarantee: exact; `Sign.PROVED` and `Sign.WRONG` are theorems. `Sign.UNCHECKED` is answered where a
+function of both axes has a degree over `MAX_DEGREE`, or may be zero at an isolated point. That no
+real count feels a component is checked in `ptmcad.verification.variety`.
 
-The sign of a rational function over the open window, proved once more: Sturm counts between
-critical abscissae.
-
-Guarantee: `Sign.PROVED` and `Sign.WRONG` are theorems. `Sign.UNCHECKED` is answered where a
-function of both axes has a degree over `MAX_DEGREE`, or may be zero at an isolated point.
-
-It shares nothing with what the engines ask (`ptmcad.question.positivity`): no Bernstein
-coefficients, no halving of boxes, no isolation by Descartes' rule, another elimination. A
-polynomial changes sign in the open window where one of its irreducible factors of odd multiplicity
-does; and between the roots of such a factor's discriminant and of its values on two edges, the
-number of its roots in a fibre, all of them simple, is that over one sample (`window`).
+Signs of coefficients on boxes settle most components; others are settled by Sturm counts over a
+point in each interval that the curve's discriminant and edge values leave, and over its roots, where
+isolated points would be. A function changes sign in the open window where one of its irreducible
+factors of odd multiplicity does. Nothing is shared with what the engines ask
+(`ptmcad.question.positivity`): no Bernstein coefficients, no Descartes' rule, another elimination.
 """
 
 from __future__ import annotations
@@ -34,8 +27,6 @@ from ptmcad.verification.projections import Heights, projection_of_one
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import isolating_intervals, roots_between, separated_points
 
-BOXES = 600
-"""Boxes into which the window may be cut before the algebraic way is taken."""
 HALVINGS = 4
 """Times that the window's sides are halved before a curve may be used although it has no point in
 the window.
@@ -59,7 +50,7 @@ def check_left_out(claims: Claims) -> str:
             )
         number += 1
         curve = PlaneCurve.of(n, c.polynomial, result.base)
-        if min(curve.degrees) > 0 and _nowhere_zero(curve, claims.base, claims.height):
+        if plainly_outside(curve, claims):
             continue
         hit = point_in_window(curve, claims.base, claims.height)
         if hit is not None:
@@ -100,31 +91,6 @@ def point_in_window(
             if Heights((curve,), place).between(*height):
                 return f"it has an isolated point near {short(a)}"
     return None
-
-
-def _nowhere_zero(curve: PlaneCurve, base: Interval, height: Interval) -> bool:
-    """Whether the curve is proved to have no point in the open window; False may mean undecided.
-
-    With u = (a + b x)/(1 + x), v = (c + d y)/(1 + y) an open box becomes the quadrant x, y > 0, on
-    which a polynomial whose coefficients have one sign has no zero. A box that is not settled is
-    cut in four; Sturm settles the cuts.
-    """
-    waiting, done = [(*base, *height)], 0
-    rows = [fmpq_poly(row) for row in curve.in_v]
-    while waiting:
-        done += 1
-        a, b, c, d = waiting.pop()
-        if _one_sign(rows, curve.degrees[0], (a, b), (c, d)):
-            continue
-        u, v = (a + b) / 2, (c + d) / 2
-        if (
-            done > BOXES
-            or roots_between(curve.over(u), c, d)
-            or roots_between(curve.along(v), a, b)
-        ):
-            return False
-        waiting += [(a, u, c, v), (u, b, c, v), (a, u, v, d), (u, b, v, d)]
-    return True
 
 
 def plainly_outside(curve: PlaneCurve, claims: Claims) -> bool:

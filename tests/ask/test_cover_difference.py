@@ -197,13 +197,13 @@ def test_the_picture_shows_the_changes_where_they_are() -> None:
         made = comparison_figure(found, 100, style)
     said = [text.get_text() for text in made.texts]
     assert {"3 → 2", "2 → 3", "by one map or both"} <= set(said)
-    ground = next(a for a in made.axes[2].get_children() if a.get_gid() == "undetermined")
+    ground = next(a for a in made.axes[2].get_children() if a.get_gid() == "2-undetermined")
     assert ground.get_facecolor()[:3] == pytest.approx(
         [int(UNDETERMINED.face[k : k + 2], 16) / 255 for k in (1, 3, 5)]
     )
     for change in found.changes:
         (patch,) = [
-            a for a in made.axes[2].get_children() if a.get_gid() == f"region-{change.region}"
+            a for a in made.axes[2].get_children() if a.get_gid() == f"2-region-{change.region}"
         ]
         path = patch.get_path()
         inside = np.clip(path.vertices, 0, 1)  # outlines on the frame are drawn beyond it

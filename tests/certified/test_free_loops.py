@@ -33,7 +33,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.formulas.graph import Formula
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
-from ptmcad.show.report.tape import tape
+from ptmcad.show.report.scripttape import tape
 from ptmcad.workbench.fields.quantityfield import field_of, request_of
 
 pytest.importorskip("numba")

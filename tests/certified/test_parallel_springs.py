@@ -25,7 +25,7 @@ from ptmcad.certified.plain.problem import problem_of
 from ptmcad.model import Mechanism
 from ptmcad.options import Options
 from ptmcad.verification import verify
-from ptmcad.verification.certified.waves import form_of
+from ptmcad.verification.normalform.waves import form_of
 from ptmcad.verification.terms import monomials
 
 Springs = list[dict[str, Any]]

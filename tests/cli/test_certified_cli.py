@@ -65,7 +65,9 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     loading.load = lambda progress, options: 0.0  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "ptmcad.certified.loading", loading)
     # the map made by hand has more counts than its question needs, which a stored map must not have
-    monkeypatch.setattr("ptmcad.verification.certified.checks.contradiction", lambda result: "")
+    monkeypatch.setattr(
+        "ptmcad.verification.certified.certificate.contradiction", lambda result: ""
+    )
     return calls
 
 
@@ -99,7 +101,7 @@ def test_the_check_of_a_map_to_go_on_from_is_part_of_the_time_limit(
         clock["ahead"] += 1000
         return ""
 
-    monkeypatch.setattr("ptmcad.verification.certified.checks.contradiction", slow)
+    monkeypatch.setattr("ptmcad.verification.certified.certificate.contradiction", slow)
     options = ["--out", str(tmp_path), "--resume", str(tmp_path / SAVED), "--timeout"]
     for limit, least, most in (("3600", 2400, 2600), ("600", 0, 1)):
         engine.clear()

@@ -13,7 +13,7 @@ import pytest
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli import run
-from ptmcad.show.document.family import read_family
+from ptmcad.show.document.familydocument import read_family
 
 RECORD = """name: loads
 title: Loads

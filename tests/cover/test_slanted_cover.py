@@ -18,8 +18,8 @@ from ptmcad.cover import tubeframes as tubes
 from ptmcad.cover.connectivity import shown, stepped
 from ptmcad.cover.rectangles import Cover, Patch, Tube
 from ptmcad.cover.subdivision import FREE
-from ptmcad.verification.certified.slanted import SlantedFrame
-from ptmcad.verification.certified.sweep import sweep
+from ptmcad.verification.certified.coversweep import sweep
+from ptmcad.verification.certified.slantedframes import SlantedFrame
 from ptmcad.verification.report import Violation
 
 STEPS = 2**20

@@ -453,12 +453,12 @@ def test_a_picture_that_fails_leaves_the_result(
     capfd: pytest.CaptureFixture[str],
     error: Exception,
 ) -> None:
-    import ptmcad.show.render.regionmap
+    import ptmcad.show.render.mappicture
 
     def fail(*_: Any, **__: Any) -> None:
         raise error
 
-    monkeypatch.setattr(ptmcad.show.render.regionmap, "draw", fail)
+    monkeypatch.setattr(ptmcad.show.render.mappicture, "draw", fail)
     arguments = ["classify", str(FIG2), "--out", str(tmp_path), "--format", "json,svg"]
     assert run(arguments) == 2
     errors = capfd.readouterr().err

@@ -24,7 +24,7 @@ from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.config.schema import record_schema
 from ptmcad.question.config.starters import NAMES, starter_mechanism, starter_text
 from ptmcad.question.slice import Count
-from ptmcad.show.document.regionmap import FORMAT
+from ptmcad.show.document.mapdocument import FORMAT
 from ptmcad.show.schemas import schemas, with_prose
 from ptmcad.text.node import MAX_ENTRIES
 

@@ -17,8 +17,8 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.notebook import map_html
 from ptmcad.show.render.comparing import comparison_figure, difference_words
 from ptmcad.show.render.legend import Entry, entries
+from ptmcad.show.render.mappicture import description
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import description
 from ptmcad.show.report import page
 from ptmcad.show.report.sections import regions
 from ptmcad.show.style import DEFAULT
@@ -45,8 +45,8 @@ def test_areas_that_were_not_computed_are_nowhere(bare: RegionMap) -> None:
     assert not areas_are_known(bare)
     assert areas_are_known(shipped("fig4"))
     assert "areas     not computed" in table(bare)
-    assert "area" in words(entries(shipped("fig4"), False, False, 0))
-    assert "area" not in words(entries(bare, False, False, 0))
+    assert "area" in words(entries(shipped("fig4"), False))
+    assert "area" not in words(entries(bare, False))
     assert "area" not in description(bare)
     assert "area in brackets" in description(shipped("fig4"))
     assert regions(bare).count("not computed") == len(bare.regions)
@@ -62,7 +62,7 @@ def test_a_comparison_tells_its_own_areas_only(bare: RegionMap) -> None:
 
 
 def test_a_region_alone_with_its_count_has_the_area_of_the_count(certified: RegionMap) -> None:
-    legend = words(entries(certified, False, False, 0)).replace("\n", " ")
+    legend = words(entries(certified, False)).replace("\n", " ")
     counts = [region.stable for region in certified.regions]
     alone = [n for n, stable in enumerate(counts) if counts.count(stable) == 1]
     assert alone
@@ -75,7 +75,7 @@ def test_shares_are_rounded_up_wherever_they_are_told(certified: RegionMap) -> N
     share = percent(certified.undetermined)
     assert Fraction(share.removesuffix(" %")) / 100 >= certified.undetermined
     assert f"{share} undetermined" in table(certified)
-    assert f"undetermined {share}" in words(entries(certified, False, False, 0))
+    assert f"undetermined {share}" in words(entries(certified, False))
     assert percent(Fraction("0.043034")) == "4.4 %"
 
 

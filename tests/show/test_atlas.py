@@ -14,13 +14,24 @@ import pytest
 from PIL import Image
 from support import browser as chromium
 from support.browser import Browser
+from support.pages import corners
 
 import ptmcad
 from ptmcad.answer.sweep import CountedArea, Member, State, Summary, Sweep, Widest
 from ptmcad.cli import run
 from ptmcad.show.render.colours import Fill
-from ptmcad.show.report.atlas import MAX_MAPS, SheetFrame, atlas, chosen, frame_of
-from ptmcad.show.sweeps.sketch import MAX_CHARACTERS, SIDE, Thumbnail, sketch
+from ptmcad.show.render.polylines import GRID
+from ptmcad.show.report.atlas import (
+    MAX_CHARACTERS,
+    MAX_MAPS,
+    SIDE,
+    SheetFrame,
+    Thumbnail,
+    atlas,
+    chosen,
+    frame_of,
+    sketch,
+)
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\u2028"
 CUBIC = {"unknowns": {"x": "real"}, "potential": "x^4/4 + (a + c)*x^2/2 + d*b*x"}
@@ -110,19 +121,11 @@ def test_a_drawing_is_the_map() -> None:
     area = 0.0
     for _, data in drawn.paths:
         for part in data.removesuffix("z").split("z"):
-            numbers = [float(n) for n in part.removeprefix("M").split()]
-            points = list(zip(numbers[::2], numbers[1::2], strict=True))
-            area += (
-                abs(
-                    sum(
-                        x * v - u * y
-                        for (x, y), (u, v) in zip(points, points[1:] + points[:1], strict=True)
-                    )
-                )
-                / 2
-            )
+            points = corners(f"{part}z")
+            pairs = zip(points, points[1:] + points[:1], strict=True)
+            area += abs(sum(x * v - u * y for (x, y), (u, v) in pairs)) / 2
     areas = sorted(float(region.area[0]) for region in result.regions)
-    assert area / SIDE**2 == pytest.approx(sum(areas[:-1]) / sum(areas), abs=2e-3)
+    assert area / (SIDE / GRID) ** 2 == pytest.approx(sum(areas[:-1]) / sum(areas), abs=2e-3)
     assert {text for text, _ in drawn.legend} == {"1", "2"}
 
 

@@ -39,8 +39,8 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.answer.slicevariety import SliceVariety
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError, InfiniteSolutionsError
-from ptmcad.show.export import FORMATS
 from ptmcad.show.polynomial_text import Style, symbols
+from ptmcad.show.varietytext import FORMATS
 from ptmcad.text.plane import PlanePolynomial
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -22,14 +22,14 @@ SWITCH = {
 )
 def test_the_title_of_a_systems_quantity(value: str, pose: str, title: str) -> None:
     pytest.importorskip("matplotlib")
-    from ptmcad.show.render.field import title_of
+    from ptmcad.show.render.fieldpicture import title_of
 
     result = ptmcad.classify(SWITCH)
     assert title_of(result, result.field(value, pose, 2, 2)) == title
 
 
 def test_the_title_of_a_mechanisms_quantity() -> None:
-    from ptmcad.show.render.field import title_of
+    from ptmcad.show.render.fieldpicture import title_of
 
     result = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))
     assert (

@@ -20,7 +20,7 @@ from ptmcad.cli.solve import command as solve_command
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import point_from_mapping
 from ptmcad.show.render.landscape import draw_landscape, energy_of
-from ptmcad.show.render.poses import draw_poses
+from ptmcad.show.render.posepicture import draw_poses
 from ptmcad.show.report import page
 from ptmcad.show.table import table
 

@@ -29,7 +29,7 @@ from ptmcad.errors import ConfigError, PictureError
 from ptmcad.question.config import point_from_mapping
 from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.landscape import draw_landscape, energy_of
-from ptmcad.show.render.poses import draw_poses
+from ptmcad.show.render.posepicture import draw_poses
 from ptmcad.show.report import page
 from ptmcad.show.report.equilibria import at_sample
 

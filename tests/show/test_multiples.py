@@ -15,11 +15,11 @@ import ptmcad
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.multiples import multiples_figure
+from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.panels import multiples_figure
 from ptmcad.show.render.printing import content, save
-from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.sheets import MAX_SIDE, camera_of, halved
 from ptmcad.show.render.solid import MAX_FLOORS, solid_figure
+from ptmcad.show.render.surfacepicture import MAX_SIDE, camera_of, halved
 from ptmcad.show.style import DEFAULT
 
 RECORD: dict[str, Any] = {
@@ -124,7 +124,7 @@ def test_a_boundary_surface_is_drawn_with_the_members_curves_and_says_what_it_is
 def test_a_surface_of_many_pieces_is_an_image_in_a_vector_picture(
     solid: tuple[FamilyMap, BoundarySurface], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("ptmcad.show.render.sheets.MAX_PIECES", 100)
+    monkeypatch.setattr("ptmcad.show.render.surfacepicture.MAX_PIECES", 100)
     found, surface = solid
     save(solid_figure(found, 100, DEFAULT, surface), tmp_path / "a.svg")
     assert (tmp_path / "a.svg").read_text().count("<image") == 1

@@ -17,7 +17,7 @@ from support.document_keys import changed_keys
 from ptmcad import AlgebraicNumber, Enclosure, Poses, solve
 from ptmcad.model import ptm
 from ptmcad.show.columns import WIDTH
-from ptmcad.show.document.poses import FORMAT
+from ptmcad.show.document.posedocument import FORMAT
 from ptmcad.text.enclosure import exact_text
 from ptmcad.text.numerals import fraction_of
 

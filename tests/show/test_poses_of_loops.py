@@ -12,7 +12,7 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.poses import Poses
-from ptmcad.show.document.poses import read_poses
+from ptmcad.show.document.posedocument import read_poses
 
 MECHANISMS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
 AT = {
@@ -78,7 +78,7 @@ def test_a_mirror_image_has_the_same_energy() -> None:
 @pytest.mark.parametrize("name", ["slider-crank", "x-joint", "platform-loop"])
 @pytest.mark.slow_cases("x-joint", "platform-loop")
 def test_poses_are_stored_shown_and_drawn(name: str) -> None:
-    from ptmcad.show.render.poses import draw_poses
+    from ptmcad.show.render.posepicture import draw_poses
 
     found = poses(name)
     text = found.to_json()

@@ -26,14 +26,13 @@ from ptmcad.cli import run
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count, Point
-from ptmcad.show.render import coveroutline, draw, simplification
-from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED, fill_of
+from ptmcad.show.render import coveroutline, draw, polylines
+from ptmcad.show.render.colours import CORE, ONE_MAXIMUM, RIM, TWO_MAXIMA, UNDETERMINED, fill_of
 from ptmcad.show.render.coveroutline import TOLERANCE
 from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
-from ptmcad.show.render.legend import CORE, RIM
-from ptmcad.show.render.regionmap import MapDrawing, _zoomed
-from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.simplification import simplified_polygons
+from ptmcad.show.render.mappicture import MapDrawing, _zoomed
+from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.polylines import simplified_polygons
 from ptmcad.show.render.view import Floats, View
 from ptmcad.show.report import page
 
@@ -247,13 +246,13 @@ def test_a_long_flight_of_stairs_is_simplified_in_few_steps(
     many steps.
     """
     steps: list[int] = []
-    measured = simplification._distances
+    measured = polylines._distances
 
     def counted(points: Floats, a: Floats, b: Floats) -> Floats:
         steps.append(len(points))
         return measured(points, a, b)
 
-    monkeypatch.setattr(simplification, "_distances", counted)
+    monkeypatch.setattr(polylines, "_distances", counted)
     rises = np.repeat(np.cumsum(np.linspace(1.0, 1.2, 400)), 2) * height * TOLERANCE
     stairs = np.concatenate([np.stack([rises[1:], rises[:-1]], axis=1), [[0.0, rises[-1]]]])
     few = simplified_polygons(stairs, np.array([len(stairs)]), TOLERANCE)[0]

@@ -18,8 +18,8 @@ from support.maps import CONFIGS, shipped
 
 import ptmcad
 from ptmcad.cli.plot import poses_at
-from ptmcad.show.render.field import field_figure
 from ptmcad.show.render.fieldlines import MIN_LINE, _chains, branch_edges, contour_lines
+from ptmcad.show.render.fieldpicture import field_figure
 from ptmcad.show.render.printing import settings
 from ptmcad.show.style import MIN_FONT, styled
 

@@ -19,11 +19,11 @@ from ptmcad.cli import run
 from ptmcad.cli.plot import measured, places, poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.around import draw_around
-from ptmcad.show.render.clearance import Stroke, crosses
+from ptmcad.show.render.labels import Stroke, crosses
 from ptmcad.show.render.leaders import Berth, meet, routed
+from ptmcad.show.render.mappicture import MapDrawing
 from ptmcad.show.render.overlay import Agreement
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import MapDrawing
 from ptmcad.show.style import MIN_FONT, PAGE_HEIGHT, PictureStyle, styled
 
 AT = ("rho=1,L2=3/2", "rho=3/2,L2=1/2", "rho=0.1,L2=1.8", "rho=1/4,L2=1/4")

@@ -28,10 +28,10 @@ from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.solving import poses_at, solve
 from ptmcad.show.render import printing
-from ptmcad.show.render.clearance import Label, Stroke, crosses, overlap, place, polyline
+from ptmcad.show.render.labels import Label, Stroke, crosses, overlap, place, polyline
 from ptmcad.show.render.landscape import contour_levels, copies, draw_landscape, energy_of
 from ptmcad.show.render.mechanism import PALE, STRONG
-from ptmcad.show.render.poses import draw_poses, printed_number, value_text
+from ptmcad.show.render.posepicture import draw_poses, printed_number, value_text
 from ptmcad.show.render.sketch import (
     BAR_WIDTHS,
     MIN_TURNS,

@@ -28,9 +28,9 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count
 from ptmcad.show.render import draw
-from ptmcad.show.render.clearance import overlap
 from ptmcad.show.render.colours import GREYS, Fill, filler
 from ptmcad.show.render.fitting import rewrapped
+from ptmcad.show.render.labels import overlap
 from ptmcad.show.render.layout import (
     BOTTOM,
     INSET_ABOVE,
@@ -41,8 +41,8 @@ from ptmcad.show.render.layout import (
     flowing,
 )
 from ptmcad.show.render.legend import Entry, Type, entries
+from ptmcad.show.render.mappicture import MapDrawing, left_out
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import MapDrawing, left_out
 from ptmcad.show.render.slivers import told_apart
 from ptmcad.show.style import MIN_FONT, PRESETS, LegendPlace, PictureStyle, styled
 from ptmcad.show.table import area_text
@@ -468,7 +468,7 @@ def test_a_palette_with_one_colour_twice_is_refused(palette: str) -> None:
 @pytest.mark.parametrize("number", range(13))
 def test_however_much_is_zoomed_a_picture_is_at_most_so_wide(number: int) -> None:
     legend = [Entry(("count", "area"), Fill("#ffffff"))] * 8
-    made = flowing(["title"], legend, Type(), number, 0.0, 0.0)
+    made = flowing(["title"], legend, Type(), number)
     assert len(made.insets) == number and made.size[0] <= WIDEST < 11.1
     boxes = [
         (x - INSET_LEFT, y - INSET_BELOW, x + w, y + h + INSET_ABOVE) for x, y, w, h in made.insets

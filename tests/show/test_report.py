@@ -32,14 +32,11 @@ from ptmcad.errors import ConfigError
 from ptmcad.model import known_of
 from ptmcad.question.config import load, slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Point
-from ptmcad.show.render.axes import scale_of
+from ptmcad.show.render.axes import scale_of, ticks
 from ptmcad.show.report import page
-from ptmcad.show.report.decimals import decimal_text, degrees
-from ptmcad.show.report.equilibria import at_sample, potential_at
+from ptmcad.show.report.equilibria import at_sample, decimal_text, degrees, potential_at
 from ptmcad.show.report.error_curve import read_error_curve
-from ptmcad.show.report.frame import ticks
-from ptmcad.show.report.packing import packed
-from ptmcad.show.report.page import harmless
+from ptmcad.show.report.reportpage import harmless, packed
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.report.sections import question
 from ptmcad.text.balls import ball_over, enclosure_of

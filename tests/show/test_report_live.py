@@ -26,9 +26,8 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields.equations import state_at
 from ptmcad.show.report import page
-from ptmcad.show.report.chart import SLACK
-from ptmcad.show.report.frame import SIDE
-from ptmcad.show.report.tape import tape
+from ptmcad.show.report.mapsvg import SIDE, SLACK
+from ptmcad.show.report.scripttape import tape
 from ptmcad.workbench.fields.quantityfield import exact_at
 
 pytestmark = pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)

@@ -12,30 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.certified_maps import certified, circle, crossing, cusp
 from support.maps import part_of_free02
+from support.pages import corners
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover.rectangles import Cover
-from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.polylines import GRID, path_data
 from ptmcad.show.report import page
-from ptmcad.show.report.chart import SLACK
-from ptmcad.show.report.frame import SIDE
-from ptmcad.show.report.pathdata import GRID, path_data
-
-
-def corners(data: str) -> list[tuple[float, float]]:
-    """The corners of one line, read as SVG's grammar says, in the picture's units."""
-    assert re.fullmatch(r"M-?\d+[ -]\d+(?:[lhv]-?\d+(?:(?: |(?=-))-?\d+)*)*z?", data), data
-    first, *pieces = re.findall(r"[Mlhv][^Mlhvz]*", data)
-    x, y = (int(number) for number in re.findall(r"-?\d+", first))
-    found = [(x, y)]
-    for piece in pieces:
-        numbers = [int(number) for number in re.findall(r"-?\d+", piece)]
-        steps = {"h": [(n, 0) for n in numbers], "v": [(0, n) for n in numbers]}.get(piece[0])
-        for dx, dy in zip(numbers[::2], numbers[1::2], strict=True) if steps is None else steps:
-            x, y = x + dx, y + dy
-            found.append((x, y))
-    return [(x / GRID, y / GRID) for x, y in found]
-
+from ptmcad.show.report.mapsvg import SIDE, SLACK
 
 COORDINATES = st.one_of(
     st.floats(-600, 1200), st.sampled_from([0.0, 1.0, 0.5, 99.99, 100.0, 600.0])

@@ -19,7 +19,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.model import ptm
 from ptmcad.question.config import slice_from
 from ptmcad.show.render.axes import axis_name
-from ptmcad.show.report.page import page
+from ptmcad.show.report.reportpage import page
 from ptmcad.show.units import area_unit, energy_unit, unit
 
 ROOT = Path(__file__).resolve().parents[2]

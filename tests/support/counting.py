@@ -9,9 +9,8 @@ from ptmcad.model import Model, known_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.counted import CountedPoint
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.models import ModelCounting
-from ptmcad.verification.certified.points import counting_of
-from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.solutions import map_of
 
 PAPER = known_of("ptm")
@@ -33,5 +32,4 @@ def counted_at(
 ) -> tuple[CertifiedClaims, ModelCounting, CountedPoint]:
     """The window, the way of counting, and what is counted in its middle."""
     claims = claims_of(values, count)
-    counting = counting_of(claims)
-    return claims, counting, counting.at(claims, *MIDDLE)
+    return claims, claims.counting, claims.counting.at(*MIDDLE)

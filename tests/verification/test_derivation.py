@@ -19,8 +19,8 @@ import ptmcad
 from ptmcad.exact.models import system_from
 from ptmcad.model import Mechanism, described, ptm
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.derivation import derivation_at, derivation_of
+from ptmcad.verification.normalform.waves import form_of
 
 # coordinates with quotients, powers and sums of three angles, which the built-in mechanism does not
 # have

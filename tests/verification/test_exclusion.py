@@ -5,12 +5,10 @@ passes.
 from __future__ import annotations
 
 import random
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -20,23 +18,23 @@ from support.records import TRUSS
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.config import load
-from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.report import Unchecked, Violation
 
 pytest.importorskip("numba")
 
 import numpy as np
 
-from ptmcad.verification.certified.formulas import MAX_VARIABLES, Formulas
-from ptmcad.verification.exclusion import check, running
-from ptmcad.verification.exclusion.check import MAX_EFFORT, NUMBA_NEEDED, check_free_area
-from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate
+from ptmcad.verification.certified import freearea
+from ptmcad.verification.certified.freearea import MAX_EFFORT, check_free_area, pieces_of
+from ptmcad.verification.exclusion import running
+from ptmcad.verification.exclusion.boxsearch import look
+from ptmcad.verification.exclusion.criticalsystems import systems_of
+from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate, tape_of
 from ptmcad.verification.exclusion.holding import holds
-from ptmcad.verification.exclusion.pieces import no_pieces, pieces_of
+from ptmcad.verification.exclusion.pieces import no_pieces
 from ptmcad.verification.exclusion.running import Rest, search
-from ptmcad.verification.exclusion.search import look
-from ptmcad.verification.exclusion.systems import systems_of
-from ptmcad.verification.exclusion.tapes import tape_of
+from ptmcad.verification.normalform.operations import MAX_VARIABLES, Formulas
 
 ZEEMAN: dict[str, Any] = {
     "mechanism": {
@@ -130,52 +128,13 @@ def test_all_of_a_true_map_is_proved(name: str) -> None:
 
 
 def test_more_effort_proves_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(check, "BOXES_AT_FIRST", 3_000)
+    monkeypatch.setattr(freearea, "BOXES_AT_FIRST", 3_000)
     claims = CertifiedClaims(a_map("truss"))
     assert isinstance(check_free_area(0, claims), Unchecked)
     found = [check_free_area(effort, claims) for effort in (1, 3)]
     shares = [Fraction(text.split(" %", maxsplit=1)[0]) for text in found]
     assert isinstance(found[0], Unchecked)
     assert 50 < shares[0] < shares[1] == 100
-
-
-@pytest.fixture
-def not_yet_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without numba, and without what has been compiled by it."""
-    package = "ptmcad.verification.exclusion."
-    for name in [name for name in sys.modules if name == "numba" or name.startswith(package)]:
-        if name != check.__name__:
-            monkeypatch.delitem(sys.modules, name)
-
-
-@pytest.mark.usefixtures("not_yet_loaded")
-def test_without_numba_it_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    claims = CertifiedClaims(a_map("truss"))
-    monkeypatch.setitem(sys.modules, "numba", None)
-    found = check_free_area(1, claims)
-    assert isinstance(found, Unchecked)
-    assert found == NUMBA_NEEDED
-
-
-@pytest.mark.usefixtures("not_yet_loaded")
-@pytest.mark.parametrize(
-    ("numba", "said"),
-    [
-        ("raise ImportError('Numba needs an older NumPy')", "Numba needs an older NumPy"),
-        ("import a_package_of_its_own", "No module named 'a_package_of_its_own'"),
-        ("import numba.a_part_of_it", "No module named 'numba.a_part_of_it'"),
-    ],
-)
-def test_what_else_cannot_be_imported_is_named(
-    numba: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A numba that is installed is not asked for."""
-    claims = CertifiedClaims(a_map("truss"))
-    (tmp_path / "numba").mkdir()
-    (tmp_path / "numba" / "__init__.py").write_text(numba)
-    monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(ImportError, match=said):
-        check_free_area(1, claims)
 
 
 def with_one_cell(stored: RegionMap) -> RegionMap:
@@ -324,7 +283,7 @@ def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     claims = CertifiedClaims(a_map("loop"))
-    system, pieces = systems_of(claims)[0], no_pieces(claims.sweep.steps)
+    system, pieces = systems_of(claims.lattice)[0], no_pieces(claims.sweep.steps)
 
     def left() -> tuple[int, set[bytes]]:
         rest = search(system, pieces, system.start[None], 4_000, 2.0**-20)
@@ -343,7 +302,11 @@ def test_formulas_that_exclude_nothing_are_left_out(monkeypatch: pytest.MonkeyPa
     was tried by all.
     """
     claims = CertifiedClaims(a_map("loop"))
-    system, pieces, tapes = systems_of(claims)[0], no_pieces(claims.sweep.steps), list[int]()
+    system, pieces, tapes = (
+        systems_of(claims.lattice)[0],
+        no_pieces(claims.sweep.steps),
+        list[int](),
+    )
     tried_by_all = set[bytes]()
 
     def watched(*arguments: Any) -> None:

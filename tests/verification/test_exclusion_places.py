@@ -5,6 +5,7 @@ the balls.
 from __future__ import annotations
 
 import random
+import subprocess
 import sys
 from dataclasses import replace
 from fractions import Fraction
@@ -14,32 +15,30 @@ from typing import Any
 
 import pytest
 from flint import arb
+from support.counting import counted_at
 from support.held_sliders import PAIR, SLANTED
 from support.maps import once_per_run
 from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.model import known_of
 from ptmcad.question.config import load
 from ptmcad.question.slice import Count
-from ptmcad.verification.certified.boxes import Box, Unproved
-from ptmcad.verification.certified.field import BallEquations
-from ptmcad.verification.certified.kinks import sides
-from ptmcad.verification.certified.parameters import over
-from ptmcad.verification.certified.points import check_points, counting_of
-from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.waves import form_of
+from ptmcad.verification.certified.ballequations import BallEquations
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
+from ptmcad.verification.normalform.boxes import Box, Unproved
+from ptmcad.verification.normalform.lattice import over
+from ptmcad.verification.normalform.waves import form_of, sides
 
 pytest.importorskip("numba")
 
 import numpy as np
 
-from ptmcad.verification.exclusion import check, places
-from ptmcad.verification.exclusion.check import places_of
-from ptmcad.verification.exclusion.forms import CENTER, WIDTH, evaluate
+from ptmcad.verification.exclusion import places
+from ptmcad.verification.exclusion.criticalsystems import halves_over, window_equations
+from ptmcad.verification.exclusion.forms import CENTER, WIDTH, evaluate, tape_of
 from ptmcad.verification.exclusion.places import SolutionPlaces
-from ptmcad.verification.exclusion.systems import halves_over, window_equations
-from ptmcad.verification.exclusion.tapes import tape_of
 
 PAPER: dict[str, Any] = {
     "mechanism": "ptm",
@@ -89,16 +88,12 @@ def a_map(name: str, count: str) -> RegionMap:
 def test_places_have_bounds_of_their_own_where_the_window_has_none() -> None:
     claims = CertifiedClaims(a_map("apart", "index"))
     with pytest.raises(Unproved, match="no bound of the unknown x"):
-        halves_over(claims)
-    find, rng = SolutionPlaces(claims), random.Random(1)
+        halves_over(claims.lattice, claims.lattice.window, claims.lattice.window)
+    find, rng = SolutionPlaces(claims.lattice), random.Random(1)
     (one, two), steps = at_random(claims, rng), claims.sweep.steps
-    point, whole = (
-        find((one, one), (two, two)),
-        find((Fraction(0), Fraction(steps)), (Fraction(0), Fraction(steps))),
-    )
-    assert point is not None
-    assert max(point.whole) < 100
-    assert whole is None
+    assert max(find((one, one), (two, two))[0].whole) < 100
+    with pytest.raises(Unproved, match="no bound of the unknown x"):
+        find((Fraction(0), Fraction(steps)), (Fraction(0), Fraction(steps)))
 
 
 def at_random(claims: CertifiedClaims, rng: random.Random) -> tuple[Fraction, Fraction]:
@@ -118,22 +113,19 @@ def at_random(claims: CertifiedClaims, rng: random.Random) -> tuple[Fraction, Fr
     "apart-stable",
 )
 def test_places_have_all_solutions(name: str, count: str) -> None:
-    """That balls alone find; and with places they find the same ones."""
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name + count), 0
-    found, counting = SolutionPlaces(claims), counting_of(claims)
+    found, counting = SolutionPlaces(claims.lattice), claims.counting
     for _ in range(12):
         u, v = at_random(claims, rng)
         where = found((u, u), (v, v))
         try:
-            alone = counting.at(claims, *claims.off_lattice(u, v))
+            alone = counting.at(*claims.lattice.off(u, v))
         except Unproved:
             continue
         told += 1
-        assert where is not None
         kept = [e for e in alone.found if count != "stable" or "-" not in e.signs]
         for e in kept:
-            assert any(inside(e.center, box) for boxes in where.boxes for box in boxes)
-        assert counting.at(claims, *claims.off_lattice(u, v), where).counts == alone.counts
+            assert any(inside(e.center, box) for boxes in where for box in boxes)
     assert told > 8
 
 
@@ -151,22 +143,19 @@ def test_places_have_all_solutions(name: str, count: str) -> None:
 )
 def test_places_over_a_box_have_those_over_its_points(name: str, count: str) -> None:
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name), 0
-    found, counting = SolutionPlaces(claims), counting_of(claims)
+    found, counting = SolutionPlaces(claims.lattice), claims.counting
     half = Fraction(claims.sweep.steps, 4096)
     for _ in range(6):
         u, v = at_random(claims, rng)
         whole = found((u - half, u + half), (v - half, v + half))
-        assert whole is not None
         for du, dv in ((1, 1), (-1, 1), (0, -1)):
             try:
-                there = counting.at(claims, *claims.off_lattice(u + du * half, v + dv * half))
+                there = counting.at(*claims.lattice.off(u + du * half, v + dv * half))
             except Unproved:
                 continue
             told += 1
             kept = [e for e in there.found if count != "stable" or "-" not in e.signs]
-            assert all(
-                any(inside(e.center, box) for boxes in whole.boxes for box in boxes) for e in kept
-            )
+            assert all(any(inside(e.center, box) for boxes in whole for box in boxes) for e in kept)
     assert told > 8
 
 
@@ -187,7 +176,7 @@ def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
     claims, rng = CertifiedClaims(a_map(name, count)), random.Random(count)
     form, slice = form_of(claims.result.slice), claims.result.slice
     for side in sides(form):
-        equations = window_equations(claims)
+        equations = window_equations(claims.lattice)
         equations.sides = side
         rows = equations.hessian(equations.directions())
         wanted = [
@@ -199,7 +188,7 @@ def test_formulas_are_those_of_the_balls(name: str, count: str) -> None:
         for _ in range(3):
             u, v = at_random(claims, rng)
             at = [rng.uniform(-2, 2) for _ in range(form.size)]
-            x, y = (arb(str(float(c))) for c in claims.off_lattice(u, v))
+            x, y = (arb(str(float(c))) for c in claims.lattice.off(u, v))
             values = {n: arb(0) for n in slice.model.free_lengths}
             jet = BallEquations(
                 form, values | {n: over(e, x, y) for n, e in slice.parameters.items()}, sides=side
@@ -225,28 +214,39 @@ def test_a_search_that_is_spent_leaves_what_it_has(
 ) -> None:
     claims = CertifiedClaims(a_map(name, "index"))
     at = at_random(claims, random.Random(1))
-    true = counting_of(claims).at(claims, *claims.off_lattice(*at))
+    true = claims.counting.at(*claims.lattice.off(*at))
     for budget, left in ((1, 512), (5, 512), (40, 512), (4000, 6)):
         monkeypatch.setattr(places, "BUDGET", budget)
         monkeypatch.setattr(places, "MAX_LEFT", left)
-        where = SolutionPlaces(claims)((at[0],) * 2, (at[1],) * 2)
-        assert where is not None
-        assert len(list(where.boxes[0])) <= left
-        assert all(any(inside(e.center, box) for box in where.boxes[0]) for e in true.found)
+        where = SolutionPlaces(claims.lattice)((at[0],) * 2, (at[1],) * 2)
+        assert len(list(where[0])) <= left
+        assert all(any(inside(e.center, box) for box in where[0]) for e in true.found)
 
 
-def test_without_compiled_code_balls_search_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    claims = CertifiedClaims(a_map("sliding", "index"))
-    with_places = check_points(claims, places_of(claims))
-    for name in [
-        n
-        for n in sys.modules
-        if n.startswith("ptmcad.verification.exclusion.") and n != check.__name__
-    ]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, "numba", None)
-    assert places_of(claims) is None
-    assert check_points(claims, None) == with_places
+def test_without_compiled_code_the_same_code_runs() -> None:
+    """In a process of its own, as decorators ask for numba when modules are loaded."""
+    run = """
+import subprocess
+import sys
+sys.modules["numba"] = None
+from fractions import Fraction
+from ptmcad.model import known_of
+from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.text.expressions import constant
+from ptmcad.verification.certified.models import ModelCounting
+from ptmcad.verification.normalform.lattice import SliceLattice
+axes = (Axis("x", Fraction(0), Fraction(1)), Axis("y", Fraction(0), Fraction(1)))
+given = {"rho": 1, "L1": 1, "L2": Fraction(3, 2), "k1": 1, "k2": 1, "k3": 1, "l0_1": Fraction(1, 5)}
+model = known_of("ptm")
+values = {n: constant(Fraction(given.get(n, 0))) for n in model.variables}
+slice = Slice("", model, axes, values, Count.INDEX)
+counting = ModelCounting(SliceLattice(slice, 2))
+print(counting.at(Fraction(1, 2), Fraction(1, 2)).counts.index)
+"""
+    found = subprocess.run([sys.executable, "-c", run], capture_output=True, text=True, check=True)
+    given = {"rho": "1", "L1": "1", "L2": "3/2", "k1": "1", "k2": "1", "k3": "1", "l0_1": "1/5"}
+    values = {n: Fraction(given.get(n, "0")) for n in known_of("ptm").variables}
+    assert found.stdout.strip() == str(counted_at(values, Count.INDEX)[2].counts.index)
 
 
 def test_forged_counts_are_refused_with_places() -> None:

@@ -23,12 +23,11 @@ from ptmcad.answer.regionmap import RegionMap, Solution
 from ptmcad.ask.fields.equations import newton_step, state_at
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Point
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.counted import CountedPoint, Where
+from ptmcad.verification.certified.cellsamples import _near
+from ptmcad.verification.certified.counted import CountedPoint
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.models import ModelCounting
-from ptmcad.verification.certified.points import _near
-from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.claims import Claims
+from ptmcad.verification.normalform.boxes import Unproved
 
 UNLOADED = {"L1": "1", "k": "1", "l0": "1/2"}
 PI = Fraction(math.pi)
@@ -54,16 +53,14 @@ def counted_once() -> Iterator[None]:
 
     def at(
         counting: ModelCounting,
-        claims: Claims,
         x: Fraction,
         y: Fraction,
-        where: Where | None = None,
     ) -> CountedPoint:
-        slice = claims.result.slice
+        slice = counting.lattice.slice
         key = (f"{slice.parameters} {slice.count}", x, y)
         if key not in found:
             try:
-                found[key] = own(counting, claims, x, y, where)
+                found[key] = own(counting, x, y)
             except Unproved as reason:
                 found[key] = reason
         if isinstance(there := found[key], Unproved):

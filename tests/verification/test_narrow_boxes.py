@@ -19,9 +19,10 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution
 from ptmcad.text.balls import exact as exactly
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.verification.certified.narrow import NARROW, judged
-from ptmcad.verification.certified.points import check_points
-from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified import narrow
+from ptmcad.verification.certified.cellsamples import check_points
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
+from ptmcad.verification.certified.narrow import NARROW, Function, Judgement, precisions
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.terms import ball, evaluated
 
@@ -167,7 +168,7 @@ def test_a_solution_next_to_an_edge_is_told(power: int) -> None:
         (radius + near, False),
         (-radius - near, False),
     ):
-        found = judged(lambda: square, Solution((root + off,), radius, ""))
+        found = judged(square, Solution((root + off,), radius, ""))
         assert found is not None
         assert found.holds is holds
 
@@ -183,6 +184,15 @@ def test_other_signs_of_a_narrow_box_are_refused() -> None:
         check_points(CertifiedClaims(replace(claims.result, cells=tuple(cells))))
 
 
+def judged(function: Function, solution: Solution) -> Judgement | None:
+    for bits in precisions(solution):
+        with ctx.workprec(bits):
+            found = narrow.tested(function, solution)
+        if found is not None:
+            return found
+    return None
+
+
 def square(box: Sequence[arb]) -> tuple[list[arb], list[list[arb]]]:
     """x^2 = 2."""
     (x,) = box
@@ -192,12 +202,12 @@ def square(box: Sequence[arb]) -> tuple[list[arb], list[list[arb]]]:
 def test_the_edge_is_left_open_and_so_is_what_has_no_derivatives() -> None:
     """The first solution is degenerate, and the second box ends at it."""
     at_zero = Solution((Fraction(0),), Fraction(1, 10**30), "")
-    assert judged(lambda: lambda box: ([box[0] * box[0]], [[2 * box[0]]]), at_zero) is None
+    assert judged(lambda box: ([box[0] * box[0]], [[2 * box[0]]]), at_zero) is None
     edge = Solution((Fraction(1, 10**30),), Fraction(1, 10**30), "")
-    assert judged(lambda: lambda box: ([box[0]], [[arb(1)]]), edge) is None
-    assert judged(lambda: lambda _box: None, edge) is None
-    assert judged(lambda: square, Solution((Fraction(1),), 2 * NARROW, "")) is None
-    assert judged(lambda: square, Solution((Fraction(3, 2),), Fraction(1, 10**20000), "")) is None
+    assert judged(lambda box: ([box[0]], [[arb(1)]]), edge) is None
+    assert judged(lambda _box: None, edge) is None
+    assert judged(square, Solution((Fraction(1),), 8 * NARROW, "")) is None
+    assert judged(square, Solution((Fraction(3, 2),), Fraction(1, 10**20000), "")) is None
 
 
 def test_more_digits_are_taken_where_the_first_do_not_do() -> None:
@@ -209,7 +219,7 @@ def test_more_digits_are_taken_where_the_first_do_not_do() -> None:
         return [x + y, x + (1 + tiny) * y], [[arb(1), arb(1)], [arb(1), 1 + tiny]]
 
     def shows(off: Fraction) -> bool | None:
-        found = judged(lambda: function, Solution((off, Fraction(0)), radius, ""))
+        found = judged(function, Solution((off, Fraction(0)), radius, ""))
         return None if found is None else found.holds
 
     assert shows(radius * (1 - Fraction(1, 2**100))) is True

@@ -22,7 +22,7 @@ from ptmcad.question.signs import Proved, Undecided
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import parse
-from ptmcad.verification.certified.parameters import check_domain
+from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.windowsigns import Sign, has_no_pole, is_in_domain

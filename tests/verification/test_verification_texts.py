@@ -21,7 +21,7 @@ from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.text.expressions import axis, constant
-from ptmcad.verification.certified.parameters import check_domain
+from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.equationtexts import check_potential
 from ptmcad.verification.parameters import check_text
 from ptmcad.verification.report import Unchecked, Violation

@@ -4,10 +4,9 @@ rejected.
 
 from __future__ import annotations
 
-import math
 import random
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -19,7 +18,7 @@ import yaml
 from flint import arb, ctx
 from forger import certified
 from forger.consistency import drop, put
-from support.counting import counted_at
+from support.counting import MIDDLE, claims_of, counted_at
 from support.few import few
 from support.free_length_equilibria import free_length_equilibria
 from support.maps import CONFIGS, once_per_run
@@ -28,23 +27,20 @@ from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution, Status
-from ptmcad.model import Model
 from ptmcad.options import Options
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import constant
 from ptmcad.text.tree import Chain, Name, Number, Step
-from ptmcad.verification.certified import models, points
-from ptmcad.verification.certified.boxes import Unproved, Zero
-from ptmcad.verification.certified.counted import CellCounts
-from ptmcad.verification.certified.field import BallEquations
-from ptmcad.verification.certified.models import ModelCounting
-from ptmcad.verification.certified.ranges import half_widths
-from ptmcad.verification.certified.solving import zeros
-from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.waves import form_of
-from ptmcad.verification.claims import Claims
-from ptmcad.verification.inertia import inertia, is_no_minimum
+from ptmcad.verification.certified import cellsamples, models
+from ptmcad.verification.certified.ballequations import BallEquations
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
+from ptmcad.verification.certified.krawczyk import zeros
+from ptmcad.verification.certified.narrow import Function, Judgement
+from ptmcad.verification.inertia import inertia
+from ptmcad.verification.normalform.boxes import Unproved
+from ptmcad.verification.normalform.unknownbounds import half_widths
+from ptmcad.verification.normalform.waves import form_of
 from ptmcad.verification.report import Violation
 from ptmcad.verification.terms import power
 
@@ -219,7 +215,7 @@ def shifted(r: RegionMap) -> RegionMap:
     """A rectangle where a sample is."""
     assert r.cover is not None
     first, *others = sorted(r.cover.rectangles, key=lambda q: (q[1] - q[0]) * (q[3] - q[2]))
-    u, v = (int(c) for c in CertifiedClaims(r).on_lattice(*r.cells[0].sample))
+    u, v = (int(c) for c in CertifiedClaims(r).lattice.on(*r.cells[0].sample))
     steps = r.cover.steps
     moved = (
         u - 1,
@@ -507,16 +503,13 @@ def test_boxes_that_are_not_decided_hide_no_false_count(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The counts of all cells are compared nevertheless."""
-    monkeypatch.setattr(points, "HOPELESS", 1)
-    only = models._only
+    monkeypatch.setattr(cellsamples, "HOPELESS", 1)
+    own = models.tested
 
-    def open_where_narrow(field: BallEquations, solution: Solution, k: int, budget: int) -> Zero:
-        if solution.radius < Fraction(1, 10**39):
-            raise Unproved("a solution may be in a box, or beside it")
-        return only(field, solution, k, budget)
+    def open_where_narrow(function: Function, solution: Solution) -> Judgement | None:
+        return None if solution.radius < Fraction(1, 10**39) else own(function, solution)
 
-    monkeypatch.setattr(models, "_narrow", lambda *_: None)
-    monkeypatch.setattr(models, "_only", open_where_narrow)
+    monkeypatch.setattr(models, "tested", open_where_narrow)
     narrow = with_solution(map_of(name), lambda s: replace(s, radius=Fraction(1, 10**40)))
     report = ptmcad.verify(narrow, boxes=0, effort=0)
     assert next(c.passed for c in report.checks if c.name == "counts and solutions") is None
@@ -557,38 +550,6 @@ def test_what_is_not_decided_is_not_called_true(monkeypatch: pytest.MonkeyPatch)
     assert "none of the first 16 points" in told["random boxes"].detail
 
 
-class _At:
-    """Claims of a slice that are about a single point."""
-
-    def __init__(self, model: Model, values: Mapping[str, Fraction], count: Count):
-        from types import SimpleNamespace
-
-        self.model, self.values = model, dict(values)
-        self.result = SimpleNamespace(slice=SimpleNamespace(count=count, model=model))
-
-    def parameters_at(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
-        return self.values
-
-
-def counts_at(
-    counting: Any, model: Model, values: Mapping[str, Fraction], count: Count
-) -> CellCounts:
-    claims: Claims = _At(model, values, count)  # type: ignore[assignment]
-    found: CellCounts = counting.at(claims, Fraction(0), Fraction(0)).counts
-    return found
-
-
-@pytest.mark.parametrize(("rows", "told"), [
-    ([[-1, 0], [0, 1]], True), ([[1, 2], [2, 1]], True), ([[2, 1], [1, 2]], False),
-    ([[10, 9, 0], [9, 10, 9], [0, 9, 10]], True), ([[2, 1, 0], [1, 2, 1], [0, 1, 2]], False),
-])  # fmt: skip
-def test_a_negative_eigenvalue_is_told_by_entries_minors_and_determinant(
-    rows: list[list[int]], told: bool
-) -> None:
-    """All principal minors of two rows of the fourth matrix are positive."""
-    assert is_no_minimum([[arb(entry) for entry in row] for row in rows]) is told
-
-
 @pytest.mark.parametrize("seed", few(range(3), 1))
 def test_the_paper_s_mechanism_counted_in_two_ways(seed: int) -> None:
     """By balls, and by Newton's method from a grid, with derivatives that were written down by
@@ -617,7 +578,7 @@ def test_counts_are_those_of_the_exact_engine(name: str) -> None:
     for _ in range(3):
         x, y = (a.low + (a.high - a.low) * Fraction(rng.randint(1, 996), 997) for a in slice.axes)
         values = {n: e.evaluate(x, y) for n, e in slice.parameters.items()}
-        found = counts_at(ModelCounting(form_of(slice)), slice.model, values, Count.INDEX)
+        found = claims_of(values, Count.INDEX, slice.model).counting.at(*MIDDLE).counts
         true = ptmcad.counts_at(
             slice.model, **{n: str(v) for n, v in zip(slice.axis_names, (x, y), strict=True)}
         )
@@ -684,52 +645,31 @@ def test_no_solution_is_beyond_the_bounds_of_real_unknowns() -> None:
         half_widths(form, {"a": arb(0, 1), "b": arb(1)})
 
 
-@pytest.mark.parametrize(("free", "half", "bends"), [("1/4", 0.01, True), ("1/100", 0.1, False)])
-def test_minima_near_a_spring_without_length(free: str, half: float, bends: bool) -> None:
-    """A box is discarded where all Hessians in it have a negative eigenvalue; a wide one around a
-    weak peak is not.
-    """
-    record = {
-        **CHAIN,
-        "mechanism": {
-            **CHAIN["mechanism"],
-            "springs": [{"between": ["A", "Q"], "k": 1, "free": free}],
-        },
-    }
-    form = form_of(ptmcad.slice_from_mapping({"name": "c", **record}))
-    field = BallEquations(form, {"a": arb(1), "F": arb(0)})
-    at = (math.pi / 3, -math.pi / 3)  # where Q is A
-    jet = field([arb(x, half) for x in at])
-    (short,) = jet.short
-    assert jet.bends_down(short) is bends
-    rng = random.Random(0)
-    places = [[arb(x + rng.uniform(-half, half)) for x in at] for _ in range(200)]
-    signs = {inertia(field(place).jacobian) for place in places}
-    assert ("++" not in signs) is bends
-
-
 def test_a_solution_on_the_edge_of_a_stored_box_is_not_decided() -> None:
-    """The irrational root of x^3 - 2 x is told from the edge, the root 1 of x^3 - x at the edge is
-    not.
+    """The irrational root of x^3 - 2 x is known from the edge, the root 1 of x^3 - x at the edge is
+    not; of a box that is wider than stored ones are nothing is asked.
     """
-    slice = ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]})
-    counting, model = ModelCounting(form_of(slice)), slice.model
-    for a, outside in ((2, "0 equilibria"), (1, "or beside it")):
-        claims: Claims = _At(model, {"a": Fraction(a), "b": Fraction(0)}, Count.TOTAL)  # type: ignore[assignment]
-        there = counting.at(claims, Fraction(0), Fraction(0))
-        assert there.counts.total == 3
-        (found,) = counting.within(there.values, [Solution((Fraction(5, 4),), Fraction(3, 8), "")])
-        assert abs(found.center[0] - a**0.5) < 1e-12
-        edge = Fraction(1) if a == 1 else Fraction(3, 2)
+    slice, half = ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}), Fraction(1, 2**12)
+    for a, outside in ((2, "0 equilibria"), (1, "or next to it")):
+        values = {"a": Fraction(a), "b": Fraction(0)}
+        counting = claims_of(values, Count.TOTAL, slice.model).counting
+        assert counting.at(*MIDDLE).counts.total == 3
+        root = Fraction(a**0.5)
+        found = counting.in_box(*MIDDLE, Solution((root + half / 2,), half, ""), 0)
+        assert abs(found.center[0] - a**0.5) < 1e-6
+        off = half if a == 1 else half * Fraction(9, 8)
         with pytest.raises((Unproved, Violation), match=outside):
-            counting.within(there.values, [Solution((edge + Fraction(1, 4),), Fraction(1, 4), "")])
+            counting.in_box(*MIDDLE, Solution((root + off,), half, ""), 0)
+        with pytest.raises(Violation, match="wider than boxes of one solution"):
+            counting.in_box(*MIDDLE, Solution((root,), Fraction(1, 4), ""), 0)
 
 
 def test_nothing_is_proved_of_a_double_solution() -> None:
     form = form_of(ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}))
     field = BallEquations(form, {"a": arb(3), "b": arb(2)})
+    whole = half_widths(form, field.values)
     with pytest.raises(Unproved, match="degenerate"):
-        zeros(field, False, [((0.0,), half_widths(form, field.values))], 5_000)
+        zeros(field, [((0.0,), whole)], whole, 5_000)
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -16,19 +16,22 @@ from flint import arb
 
 pytest.importorskip("numba")
 
+from support.counting import MIDDLE, claims_of
+
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.plain import criticalcurves as plain_curves
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.field import BallEquations
-from ptmcad.verification.certified.kinks import sides
+from ptmcad.verification.certified.ballequations import BallEquations
+from ptmcad.verification.certified.cellsamples import check_points
+from ptmcad.verification.certified.counted import CellCounts
+from ptmcad.verification.certified.coverclaims import CertifiedClaims, check_form
 from ptmcad.verification.certified.models import ModelCounting
-from ptmcad.verification.certified.points import check_points
-from ptmcad.verification.certified.structure import CertifiedClaims, check_form
-from ptmcad.verification.certified.waves import Form, form_of
+from ptmcad.verification.normalform.boxes import Unproved
+from ptmcad.verification.normalform.lattice import SliceLattice
+from ptmcad.verification.normalform.waves import Form, form_of, sides
 from ptmcad.verification.report import Violation
 
 
@@ -209,12 +212,17 @@ def test_what_half_of_an_angle_turns_is_another_after_a_full_turn() -> None:
     assert circles(ARM) == (True, False)
 
 
+def counts_of(mechanism: dict[str, Any], values: dict[str, Fraction], count: Count) -> CellCounts:
+    model = ptmcad.slice_from_mapping(record(mechanism, "total")).model
+    return claims_of(values, count, model).counting.at(*MIDDLE).counts
+
+
 def test_an_equilibrium_at_both_ends_of_the_circle_is_one() -> None:
     """At th = pi, where the search begins and ends: it is on one side of the spring there, and on
     the other here.
     """
     values = {"l": Fraction(1), "F": Fraction(1, 3), "G": Fraction(0)}
-    counts = ModelCounting(form(CRANK))._at(values, Count.INDEX).counts
+    counts = counts_of(CRANK, values, Count.INDEX)
     assert counts.index == (2, 1)
 
 
@@ -226,9 +234,8 @@ def test_what_continues_a_side_hides_no_equilibrium_a_turn_away(at: tuple[str, s
     same side.
     """
     free, force, up = map(Fraction, at)
-    assert ModelCounting(form(BEHIND))._at(
-        {"l": free, "F": force, "G": up}, Count.INDEX
-    ).counts.index == (2, 1)
+    values = {"l": free, "F": force, "G": up}
+    assert counts_of(BEHIND, values, Count.INDEX).index == (2, 1)
 
 
 @pytest.mark.slow
@@ -242,9 +249,8 @@ def test_counts_without_a_potential_agree_with_the_engines() -> None:
     for force, free in (("0", "1/2"), ("1/3", "7/4"), ("-7/4", "1"), ("1", "1/9"), ("-1/5", "5/3")):
         x, y = Fraction(force), Fraction(free)
         true = counter.at(x, y, Count.TOTAL)
-        values = {name: e.evaluate(x, y) for name, e in slice.parameters.items()}
         assert true.decided
-        assert ModelCounting(form_of(slice))._at(values, Count.TOTAL).counts.total == true.total
+        assert ModelCounting(SliceLattice(slice, 2)).at(x, y).counts.total == true.total
         found.add(true.total or 0)
     assert len(found) > 1
 
@@ -267,9 +273,7 @@ def test_counts_agree_with_the_engines(mechanism: dict[str, Any]) -> None:
             Fraction(0), Fraction(0), Count.INDEX
         )
         if true.decided:
-            assert (
-                ModelCounting(form(mechanism))._at(values, Count.INDEX).counts.index == true.index
-            )
+            assert counts_of(mechanism, values, Count.INDEX).index == true.index
 
 
 @pytest.mark.parametrize("count", ["total", "stable"])
@@ -358,12 +362,10 @@ def test_counts_of_an_undecided_sample_are_those_beside_it(monkeypatch: pytest.M
     true = made("crank")
     sample, at = tuple(true.cells[0].sample), ModelCounting.at
 
-    def undecided(
-        self: ModelCounting, claims: Any, x: Fraction, y: Fraction, where: Any = None
-    ) -> Any:
+    def undecided(self: ModelCounting, x: Fraction, y: Fraction) -> Any:
         if (x, y) == sample:
             raise Unproved("a test")
-        return at(self, claims, x, y, where)
+        return at(self, x, y)
 
     monkeypatch.setattr(ModelCounting, "at", undecided)
     assert check_points(CertifiedClaims(true)) == "2 samples, 4 equilibria"

@@ -25,10 +25,10 @@ pytest.importorskip("numba")
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.verification.certified import held, ranges
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.ranges import half_widths
-from ptmcad.verification.certified.waves import Form, form_of
+from ptmcad.verification.normalform import held, unknownbounds
+from ptmcad.verification.normalform.boxes import Unproved
+from ptmcad.verification.normalform.unknownbounds import half_widths
+from ptmcad.verification.normalform.waves import Form, form_of
 
 APART: dict[str, Any] = {**SLANTED, "axes": {"a": ["1/4", "3/4"], "F": [1, 2]}}
 """The same where the guides are not parallel."""
@@ -149,6 +149,6 @@ def test_bounds_need_equations_that_are_linear(monkeypatch: pytest.MonkeyPatch) 
     found = solutions(searched("curved"), values, 4000, 3)
     with pytest.raises(Unproved, match="no bound"):
         half_widths(form(CURVED), balls(values))
-    monkeypatch.setattr(ranges, "_present", lambda terms: set())
+    monkeypatch.setattr(unknownbounds, "_present", lambda terms: set())
     bounds = half_widths(form(CURVED), balls(values))
     assert any(abs(f.at[0]) > 2 * bounds[0] for f in found)

@@ -18,9 +18,8 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.plain import criticalcurves as plain_curves
 from ptmcad.options import Options
-from ptmcad.verification.certified.kinks import sides
-from ptmcad.verification.certified.ranges import _Bounds
-from ptmcad.verification.certified.waves import form_of
+from ptmcad.verification.normalform.unknownbounds import _Bounds
+from ptmcad.verification.normalform.waves import form_of, sides
 
 
 def sliding(guide: str, anchor: str, count: str = "index") -> dict[str, Any]:

@@ -66,7 +66,7 @@ def parts(name: str, sign: int, ends: tuple[fmpq, fmpq]) -> list[PanelPart]:
     return integrals_over(
         branch,
         *ends,
-        PanelEffort(arb(2) ** -60, fmpq(1, 10**9), fmpq(1, 10**12), HEIGHTS, (2, 10), ends),
+        PanelEffort(arb(2) ** -60, fmpq(1, 10**12), HEIGHTS, (2, 10), ends),
     )
 
 
@@ -120,7 +120,7 @@ def test_heights_are_the_roots_that_were_asked_for(share: fmpq) -> None:
 
 
 Terms = list[tuple[int, int, int]]
-EFFORT = PanelEffort(arb(2) ** -30, fmpq(1, 10**9), fmpq(1, 10**12), HEIGHTS, (2, 10), HEIGHTS)
+EFFORT = PanelEffort(arb(2) ** -30, fmpq(1, 10**12), HEIGHTS, (2, 10), HEIGHTS)
 NEAR, FAR = fmpq(1, 10**9), fmpq(1, 2)
 POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
     "turning point: v^2 = u": ([(0, 2, 1), (1, 0, -1)], 1, lambda u: u * u.sqrt() * 2 / 3),
@@ -188,18 +188,13 @@ def test_panels_that_are_halved_come_near_to_a_critical_value(name: str) -> None
 
 def test_a_root_is_found_in_a_window_of_any_size(monkeypatch: pytest.MonkeyPatch) -> None:
     """In few steps: the window is cut to what may hold roots at first."""
-    asked, true = [], sturm.changes_of
+    asked, true = [], sturm.roots_above
 
-    def changes_of(p: fmpz_poly) -> Callable[[fmpq], int]:
-        changes = true(p)
+    def counted(coefficients: tuple[int, ...], at: fmpq) -> int:
+        asked.append(at)
+        return true(coefficients, at)
 
-        def counted(at: fmpq) -> int:
-            asked.append(at)
-            return changes(at)
-
-        return counted
-
-    monkeypatch.setattr(sturm, "changes_of", changes_of)
+    monkeypatch.setattr(sturm, "roots_above", counted)
     far = fmpq(10) ** 300
     for p, expected in (
         (fmpz_poly([-1, 3]), [fmpq(1, 3)]),
@@ -210,7 +205,7 @@ def test_a_root_is_found_in_a_window_of_any_size(monkeypatch: pytest.MonkeyPatch
     ):
         for number, value in enumerate(expected):
             asked.clear()
-            sturm._changes_of.cache_clear()
+            sturm._counted_above.cache_clear()
             found = numbered_root(p, -far, far, number)
             assert found is not None
             assert abs(found - value) < arb(2) ** -40 * abs(arb(value)) + arb(2) ** -400
@@ -250,9 +245,7 @@ def part_beside(
     error.
     """
     near = at + ROOM * (1 if far > at else -1)
-    effort = PanelEffort(
-        arb(2) ** -40, fmpq(1, 10**9), fmpq(1, 10**15), heights, (2,), (at + error, at + error)
-    )
+    effort = PanelEffort(arb(2) ** -40, fmpq(1, 10**15), heights, (2,), (at + error, at + error))
     run = -2 if far > at else 2
     return integrals_over(branch_of(terms, root), min(near, far), max(near, far), effort, run)
 

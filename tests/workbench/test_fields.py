@@ -580,7 +580,7 @@ def test_the_command_says_at_how_many_pixels_a_value_is_beyond_doubles(
 def test_a_picture_names_its_quantity_as_the_bar_beside_it(
     value: str, title: str, nothing: str
 ) -> None:
-    from ptmcad.show.render.field import field_figure
+    from ptmcad.show.render.fieldpicture import field_figure
     from ptmcad.show.render.printing import settings
 
     result = shipped("fig4")

@@ -27,9 +27,8 @@ from ptmcad.answer.intervals import (
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.widths import Attainment, CertifiedWidths, OperationWidths, WidthRow
 from ptmcad.question.slice import Axis
-from ptmcad.show.document.design import VERSIONS
-from ptmcad.show.document.maxima import maximum
-from ptmcad.show.document.numbers import INDEX, with_decimal
+from ptmcad.show.document.designdocument import VERSIONS, maximum
+from ptmcad.show.document.exactnumbers import INDEX, with_decimal
 from ptmcad.show.ranges.numbers import end_text, known, narrowly_known, settled, width_text
 from ptmcad.text.codec import (
     COUNT,

@@ -18,16 +18,16 @@ from matplotlib.text import Text
 
 from ptmcad.errors import ConfigError
 from ptmcad.show.drawable import no_drawing
-from ptmcad.show.render.blocks import GAP, Block, BlockColumn, PointPoses, Slot, arranged, sized
-from ptmcad.show.render.clearance import Box, Position
+from ptmcad.show.render.blocks import LINE, Block, PointPoses, arranged, sized
+from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import stroke, write_lines
+from ptmcad.show.render.labels import Box, Position
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.leaders import Course, routed
-from ptmcad.show.render.legend import INK
+from ptmcad.show.render.mappicture import MapDrawing, left_out
 from ptmcad.show.render.mechanism import STRONG, draw_sketch
-from ptmcad.show.render.poses import pose_axes
-from ptmcad.show.render.regionmap import MapDrawing, left_out
-from ptmcad.show.render.sketch import PanelFrame, Scene, arrow_lengths
+from ptmcad.show.render.posepicture import pose_axes
+from ptmcad.show.render.sketch import Scene, arrow_lengths
 from ptmcad.show.style import MAX_SIDE, PictureStyle, Size, styled
 
 DrawnMap = tuple[Figure, tuple[str, ...]]
@@ -79,7 +79,7 @@ def _remedy(drawing: MapDrawing, points: Sequence[PointPoses]) -> str:
         if larger is None or larger.size is None:
             break
         try:
-            inner = sized(arranged(drawing.result, points, larger), larger, len(points))[2]
+            inner = sized(arranged(drawing.result, points, larger), larger)[1]
             _map_beside(drawing._replace(style=inner, overlay=()))
         except ConfigError:
             continue
@@ -96,28 +96,21 @@ def _drawn(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
         When poses, or the map beside them, have no room.
     """
     style = drawing.style
-    em = style.base_font / 72
     plan = arranged(drawing.result, points, style)
-    page, frame, blocks = plan.page, plan.frame, plan.blocks
-    size, taken, inner_style = sized(plan, style, len(points))
+    size, inner_style = sized(plan, style)
     inner = drawing._replace(style=inner_style)
     seen, layout = _map_beside(inner)
     figure = Figure(figsize=size, dpi=drawing.dpi, facecolor="white")
-    moved = _moved(layout, taken[0], size)
+    moved = _moved(layout, plan.taken[0], size)
     axes = inner.draw_parts(figure, seen, moved)
     texts = [*_texts(figure), *_legend_boxes(moved)]
-    for before, side, number in zip((True, False), plan.sides, plan.most, strict=True):
-        wide = number * page.panel / 72
-        slot = Slot(GAP if before else size[0] - wide - GAP, size[1] - GAP, wide, before)
+    heights = (moved.chart[1] + 0.05, moved.chart[1] + moved.chart[3] - 0.05)
+    for side, column in zip(plan.sides, plan.columns(size[1]), strict=True):
         tips = [_tip(axes, seen.whole.view.approximate_position(points[n][0])) for n in side]
-        along = BlockColumn([blocks[n] for n in side], slot, frame, em, size[1])
-        chart = moved.chart
-        order, courses = routed(
-            tips, along.berths, texts, (chart[1] + 0.05, chart[1] + chart[3] - 0.05)
-        )
-        for k, (block, place) in enumerate(along.placed(order)):
-            _draw_block(figure, block, frame, place, style)
-            _lead(figure, courses[k], block.number, style)
+        order, courses = routed(tips, column.berths, texts, heights)
+        for (block, corner), course in zip(column.placed(order), courses, strict=True):
+            _draw_block(figure, block, corner, style)
+            _lead(figure, course, block.number, style)
     return figure, left_out(seen, layout)
 
 
@@ -180,21 +173,19 @@ def _tip(axes: Any, at: Position) -> Position:
     return (chart.x0 + at[0] * chart.width) * width, (chart.y0 + at[1] * chart.height) * tall
 
 
-def _draw_block(
-    figure: Figure, block: Block, frame: PanelFrame, slot: Slot, style: PictureStyle
-) -> None:
-    """A point's head and poses."""
-    line, left = 1.3 * style.base_font / 72, slot.start(block, frame)
+def _draw_block(figure: Figure, block: Block, corner: Position, style: PictureStyle) -> None:
+    """A point's head and poses, from an upper left corner."""
+    (left, top), line, frame = corner, LINE * block.em, block.frame
     look = {"fontweight": "bold", "va": "center_baseline", "color": INK}
-    write_lines(figure, (left, slot.top - line / 2), block.head, style.base_font, line, **look)
-    top = slot.top - line * len(block.head)
+    write_lines(figure, (left, top - line / 2), block.head, style.base_font, line, **look)
+    top -= line * len(block.head)
     mechanism = block.poses.model.whole
     assert mechanism is not None  # others have been refused
     scene = Scene(mechanism, frame, arrow_lengths(block.poses))
     for k, pose in enumerate(block.shown):
         row, column = divmod(k, block.across)
-        corner = (left + column * frame.width / 72, top - (row + 1) * frame.height / 72)
-        panel = pose_axes(figure, corner, frame, f"pose-{block.number}-{k + 1}", strong=False)
+        at = (left + column * frame.width / 72, top - (row + 1) * frame.height / 72)
+        panel = pose_axes(figure, at, frame, f"pose-{block.number}-{k + 1}", strong=False)
         draw_sketch(panel, scene.of(pose), STRONG, f"pose-{block.number}-{k + 1}-")
 
 

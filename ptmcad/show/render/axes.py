@@ -15,7 +15,7 @@ from typing import Any
 
 from ptmcad.question.slice import Slice
 from ptmcad.show.units import unit, with_unit
-from ptmcad.text.numerals import decimal_places, magnitude, power_of_ten
+from ptmcad.text.numerals import decimal_places, magnitude, power_of_ten, shortest_text
 
 _LETTERS = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi"
 _GREEK = dict(
@@ -84,6 +84,24 @@ def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
         exponent = 0
     power = Fraction(10) ** exponent
     return Scale(offset, exponent, float((low - offset) / power), float((high - offset) / power))
+
+
+def ticks(
+    interval: tuple[Fraction, Fraction], scale: Scale, most: int = 6
+) -> list[tuple[str, Fraction]]:
+    """Round numbers of a scale between the ends, as text, and where they are (0 to 1).
+
+    Parameters
+    ----------
+    most : intervals between them.
+    """
+    power = Fraction(10) ** scale.exponent
+    low, high = ((end - scale.offset) / power for end in interval)
+    step = Fraction(10) ** magnitude((high - low) / most)
+    step *= next(f for f in (1, 2, Fraction(5, 2), 5, 10) if (high - low) / (step * f) <= most)
+    values = [k * step for k in range(int(-(-low // step)), int(high // step) + 1)]
+    decimals = max((len(shortest_text(v).partition(".")[2]) for v in values), default=0)
+    return [(fixed(v, decimals), (v - low) / (high - low)) for v in values]
 
 
 def symbol(name: str) -> str:

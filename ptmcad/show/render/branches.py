@@ -17,7 +17,8 @@ from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.branches import kind
 from ptmcad.show.render.axes import with_symbols
-from ptmcad.show.render.legend import INK, Entry, line_mark
+from ptmcad.show.render.colours import INK
+from ptmcad.show.render.legend import Entry, line_mark
 from ptmcad.show.render.paths import draw_paths
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.rangeplate import LOOKS, panelled, scaled

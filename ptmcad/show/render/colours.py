@@ -20,15 +20,24 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ptmcad.answer.counts import Counts, MorseIndex, counted_by
-from ptmcad.answer.regionmap import Region
+from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.question.counts import Count, Shades
+from ptmcad.show.style import PictureStyle
+from ptmcad.show.table import count_text
+
+STRONG, THIN, INK = 1.3, 0.5, "#111111"
+"""Widths in points of walls that separate regions and of others, and the colour of both."""
+RIM, CORE, RIM_INK = 0.45, 0.6, "#404040"
+"""Widths in points of the line around what is undetermined, and of the least of this that is seen
+within.
+"""
 
 ONE_MAXIMUM = ("#f7f6f2", "#c7e4f6", "#eda43f", "#ca8d7a", "#45917d", "#8a5e8b", "#385880")
 """Faces for 0, 1, 2, ... stable equilibria; L* = 97, 89, 73, 64, 55, 46, 37."""
 TWO_MAXIMA = ("#e8eacd", "#bf78a3", "#38836d", "#5d5db1", "#874120", "#4b3e62", "#253836")
 """Faces for the same with two maxima; L* = 92, 59, 50, 43, 36, 29, 22."""
 ODD_TOTALS = (*TWO_MAXIMA[:2], "#0b85be", "#6f720e", "#1252aa", "#22490b", "#4b0f2b")
-"""Faces for 1, 3, 5, ... solutions in all, told from those for 2, 4, 6, ...; from 5 on L* = 52, 46,
+"""Faces for 1, 3, 5, ... solutions in all, distinct from those for 2, 4, 6, ...; from 5 on L* = 52, 46,
 36, 27, 16.
 """
 HATCHES = ("////", "....", "xxxx", "oooo", "++++", "****", "\\\\\\\\", "----", "||||")
@@ -163,3 +172,41 @@ def _of(row: tuple[str, ...], step: int, turns: int) -> Fill:
         return Fill(row[step % len(row)])
     repeats, kind = divmod(number - 1, len(HATCHES))
     return Fill(row[step % len(row)], HATCHES[kind] * (repeats + 1))
+
+
+@dataclass(frozen=True, slots=True)
+class Paint:
+    """Colours and lines; ``thin_walls`` says whether walls that separate nothing are drawn."""
+
+    fill: Callable[[Region], Fill]
+    undetermined: Fill
+    strong: float = STRONG
+    thin: float = THIN
+    thin_lines: str = "solid"
+    scale: float = 1.0
+    thin_walls: bool = True
+
+
+def paint_of(style: PictureStyle, *results: RegionMap) -> Paint:
+    """The same for all maps that are drawn beside each other, which count the same."""
+    return Paint(
+        filler(
+            [region for result in results for region in result.regions],
+            results[0].slice.count,
+            style.palette,
+        ),
+        undetermined_fill(style.palette),
+        style.strong,
+        style.strong * THIN / STRONG,
+        style.thin_lines,
+        style.line_scale,
+    )
+
+
+def fills_by_count(paint: Paint, *results: RegionMap) -> dict[str, Fill]:
+    """What the counts of some maps are filled with, by their texts and in their order."""
+    count = results[0].slice.count
+    regions = sorted(
+        (r for result in results for r in result.regions), key=lambda r: counted_by(r, count)
+    )
+    return {count_text(region, count): paint.fill(region) for region in regions}

@@ -1,6 +1,6 @@
 """Two maps and their difference side by side, each with its own legend below.
 
-Guarantee: every area shown is certified; changes of count are told apart by colour or hatch.
+Guarantee: every area shown is certified; changes of count are distinguished by colour or hatch.
 """
 
 from __future__ import annotations
@@ -16,17 +16,15 @@ from ptmcad.answer.comparison import Bounds, Change, Comparison
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, symbol
-from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
+from ptmcad.show.render.colours import GREYS, HATCHES, Fill, Paint, paint_of, undetermined_fill
 from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang, rewrapped
-from ptmcad.show.render.legend import Entry, Type, Wording, entries, hidden_words
-from ptmcad.show.render.painting import Paint, paint_of
+from ptmcad.show.render.inches import few, wrapped
+from ptmcad.show.render.legend import Entry, Type, entries, hidden_entries
+from ptmcad.show.render.mappicture import whole_title
+from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.panels import LINE, Panel, PanelGrid
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import whole_title
-from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.slivers import seen_thin_walls
-from ptmcad.show.render.textwidth import few, wrapped
-from ptmcad.show.render.thinmarks import Marks, marks_of
+from ptmcad.show.render.slivers import Arrow, arrows_of, seen_thin_walls
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, count_text
@@ -147,20 +145,18 @@ def _panels(
 ) -> list[Panel]:
     """The two maps and the difference, with text as wide as they are."""
     type, side = Type.of(style), sides[0]
-    found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], Marks]] = []
+    found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], list[Arrow]]] = []
     pair = (comparison.first, comparison.second)
     for letter, own, result, seen in zip(
         LETTERS, own_words(*pair), pair, (first, shapes(pair[1])), strict=True
     ):
         paint = paint_of(style, result)
-        marks = marks_of(seen, sides, dpi, type.detail)
+        marks, hidden = arrows_of(seen, sides, dpi, type.detail)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
         paint = replace(paint, thin_walls=thin)
-        told = list(
-            entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined))
-        )
+        legend = [*entries(result, thin, paint), *hidden_entries(hidden)]
         title = whole_title(result) if style.title is None else own
-        found.append((seen, paint, f"{letter}: {title}" if title else letter, told, {}, marks))
+        found.append((seen, paint, f"{letter}: {title}" if title else letter, legend, {}, marks))
     fills = _fills(comparison, style)
     decomposition = comparison.decomposition
     of_cells = {
@@ -178,19 +174,19 @@ def _panels(
     names = [""] * len(decomposition.regions)
     for change in comparison.changes:
         names[change.region] = change_text(comparison, change)
-    marks = marks_of(whole, sides, dpi, type.detail, names)
+    marks, hidden = arrows_of(whole, sides, dpi, type.detail, names)
     changes = [
         *_differences(comparison, style),
-        *([Entry((hidden_words(marks.hidden),))] if marks.hidden else []),
+        *hidden_entries(hidden),
     ]
     found.append((whole, bare, f"Difference, {' → '.join(LETTERS)}", changes, fills, marks))
-    untold = style.legend is LegendPlace.NONE
+    without = style.legend is LegendPlace.NONE
     return [
         Panel(
             seen, paint, _head(title, side, type),
-            [] if untold else [rewrapped(entry, side, type) for entry in told], outlined, marks,
+            [] if without else [rewrapped(entry, side, type) for entry in legend], outlined, marks,
         )
-        for seen, paint, title, told, outlined, marks in found
+        for seen, paint, title, legend, outlined, marks in found
     ]  # fmt: skip
 
 
@@ -244,18 +240,20 @@ def _differences(comparison: Comparison, style: PictureStyle) -> list[Entry]:
     fills, open_part = _fills(comparison, style), _undetermined(comparison)
     if comparison.changes:
         area = _area(comparison, comparison.area)
-        told = [Entry((f"Counts differ on {_share(comparison)}", f"area {area}"), strong=True)]
+        legend = [Entry((f"Counts differ on {_share(comparison)}", f"area {area}"), strong=True)]
     else:
         where = "where both are determined" if open_part else "everywhere"
-        told = [Entry(("The counts are the same", where), strong=True)]
+        legend = [Entry(("The counts are the same", where), strong=True)]
     for change in comparison.changes:
         area = _area(comparison, change.area)
-        told.append(Entry((change_text(comparison, change), f"area {area}"), fills[change.region]))
+        legend.append(
+            Entry((change_text(comparison, change), f"area {area}"), fills[change.region])
+        )
     if open_part:
-        told.append(
+        legend.append(
             Entry(
                 (f"undetermined {open_part}", "by one map or both"),
                 undetermined_fill(style.palette),
             )
         )
-    return told
+    return legend

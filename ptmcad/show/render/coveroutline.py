@@ -25,7 +25,7 @@ from ptmcad.cover.complement import Components
 from ptmcad.cover.connectivity import shown as with_steps
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.subdivision import FREE
-from ptmcad.show.render.simplification import simplified_polygons
+from ptmcad.show.render.polylines import simplified_polygons
 from ptmcad.show.render.view import CellShape, Floats, Same, View, WallShape
 
 TOLERANCE = 1.5e-4

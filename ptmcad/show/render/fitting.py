@@ -22,11 +22,10 @@ from matplotlib.figure import Figure
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import Dress, dress
-from ptmcad.show.render.clearance import Position
-from ptmcad.show.render.inches import Box
+from ptmcad.show.render.inches import ALLOWANCE, Box, few, wrapped
+from ptmcad.show.render.labels import Position
 from ptmcad.show.render.layout import Layout, Texts
 from ptmcad.show.render.legend import Entry, Type
-from ptmcad.show.render.textwidth import ALLOWANCE, few, wrapped
 from ptmcad.show.render.view import Same, View
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 

@@ -1,13 +1,17 @@
-"""What stands on a page at places in inches from its lower left corner: axes, lines of text,
-strokes and points.
+"""What stands on a page at places in inches from its lower left corner: axes, lines of text, strokes
+and points; and how wide text is in the font of the settings, measured, not guessed.
+
+Matplotlib is loaded when something is drawn or measured: the report's words do without it.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import Any
 
-from ptmcad.show.render.clearance import Position
+from ptmcad.show.render.labels import Position
 
 Box = tuple[float, float, float, float]
 """Left, bottom, width, height."""
@@ -41,3 +45,44 @@ def stroke(figure: Any, xs: Sequence[float], ys: Sequence[float], **look: Any) -
     from matplotlib.lines import Line2D
 
     figure.add_artist(Line2D(xs, ys, transform=figure.dpi_scale_trans, **look))
+
+
+ALLOWANCE = 1.03
+"""Text is taken to be so much wider than it is, for programs that set it by themselves."""
+
+
+def wrapped(text: str, width: float, size: float, strong: bool = False) -> list[str]:
+    """Lines of whole words, each as long as the width in inches allows; none ends within
+    ``k = 100``.
+    """
+    lines: list[str] = []
+    for word in re.findall(r"\S+(?: = \S+)*", text):
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and text_width(longer, size, strong) <= width:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
+
+
+def few(lines: list[str], most: int) -> list[str]:
+    """So many lines at most; the last one says where there are more."""
+    return lines if len(lines) <= most else [*lines[: most - 1], f"{lines[most - 1]} …"]
+
+
+def text_width(text: str, size: float, strong: bool = False) -> float:
+    """Inches that a line of text takes in the font of the settings."""
+    from matplotlib import rcParams
+
+    return _text_width(text, strong, tuple(rcParams["font.family"])) * size / 72 * ALLOWANCE
+
+
+@lru_cache(maxsize=4096)
+def _text_width(text: str, strong: bool, families: tuple[str, ...]) -> float:
+    """Against the font's size."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+
+    font = FontProperties(family=list(families), size=100, weight="bold" if strong else "normal")
+    width, _, _ = text_to_path.get_text_width_height_descent(text, font, False)
+    return float(width) / 100

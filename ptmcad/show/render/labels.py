@@ -1,163 +1,227 @@
-"""Places for the labels of arrows: near their tips, within the picture, apart from each other.
+"""Places for labels clear of drawn strokes and of each other, with lines that lead to them.
 
-Guarantee: the same for the same map, whatever the format. Labels overlap only where `TRIED` places
-for each do not suffice to keep them apart; which of them are clear of all others is known. A label
-stands on a region of another count only where none of these places on one of its own is as clear.
+Guarantee: the same for the same drawing. A label covers a stroke, a box or another label, or its
+line passes one, only where none of the places that are tried within the bounds is free; then it
+stands where it meets the fewest. Which labels are clear of all others is known.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from math import cos, dist, pi, sin
+from itertools import pairwise
+from math import atan2, cos, hypot, pi, sin
 
-import numpy as np
+Position = tuple[float, float]
+Box = tuple[float, float, float, float]
+"""Left, bottom, right, top."""
+Cost = Callable[[float, Position, Box], float]
+"""What a place of a label costs, by its distance, its centre and what it covers."""
 
-from ptmcad.show.render.clearance import Box, Position, around, holds, overlap, touch
-from ptmcad.show.render.textwidth import text_width
-from ptmcad.show.render.view import Shapes
-from ptmcad.show.style import Size
-
-FONT_SIZE = 8.0
 _DIRECTIONS = 32
-_DISTANCES = (10, 20, 34, 50, 70, 95, 125, 160, 200)
-_SHORT, _EDGE = 30, 2
-"""Points: a shorter arrow is as bad as one that passes another region; from the picture's edge to a
-label.
-"""
-_MET = 1e3
-"""What a place costs at the least where something is in its way; distances are less."""
-_OTHER_REGION, _FOREIGN = 75, 300
-"""What a place costs for every other region than one that its label or its arrow lies on, and where
-its label lies on one of another count: more than all distances."""
-TRIED = _DIRECTIONS * len(_DISTANCES)
-
-Image = np.ndarray[tuple[int, int], np.dtype[np.int64]]
+DISTANCES = (4.0, 6.0, 9.0, 13.0, 18.0, 24.0, 31.0, 40.0, 52.0, 66.0, 84.0, 110.0, 140.0, 180.0)
+_NEAR = 11.0
+"""Points: a label that is farther from its point than this has a line that leads to it."""
 
 
 @dataclass(frozen=True, slots=True)
-class Placement:
-    """The tip of an arrow and the centre of its label, as fractions of the picture's sides; the
-    font's size.
+class Stroke:
+    """A straight line from ``start`` to ``end`` with half its width, all in points."""
 
-    ``clear`` says whether label and arrow are within the picture and clear of all those before
-    them.
+    start: Position
+    end: Position
+    half: float
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A text and the point that it names; half its width and height; the direction that it had best
+    lie in; what its places cost, if it is not the nearest that is best.
     """
 
-    tip: Position
-    label: Position
-    size: float
-    clear: bool = True
+    text: str
+    at: Position
+    half: Position
+    towards: Position = (1.0, 0.0)
+    cost: Cost | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A label's centre, and the end of a line that leads from its point to it when it lies far from
+    there.
+
+    ``clear`` says whether label and line meet nothing that is drawn, or placed before.
+    """
+
+    label: Label
+    center: Position
+    leader: Position | None = None
+    clear: bool = False
+
+    @property
+    def box(self) -> Box:
+        """What the label covers."""
+        return around(self.center, self.label.half)
+
+
+def polyline(points: Sequence[Position], half: float) -> Iterator[Stroke]:
+    """The strokes of a line through the points."""
+    for start, end in pairwise(points):
+        yield Stroke(start, end, half)
 
 
 def place(
-    tips: Sequence[Position], texts: Sequence[str], seen: Shapes, sides: Size,
-    size: float = FONT_SIZE, skip: bool = False, homes: Sequence[Collection[int]] = (),
-) -> list[Placement]:  # fmt: skip
-    """Places for the texts, one after the other.
+    labels: Iterable[Label],
+    strokes: Iterable[Stroke],
+    boxes: Iterable[Box],
+    bounds: Box,
+    distances: Sequence[float] = DISTANCES,
+    skip: bool = False,
+) -> list[Placed]:
+    """Places for the labels, one after the other.
 
     Parameters
     ----------
-    homes : for each text the regions of which it is true; if not given, of all.
-    skip : whether those that are not clear are not to be drawn, so that nothing has to be clear of
-        them.
-    sides : width and height of the picture, in points.
-    size : of the texts, in points.
+    strokes, boxes : what no label may cover.
+    bounds : the box that no label may leave.
+    distances : from a point to its label, in increasing order, which are tried.
+    skip : whether labels that are not clear are left out, so that nothing has to be clear of them.
     """
-    image = seen.raster(96, 96) if tips else np.zeros((1, 1), dtype=np.int64)
-    points = [(x * sides[0], y * sides[1]) for x, y in tips]
-    scale = min(*sides, 331.2) / 331.2
-    taken: list[Box] = []
-    arrows: list[tuple[Position, Position]] = []
+    drawn, taken = list(strokes), list(boxes)
     result = []
-    for number, (tip, text) in enumerate(zip(points, texts, strict=True)):
-        half = (36 * text_width(text, size) + 0.25 * size + 1, 0.85 * size + 1)
-        best, label, clear = float("inf"), tip, False
-        for distance in (scale * each for each in _DISTANCES):
-            for k in range(_DIRECTIONS):
-                angle = 2 * pi * (k + 0.5) / _DIRECTIONS
-                x, y = (
-                    tip[0] + (half[0] + distance) * cos(angle),
-                    tip[1] + (half[1] + distance) * sin(angle),
-                )
-                # a tip at the frame has room beside itself, along the frame
-                x, y = (_within(v, h, side) for v, h, side in zip((x, y), half, sides, strict=True))
-                box = around((x, y), half)
-                cost = distance + (_OTHER_REGION if distance < scale * _SHORT else 0.0)
-                cost += 1e6 * sum(
-                    max(0.0, e)
-                    for e in (
-                        _EDGE - box[0],
-                        _EDGE - box[1],
-                        box[2] - sides[0] + _EDGE,
-                        box[3] - sides[1] + _EDGE,
-                    )
-                )
-                cost += 1e4 * sum(overlap(_wider(box, 2), other) for other in taken)
-                cost += 1e3 * sum(holds(_wider(box, 6), p) for p in points)
-                cost += 1e3 * sum(touch(a, b, tip, (x, y)) for a, b in arrows)
-                cost += 1e3 * sum(_meets(box, a, b) for a, b in arrows)
-                cost += 1e3 * sum(_meets(other, tip, (x, y)) for other in taken) if skip else 0.0
-                met = cost >= _MET
-                if cost >= best:
-                    continue
-                if homes and not set(_covered(image, box, sides)) <= {-1, *homes[number]}:
-                    cost += _FOREIGN
-                cost += _OTHER_REGION * (
-                    len(_covered(image, box, sides)) - 1 + _passed(image, tip, (x, y), sides)
-                )
-                if cost < best:
-                    best, label, clear = cost, (x, y), not met
-        result.append(
-            Placement(tips[number], (label[0] / sides[0], label[1] / sides[1]), size, clear)
-        )
-        if skip and not clear:
+    for label in labels:
+        placed = _best(label, drawn, taken, bounds, distances)
+        result.append(placed)
+        if skip and not placed.clear:
             continue
-        taken.append(around(label, half))
-        arrows.append((tip, label))
+        taken.append(placed.box)
+        if placed.leader is not None:
+            drawn.append(Stroke(label.at, placed.leader, 0.5))
     return result
 
 
-def _within(middle: float, half: float, side: float) -> float:
-    """The middle of a label, moved so that it is within the picture, if it is not longer than that."""
-    return (
-        min(max(middle, half + _EDGE), side - half - _EDGE)
-        if 2 * (half + _EDGE) <= side
-        else middle
+def _best(
+    label: Label,
+    strokes: Sequence[Stroke],
+    boxes: Sequence[Box],
+    bounds: Box,
+    distances: Sequence[float],
+) -> Placed:
+    least, best = (len(strokes) + len(boxes) + 1, 0, 0.0), Placed(label, label.at)
+    for distance, wanted in _candidates(label, distances):
+        # a point at the bounds has room beside itself, along them
+        center = _within(wanted, label.half, bounds) if label.cost else wanted
+        box = around(center, label.half)
+        if box[0] < bounds[0] or box[1] < bounds[1] or box[2] > bounds[2] or box[3] > bounds[3]:
+            continue
+        covered = sum(crosses(stroke, box) for stroke in strokes)
+        covered += sum(overlap(box, other) for other in boxes)
+        if covered > least[0]:
+            continue
+        leader, passed = None, 0
+        if distance > _NEAR or label.cost:
+            leader = _edge(label.at, box)
+            line = Stroke(label.at, leader, 0.5)
+            passed = sum(crosses(line, other) for other in boxes if not holds(other, label.at))
+        cost = (covered, passed, label.cost(distance, center, box) if label.cost else 0.0)
+        if cost < least:
+            least, best = cost, Placed(label, center, leader, not covered + passed)
+            if cost == (0, 0, 0.0):
+                break
+    return best
+
+
+def _candidates(label: Label, distances: Sequence[float]) -> Iterator[tuple[float, Position]]:
+    """Distances and centres, from the nearest and from the direction in which the label had best
+    lie.
+    """
+    start = atan2(label.towards[1], label.towards[0])
+    for distance in distances:
+        for k in range(_DIRECTIONS):
+            # 0, 1, -1, 2, -2, ... steps away from the wanted direction
+            angle = start + 2 * pi / _DIRECTIONS * ((k + 1) // 2) * (1 if k % 2 else -1)
+            yield distance, _beside(label, angle, distance)
+
+
+def _beside(label: Label, angle: float, distance: float) -> Position:
+    """The centre of a label whose nearest edge or corner is at a distance from its point."""
+    dx, dy = cos(angle), sin(angle)
+    width, height = label.half
+    reach = min(
+        width / abs(dx) if abs(dx) > 1e-9 else 1e9, height / abs(dy) if abs(dy) > 1e-9 else 1e9
     )
+    return label.at[0] + dx * (reach + distance), label.at[1] + dy * (reach + distance)
 
 
-def _wider(box: Box, by: float) -> Box:
-    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
+def _within(center: Position, half: Position, bounds: Box) -> Position:
+    """The nearest centre of a label that does not leave the bounds, if it is not larger than they
+    are.
+    """
+    x, y = (min(max(center[k], bounds[k] + half[k]), bounds[k + 2] - half[k]) for k in (0, 1))
+    return x, y
 
 
-def _meets(box: Box, a: Position, b: Position) -> bool:
-    """Whether an arrow passes through a box, seen at points a few points apart."""
-    n, near = max(2, int(dist(a, b) / 4)), _wider(box, 6)
-    return any(
-        holds(near, (a[0] + (b[0] - a[0]) * k / n, a[1] + (b[1] - a[1]) * k / n))
-        for k in range(n + 1)
+def _edge(at: Position, box: Box) -> Position:
+    """The point of the box that is nearest to a point."""
+    return min(max(at[0], box[0]), box[2]), min(max(at[1], box[1]), box[3])
+
+
+def around(center: Position, half: Position) -> Box:
+    """The box with such a middle."""
+    return center[0] - half[0], center[1] - half[1], center[0] + half[0], center[1] + half[1]
+
+
+def holds(box: Box, point: Position) -> bool:
+    """Whether a point is in a box or on its edge."""
+    return box[0] <= point[0] <= box[2] and box[1] <= point[1] <= box[3]
+
+
+def overlap(a: Box, b: Box) -> bool:
+    """Whether two boxes have inner points in common."""
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+
+
+def crosses(stroke: Stroke, box: Box) -> bool:
+    """Whether a stroke meets a box: its middle line is clipped to the box, which is made larger by
+    half the width.
+    """
+    low, high = 0.0, 1.0
+    for k in (0, 1):
+        origin, step = stroke.start[k], stroke.end[k] - stroke.start[k]
+        near, far = box[k] - stroke.half, box[k + 2] + stroke.half
+        if abs(step) < 1e-12:
+            if not near < origin < far:
+                return False
+            continue
+        first, last = (near - origin) / step, (far - origin) / step
+        if step < 0:
+            first, last = last, first
+        low, high = max(low, first), min(high, last)
+        if not low < high:
+            return False  # nearly always: most strokes are far from a label
+    return low < high
+
+
+def distance(point: Position, stroke: Stroke) -> float:
+    """From a point to a stroke's middle line."""
+    (ax, ay), (bx, by) = stroke.start, stroke.end
+    dx, dy = bx - ax, by - ay
+    square = dx * dx + dy * dy
+    t = (
+        0.0
+        if square == 0
+        else min(1.0, max(0.0, ((point[0] - ax) * dx + (point[1] - ay) * dy) / square))
     )
+    return hypot(point[0] - ax - t * dx, point[1] - ay - t * dy)
 
 
-def _passed(image: Image, a: Position, b: Position, sides: Size) -> int:
-    """How many other regions than one an arrow passes, from its tip to its label's centre."""
-    steps = np.linspace(0.0, 1.0, 24)
-    row, column = (
-        np.clip(
-            (a[k] + (b[k] - a[k]) * steps) / sides[k] * image.shape[1 - k],
-            0,
-            image.shape[1 - k] - 1,
-        ).astype(int)
-        for k in (1, 0)
-    )
-    return len(np.unique(image[row, column])) - 1
+def touch(a: Position, b: Position, c: Position, d: Position) -> bool:
+    """Whether two segments have a point in common."""
+    if any(max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]) for k in (0, 1)):
+        return False
+    return _turn(a, b, c) * _turn(a, b, d) <= 0 and _turn(c, d, a) * _turn(c, d, b) <= 0
 
 
-def _covered(image: Image, box: Box, sides: Size) -> list[int]:
-    """The regions that the box covers."""
-    rows, columns = image.shape
-    left, right = (int(min(max(v / sides[0], 0.0), 0.999) * columns) for v in (box[0], box[2]))
-    bottom, top = (int(min(max(v / sides[1], 0.0), 0.999) * rows) for v in (box[1], box[3]))
-    found: list[int] = np.unique(image[bottom : top + 1, left : right + 1]).tolist()
-    return found
+def _turn(a: Position, b: Position, c: Position) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -6,7 +6,7 @@ Where moments work, the energy less their work is drawn, in which the equilibria
 angle it is not periodic: it is cut at 180 degrees, and a title says so.
 
 Guarantee: every equilibrium is marked, at both edges where an angle is 180 degrees, with its number
-in the picture of `ptmcad.show.render.poses.draw_poses`. Contours pass through saddles and
+in the picture of `ptmcad.show.render.posepicture.draw_poses`. Contours pass through saddles and
 degenerate equilibria, also where the energy is large and its differences are small, because its
 constant part is taken out exactly before anything is rounded.
 
@@ -36,12 +36,21 @@ from ptmcad.errors import ConfigError
 from ptmcad.model import Model
 from ptmcad.model.work import moments_at
 from ptmcad.show.drawable import no_landscape
-from ptmcad.show.render.axes import scale_of, symbol
-from ptmcad.show.render.clearance import Box, Label, Position, Stroke, place
+from ptmcad.show.render.axes import scale_of, symbol, ticks
+from ptmcad.show.render.colours import INK
 from ptmcad.show.render.energy import Energy, drawn, energy_of, is_cut
 from ptmcad.show.render.inches import axes_at
-from ptmcad.show.render.legend import INK, Entry, draw_legend, point_mark
-from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, kind, titled, value_text
+from ptmcad.show.render.labels import Box, Label, Position, Stroke, place
+from ptmcad.show.render.legend import Entry, draw_legend, point_mark
+from ptmcad.show.render.posepicture import (
+    TITLE_LINE,
+    describe,
+    empty,
+    heading,
+    kind,
+    titled,
+    value_text,
+)
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.view import Floats
 from ptmcad.show.units import energy_unit, unit_of_unknown, with_unit
@@ -355,22 +364,14 @@ def _kind(pose: Pose) -> str:
 
 def _energy_ticks(axes: Any, energy: Energy, low: float, high: float, unit: str) -> None:
     """Energies along a vertical axis between two levels."""
-    least, largest = (energy.offset + energy.unit * Fraction(v) for v in (low, high))
-    scale = scale_of(least, largest)
-    power = Fraction(10) ** scale.exponent
-
-    def position(shown: float) -> float:
-        return energy.scaled(Fraction(shown) * power + scale.offset)
-
-    from matplotlib.ticker import MaxNLocator
-
-    ticks = [
-        t for t in MaxNLocator(nbins=7, steps=[1, 2, 2.5, 5, 10]).tick_values(scale.low, scale.high)
-        if scale.low <= t <= scale.high
-    ]  # fmt: skip
-    axes.yaxis.set_ticks(
-        [position(t) for t in ticks], [f"{t:.6g}".replace("-", "−") for t in ticks]
+    ends = (
+        energy.offset + energy.unit * Fraction(low),
+        energy.offset + energy.unit * Fraction(high),
     )
+    scale = scale_of(*ends)
+    found = ticks(ends, scale, 7)
+    at = [low + float(share) * (high - low) for _, share in found]
+    axes.yaxis.set_ticks(at, [text for text, _ in found])
     axes.minorticks_off()
     axes.tick_params(labelsize=9, direction="out", length=3.5)
     axes.set_ylabel(with_unit(scale.name("V" if energy.slopes else "U"), unit), fontsize=10)

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ptmcad.show.render.axes import SMALL, Dress
-from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.inches import Box
+from ptmcad.show.render.labels import Position
 from ptmcad.show.render.legend import Entry, Type
 
 SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 from math import dist
 
-from ptmcad.show.render.clearance import Box, Position, Stroke, around, crosses, holds, touch
+from ptmcad.show.render.labels import Box, Position, Stroke, around, crosses, holds, touch
 
 Course = tuple[Position, ...]
 """From a berth to a point, straight or with one bend."""

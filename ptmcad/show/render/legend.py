@@ -17,19 +17,12 @@ from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import count_words, counted, listed, noun
 from ptmcad.question.counts import Shades
 from ptmcad.question.slice import Slice
-from ptmcad.show.render.clearance import Position
-from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
-from ptmcad.show.render.inches import stroke, write
+from ptmcad.show.render.colours import INK, STRONG, THIN, UNDETERMINED, Fill, Paint, fill_of
+from ptmcad.show.render.inches import stroke, text_width, write
+from ptmcad.show.render.labels import Position
 from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.table import area_by_count, area_text, areas_are_known, count_text
 from ptmcad.text.bounds import percent
-
-STRONG, THIN, INK = 1.3, 0.5, "#111111"
-"""Widths in points of walls that separate regions and of others, and the colour of both."""
-RIM, CORE, RIM_INK = 0.45, 0.6, "#404040"
-"""Widths in points of the line around what is undetermined, and of the least of this that is seen
-within.
-"""
 
 LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
 """Inches between lines, width of a swatch, characters in a line."""
@@ -99,10 +92,6 @@ class Type:
 
     def entry_width(self, entry: Entry) -> float:
         """Of an entry with its mark, in inches."""
-        from ptmcad.show.render.textwidth import (
-            text_width,
-        )  # brings matplotlib, which the report's words do without
-
         indent = 0.0 if entry.mark is None else self.indent
         sizes = [self.head if k < entry.heads else self.detail for k in range(len(entry.lines))]
         texts = (
@@ -112,34 +101,23 @@ class Type:
         return indent + max(texts, default=0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Wording:
-    """What a legend says: the fill of a region, that of what is undetermined, and whether areas are
-    told.
-    """
-
-    fill: Callable[[Region], Fill]
-    undetermined: Fill = UNDETERMINED
-    areas: bool = True
-
-
 def head_of(slice: Slice) -> tuple[str, ...]:
     """What is counted."""
     return tuple(textwrap.wrap(count_words(slice.count.kind.legend, slice.model), COLUMNS))
 
 
 def entries(
-    result: RegionMap, thin: bool, samples: bool, hidden: int, wording: Wording | None = None
+    result: RegionMap, thin: bool, paint: Paint | None = None, areas: bool = True
 ) -> Iterator[Entry]:
     """The legend's entries, from above.
 
     Parameters
     ----------
     thin : whether the picture shows walls that separate nothing.
-    hidden : number of regions that are too thin to be seen and have neither inset nor label.
+    areas : whether areas are among them.
     """
     count = result.slice.count
-    wording = wording or Wording(lambda region: fill_of(region, count))
+    paint = paint or Paint(lambda region: fill_of(region, count), UNDETERMINED)
     groups: dict[str, list[Region]] = {}
     for region in sorted(result.regions, key=lambda r: (counted_by(r, count), -r.area[0])):
         groups.setdefault(count_text(region, count), []).append(region)
@@ -147,22 +125,18 @@ def entries(
     head = head_of(result.slice)
     yield Entry(head, strong=True, heads=len(head))
     for text, regions in groups.items():
-        areas = _areas(result, text, regions) if wording.areas and known else []
-        yield Entry((_with_total(text, regions, result), *areas), wording.fill(regions[0]))
+        told = _areas(result, text, regions) if areas and known else []
+        yield Entry((_with_total(text, regions, result), *told), paint.fill(regions[0]))
     yield Entry(())
     if result.cover is not None and result.undetermined:
         note = ("the count may change within it",) if len(result.regions) > 1 else ()
-        yield Entry((f"undetermined {percent(result.undetermined)}", *note), wording.undetermined)
+        yield Entry((f"undetermined {percent(result.undetermined)}", *note), paint.undetermined)
     elif len(result.regions) > 1:
         yield Entry(("the count changes",), STRONG)
     for found in dict.fromkeys(result.continua.values()):
         yield Entry((f"{found.value} {noun(result.slice.model)}",), _dashed)
     if thin:
         yield thin_entry()
-    if samples:
-        yield Entry(("sample point of a cell",), "dot")
-    if hidden:
-        yield Entry((hidden_words(hidden),))
 
 
 def line_mark(*looks: Mapping[str, Any]) -> Mark:
@@ -187,9 +161,12 @@ def point_mark(**look: Any) -> Mark:
 _dashed = line_mark({"color": INK, "linewidth": 1, "linestyle": "dashed"})
 
 
-def hidden_words(hidden: int) -> str:
-    """What is said of regions that are not seen and have no label."""
-    return f"{hidden} more region{'s are' if hidden > 1 else ' is'} too thin for a label"
+def hidden_entries(hidden: int) -> list[Entry]:
+    """What is said of regions that are too thin to be seen and have neither inset nor label, if
+    there are any.
+    """
+    many = "s are" if hidden > 1 else " is"
+    return [Entry((f"{hidden} more region{many} too thin for a label",))] if hidden else []
 
 
 def thin_entry() -> Entry:

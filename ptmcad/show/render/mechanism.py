@@ -18,9 +18,10 @@ from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
 
 from ptmcad.model import Mechanism, Support
 from ptmcad.show.linedrawing import approximate_places, fitted
-from ptmcad.show.render.clearance import Position
+from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import axes_at
-from ptmcad.show.render.legend import INK, SWATCH, Mark
+from ptmcad.show.render.labels import Position
+from ptmcad.show.render.legend import SWATCH, Mark
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import (
     AMPLITUDE,

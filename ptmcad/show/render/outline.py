@@ -1,4 +1,5 @@
-"""The outline of a region map in a view: the walls of its stacks as polylines, for drawing.
+"""The outline of a region map in a view: the walls of its stacks as polylines, for drawing; of a
+certified map that of `ptmcad.show.render.coveroutline`.
 
 Guarantee: each wall is the branch that the map names, from exact root isolation of the stored
 polynomials at rational abscissae; every vertex is within 2^-17 of the view's size of the branch
@@ -21,14 +22,13 @@ from math import cos, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.algebra.polynomials import coefficients_in, from_plane
-from ptmcad.algebra.real_roots import RealRoot, refine
+from ptmcad.algebra.real_roots import refine
 from ptmcad.answer.regionmap import RegionMap, Stack
+from ptmcad.exact.cad.polyline import critical_shares
 from ptmcad.exact.cad.projection import FibredCurve, by_component, curves_of
-from ptmcad.show.render.simplification import simplified_line
-from ptmcad.show.render.view import CellShape, Floats, Interval, Same, View, WallShape
+from ptmcad.show.render.polylines import simplified_line
+from ptmcad.show.render.view import CellShape, Floats, Interval, Same, Shapes, View, WallShape
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.text.plane import PlanePolynomial
 
 TOLERANCE = 1.5e-4
 DEPTH = 7
@@ -167,6 +167,21 @@ class Outline:
         return image.T if self.swapped else image
 
 
+def shapes(result: RegionMap) -> Shapes:
+    """The shapes of a map over its whole window.
+
+    Raises
+    ------
+    ValueError, IndexError, ArithmeticError
+        When the map contradicts itself.
+    """
+    if result.cover is not None:
+        from ptmcad.show.render.coveroutline import cover_outline
+
+        return cover_outline(result)
+    return outline(result)
+
+
 def outline(result: RegionMap, view: View | None = None, tolerance: float = TOLERANCE) -> Outline:
     """The outline of a map in a view, the whole window when None.
 
@@ -184,7 +199,8 @@ def _outline(of: Same[RegionMap], view: View, tolerance: float) -> Outline:
     result = of.it
     base = result.base
     curves = by_component(curves_of(result.components, base))
-    roots = tuple(_abscissa(result, k) for k in range(len(result.critical_values)))
+    axis = result.slice.axes[base]
+    roots = tuple((axis.at(low), axis.at(high)) for low, high in critical_shares(result))
     low, high = view.along(base)
     stacks = []
     for number, stack in enumerate(result.stacks):
@@ -198,23 +214,6 @@ def _outline(of: Same[RegionMap], view: View, tolerance: float) -> Outline:
         if component is not None and 0 <= at <= 1:
             lines.append((float(at), k, component))
     return Outline(result, view, base == 1, tuple(stacks), tuple(lines))
-
-
-def _abscissa(result: RegionMap, number: int) -> Interval:
-    """A critical abscissa: rational bounds of it that are short against the neighbouring stacks."""
-    values = result.critical_values
-    value = values[number]
-    axis = result.slice.axes[result.base]
-    before = values[number - 1].high if number else axis.low
-    after = values[number + 1].low if number + 1 < len(values) else axis.high
-    if value.low == value.high:
-        return value.low, value.high
-    room = max(min(value.low - before, after - value.high), value.high - value.low)
-    plane = from_plane(PlanePolynomial.of((i, 0, c) for i, c in enumerate(value.polynomial)))
-    polynomial = coefficients_in(plane, 1)[0]
-    root = RealRoot(polynomial, from_fraction(value.low), from_fraction(value.high))
-    short = refine(root, from_fraction(room * _LIMIT))
-    return to_fraction(short.low), to_fraction(short.high)
 
 
 def _ends(result: RegionMap, stack: Stack, critical: tuple[Interval, ...]) -> Interval:

@@ -12,7 +12,8 @@ from enum import Enum
 from typing import Any
 
 from ptmcad.answer.words import several
-from ptmcad.show.render.legend import INK, Entry, point_mark
+from ptmcad.show.render.colours import INK
+from ptmcad.show.render.legend import Entry, point_mark
 from ptmcad.show.render.view import Point, View
 
 

@@ -2,60 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ptmcad.answer.counts import counted_by
-from ptmcad.answer.regionmap import Region, RegionMap
-from ptmcad.show.render.colours import Fill, filler, undetermined_fill
-from ptmcad.show.render.legend import CORE, INK, RIM, RIM_INK, STRONG, THIN
+from ptmcad.show.render.colours import CORE, INK, RIM, RIM_INK, Paint
 from ptmcad.show.render.view import Floats, Shapes
-from ptmcad.show.style import PictureStyle
-from ptmcad.show.table import count_text
 
 _OVER = 0.004
 """Of the view's sides: more than half a rim's width."""
-
-
-@dataclass(frozen=True, slots=True)
-class Paint:
-    """Colours and lines; ``thin_walls`` says whether walls that separate nothing are drawn."""
-
-    fill: Callable[[Region], Fill]
-    undetermined: Fill
-    strong: float = STRONG
-    thin: float = THIN
-    thin_lines: str = "solid"
-    scale: float = 1.0
-    thin_walls: bool = True
-
-
-def paint_of(style: PictureStyle, *results: RegionMap) -> Paint:
-    """The same for all maps that are drawn beside each other, which count the same."""
-    return Paint(
-        filler(
-            [region for result in results for region in result.regions],
-            results[0].slice.count,
-            style.palette,
-        ),
-        undetermined_fill(style.palette),
-        style.strong,
-        style.strong * THIN / STRONG,
-        style.thin_lines,
-        style.line_scale,
-    )
-
-
-def fills_by_count(paint: Paint, *results: RegionMap) -> dict[str, Fill]:
-    """What the counts of some maps are filled with, by their texts and in their order."""
-    count = results[0].slice.count
-    regions = sorted(
-        (r for result in results for r in result.regions), key=lambda r: counted_by(r, count)
-    )
-    return {count_text(region, count): paint.fill(region) for region in regions}
 
 
 def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = None) -> None:

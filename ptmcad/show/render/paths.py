@@ -16,7 +16,8 @@ from ptmcad.answer.paths import Fate, PathPoint, PosePaths, Target
 from ptmcad.answer.words import followed
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import symbol
-from ptmcad.show.render.legend import INK, Entry, line_mark, point_mark
+from ptmcad.show.render.colours import INK
+from ptmcad.show.render.legend import Entry, line_mark, point_mark
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.rangeplate import EACH, LOOKS, middle_of, panelled, scaled, short
 from ptmcad.show.units import unit_of_unknown, with_unit

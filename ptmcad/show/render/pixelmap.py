@@ -2,7 +2,7 @@
 they are of.
 
 Guarantee: every pixel has the colour of its own value. Lines are between pixels of different
-regions; the map itself (`ptmcad.show.render.regionmap`, `ptmcad.show.render.field`) has the exact
+regions; the map itself (`ptmcad.show.render.mappicture`, `ptmcad.show.render.fieldpicture`) has the exact
 curves.
 """
 
@@ -20,9 +20,8 @@ from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.field import Field
 from ptmcad.show.render.axes import symbol
-from ptmcad.show.render.colours import UNDETERMINED, fill_of_counts
-from ptmcad.show.render.field import COLOURS, bar_text, description, fill_empty, show_pixels
-from ptmcad.show.render.legend import INK
+from ptmcad.show.render.colours import INK, UNDETERMINED, fill_of_counts
+from ptmcad.show.render.fieldpicture import COLOURS, bar_text, description, fill_empty, show_pixels
 from ptmcad.show.render.printing import printed, settings
 
 SIZE = 5.2, 4.2
@@ -31,16 +30,18 @@ _LINE = 0.8
 
 
 def grid_png(grid: Grid, dpi: int) -> bytes:
-    """The numbers of stable equilibria, or of all where stability is not told, as the content of a
+    """The numbers of stable equilibria, or of all where stability is not known, as the content of a
     PNG.
     """
-    told = bool((grid.stable != NONE).any())
-    counts = grid.stable if told else grid.total
+    stability_known = bool((grid.stable != NONE).any())
+    counts = grid.stable if stability_known else grid.total
     known = sorted({int(count) for count in np.unique(counts)} - {NONE})
     colours = [
         UNDETERMINED.face,
         *(
-            fill_of_counts(Counts(0, count, None) if told else Counts(count, None, None)).face
+            fill_of_counts(
+                Counts(0, count, None) if stability_known else Counts(count, None, None)
+            ).face
             for count in known
         ),
     ]  # pixels show no hatch
@@ -55,7 +56,7 @@ def grid_png(grid: Grid, dpi: int) -> bytes:
             image, ax=axes, boundaries=[shown[0] - 0.5, *(k + 0.5 for k in shown)], ticks=shown
         )
         bar.ax.set_yticklabels([str(known[k - 1]) if k else "undetermined" for k in shown])
-        bar.set_label("stable" if told else "in all")
+        bar.set_label("stable" if stability_known else "in all")
         return printed(figure, "png", dpi, repr(grid), "")
 
 

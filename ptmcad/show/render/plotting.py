@@ -16,13 +16,14 @@ from ptmcad.errors import expect
 from ptmcad.show.render.around import draw_around
 from ptmcad.show.render.axes import axis_name
 from ptmcad.show.render.blocks import PointPoses
-from ptmcad.show.render.legend import INK, head_of
+from ptmcad.show.render.colours import INK, fills_by_count, paint_of
+from ptmcad.show.render.legend import head_of
+from ptmcad.show.render.mappicture import MapDrawing, description, whole_title
+from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.overlay import Overlay
-from ptmcad.show.render.painting import fills_by_count, paint_map, paint_of
-from ptmcad.show.render.poses import describe
+from ptmcad.show.render.painting import paint_map
+from ptmcad.show.render.posepicture import describe
 from ptmcad.show.render.printing import save, settings
-from ptmcad.show.render.regionmap import MapDrawing, description, whole_title
-from ptmcad.show.render.shapes import shapes
 from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, styled
 
 
@@ -126,8 +127,8 @@ def with_poses(
     overlay: Overlay = (),
 ) -> tuple[Figure, tuple[str, ...]]:
     """What `draw_with_poses` writes, and what had no room, in words."""
-    told = " ".join(f"At point {n}: {describe(poses)}" for n, (_, poses) in enumerate(points, 1))
+    words = " ".join(f"At point {n}: {describe(poses)}" for n, (_, poses) in enumerate(points, 1))
     with settings(style):
         figure, missing = draw_around(MapDrawing(result, style, dpi, overlay=overlay), points)
-    figure.set_label(f"{whole_title(result)}\n{description(result)} {told}")
+    figure.set_label(f"{whole_title(result)}\n{description(result)} {words}")
     return figure, missing

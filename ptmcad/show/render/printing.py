@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from html import escape
 from io import BytesIO
@@ -19,7 +19,9 @@ from typing import Any
 
 import matplotlib
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties, fontManager
 
+from ptmcad.errors import ConfigError
 from ptmcad.show.style import DEFAULT, PictureStyle
 
 FORMATS = ("png", "svg", "pdf", "eps")
@@ -145,3 +147,36 @@ def _opaque() -> Iterator[None]:
         yield
     finally:
         log.removeFilter(other)
+
+
+_GENERIC = ("serif", "sans-serif", "monospace", "cursive", "fantasy")
+_SHOWN = 12
+
+
+def check_families(families: Sequence[str]) -> None:
+    """Refuse families of which none is installed.
+
+    Raises
+    ------
+    ConfigError
+        With those that are.
+    """
+    for family in families:
+        if family.lower() in _GENERIC:
+            continue
+        try:
+            fontManager.findfont(FontProperties(family=[family]), fallback_to_default=False)
+        except ValueError as error:
+            names = sorted(
+                {
+                    font.name
+                    for font in fontManager.ttflist
+                    if not font.name.startswith((".", "STIX", "cm"))
+                }
+            )
+            more = "" if len(names) <= _SHOWN else f" and {len(names) - _SHOWN} more"
+            raise ConfigError(
+                f"no font of the family {family!r} is installed; there are {', '.join(names[:_SHOWN])}{more}, "
+                "serif, sans-serif and monospace",
+                key="font_family",
+            ) from error

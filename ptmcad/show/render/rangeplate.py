@@ -15,9 +15,8 @@ from ptmcad.answer.intervals import End
 from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
-from ptmcad.show.render.inches import Box, axes_at, write_lines
+from ptmcad.show.render.inches import Box, axes_at, wrapped, write_lines
 from ptmcad.show.render.legend import Entry, Type, draw_legend
-from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.style import Size
 from ptmcad.show.units import unit, with_unit
 from ptmcad.text.enclosure import Enclosure
@@ -38,7 +37,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 }
 """Lines of solutions, by what these are called: stable ones are solid, and no others are."""
 EACH = ("#0b5394", "#2a9d8f", "#741b47", "#7d9be0", "#274e13", "#c27ba0")
-"""Of solutions of one kind that are told from each other; no other kind has one of these colours.
+"""Of solutions of one kind that are distinguished from each other; no other kind has one of these colours.
 """
 
 

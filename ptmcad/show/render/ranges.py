@@ -28,9 +28,9 @@ from ptmcad.show.ranges.certified import widest_text
 from ptmcad.show.ranges.numbers import end_text, width_text
 from ptmcad.show.ranges.table import maximum_text, operation_name, working_text
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
-from ptmcad.show.render.colours import fill_of_counts, fill_of_index
+from ptmcad.show.render.colours import INK, fill_of_counts, fill_of_index
 from ptmcad.show.render.inches import write, write_lines
-from ptmcad.show.render.legend import INK, Entry, Type, draw_legend
+from ptmcad.show.render.legend import Entry, Type, draw_legend
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.rangeplate import (
     LEFT,

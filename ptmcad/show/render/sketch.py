@@ -5,7 +5,7 @@ Spirals are torsion springs, where their joints are known (`ptmcad.model.joints`
 
 Guarantee: nodes are where the pose has them, at one scale for all poses. A spring that would lie on
 a bar or on another spring, or is too short for its turns, is drawn aside and led back to its nodes.
-Labels keep clear of all that is drawn (`ptmcad.show.render.clearance`).
+Labels keep clear of all that is drawn (`ptmcad.show.render.labels`).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ptmcad.model.elements import Load
 from ptmcad.model.joints import joints_of
 from ptmcad.model.work import PointForce, loads_at
 from ptmcad.show.render.axes import symbol
-from ptmcad.show.render.clearance import (
+from ptmcad.show.render.labels import (
     Box,
     Label,
     Placed,
@@ -35,7 +35,7 @@ from ptmcad.show.render.view import Point
 from ptmcad.show.spiral import spirals
 
 BAR_WIDTHS = (5.5, 3.2)
-"""Of two bars, which are told apart; more are alike."""
+"""Of two bars, which are distinguished; more are alike."""
 MANY_BARS = 4.2
 WIDTH, MAX_HEIGHT, MIN_HEIGHT, MARGIN = 200.0, 210.0, 112.0, 36.0
 PIN = 2.4

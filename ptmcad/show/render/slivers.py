@@ -8,7 +8,7 @@ steps of shortening the view reach.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -19,9 +19,12 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import Merge, Region, RegionMap
 from ptmcad.cover.subdivision import connected
-from ptmcad.show.render.clearance import Box
+from ptmcad.show.render.colours import INK
+from ptmcad.show.render.inches import text_width
+from ptmcad.show.render.labels import Box, Cost, Label, Position, around, place
 from ptmcad.show.render.view import Interval, Point, Same, Shapes, View
 from ptmcad.show.style import Size
+from ptmcad.show.table import count_text
 
 STEPS = 100
 MAX_ZOOMS = 12
@@ -257,3 +260,174 @@ def _eroded(mask: Mask) -> Mask:
     rows = mask[1:-1] & mask[:-2] & mask[2:]
     inner = rows[:, 1:-1] & rows[:, :-2] & rows[:, 2:]
     return np.pad(inner, 1)
+
+
+# ----------------------------------------------------------------------------------- arrows to slivers
+
+
+RESOLVED = 42
+"""What is thinner than three pixels of this many to the inch (5 points) is taken for hidden by the
+walls around it.
+"""
+RIMMED = 126
+"""The same where it has a rim of its own colour instead of walls (1.7 points)."""
+_DISTANCES = (10, 20, 34, 50, 70, 95, 125, 160, 200)
+_SIDE = 331.2
+"""Points of the picture's side, for these; on a smaller one they are shorter."""
+_SHORT, _TIP, _EDGE = 30, 6.0, 2.0
+"""Points: a shorter arrow is as bad as one that passes another region; around an arrow's tip; from
+the picture's edge to a label.
+"""
+_OTHER_REGION, _FOREIGN = 75, 300
+"""What a place costs for every other region than one that its label or its arrow lies on, and where
+its label lies on one of another count: more than all distances."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arrow:
+    """An arrow with a label to a sliver: the label's centre, as fractions of the picture's sides, its
+    size in points, and whether it is clear of everything.
+    """
+
+    sliver: Sliver
+    name: str
+    tip: Position
+    label: Position
+    size: float
+    clear: bool
+
+
+def ranked(whole: Shapes, slivers: Sequence[Sliver], thin: Sequence[int]) -> list[Sliver]:
+    """First the largest region of each count that is seen nowhere else, then by size.
+
+    Parameters
+    ----------
+    thin : the numbers of all regions that are not seen.
+    """
+    regions, count = whole.result.regions, whole.result.slice.count
+    known = {count_text(region, count) for n, region in enumerate(regions) if n not in thin}
+    first: list[Sliver] = []
+    by_size = sorted(slivers, key=lambda sliver: -regions[sliver.region].area[0])
+    for sliver in by_size:
+        text = count_text(regions[sliver.region], count)
+        if text not in known:
+            known.add(text)
+            first.append(sliver)
+    return [*first, *(sliver for sliver in by_size if sliver not in first)]
+
+
+def arrows(
+    whole: Shapes,
+    slivers: Sequence[Sliver],
+    names: Sequence[str],
+    sides: Size,
+    size: float,
+    skip: bool = True,
+    said: Sequence[str] | None = None,
+) -> list[Arrow]:
+    """Arrows with these names to slivers.
+
+    Labels stand on a region of another count only where no place on one of their own is as clear.
+
+    Parameters
+    ----------
+    sides : width and height of the picture, in points.
+    size : of the texts, in points.
+    skip : whether labels that are not clear are not to be drawn.
+    said : what is said of each region of the map, if not its count: the label of one best stands
+        where the same is true.
+    """
+    said = counts_of(whole.result) if said is None else said
+    image = whole.raster(96, 96) if slivers else np.zeros((1, 1), dtype=np.int64)
+    tips = [whole.view.approximate_position(sliver.at) for sliver in slivers]
+    points = [(x * sides[0], y * sides[1]) for x, y in tips]
+    scale = min(*sides, _SIDE) / _SIDE
+
+    def cost(tip: Position, homes: set[int]) -> Cost:
+        def of(distance: float, center: Position, box: Box) -> float:
+            covered = _covered(image, box, sides)
+            foreign = not {*covered} <= homes | {-1}
+            others = len(covered) - 1 + _passed(image, tip, center, sides)
+            short = distance < scale * _SHORT
+            return distance + _FOREIGN * foreign + _OTHER_REGION * (others + short)
+
+        return of
+
+    labels = []
+    for sliver, name, tip in zip(slivers, names, points, strict=True):
+        homes = {n for n, text in enumerate(said) if text == said[sliver.region]}
+        half = (36 * text_width(name, size) + 0.25 * size + 1, 0.85 * size + 1)
+        labels.append(Label(name, tip, half, cost=cost(tip, homes)))
+    bounds = (_EDGE, _EDGE, sides[0] - _EDGE, sides[1] - _EDGE)
+    around_tips = [around(point, (_TIP, _TIP)) for point in points]
+    placed = place(labels, (), around_tips, bounds, [scale * d for d in _DISTANCES], skip)
+    return [
+        Arrow(sliver, one.label.text, tip, (one.center[0] / sides[0], one.center[1] / sides[1]), size, one.clear)
+        for sliver, tip, one in zip(slivers, tips, placed, strict=True)
+    ]  # fmt: skip
+
+
+def counts_of(result: RegionMap) -> list[str]:
+    """The counts of all regions as texts."""
+    return [count_text(region, result.slice.count) for region in result.regions]
+
+
+def arrows_of(
+    whole: Shapes, sides: Size, dpi: int, size: float, names: Sequence[str] | None = None
+) -> tuple[list[Arrow], int]:
+    """The arrows of a map in a drawing of its own, without insets, and how many thin regions have
+    none.
+
+    Parameters
+    ----------
+    sides : of the drawing, in inches.
+    size : of the labels, in points.
+    names : of the regions, in their order, empty for those that need no mark; else their counts.
+        Regions with names are drawn with rims of their own colour, so that thinner ones are seen.
+    """
+    resolved = RESOLVED if names is None else RIMMED
+    said = names if names is not None else counts_of(whole.result)
+    thin = [n for n in thin_regions(whole, round(min(sides) * min(dpi, resolved))) if said[n]]
+    slivers = ranked(whole, [Sliver(n, inside(whole, n)) for n in thin], thin)
+    labels = [said[sliver.region] for sliver in slivers]
+    points = (72 * sides[0], 72 * sides[1])
+    found = [a for a in arrows(whole, slivers, labels, points, size, said=said) if a.clear]
+    return found, len(thin) - len(found)
+
+
+def _passed(image: NDArray[np.int64], a: Position, b: Position, sides: Size) -> int:
+    """How many other regions than one an arrow passes, from its tip to its label's centre."""
+    steps = np.linspace(0.0, 1.0, 24)
+    row, column = (
+        np.clip(
+            (a[k] + (b[k] - a[k]) * steps) / sides[k] * image.shape[1 - k],
+            0,
+            image.shape[1 - k] - 1,
+        ).astype(int)
+        for k in (1, 0)
+    )
+    return len(np.unique(image[row, column])) - 1
+
+
+def _covered(image: NDArray[np.int64], box: Box, sides: Size) -> list[int]:
+    """The regions that the box covers."""
+    rows, columns = image.shape
+    left, right = (int(min(max(v / sides[0], 0.0), 0.999) * columns) for v in (box[0], box[2]))
+    bottom, top = (int(min(max(v / sides[1], 0.0), 0.999) * rows) for v in (box[1], box[3]))
+    found: list[int] = np.unique(image[bottom : top + 1, left : right + 1]).tolist()
+    return found
+
+
+def draw_arrows(axes: Any, found: Iterable[Arrow], scale: float) -> None:
+    """The arrows and their labels."""
+    for arrow in found:
+        axes.annotate(
+            arrow.name, xy=arrow.tip, xytext=arrow.label, xycoords="axes fraction", textcoords="axes fraction",
+            ha="center", va="center", fontsize=arrow.size, color=INK, zorder=6,
+            gid=f"arrow-{arrow.sliver.region}", annotation_clip=False,
+            bbox={"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": INK, "linewidth": 0.5},
+            arrowprops={
+                "arrowstyle": "-|>", "color": INK, "linewidth": 0.9 * scale, "mutation_scale": 8 * scale,
+                "shrinkA": 0, "shrinkB": 0,
+            },
+        )  # fmt: skip

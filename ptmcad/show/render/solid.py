@@ -19,15 +19,13 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
-from ptmcad.show.render.inches import Box
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type
-from ptmcad.show.render.multiples import family_entries, in_words, title_of, value_text
-from ptmcad.show.render.painting import Paint, paint_of
-from ptmcad.show.render.panels import HeadAndFoot
+from ptmcad.show.render.colours import INK, STRONG, THIN, Paint, paint_of
+from ptmcad.show.render.inches import Box, text_width
+from ptmcad.show.render.legend import Entry, Type
+from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.panels import HeadAndFoot, family_entries, in_words, title_of, value_text
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
-from ptmcad.show.render.textwidth import text_width
+from ptmcad.show.render.surfacepicture import BOX, add_sheets, sheet_colours, sheet_entries
 from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.units import unit_of_free, with_unit
 
@@ -68,13 +66,13 @@ def _figure(
     paint = paint_of(style, *family.members)
     type = replace(Type.of(style), thin_lines="solid")
     colours = {} if surface is None else sheet_colours(family, surface, paint)
-    told = family_entries(family, paint)
+    legend = family_entries(family, paint)
     if surface is None:
-        told += _of_floors(family)
+        legend += _of_floors(family)
     else:
-        fills = [entry for entry in told if entry.mark != STRONG]
-        told = sheet_entries(surface, colours, fills if _lowest(family) else fills[:1])
-    around = HeadAndFoot.of(title_of(family), told, wide, style, type)
+        fills = [entry for entry in legend if entry.mark != STRONG]
+        legend = sheet_entries(surface, colours, fills if _lowest(family) else fills[:1])
+    around = HeadAndFoot.of(title_of(family), legend, wide, style, type)
     head, foot = around.head, around.foot if around.rows else 0.0
     # names of axes are so many letters below the box, whose lowest corner is a tenth above the
     # axes' end
@@ -131,16 +129,16 @@ def _axes(figure: Figure, box: Box, family: FamilyMap, font: float) -> Any:
 
 def _of_floors(family: FamilyMap) -> list[Entry]:
     """What the legend says of maps one above the other."""
-    told = []
+    legend = []
     if len(family.values) > MAX_FLOORS:
-        told.append(Entry(("curves of the other members",), THIN))
+        legend.append(Entry(("curves of the other members",), THIN))
     if len(family.values) > 1:
-        told.append(Entry(("paler: seen through a map above it",), heads=0))
+        legend.append(Entry(("paler: seen through a map above it",), heads=0))
     if any(
         not separates for result in family.members for _, separates, _ in shapes(result).walls()
     ):
-        told.append(Entry(("other curves left out",), heads=0))
-    return told
+        legend.append(Entry(("other curves left out",), heads=0))
+    return legend
 
 
 def _add_floors(axes: Any, family: FamilyMap, paint: Paint, small: float) -> None:

@@ -30,15 +30,15 @@ from ptmcad.model import Mechanism
 from ptmcad.model.work import loads_at
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import Dress, dress, symbol
-from ptmcad.show.render.clearance import Placed, Position
-from ptmcad.show.render.inches import axes_at, write
-from ptmcad.show.render.legend import INK, Entry, Rows, Type, draw_rows, head_of, in_rows
+from ptmcad.show.render.colours import INK, fills_by_count, paint_of
+from ptmcad.show.render.inches import axes_at, text_width, write
+from ptmcad.show.render.labels import Placed, Position
+from ptmcad.show.render.legend import Entry, Rows, Type, draw_rows, head_of, in_rows
+from ptmcad.show.render.mappicture import whole_title
 from ptmcad.show.render.mechanism import PALE, STRONG, draw_sketch
-from ptmcad.show.render.painting import fills_by_count, paint_map, paint_of
-from ptmcad.show.render.regionmap import whole_title
-from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.painting import paint_map
 from ptmcad.show.render.sketch import Sketch, arrows_of, components, own_labels, sketched
-from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.render.view import Point, View
 from ptmcad.show.style import PictureStyle, Size
 from ptmcad.text.expressions import values_at

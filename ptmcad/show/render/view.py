@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.show.render.clearance import Position
+from ptmcad.show.render.labels import Position
 
 Floats = NDArray[np.float64]
 Interval = tuple[Fraction, Fraction]

@@ -5,6 +5,6 @@ and comes from the result; nothing of the result is taken for markup or code. Pi
 floating point.
 """
 
-from ptmcad.show.report.page import page
+from ptmcad.show.report.reportpage import page
 
 __all__ = ["page"]

@@ -17,15 +17,17 @@ from fractions import Fraction
 from html import escape
 from typing import Any
 
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import Member, State, Sweep
 from ptmcad.show.render.axes import heading_of, named, symbol
-from ptmcad.show.render.colours import UNDETERMINED, Fill
-from ptmcad.show.report.chart import hatch_id, pattern_defs
-from ptmcad.show.report.page import asset, harmless, policy_of, template
+from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
+from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.polylines import GRID
+from ptmcad.show.report.mapsvg import hatch_id, outline_data, pattern_defs
+from ptmcad.show.report.reportpage import asset, harmless, policy_of, template
 from ptmcad.show.report.sections import swatch
-from ptmcad.show.sweeps.sketch import SIDE, Thumbnail
-from ptmcad.show.sweeps.table import count_order, middle
-from ptmcad.show.table import in_order
+from ptmcad.show.sweeptable import count_order, middle
+from ptmcad.show.table import count_text, in_order
 from ptmcad.text.numerals import fraction_of, shortest_text
 from ptmcad.version import __version__
 
@@ -264,3 +266,54 @@ def frame_of(sweep: Sweep, slice: Any, sketches: Iterable[Thumbnail]) -> SheetFr
         else ", ".join(named(part, slice.parameters) for part in fixed)
     )
     return SheetFrame(axes, heading, slice.count.value)
+
+
+SIDE = 800
+"""Steps of the drawing's grid along a side of the window."""
+TOLERANCE = 1 / 1600
+MAX_CHARACTERS = 6000
+"""Of one drawing; coarser outlines are taken for a map that needs more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Thumbnail:
+    """What is painted: the plate's fill, and over it fills with the data of their SVG paths.
+
+    Attributes
+    ----------
+    legend : the counts that occur, as text, with their fills.
+    fixed : what is fixed in the map's slice, in words.
+    """
+
+    plate: Fill
+    paths: tuple[tuple[Fill, str], ...]
+    legend: tuple[tuple[str, Fill], ...]
+    fixed: tuple[str, ...] = ()
+
+
+def sketch(result: RegionMap) -> Thumbnail:
+    """The drawing of a map.
+
+    Raises
+    ------
+    ValueError, IndexError, ArithmeticError
+        When the map contradicts itself.
+    """
+    seen = shapes(result)
+    largest = max(range(len(result.regions)), key=lambda k: result.regions[k].area, default=None)
+    plate = UNDETERMINED
+    if result.cover is None and largest is not None:
+        plate = fill_of(result.regions[largest], result.slice.count)
+    count = result.slice.count
+    legend = {count_text(region, count): fill_of(region, count) for region in result.regions}
+    for factor in (1, 3, 9):
+        paths: dict[Fill, str] = {}
+        for number, region in enumerate(result.regions):
+            fill = fill_of(region, count)
+            if fill != plate:
+                data = outline_data(seen, number, factor * TOLERANCE, SIDE / GRID)
+                paths[fill] = paths.get(fill, "") + data
+        drawn = Thumbnail(plate, tuple(paths.items()), tuple(legend.items()), result.slice.fixed)
+        if sum(map(len, paths.values())) <= MAX_CHARACTERS:
+            break
+    return drawn

@@ -11,18 +11,19 @@ from collections.abc import Iterable, Iterator
 from html import escape
 
 from ptmcad.answer.plan import own_steps
-from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.regionmap import Component, RegionMap, Status
 from ptmcad.answer.words import count_words, index_words, several
+from ptmcad.show.polynomial_text import Style, polynomial_text, symbols
 from ptmcad.show.render.axes import named, symbol
 from ptmcad.show.render.colours import Fill, fill_of
-from ptmcad.show.render.legend import Entry, entries
-from ptmcad.show.report.chart import MapPictures, counts_text, hatch_id
+from ptmcad.show.render.legend import Entry, entries, hidden_entries
 from ptmcad.show.report.equilibria import both, distinct_parameters
+from ptmcad.show.report.mapsvg import MapPictures, counts_text, hatch_id
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, stability_in_words
 from ptmcad.show.units import area_unit, unit, with_unit
 from ptmcad.text.bounds import certified_digits, percent
-from ptmcad.text.numerals import decimal, text_of
+from ptmcad.text.numerals import decimal, integer_text, text_of
 
 _STATUS = {
     Status.EXACT: "Exact: every point of the window off the boundary curves is in a region, and the counts are proved.",
@@ -132,7 +133,7 @@ def answer(result: RegionMap) -> str:
 def legend(result: RegionMap, chart: MapPictures) -> str:
     """What colours and lines mean, in words."""
     parts = []
-    for entry in entries(result, chart.thin_walls, samples=False, hidden=chart.hidden):
+    for entry in [*entries(result, chart.thin_walls), *hidden_entries(chart.hidden)]:
         match entry.mark:
             case Fill() as fill:
                 head, rest = (
@@ -279,3 +280,49 @@ def again(result: RegionMap) -> Iterator[str]:
         f"{axis.name}={text_of(v)}" for axis, v in zip(result.slice.axes, at, strict=True)
     )
     yield copied(f"ptmcad locate {name}.json --at {point}", "the question")
+
+
+MAX_FORMULA = 100_000
+"""Characters of a formula that the page holds in all its forms."""
+_PROGRAMS = {
+    Style.TEXT: "text",
+    Style.SYMPY: "SymPy",
+    Style.MAPLE: "Maple",
+    Style.MATHEMATICA: "Mathematica",
+    Style.LATEX: "LaTeX",
+}
+
+
+def curves(result: RegionMap) -> str:
+    """Every curve that the decomposition uses, with its formula in the forms that programs read."""
+    used = [(n, c) for n, c in enumerate(result.components) if not c.left_out]
+    if not used:
+        return "<p>There is no boundary curve in the window.</p>"
+    known = bool(result.cells)
+    return "".join(_curve(n, c, result.slice.axis_names, known) for n, c in used)
+
+
+def _curve(number: int, component: Component, names: tuple[str, str], known: bool) -> str:
+    p = component.polynomial
+    role = "separates regions" if component.separates else "separates nothing"
+    if not known:
+        role = "what it separates was not computed"
+    title = (
+        f"Curve {number}: {component.kind.value}, degree {p.degrees[0]} in {names[0]}, {p.degrees[1]} in {names[1]}, "
+        f"{p.total_degree} in all, {several(len(p.terms), 'term')}; {role}"
+    )
+    return f"<details><summary>{escape(title)}</summary>{_formula(component, names)}</details>"
+
+
+def _formula(component: Component, names: tuple[str, str]) -> str:
+    p = component.polynomial
+    if sum(len(integer_text(c)) + 20 for _, _, c in p.terms) > MAX_FORMULA:
+        return "<p>The formula is too long for this page; the result has it.</p>"
+    parts = ["<p>The curve is where this polynomial is zero.</p>"]
+    for style, program in _PROGRAMS.items():
+        text = polynomial_text(p, names, style)
+        if style is Style.SYMPY:
+            x, y = symbols(names, style)
+            text = f'import sympy\n\n{x}, {y} = sympy.symbols("{names[0]} {names[1]}")\np = {text}'
+        parts.append(copied(text, f"as {program}"))
+    return "".join(parts)

@@ -226,7 +226,7 @@ def _pictures(figure: str) -> dict[str, bytes]:
     contents.
     """
     from ptmcad.show.render.plotting import with_poses
-    from ptmcad.show.render.poses import draw_poses
+    from ptmcad.show.render.posepicture import draw_poses
     from ptmcad.show.render.printing import content
 
     at: dict[str, Any] = dict(POINTS[figure][1])

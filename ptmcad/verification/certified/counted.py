@@ -1,18 +1,16 @@
-"""What is counted at a point, and where solutions may be.
+"""What is counted at a point, and what cells and regions say of it.
 
 Guarantee: data only.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from typing import Any
 
 from ptmcad.answer.counts import Counted, MorseIndex
 from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.verification.certified.boxes import Box, Floats
 from ptmcad.verification.report import Violation
 
 
@@ -82,24 +80,3 @@ class CountedPoint:
     counts: CellCounts
     found: Sequence[Any]
     values: Any
-
-
-@dataclass(frozen=True, slots=True)
-class Where:
-    """Boxes in which all solutions are that are asked for, in place of all configurations.
-
-    Attributes
-    ----------
-    boxes : for each choice of sides of springs on one line each, in the order of `kinks.sides`;
-        they may be looked for when they are asked for.
-    whole : half the width of all configurations, in each unknown.
-    """
-
-    boxes: Sequence[Iterable[Box]]
-    whole: Floats
-
-
-Places = Callable[[tuple[Fraction, Fraction], tuple[Fraction, Fraction]], Where | None]
-"""Where the solutions may be over a rectangle of the window, in lattice steps; None where nothing
-is told of it.
-"""

@@ -1,23 +1,37 @@
-"""Krawczyk's test of boxes of the unknowns, and the solutions that it proves, for all parameters in
-balls at once.
+"""Krawczyk's test of boxes of the unknowns, and all solutions in boxes that it proves, for all
+parameters in balls at once.
 
 Guarantee: with C near the inverse of the Jacobian at the middle m of a box X, Krawczyk's image is
 m - C f(m) + (I - C f'(X)) (X - m). It has all zeros that X has; if it lies inside of X, there is
-exactly one.
+exactly one. For every choice of the parameters in the balls of the field, each of the `zeros`
+exists, exactly once in its box, and there is no further one in the boxes of the start at which no
+condition of the field is violated. What cannot be proved raises `Unproved`.
+
+The boxes of the start are those that the exclusion leaves (`ptmcad.verification.exclusion.places`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import product
+from itertools import combinations, product
 from math import inf
 from operator import lt
 
 from flint import arb, arb_mat
 
-from ptmcad.verification.certified.boxes import Box, Floats, Zero
-from ptmcad.verification.certified.field import BallEquations, BallJet, Matrix
+from ptmcad.verification.certified.ballequations import BallEquations, BallJet, Matrix
 from ptmcad.verification.inertia import inertia
+from ptmcad.verification.normalform.boxes import (
+    MIN_HALF_WIDTH,
+    Box,
+    Floats,
+    Unproved,
+    Zero,
+    disjoint,
+    halves,
+    inside,
+    within,
+)
 
 _SHRINKINGS = (
     1,
@@ -203,3 +217,109 @@ def _reaches(
     jet = field(list(map(arb, center, radii)))
     found = None if jet.short else image(values, jet.jacobian, list(map(arb, radii)))
     return None if found is None else [step.abs_upper() for step in found]
+
+
+_PROMISING = 1.0
+"""The width of Krawczyk's image, as a share of the box's, below which Newton's method is tried."""
+_FIRST_SHARE = 2.0**-5
+"""Of the start's widths: the first box that is tried around a solution is not narrower."""
+
+
+class Spent(Unproved):
+    """The boxes that a search may look at were not enough."""
+
+
+def zeros(
+    field: BallEquations,
+    start: Iterable[Box],
+    whole: Floats,
+    budget: int,
+    smallest: float = MIN_HALF_WIDTH,
+    near: Iterable[Zero] = (),
+) -> list[Zero]:
+    """The solutions in the boxes.
+
+    Parameters
+    ----------
+    whole : half the width of the box that those of the start are parts of.
+    budget : number of boxes after which the search gives up.
+    smallest : share of the whole box's widths below which one is not halved again.
+    near : solutions for one choice of the parameters; those near them are proved first, before any
+        box of the start is asked for, which saves a hopeless search.
+
+    Raises
+    ------
+    Unproved
+        When a solution is degenerate or nearly so for some parameters, or the budget was spent.
+    """
+    circles = field.circles
+    found = [_persisting(field, zero, whole) for zero in near]
+    least = [smallest * w for w in whole]
+    if not all(disjoint(one, two, circles) for one, two in combinations(found, 2)):
+        raise Unproved("two solutions may meet")
+    waiting, used = list(start), 0
+    while waiting:
+        box = waiting.pop()
+        used += 1
+        if used > budget:
+            raise Spent(f"{budget} boxes were not enough")
+        if any(inside(box, zero, circles) for zero in found):
+            continue
+        jet = field(list(map(arb, *box)))
+        if any(v > 0 or v < 0 for v in jet.values) or any(c < 0 for c in jet.conditions):
+            continue
+        image = None if jet.short else image_of(field, box, jet)
+        if image is not None:
+            if any(abs(step) > r for step, r in zip(image, box[1], strict=True)):
+                continue
+            new = _settled(field, box, found, whole) if _contracts(box, image) else None
+            if new is not None and all(disjoint(new, zero, circles) for zero in found):
+                found.append(new)
+                if inside(box, new, circles):
+                    continue
+        parts = halves(box, _widest(box, whole), least)
+        if parts is None:
+            where = ", ".join(f"{x:.6g}" for x in box[0])
+            raise Unproved(f"a solution near ({where}) may be degenerate")
+        waiting += parts
+    return found
+
+
+def _contracts(box: Box, image: Sequence[arb]) -> bool:
+    """Whether Krawczyk's image of a box is not much wider, so that it is worth looking for a
+    solution in it.
+    """
+    return all(step.rad() < _PROMISING * r for step, r in zip(image, box[1], strict=True))
+
+
+def _settled(field: BallEquations, box: Box, found: Sequence[Zero], whole: Floats) -> Zero | None:
+    """A solution that Newton's method reaches from the box's middle, proved to be one; None when
+    none is.
+    """
+    center = newton(field, box)
+    if center is None or any(within(center, z.center, z.alone, field.circles) for z in found):
+        return None
+    return proved(field, center, _shapes(box[1], whole))
+
+
+def _persisting(field: BallEquations, zero: Zero, whole: Floats) -> Zero:
+    """The solution for all parameters that one for some parameters belongs to."""
+    persisting = proved(field, zero.center, _shapes(zero.alone, whole))
+    if persisting is None:
+        where = ", ".join(f"{x:.6g}" for x in zero.center)
+        raise Unproved(f"the solution near ({where}) may not persist")
+    return persisting
+
+
+def _shapes(radii: Floats, whole: Floats) -> tuple[Floats, Floats]:
+    """Half widths of boxes that are tried around a solution: of the start's shape, which a box in
+    it need not have.
+    """
+    share = max(_FIRST_SHARE, *(r / w for r, w in zip(radii, whole, strict=True)))
+    return tuple(share * w for w in whole), radii
+
+
+def _widest(box: Box, whole: Floats) -> list[int]:
+    """The unknowns in the order of the box's widths, as shares of the whole ones."""
+    shares = [r / w for r, w in zip(box[1], whole, strict=True)]
+    return sorted(range(len(shares)), key=lambda k: shares[k], reverse=True)

@@ -10,65 +10,83 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx
 
 from ptmcad.answer.counts import euler_sum
 from ptmcad.answer.regionmap import Solution
+from ptmcad.errors import PoleError
 from ptmcad.model import Model
 from ptmcad.question.counts import Count
-from ptmcad.question.slice import Point, Slice
+from ptmcad.question.slice import Slice
 from ptmcad.text.balls import ball_of
-from ptmcad.verification.certified.boxes import MIN_HALF_WIDTH, Box, Unproved, Zero, is_same
-from ptmcad.verification.certified.counted import CellCounts, CountedPoint, Where
-from ptmcad.verification.certified.field import BallEquations, Matrix
-from ptmcad.verification.certified.kinks import Sides, sides
-from ptmcad.verification.certified.narrow import Function, judged, only
-from ptmcad.verification.certified.parameters import values_over
-from ptmcad.verification.certified.ranges import half_widths
-from ptmcad.verification.certified.solving import Spent, zeros
-from ptmcad.verification.certified.waves import Form
-from ptmcad.verification.claims import Claims
+from ptmcad.verification.certified.ballequations import BallEquations, Matrix
+from ptmcad.verification.certified.counted import CellCounts, CountedPoint
+from ptmcad.verification.certified.krawczyk import Spent, zeros
+from ptmcad.verification.certified.narrow import is_wide, narrowed, precisions, tested
 from ptmcad.verification.inertia import inertia
 from ptmcad.verification.kinds import kind_of
+from ptmcad.verification.normalform.boxes import MIN_HALF_WIDTH, Unproved, Zero, is_same
+from ptmcad.verification.normalform.lattice import Range, SliceLattice
+from ptmcad.verification.normalform.waves import Form, Sides, form_of, sides
 from ptmcad.verification.report import Violation
 from ptmcad.verification.terms import evaluated
+
+if TYPE_CHECKING:
+    from ptmcad.verification.exclusion.places import Isolation, SolutionPlaces
 
 PRECISIONS = ((53, MIN_HALF_WIDTH), (128, 2.0**-80))
 """Bits, and the share of all configurations below which boxes are not halved: a spring may be as
 short as that.
 """
-_BOX_PRECISION = 128
 BUDGETS = (20_000, 40_000, 60_000)
-"""Boxes of the unknowns for one point, by their number; one more unknown makes each of them dearer,
-too.
-"""
+"""Boxes of the unknowns for one point, by the number of unknowns."""
 BOX_BUDGET_SHARE = 4
 """For a box of parameters so many times fewer."""
 _HALVINGS = 60
+_NARROWINGS = 4
+"""Images of a box that a solution is proved to be in, until signs on it are certain."""
 MAX_ANGLE = 8
 """Of the middle of a stored box, where an unknown is an angle."""
 MAX_REAL = 2**1000
 """... and where it is a length: a number that floats have."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class ModelCounting:
     """Counts for one model, from the form that follows from its description."""
 
-    form: Form
+    lattice: SliceLattice
 
-    def at(
-        self, claims: Claims, x: Fraction, y: Fraction, where: Where | None = None
-    ) -> CountedPoint:
+    @cached_property
+    def form(self) -> Form:
+        """What is zero at the solutions."""
+        return form_of(self.lattice.slice)
+
+    @cached_property
+    def _places(self) -> SolutionPlaces:
+        from ptmcad.verification.exclusion.places import SolutionPlaces  # loads numba
+
+        return SolutionPlaces(self.lattice)
+
+    @property
+    def _count(self) -> Count:
+        return self.lattice.slice.count
+
+    def at(self, x: Fraction, y: Fraction) -> CountedPoint:
         """At a point of the window."""
-        values, count = _values_at(claims, self.form, x, y), claims.result.slice.count
+        values = _values_at(self.lattice.slice, self.form, x, y)
+        u, v = self.lattice.on(x, y)
+        starts = self._places((u, u), (v, v))
         reason: Unproved | None = None
         for bits, smallest in PRECISIONS:
             with ctx.workprec(bits):
                 try:
-                    return self._at(values, count, where, smallest)
+                    numbers = _balls(values)
+                    found = self._found(numbers, starts, smallest)
+                    return CountedPoint(self._counts(numbers, found), found, values)
                 except Spent:
                     raise  # more digits would not make them fewer
                 except Unproved as unproved:
@@ -76,55 +94,51 @@ class ModelCounting:
         assert reason is not None
         raise reason
 
-    def _at(
-        self,
-        values: Mapping[str, Fraction],
-        count: Count,
-        where: Where | None = None,
-        smallest: float = MIN_HALF_WIDTH,
-    ) -> CountedPoint:
-        """At the context's precision."""
-        numbers = _balls(values)
-        found = self._found(numbers, count, where, smallest)
-        return CountedPoint(self._counts(numbers, found, count), found, values)
+    def over(self, u: Range, v: Range, there: CountedPoint) -> CellCounts:
+        """At all points of a rectangle in lattice steps.
+
+        Parameters
+        ----------
+        there : the solutions at one of the points, which are proved first for all of them.
+        """
+        slice = self.lattice.slice
+        x, y = self.lattice.balls(u, v)
+        values = self.lattice.values(u, v)
+        for name, value in values.items():
+            if not _is_in_domain(slice.model, name, value):
+                raise Unproved(f"{name} may be outside of its domain")
+        if not all(evaluated(cone.pull, values) >= 0 for cone in self.form.cones):
+            raise Unproved("a stiffness times a free length may be negative")
+        # boxes much smaller than the box of parameters are excluded no better than larger ones
+        smallest = max(float(max(x.rad(), y.rad())) / 256, 2.0**-32)
+        found = self._found(values, self._places(u, v), smallest, there)
+        return self._counts(values, found)
 
     def _found(
         self,
         values: Mapping[str, arb],
-        count: Count,
-        where: Where | None,
+        starts: Sequence[Isolation],
         smallest: float,
         there: CountedPoint | None = None,
     ) -> list[Zero]:
-        """The solutions that count, with springs on one line each on all sides of length zero.
-
-        Parameters
-        ----------
-        there : those for some of the parameters, which are proved first for all of them.
-        """
+        """The solutions that count, with springs on one line each on all sides of length zero."""
         found, near = list[Zero](), () if there is None else there.found
-        budget = self._budget // (1 if there is None else BOX_BUDGET_SHARE)
-        for k, side in enumerate(sides(self.form)):
-            field = _field(self.form, values, count, side)
-            start, whole = (
-                ([_start(field)], None) if where is None else (where.boxes[k], where.whole)
-            )
-            known = [zero for zero in near if _may_be_on_side(field, zero)]
-            on_side, _ = zeros(
-                field, _only_minima(self.form, count), start, budget, smallest, known, whole
-            )
-            counted = _counted(field, on_side, count)
-            if count is Count.TOTAL and self.form.conditions_for_stability:
-                counted = _with_signs(
-                    _field(self.form, values, Count.STABLE, side), self.form, counted
-                )
+        budget = BUDGETS[self.form.size - 1] // (1 if there is None else BOX_BUDGET_SHARE)
+        for side, start in zip(sides(self.form), starts, strict=True):
+            field = _field(self.form, values, self._count, side)
+            known = [zero for zero in near if _may_be_on_side(field, zero.within)]
+            on_side = zeros(field, start, start.whole, budget, smallest, known)
+            counted = _counted(field, on_side, self._count)
+            if self._count is Count.TOTAL and self.form.conditions_for_stability:
+                with_stability = _field(self.form, values, Count.STABLE, side)
+                counted = _with_signs(with_stability, self.form, counted)
             # at both ends of a box of angles one may be there on two sides
             found += [
                 zero for zero in counted if not any(self.same(zero, other) for other in found)
             ]
         return found
 
-    def _counts(self, values: Mapping[str, arb], found: Sequence[Zero], count: Count) -> CellCounts:
+    def _counts(self, values: Mapping[str, arb], found: Sequence[Zero]) -> CellCounts:
         """The counts, with the number of stable solutions with margins where these are asked for.
 
         Raises
@@ -132,51 +146,39 @@ class ModelCounting:
         Unproved
             When a margin may be zero at a stable solution.
         """
-        counts, kind = counts_of(self.form, found, count), kind_of(count)
+        counts, kind = counts_of(self.form, found, self._count), kind_of(self._count)
         if not kind.is_predicate:
             return counts
         field = BallEquations(self.form, values, ("margins",))
         stable = (zero for zero in found if "-" not in zero.signs)
         number = sum(_has_margins(field, zero, kind.undecided) for zero in stable)
-        return replace(counts, further={count.value: number})
+        return replace(counts, further={self._count.value: number})
 
-    def within(
-        self, values: Mapping[str, Fraction], boxes: Sequence[Solution], first: int = 0
-    ) -> list[Zero]:
-        """The only solution in each of the stored boxes at parameters; the first box's number is
-        given.
+    def in_box(self, x: Fraction, y: Fraction, solution: Solution, k: int) -> Zero:
+        """The only solution in a stored box at a point of the window.
+
+        Parameters
+        ----------
+        k : the number of the box.
+
+        Raises
+        ------
+        Violation
+            When none is in it, or several are.
+        Unproved
+            When one may be, or may be next to it.
         """
-        with ctx.workprec(_BOX_PRECISION):
-            fields = [_field(self.form, _balls(values), None, side) for side in sides(self.form)]
-            return [
-                self._in_box(fields, values, solution, k) for k, solution in enumerate(boxes, first)
-            ]
-
-    def _in_box(
-        self,
-        fields: Sequence[BallEquations],
-        values: Mapping[str, Fraction],
-        solution: Solution,
-        k: int,
-    ) -> Zero:
         _check_box(self.form, solution, k)
-        # where it may be on several sides of springs' lines, it has to be searched on each of them
-        box = [ball_of(x) + arb(0, ball_of(solution.radius)) for x in solution.center]
-        possible = [field for field in fields if not any(c < 0 for c in _ahead(field, box))]
-        narrow = (
-            _narrow(self.form, values, possible[0].sides, solution, k)
-            if len(possible) == 1
-            else None
-        )
-        return narrow or _only(fields, solution, k, self._budget)
-
-    def in_box(self, claims: Claims, at: Point, solution: Solution, k: int) -> Zero:
-        """The only solution in a stored box at a point of the window; the box's number is told
-        where there is none.
-        """
-        values = _values_at(claims, self.form, *at)
-        (found,) = self.within(values, [solution], k)
-        return found
+        values = _values_at(self.lattice.slice, self.form, x, y)
+        near = f"box {k} of the solutions, around ({', '.join(f'{float(c):.6g}' for c in solution.center)})"
+        try:
+            found = [_zero_in(self.form, values, side, solution) for side in sides(self.form)]
+        except Unproved:
+            raise Unproved(f"a solution may be in {near}, or next to it") from None
+        held = [zero for zero in found if zero is not None]
+        if len(held) != 1:
+            raise Violation(f"{near}, has {len(held)} equilibria, not one")
+        return held[0]
 
     def same(self, one: Zero, two: Zero) -> bool:
         """Whether a solution lies where another one is alone.
@@ -188,33 +190,10 @@ class ModelCounting:
         """
         return is_same(one, two, self.form.is_circle)
 
-    def over(
-        self, slice: Slice, x: arb, y: arb, there: CountedPoint, where: Where | None = None
-    ) -> CellCounts:
-        """At all points of a box."""
-        values = values_over(slice, x, y)
-        for name, value in values.items():
-            if not _is_in_domain(slice.model, name, value):
-                raise Unproved(f"{name} may be outside of its domain")
-        if not all(evaluated(cone.pull, values) >= 0 for cone in self.form.cones):
-            raise Unproved("a stiffness times a free length may be negative")
-        # boxes much smaller than the box of parameters are excluded no better than larger ones
-        smallest = max(float(max(x.rad(), y.rad())) / 256, 2.0**-32)
-        found = self._found(values, slice.count, where, smallest, there)
-        return self._counts(values, found, slice.count)
 
-    @property
-    def _budget(self) -> int:
-        return BUDGETS[self.form.size - 1]
-
-
-def _only_minima(form: Form, count: Count) -> bool:
-    return form.is_gradient and kind_of(count).is_of_stable
-
-
-def _may_be_on_side(field: BallEquations, zero: Zero) -> bool:
-    """Whether a solution may be on the field's side of the lengths zero."""
-    return not any(c < 0 for c in _ahead(field, zero.within))
+def _may_be_on_side(field: BallEquations, box: Sequence[arb]) -> bool:
+    """Whether some of a box may be on the field's side of the lengths zero."""
+    return not any(c < 0 for c in _ahead(field, box))
 
 
 def _ahead(field: BallEquations, box: Sequence[arb]) -> Sequence[arb]:
@@ -294,7 +273,7 @@ def _is_in_domain(model: Model, name: str, value: Any) -> bool:
     )
 
 
-def _values_at(claims: Claims, form: Form, x: Fraction, y: Fraction) -> dict[str, Fraction]:
+def _values_at(slice: Slice, form: Form, x: Fraction, y: Fraction) -> dict[str, Fraction]:
     """Every parameter at a point.
 
     Raises
@@ -302,8 +281,12 @@ def _values_at(claims: Claims, form: Form, x: Fraction, y: Fraction) -> dict[str
     Violation
         When one has a pole there, or is outside its domain.
     """
-    model = claims.model
-    values = {name: Fraction(0) for name in model.free_lengths} | claims.parameters_at(x, y)
+    model = slice.model
+    values = {name: Fraction(0) for name in model.free_lengths}
+    try:
+        values |= {name: e.evaluate(x, y) for name, e in slice.parameters.items()}
+    except PoleError as error:
+        raise Violation(str(error)) from error
     for name, value in values.items():
         if not _is_in_domain(model, name, value):
             raise Violation(f"{name} is {'not positive' if name in model.positive else 'negative'}")
@@ -315,12 +298,6 @@ def _values_at(claims: Claims, form: Form, x: Fraction, y: Fraction) -> dict[str
 
 def _balls(values: Mapping[str, Fraction]) -> dict[str, arb]:
     return {name: ball_of(value) for name, value in values.items()}
-
-
-def _start(field: BallEquations) -> Box:
-    """All configurations that may be solutions."""
-    widths = half_widths(field.form, field.values)
-    return (0.0,) * len(widths), widths
 
 
 def _has_margins(field: BallEquations, zero: Zero, undecided: str) -> bool:
@@ -358,30 +335,41 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> CellCounts:
     return CellCounts(len(found), index[0], index)
 
 
-def _narrow(
-    form: Form, values: Mapping[str, Fraction], side: Sides, solution: Solution, k: int
+def _zero_in(
+    form: Form, values: Mapping[str, Fraction], side: Sides, solution: Solution
 ) -> Zero | None:
-    """The one solution in a stored box that is narrow, and on one side; None where a search has to
-    tell.
+    """The solution in a stored box that has springs on one line on one side; None where none is.
+
+    Raises
+    ------
+    Unproved
+        When one may be.
     """
+    for bits in precisions(solution):
+        with ctx.workprec(bits):
+            field = _field(form, _balls(values), None, side)
+            reach = arb(0, ball_of(solution.radius))
+            if not _may_be_on_side(field, [ball_of(x) + reach for x in solution.center]):
+                return None
 
-    def function() -> Function:
-        field = _field(form, _balls(values), None, side)
+            def function(
+                box: Sequence[arb], field: BallEquations = field
+            ) -> tuple[Sequence[arb], Matrix] | None:
+                jet = field(box)
+                return None if jet.short else (jet.values, jet.jacobian)
 
-        def at(box: Sequence[arb]) -> tuple[Sequence[arb], Matrix] | None:
-            jet = field(box)
-            return None if jet.short else (jet.values, jet.jacobian)
-
-        return at
-
-    found = judged(function, solution)
-    if found is None:
-        return None
-    if not found.holds:
-        return only([], solution, k)  # which refuses it
-    signs = inertia(found.jacobian) if form.is_gradient else ""
-    # nothing is said of what is around the box
-    return None if signs is None else Zero(*found.in_floats(), (0.0,) * form.size, signs)
+            found = tested(function, solution)
+            for _ in range(_NARROWINGS):
+                if found is None:
+                    break
+                if not found.holds or not _may_be_on_side(field, found.within):
+                    return None
+                signs = inertia(found.jacobian) if form.is_gradient else ""
+                if signs is not None and all(c > 0 for c in _ahead(field, found.within)):
+                    # nothing is said of what is around the box
+                    return Zero(*found.in_floats(), (0.0,) * form.size, signs)
+                found = narrowed(function, found)
+    raise Unproved("not decided")
 
 
 def _check_box(form: Form, solution: Solution, k: int) -> None:
@@ -397,18 +385,5 @@ def _check_box(form: Form, solution: Solution, k: int) -> None:
         raise Violation(f"box {k} of the solutions is too many turns away")
     if any(abs(x) > MAX_REAL for x in solution.center):
         raise Violation(f"box {k} of the solutions is beyond all bounds of unknowns")
-
-
-def _only(fields: Sequence[BallEquations], solution: Solution, k: int, budget: int) -> Zero:
-    """The one solution in a stored box, on whichever side it is."""
-    center = tuple(float(x) for x in solution.center)
-    # floats have the centers and radii of stored boxes exactly, or nearly: then the box is made a
-    # little larger
-    radii = tuple(
-        float(solution.radius) * (1 + 2.0**-40) + 2.0**-50 * max(1.0, abs(x)) for x in center
-    )
-    inside = list[Zero]()
-    for field in fields:
-        found, _ = zeros(field, False, [(center, radii)], budget)
-        inside += [zero for zero in found if _may_be_on_side(field, zero)]
-    return only(inside, solution, k)
+    if is_wide(solution):
+        raise Violation(f"box {k} of the solutions is wider than boxes of one solution are")

@@ -17,17 +17,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from flint import arb, ctx
+from flint import arb
 
 from ptmcad.answer.regionmap import Solution
 from ptmcad.text.balls import ball_of
-from ptmcad.verification.certified.boxes import Floats, Unproved, Zero
-from ptmcad.verification.certified.field import Matrix
+from ptmcad.verification.certified.ballequations import Matrix
 from ptmcad.verification.certified.krawczyk import image
-from ptmcad.verification.report import Violation
+from ptmcad.verification.normalform.boxes import Floats
 
-NARROW = Fraction(1, 2**20)
-"""Half the width of a box up to which one test is tried before a search."""
+NARROW = Fraction(1, 2**10)
+"""Half the width of a box, as a share of 1 and its coordinates, up to which it is tested; nothing is
+said of a wider one.
+"""
 _MIN_BITS, _SPARE_BITS = 128, 64
 _NARROWINGS = 8
 _MAX_BITS = 2**16
@@ -54,55 +55,21 @@ class Judgement:
         return center, tuple(float(d.upper()) * (1 + 2.0**-40) + 2.0**-1000 for d in off)
 
 
-def judged(function_at: Callable[[], Function], solution: Solution) -> Judgement | None:
-    """What one test shows of a stored box with as many digits as it has, and then more; None where
-    nothing.
+def _size(solution: Solution) -> Fraction:
+    return max((abs(c) for c in solution.center), default=Fraction(0)) + 1
 
-    Parameters
-    ----------
-    function_at : makes the equations with the precision that is set.
-    """
-    for bits in precisions(solution):
-        with ctx.workprec(bits):
-            found = tested(function_at(), solution)
-        if found is not None:
-            return found
-    return None
+
+def is_wide(solution: Solution) -> bool:
+    """Whether a box is wider than those that are tested."""
+    return solution.radius > NARROW * _size(solution)
 
 
 def precisions(solution: Solution) -> list[int]:
     """Bits with which a test may show something of a stored box; none where it is too wide."""
-    if solution.radius > NARROW:
+    if is_wide(solution):
         return []
-    size = max((abs(c) for c in solution.center), default=Fraction(0)) + 1
-    bits = max(_MIN_BITS, _SPARE_BITS + 2 * int(size / solution.radius).bit_length())
+    bits = max(_MIN_BITS, _SPARE_BITS + 2 * int(_size(solution) / solution.radius).bit_length())
     return [times * bits for times in (1, 2, 4) if times * bits <= _MAX_BITS]
-
-
-def only(found: Sequence[Zero], solution: Solution, k: int) -> Zero:
-    """The one of all solutions in and about a stored box that is in it.
-
-    Raises
-    ------
-    Violation
-        When none is, or several are.
-    Unproved
-        When one may be, or may be beside it.
-    """
-    radius, center = ball_of(solution.radius), list(map(ball_of, solution.center))
-    away = [[abs(x - c) for x, c in zip(zero.within, center, strict=True)] for zero in found]
-    held = [zero for zero, off in zip(found, away, strict=True) if all(d <= radius for d in off)]
-    outside = sum(any(d > radius for d in off) for off in away)
-    near = ", ".join(f"{float(x):.6g}" for x in solution.center)
-    if len(held) < 2 and len(held) + outside < len(found):
-        raise Unproved(
-            f"a solution may be in box {k} of the solutions, around ({near}), or beside it"
-        )
-    if len(held) != 1:
-        raise Violation(
-            f"box {k} of the solutions, around ({near}), has {len(held)} equilibria, not one"
-        )
-    return held[0]
 
 
 def tested(function: Function, solution: Solution) -> Judgement | None:

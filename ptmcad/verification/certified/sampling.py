@@ -26,11 +26,11 @@ from math import ceil, isqrt
 
 from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.verification.certified.boxes import Unproved
-from ptmcad.verification.certified.counted import CountedPoint, Places, differs, stored
-from ptmcad.verification.certified.points import HOPELESS, counting_of
-from ptmcad.verification.certified.slanted import SlantedFrame
-from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified.cellsamples import HOPELESS
+from ptmcad.verification.certified.counted import CountedPoint, differs, stored
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
+from ptmcad.verification.certified.slantedframes import SlantedFrame
+from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.report import Unchecked, Violation
 
 FIRST_BOX_PARTS = 512
@@ -70,7 +70,6 @@ def check_boxes(
     claims: CertifiedClaims,
     seed: str,
     number: int,
-    places: Places | None = None,
     report: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> str:
     """Try so many random boxes, and more points; what was found, and for how many points nothing
@@ -78,8 +77,6 @@ def check_boxes(
 
     Parameters
     ----------
-    places : tells where solutions may be, which saves balls the search; without, all configurations
-        are searched.
     report : called with the numbers of points that are done, and of all.
     """
     if not claims.result.cells:
@@ -101,13 +98,13 @@ def check_boxes(
         report(k, len(tried))
         if not points and missing == HOPELESS:
             return Unchecked(f"none of the first {missing} points could be decided; seed {seed}")
-        there = check_point(claims, box.cell, box.u, box.v, places)
+        there = check_point(claims, box.cell, box.u, box.v)
         if there is not None:
             points += 1
         if not with_box:
             missing += there is None
             continue
-        half = None if there is None else _constant_over(claims, places, box, there)
+        half = None if there is None else _constant_over(claims, box, there)
         if half is not None:
             proved += 1
             area += (2 * half / claims.sweep.steps) ** 2
@@ -115,9 +112,7 @@ def check_boxes(
         # where constancy is not proved, a change of the count would show in a corner
         for side1 in (-1, 1):
             for side2 in (-1, 1):
-                check_point(
-                    claims, box.cell, box.u + side1 * box.half, box.v + side2 * box.half, places
-                )
+                check_point(claims, box.cell, box.u + side1 * box.half, box.v + side2 * box.half)
         missing += 1
     text = f"{proved} boxes, {100 * float(area):.2g} % of the window, {points} points; seed {seed}"
     if missing:
@@ -262,7 +257,6 @@ def check_point(
     number: int,
     u: Fraction,
     v: Fraction,
-    places: Places | None = None,
     reason: str = "",
 ) -> CountedPoint | None:
     """The counts at a point are those of the cell; its equilibria, None if they were not proved.
@@ -276,10 +270,10 @@ def check_point(
     ------
     Violation
     """
-    x, y = claims.off_lattice(u, v)
+    x, y = claims.lattice.off(u, v)
     cell = claims.result.cells[number]
     try:
-        there = counting_of(claims).at(claims, x, y, places and places((u, u), (v, v)))
+        there = claims.counting.at(x, y)
     except Unproved:
         return None
     if differs(cell, there.counts):
@@ -290,16 +284,14 @@ def check_point(
     return there
 
 
-def _constant_over(
-    claims: CertifiedClaims, places: Places | None, box: SampleBox, there: CountedPoint
-) -> Fraction | None:
+def _constant_over(claims: CertifiedClaims, box: SampleBox, there: CountedPoint) -> Fraction | None:
     """Half the width of the box over which the counts were proved; None when none was small enough."""
     half = box.half
     for _ in range(ATTEMPTS):
         if half == 0:
             return None
         try:
-            _prove(claims, places, box, half, there)
+            _prove(claims, box, half, there)
         except Unproved:
             half /= 4
             continue
@@ -307,13 +299,7 @@ def _constant_over(
     return None
 
 
-def _prove(
-    claims: CertifiedClaims,
-    places: Places | None,
-    box: SampleBox,
-    half: Fraction,
-    there: CountedPoint,
-) -> None:
+def _prove(claims: CertifiedClaims, box: SampleBox, half: Fraction, there: CountedPoint) -> None:
     """Prove the cell's counts for every point of the box.
 
     Raises
@@ -322,9 +308,7 @@ def _prove(
         When the box is too large, or the counts change in it.
     """
     u, v = (box.u - half, box.u + half), (box.v - half, box.v + half)
-    true = counting_of(claims).over(
-        claims.result.slice, *claims.balls(u, v), there, places and places(u, v)
-    )
+    true = claims.counting.over(u, v, there)
     assert not differs(claims.result.cells[box.cell], true), (
         "the box holds its middle, whose counts are the cell's"
     )

@@ -1,21 +1,30 @@
-"""Intervals of doubles in compiled code, rounded outward.
+"""Intervals of doubles, rounded outward, in code that numba compiles; without numba it runs as it is,
+some hundred times slower.
 
-Guarantee: intervals hold the exact values. An operation on doubles is rounded to nearest, so that
-its error is at most 2^-53 of the result or 2^-1075, and each end is moved outward by 2^-52 of it
-and 1e-300. What is not finite, or beyond 1e150, becomes the whole line, which nothing is ever
-concluded from. The sine and the cosine of a double are taken from the C library, with an error of
-at most 2^-50.
+Guarantee: intervals hold the exact values. An operation on doubles is rounded once, to nearest, and
+none is fused or reordered, so that its error is at most 2^-53 of the result or 2^-1075; each end is
+moved outward by 2^-52 of it and 1e-300. What is not finite, or beyond 1e150, becomes the whole
+line, which nothing is ever concluded from. The sine and the cosine of a double are taken from the C
+library, with an error of at most 2^-50.
+
+Compiled code is kept on disk under a name that follows from the text of this package, as it may
+call what stands in another of its files, and of the module that has the operations' numbers.
 """
 
 # ruff: noqa: PLW3301
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
+from hashlib import sha256
+from importlib.util import find_spec
 from math import cos, hypot, inf, sin
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from ptmcad.verification.certified.formulas import (
+from ptmcad.verification.normalform.operations import (
     ADD,
     COSINE,
     DIRECTION,
@@ -26,7 +35,56 @@ from ptmcad.verification.certified.formulas import (
     SQUARE,
     SUBTRACT,
 )
-from ptmcad.verification.exclusion.compiled import compiled, inlined
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _kept_at(usual: str) -> str:
+    here = Path(__file__).parent
+    sources = [*sorted(here.glob("*.py")), here.parent / "normalform" / "operations.py"]
+    text = b"\0".join(source.name.encode() + b"\0" + source.read_bytes() for source in sources)
+    beside = here / "__pycache__"
+    if not os.access(beside if beside.exists() else here, os.W_OK):
+        beside = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ptmcad"
+    return str(Path(usual or beside) / f"exclusion-{sha256(text).hexdigest()[:16]}")
+
+
+def _compiler() -> Callable[..., Callable[[F], F]]:
+    """What makes decorators of numba's options."""
+    if find_spec("numba") is None:
+        return lambda **_: lambda function: function
+    from numba import config, njit
+
+    settings: Any = config
+    folder = _kept_at(settings.CACHE_DIR)
+
+    def decorator(**options: Any) -> Callable[[F], F]:
+        def made(function: F) -> F:
+            usual = settings.CACHE_DIR
+            settings.CACHE_DIR = folder  # numba asks for the folder when it decorates
+            try:
+                wrap = njit(nogil=True, error_model="numpy", fastmath=False, **options)
+                return cast("F", wrap(function))
+            finally:
+                settings.CACHE_DIR = usual
+
+        return made
+
+    return decorator
+
+
+_DECORATOR = _compiler()
+
+
+def compiled(function: F) -> F:
+    """Compile for the machine, and keep it."""
+    return _DECORATOR(cache=True)(function)
+
+
+def inlined(function: F) -> F:
+    """The same for a function of a few operations."""
+    return _DECORATOR(inline="always")(function)
+
 
 _LARGE = 1e150
 _PART, _MIN_ERROR = 2.0**-52, 1e-300

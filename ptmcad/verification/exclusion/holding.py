@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ptmcad.verification.exclusion.compiled import compiled
+from ptmcad.verification.exclusion.arithmetic import compiled
 from ptmcad.verification.exclusion.pieces import MAX_CONTROLS, SLACK
 
 MAX_PIECES = 96

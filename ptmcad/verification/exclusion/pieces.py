@@ -7,14 +7,11 @@ what of a closed rectangle lies between the graphs of two polynomials, or betwee
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ptmcad.cover.rectangles import Patch, Rectangle
-from ptmcad.verification.certified.structure import CertifiedClaims
-from ptmcad.verification.certified.sweep import CoverSweep
+from ptmcad.cover.rectangles import Rectangle
 
 Bound = tuple[int, tuple[int, ...]] | None
 """A polynomial by its controls, and what is added to them."""
@@ -65,85 +62,12 @@ class Pieces(NamedTuple):
     members: Any
 
 
-def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
-    """The pieces of a map's cover, and the components that have no cell.
-
-    Parameters
-    ----------
-    wider : lattice steps by which tubes and their frames are made wider on all sides; what this
-        adds is not proved.
-    """
-    cover = claims.cover
-    rows: list[PieceRow] = [PieceRow(r) for r in cover.rectangles]
-    for patch in cover.patches:
-        left, right, bottom, top = patch.frame
-        frame = left - wider, right + wider, bottom - wider, top + wider
-        rows += [
-            PieceRow(
-                frame,
-                patch.along,
-                (-t.half - wider, t.controls),
-                (t.half + wider, t.controls),
-                wider,
-            )
-            for t in patch.tubes
-            if len(t.controls) <= MAX_CONTROLS
-        ]
-    cells, found = claims.cell_of, claims.sweep
-    rows += _open_in_strips(found, cells) + _open_in_frames(found, cells)
-    return _in_arrays(rows, cover.steps)
-
-
 def no_pieces(steps: int) -> Pieces:
     """Of a window of which nothing is held."""
-    return _in_arrays([], steps)
+    return pieces_in([], steps)
 
 
-def widened(claims: CertifiedClaims, wider: int) -> float:
-    """At most this share of the window is added to tubes by making them wider."""
-    cover = claims.cover
-    total = 0
-    for patch in cover.patches:
-        length = patch.frame[2 * patch.along + 1] - patch.frame[2 * patch.along]
-        for t in patch.tubes:
-            total += 2 * (t.half + wider) * (length + 2 * wider) - 2 * t.half * length
-    return total / cover.steps**2 * (1 + 1e-9)
-
-
-def _open_in_strips(found: CoverSweep, cells: dict[int, int]) -> list[PieceRow]:
-    return [
-        PieceRow((item.left, item.right, low, high))
-        for (low, high), row in zip(pairwise(found.lines), found.rows, strict=True)
-        for item in row
-        if item.frame < 0 and item.free and found.component_of[item.node] not in cells
-    ]
-
-
-def _open_in_frames(found: CoverSweep, cells: dict[int, int]) -> list[PieceRow]:
-    rows = []
-    for frame, first in zip(found.frames, found.first_part, strict=True):
-        patch = frame.patch
-        for k in range(len(patch.tubes) + 1):
-            if (
-                found.component_of[first + k] not in cells
-                and len(patch.tubes[0].controls) <= MAX_CONTROLS
-            ):
-                rows.append(PieceRow(patch.frame, patch.along, *_between(patch, k)))
-    return rows
-
-
-def _between(patch: Patch, k: int) -> tuple[Bound, Bound]:
-    """What bounds the part of a frame that has so many tubes below it, together with the tubes
-    beside it.
-    """
-    below, above = patch.tubes[k - 1 : k], patch.tubes[k : k + 1]
-    return (
-        (-below[0].half, below[0].controls) if k else None,
-        (above[0].half, above[0].controls) if above else None,
-    )
-
-
-def _in_arrays(rows: list[PieceRow], steps: int) -> Pieces:
+def pieces_in(rows: list[PieceRow], steps: int) -> Pieces:
     frames = np.array([row.frame for row in rows], dtype=np.float64).reshape(-1, 4)
     spans = np.array([_span(row) for row in rows], dtype=np.float64).reshape(-1, 2)
     along = np.array([row.along for row in rows], dtype=np.int64)

@@ -1,5 +1,5 @@
-"""Where the solutions over a point or a box of the window may be, by compiled code: where balls
-begin to look.
+"""Where the solutions over a point or a box of the window may be, by exclusion: where Krawczyk's test
+begins to look.
 
 Guarantee: all solutions that the map counts are in the boxes. Nothing else is claimed: which of the
 boxes have one is proved elsewhere.
@@ -10,18 +10,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
 
-from ptmcad.verification.certified.boxes import Box, Floats, Unproved
-from ptmcad.verification.certified.counted import Where
-from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.exclusion.boxsearch import isolate
+from ptmcad.verification.exclusion.criticalsystems import CriticalSystem, halves_over, solutions_of
+from ptmcad.verification.exclusion.forms import enclosing
 from ptmcad.verification.exclusion.pieces import Pieces, no_pieces
-from ptmcad.verification.exclusion.search import isolate
-from ptmcad.verification.exclusion.systems import CriticalSystem, halves_over, solutions_of
-from ptmcad.verification.exclusion.tapes import enclosing
+from ptmcad.verification.normalform.boxes import Box, Floats, Unproved
+from ptmcad.verification.normalform.lattice import Range, SliceLattice
 
 BUDGET = 16_000
 """Boxes that are looked at for one place and one choice of sides ..."""
@@ -39,52 +37,43 @@ nearly a point.
 """
 _ROUNDED_UP = 1 + 2.0**-50
 
-Range = tuple[Fraction, Fraction]
-
 
 class SolutionPlaces:
-    """The boxes of a map's solutions.
+    """The boxes of the solutions of a slice's model.
 
     Real unknowns may have bounds that are proved over the window; where they have not, each place
     has its own.
-
-    Raises
-    ------
-    Unproved
-        Where it is not known what is zero at the solutions.
     """
 
-    def __init__(self, claims: CertifiedClaims):
-        self._claims = claims
+    def __init__(self, lattice: SliceLattice):
+        self._lattice = lattice
         self._halves: Floats | None = None
         with suppress(Unproved):
-            self._halves = halves_over(claims)
-        self._systems = solutions_of(claims, self._halves)
-        self._steps = claims.cover.steps
-        self._pieces = no_pieces(self._steps)
+            self._halves = halves_over(lattice, lattice.window, lattice.window)
+        self._systems = solutions_of(lattice, self._halves)
 
-    def __call__(self, u: Range, v: Range) -> Where | None:
-        """Over a rectangle of the window, in lattice steps; None where no bound of a real unknown
-        is proved.
+    def __call__(self, u: Range, v: Range) -> list[Isolation]:
+        """Over a rectangle of the window, for each choice of sides of springs on one line each, in
+        the order of `kinks.sides`.
+
+        Raises
+        ------
+        Unproved
+            When no bound of a real unknown is proved.
         """
         systems = self._systems
         if self._halves is None:
-            try:
-                halves = halves_over(self._claims, u, v)
-            except Unproved:
-                return None
+            halves = halves_over(self._lattice, u, v)
             systems = [system.within(halves) for system in systems]
-        whole = tuple(high for _, high in systems[0].start[2:].tolist())
-        share = max(high - low for low, high in (u, v)) / self._steps
+        share = max(high - low for low, high in (u, v)) / self._lattice.steps
         smallest = max(MIN_WIDTH, PER_SHARE * float(share))
         rectangle = [(enclosing(low)[0], enclosing(high)[1]) for low, high in (u, v)]
-        return Where(
-            [_Isolated(system, rectangle, smallest, self._pieces) for system in systems], whole
-        )
+        pieces = no_pieces(self._lattice.steps)
+        return [Isolation(system, rectangle, smallest, pieces) for system in systems]
 
 
 @dataclass(frozen=True)
-class _Isolated:
+class Isolation:
     """The boxes of one system's solutions over a rectangle, which are looked for when they are
     asked for.
     """
@@ -93,6 +82,11 @@ class _Isolated:
     rectangle: Sequence[tuple[float, float]]
     smallest: float
     pieces: Pieces
+
+    @property
+    def whole(self) -> Floats:
+        """Half the width of all configurations, in each unknown."""
+        return tuple(self.system.start[2:, 1].tolist())
 
     def __iter__(self) -> Iterator[Box]:
         return iter(self._boxes)
@@ -109,8 +103,7 @@ class _Isolated:
             boxes,
             BUDGET,
         )
-        whole = tuple(self.system.start[2:, 1].tolist())
-        return [_box(rows, whole) for rows in boxes[:left, 2:].tolist()]
+        return [_box(rows, self.whole) for rows in boxes[:left, 2:].tolist()]
 
 
 def _box(rows: list[list[float]], whole: Floats) -> Box:

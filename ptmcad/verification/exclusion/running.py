@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from ptmcad.verification.exclusion.boxsearch import GONE, HALVED, STUCK, look, spread
+from ptmcad.verification.exclusion.criticalsystems import CriticalSystem
 from ptmcad.verification.exclusion.pieces import Pieces
-from ptmcad.verification.exclusion.search import GONE, HALVED, STUCK, look, spread
-from ptmcad.verification.exclusion.systems import CriticalSystem
 
 MAX_WAITING = 1_000_000
 """Boxes: with more of them the youngest are looked at first."""

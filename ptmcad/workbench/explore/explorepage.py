@@ -15,11 +15,9 @@ from typing import Any
 
 from ptmcad.question.config.scalars import number_of
 from ptmcad.show.render.axes import symbol
-from ptmcad.show.report.chart import CORE_WIDTH, RIM_WIDTH
-from ptmcad.show.report.frame import SIDE
-from ptmcad.show.report.packing import packed
-from ptmcad.show.report.page import drawing_of, harmless
-from ptmcad.show.report.pathdata import GRID
+from ptmcad.show.render.polylines import GRID
+from ptmcad.show.report.mapsvg import CORE_WIDTH, RIM_WIDTH, SIDE
+from ptmcad.show.report.reportpage import drawing_of, harmless, packed
 from ptmcad.text.numerals import shortest_text, text_of
 from ptmcad.version import __version__
 from ptmcad.workbench.explore.panel import SliderPanel

@@ -34,18 +34,19 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.posetable import kind_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import fill_of
-from ptmcad.show.render.outline import TOLERANCE, outline
-from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.outline import TOLERANCE, outline, shapes
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.report.chart import (
+from ptmcad.show.report.mapsvg import (
+    SIDE,
     counts_text,
+    frame,
     hatch_id,
     pattern_defs,
     region_labels,
     region_outlines,
+    room,
     wall_lines,
 )
-from ptmcad.show.report.frame import SIDE, frame, room
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import area_digits, count_text
 from ptmcad.text.expressions import values_at

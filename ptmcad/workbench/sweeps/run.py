@@ -37,7 +37,7 @@ from ptmcad.workbench.sweeps.member import Failed, Wanted, Work, reason
 from ptmcad.workbench.sweeps.pool import Pool, answers_of
 
 if TYPE_CHECKING:
-    from ptmcad.show.sweeps.sketch import Thumbnail
+    from ptmcad.show.report.atlas import Thumbnail
     from ptmcad.workbench.sweeps.cluster import Cluster
 
 RETRIES = 2
@@ -201,7 +201,7 @@ def _values_data(values: Values) -> list[str]:
 
 def _slice_data(slice: Slice) -> Any:
     """All of a slice as data that JSON writes."""
-    from ptmcad.show.document.slice import SLICE
+    from ptmcad.show.document.slicedocument import SLICE
 
     return SLICE.write(slice)
 
@@ -319,7 +319,7 @@ class Drawing:
 
     def answer(self, number: int, _check: Callable[[], None]) -> Thumbnail:
         """The drawing of a member."""
-        from ptmcad.show.sweeps.sketch import sketch
+        from ptmcad.show.report.atlas import sketch
 
         return sketch(read_sweep(self.folder).result(number))
 

@@ -24,7 +24,7 @@ from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.model import known_of
 from ptmcad.question.slice import Point
 from ptmcad.text.expressions import constant
-from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
 
 
 def cover_of(r: RegionMap) -> Cover:
@@ -40,7 +40,7 @@ def covered(r: RegionMap, rectangles: Sequence[Rectangle], steps: int | None = N
     found, areas = claims.sweep, claims.sweep.areas
     component: dict[int, Cell] = {}
     for cell in r.cells:
-        inside = found.locate(*claims.on_lattice(*cell.sample))
+        inside = found.locate(*claims.lattice.on(*cell.sample))
         if inside is not None:
             component.setdefault(inside, cell)
     cells, regions = [], []
@@ -178,7 +178,7 @@ def samples(r: RegionMap) -> Iterator[Alteration]:
     cover, claims = cover_of(r), CertifiedClaims(r)
     names = r.slice.axis_names
     left, right, bottom, top = cover.rectangles[len(cover.rectangles) // 2]
-    hidden = Point(names, *claims.off_lattice(Fraction(left + right, 2), Fraction(bottom + top, 2)))
+    hidden = Point(names, *claims.lattice.off(Fraction(left + right, 2), Fraction(bottom + top, 2)))
     out = Point(names, r.slice.axes[0].high, r.slice.axes[1].high)
     for n, cell in enumerate(r.cells):
         for sample in (hidden, out, *(c.sample for k, c in enumerate(r.cells) if k != n)):

@@ -7,7 +7,6 @@ at.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -44,21 +43,22 @@ from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import axis
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification.certified.boxes import Box, Unproved
+from ptmcad.verification.certified.ballequations import BallEquations
+from ptmcad.verification.certified.cellsamples import check_points
 from ptmcad.verification.certified.counted import CellCounts, CountedPoint
-from ptmcad.verification.certified.field import BallEquations
-from ptmcad.verification.certified.parameters import check_domain
-from ptmcad.verification.certified.points import check_points, counting_of
-from ptmcad.verification.certified.sampling import check_boxes
-from ptmcad.verification.certified.solving import zeros
-from ptmcad.verification.certified.structure import (
+from ptmcad.verification.certified.coverclaims import (
     CertifiedClaims,
     check_components,
     check_form,
     check_regions,
 )
-from ptmcad.verification.certified.waves import form_of
+from ptmcad.verification.certified.krawczyk import zeros
+from ptmcad.verification.certified.parameterdomain import check_domain
+from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.equationtexts import check_potential
+from ptmcad.verification.exclusion.places import SolutionPlaces
+from ptmcad.verification.normalform.boxes import Box, Unproved
+from ptmcad.verification.normalform.waves import form_of
 from ptmcad.verification.report import Unchecked, Violation
 
 Change = Callable[[RegionMap], RegionMap]
@@ -111,8 +111,8 @@ def made(
     claims = CertifiedClaims(r)
     cells, regions = [], []
     for n, (u, width) in enumerate(((STEPS - right + 1, right), (1, left))):
-        sample = Point(("rho", "L2"), *claims.off_lattice(Fraction(u), Fraction(3)))
-        there = counting_of(claims).at(claims, *sample)
+        sample = Point(("rho", "L2"), *claims.lattice.off(Fraction(u), Fraction(3)))
+        there = claims.counting.at(*sample)
         c, found = there.counts, there.found
         further = {} if c.admissible is None else {"admissible": c.admissible}
         boxes = tuple(Solution((Fraction(e.center[0]), Fraction(e.center[1])), Fraction(1, 2**20), e.signs)
@@ -184,7 +184,7 @@ def sample_at(n: int, u: Fraction | int, v: Fraction | int) -> Change:
         return of(
             "cells",
             n,
-            sample=Point(("rho", "L2"), *CertifiedClaims(r).off_lattice(Fraction(u), Fraction(v))),
+            sample=Point(("rho", "L2"), *CertifiedClaims(r).lattice.off(Fraction(u), Fraction(v))),
         )(r)
 
     return change
@@ -339,6 +339,7 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
       for changes in ({"center": (Fraction(0),)}, {"radius": Fraction(0)}, {"radius": 1 + TINY},
                       {"center": (Fraction(0), Fraction(9))})),
     (check_points, springs, with_solution(0, center=(Fraction(3), Fraction(3))), "has 0 equilibria, not one"),
+    (check_points, pitchfork, reaching, "wider than boxes of one solution"),
     (check_points, springs, beside, "has 0 equilibria, not one"),
     (check_points, springs, with_parameter("L1", "-1"), "cell 0, at rho=.*: L1 is not positive"),
     (check_points, springs, with_parameter("k3", "0"), "cell 0, at rho=.*: k3 is not positive"),
@@ -354,16 +355,6 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (partial(check_boxes, seed="branches", number=1), springs, both(0, stable=7), "in cell 0, which is said to have"),
     (partial(check_boxes, seed="branches", number=1), total, both(0, total=7), "in cell 0, which is said to have"),
 ]  # fmt: skip
-UNDECIDED = [
-    (
-        pitchfork,
-        reaching,
-        r"a solution may be in box [0-9] of the solutions, around \(.*\), or beside it",
-    ),
-]
-"""The last one is searched in ever smaller boxes before it is given up."""
-
-
 TOO_LARGE = [
     ("(L1^99999)^99999", "too high a degree or too long numbers"),
     ("(9^99999)^99999", "too high a degree or too long numbers"),
@@ -384,16 +375,7 @@ def test_texts_that_are_too_large_are_not_checked(text: str, words: str) -> None
 def test_a_spring_as_long_as_its_free_length_is_not_told() -> None:
     r = made("slack", "admissible")
     with pytest.raises(Unproved, match="a spring may be as long as its free"):
-        counting_of(CertifiedClaims(r)).at(CertifiedClaims(r), *(axis.low for axis in r.slice.axes))
-
-
-@pytest.mark.parametrize(("make", "change", "words"), UNDECIDED)
-def test_samples_that_are_not_decided(
-    make: Callable[[], RegionMap], change: Change, words: str
-) -> None:
-    found = check_points(CertifiedClaims(change(make())))
-    assert isinstance(found, Unchecked)
-    assert re.search(words, found)
+        CertifiedClaims(r).counting.at(*(axis.low for axis in r.slice.axes))
 
 
 @pytest.mark.parametrize(
@@ -417,9 +399,9 @@ def test_rejecting_branches(
 def test_no_box_is_proved_outside_of_the_domain(name: str, text: str, words: str) -> None:
     """And a place where all boxes are like that is counted as not checked."""
     r = with_parameter(name, text)(springs())
-    x, y = (ball_of(a.low).union(ball_of(a.high)) for a in r.slice.axes)
+    claims = CertifiedClaims(r)
     with pytest.raises(Unproved, match=words):
-        counting_of(CertifiedClaims(r)).over(r.slice, x, y, CountedPoint(CellCounts(), (), {}))
+        claims.counting.over(*[claims.lattice.window] * 2, CountedPoint(CellCounts(), (), {}))
 
 
 DEGENERATE: Box = ((0.0, 0.0), (2.0**-20, 2.0**-20))
@@ -439,22 +421,29 @@ def test_a_search_that_gives_up(options: dict[str, Any], words: str) -> None:
         form_of(claims_of(given, Count.TOTAL).result.slice),
         {n: ball_of(v) for n, v in given.items()},
     )
-    whole: dict[str, Any] = {"start": [((0.0, 0.0), (3.2, 3.2))], "budget": 1000}
+    whole: dict[str, Any] = {
+        "start": [((0.0, 0.0), (3.2, 3.2))],
+        "budget": 1000,
+        "whole": (3.2, 3.2),
+    }
     with ctx.workprec(53), pytest.raises(Unproved, match=words):
-        zeros(field, False, **{**whole, **options})
+        zeros(field, **{**whole, **options})
 
 
 def test_equilibria_that_are_gone_on_with_are_different_and_persist() -> None:
     r = total()
     claims = CertifiedClaims(r)
-    counting = counting_of(claims)
-    there = counting.at(claims, *r.cells[0].sample)
+    counting = claims.counting
+    there = counting.at(*r.cells[0].sample)
     field = BallEquations(counting.form, {n: ball_of(v) for n, v in there.values.items()})
-    whole, found = [((0.0, 0.0), (3.2, 3.2))], there.found
-    again, _ = zeros(field, False, whole, 20_000, near=found)
+    whole, found = (3.2, 3.2), there.found
+    (start,) = SolutionPlaces(claims.lattice)(
+        *((c, c) for c in claims.lattice.on(*r.cells[0].sample))
+    )
+    again = zeros(field, start, whole, 20_000, near=found)
     assert len(again) == len(found)
     with pytest.raises(Unproved, match="two solutions may meet"):
-        zeros(field, False, whole, 20_000, near=[*found, found[0]])
+        zeros(field, start, whole, 20_000, near=[*found, found[0]])
     with pytest.raises(Unproved, match=r"the solution near \(.*\) may not persist"):
         away = replace(found[0], center=(found[0].center[0] + 0.5, found[0].center[1]))
-        zeros(field, False, whole, 20_000, near=[away])
+        zeros(field, start, whole, 20_000, near=[away])

@@ -1,0 +1,320 @@
+"""The picture of a continuous quantity over a map's window: colours, contour lines, and the map's
+exact boundaries.
+
+Guarantee: the same field gives the same bytes with the same matplotlib. Pixels are shown as they
+are, without any smoothing, so that none shows a value from the other side of a boundary; contour
+lines are drawn within a region and a branch only, and where the branch changes there is an edge.
+Everything is on the page, in text of at least `ptmcad.show.style.MIN_FONT` points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap
+from matplotlib.figure import Figure
+
+from ptmcad.answer.boundaries import NONE, Boundary
+from ptmcad.answer.field import Field
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.errors import ConfigError
+from ptmcad.show.render.axes import Dress, dress, scale_of, with_symbols
+from ptmcad.show.render.colours import INK, RIM_INK, STRONG, Fill, undetermined_fill
+from ptmcad.show.render.fieldlines import branch_edges, contour_lines
+from ptmcad.show.render.fitting import MIN_SIDE, beside, dressed
+from ptmcad.show.render.inches import Box
+from ptmcad.show.render.legend import Entry, Type, line_mark
+from ptmcad.show.render.panels import HeadAndFoot
+from ptmcad.show.render.printing import settings
+from ptmcad.show.render.view import Floats, View
+from ptmcad.show.style import DEFAULT, MIN_FONT, PictureStyle, Size
+from ptmcad.show.units import with_unit
+
+SIDE, GAP, BAR = 4.6, 0.2, 0.2
+"""In inches, in 9 points: the map's side where no size is given, the space before the scale, and
+the scale.
+"""
+COLOURS, GREYS = "viridis", ("#000000", "#d4d4d4")
+"""Perceptually uniform, distinguishable to the colour-blind, and monotone on grey prints; or grey,
+none of it white.
+"""
+_LINES: dict[str, Any] = {"colors": "white", "linewidths": 0.6, "alpha": 0.85}
+_EMPTY = "#ffffff"
+_WORDS = ("energy", "stiffness", "barrier", "force", "length", "angle")
+
+
+def title_of(result: RegionMap, field: Field) -> str:
+    """What is shown, of which slice."""
+    text = _name(field)
+    # others are names, coordinates and expressions, which are written as they were asked for: u is
+    # not U
+    text = text[0].upper() + text[1:] if text.split()[0] in _WORDS else text
+    return f"{text} of {pose_words(result, field)}: {result.slice.name}"
+
+
+def pose_words(result: RegionMap, field: Field) -> str:
+    """Such as ``stable pose 1``."""
+    word, _, number = field.pose.partition(":")
+    solution = result.slice.model.nouns.pose
+    return f"{solution} {number}" if word == "pose" else f"{word} {solution} {number}"
+
+
+def description(field: Field) -> str:
+    """What the picture shows, in words."""
+    known = field.known
+    if not known.size:
+        return f"{_absent(field)[0].upper()}{_absent(field)[1:]}."
+    return f"{field.quantity} of {field.pose} from {known.min():.6g} to {known.max():.6g}, {field.shares}."
+
+
+def field_figure(
+    result: RegionMap,
+    field: Field,
+    boundaries: Sequence[Boundary],
+    contours: int,
+    dpi: int,
+    style: PictureStyle = DEFAULT,
+) -> Figure:
+    """The picture.
+
+    Raises
+    ------
+    ConfigError
+        When it does not fit into the style's size.
+    """
+    with settings(style):
+        return _figure(result, field, boundaries, contours, dpi, style)
+
+
+def _figure(
+    result: RegionMap,
+    field: Field,
+    boundaries: Sequence[Boundary],
+    contours: int,
+    dpi: int,
+    style: PictureStyle,
+) -> Figure:
+    figure = Figure(figsize=style.size or (6.0, 6.0), dpi=dpi, facecolor="white")
+    font = style.base_font
+    axes: Any = figure.add_axes((0.2, 0.2, 0.5, 0.5))
+    axes.set_gid("map")
+    axes.set_facecolor(_EMPTY)
+    known = field.known
+    view = View.whole(result)
+    if (field.region == NONE).any():
+        fill_empty(axes, field, _extent(view), undetermined_fill(style.palette))
+    bar_axes = _fill(figure, axes, field, view, contours, style) if known.size else None
+    if not known.size:
+        axes.text(
+            0.5, 0.5, _absent(field), transform=axes.transAxes, ha="center", color=INK, fontsize=font, zorder=5,
+            bbox={"facecolor": "white", "edgecolor": "none"},
+        )  # fmt: skip
+    for boundary in boundaries:
+        if boundary.separates:
+            shares = _shares(result, boundary.points)
+            axes.plot(*shares.T, color=INK, linewidth=style.strong, transform=axes.transAxes)
+    chart = (SIDE, SIDE) if style.size is None else (0.6 * style.size[0], 0.6 * style.size[1])
+    dress(axes, result.slice, view.x, view.y, Dress() if style.flows else dressed(font, chart))
+    legend = _legend(result, field, boundaries, style)
+    _set_page(figure, axes, bar_axes, title_of(result, field), legend, style)
+    figure.set_label(f"{title_of(result, field)}\n{description(field)}")
+    return figure
+
+
+def _extent(view: View) -> tuple[float, ...]:
+    return tuple(
+        v for interval in (view.x, view.y) for s in [scale_of(*interval)] for v in (s.low, s.high)
+    )
+
+
+def fill_empty(axes: Any, field: Field, extent: Sequence[float], fill: Fill) -> None:
+    """The pixels of which the map says nothing, and in white those of its regions, over which the
+    values come.
+    """
+    axes.patch.set(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=RIM_INK, linewidth=0)
+    show_pixels(
+        axes,
+        np.where(field.region == NONE, np.nan, 0.0),
+        extent,
+        cmap=ListedColormap([_EMPTY]),
+        gid="empty",
+    )
+
+
+def show_pixels(axes: Any, values: Any, extent: Sequence[float], **look: Any) -> Any:
+    """An image of values, row after row from the bottom, without any smoothing."""
+    return axes.imshow(
+        values, origin="lower", extent=tuple(extent), aspect="auto", interpolation="nearest", **look
+    )  # fmt: skip
+
+
+def _fill(
+    figure: Figure, axes: Any, field: Field, view: View, number: int, style: PictureStyle
+) -> Any:
+    """The pixels with their lines, and the scale, whose axes are returned."""
+    extent = _extent(view)
+    low, high = float(field.known.min()), float(field.known.max())
+    span = {"vmin": low, "vmax": high if high > low else low + 1.0}
+    image = show_pixels(axes, field.values, extent, cmap=_colours(style), gid="values", **span)
+    lines = {**_LINES, "linewidths": 0.6 * style.line_scale}
+    levels = contour_lines(axes, field, extent, number)
+    for found in filter(None, levels.values()):
+        axes.add_collection(LineCollection(found, gid="contours", **lines), autolim=False)
+    jumps = branch_edges(field, extent)
+    for width, colour, kind in _edge(style):
+        if jumps:
+            drawn = LineCollection(
+                jumps,
+                colors=colour,
+                linewidths=width,
+                linestyles=kind,
+                gid="jumps",
+                capstyle="butt",
+                zorder=2.5,
+            )
+            axes.add_collection(drawn, autolim=False)
+    bar_axes = figure.add_axes((0.8, 0.2, 0.05, 0.5))
+    bar = figure.colorbar(image, cax=bar_axes)
+    if levels:
+        # the lines' values are among those at the bar
+        bar.set_ticks(list(levels))
+        bar.ax.hlines(
+            [level for level, found in levels.items() if found],
+            0,
+            1,
+            transform=bar.ax.get_yaxis_transform(),
+            gid="levels",
+            **lines,
+        )
+    bar.ax.tick_params(labelsize=max(MIN_FONT, style.base_font), width=0.8 * style.line_scale)
+    bar.ax.yaxis.get_offset_text().set_fontsize(max(MIN_FONT, style.base_font))
+    bar.outline.set_linewidth(0.8 * style.line_scale)
+    bar.set_label(bar_text(field), fontsize=max(MIN_FONT, 1.1 * style.base_font))
+    return bar_axes
+
+
+def _colours(style: PictureStyle) -> Any:
+    """The palette's, from the least value to the largest."""
+    if style.palette == "default":
+        return COLOURS
+    faces = GREYS if isinstance(style.palette, str) else style.palette
+    faces = faces if len(faces) > 1 else (*faces, GREYS[1])
+    return LinearSegmentedColormap.from_list("own", list(faces))
+
+
+def _edge(style: PictureStyle) -> Sequence[tuple[float, str, Any]]:
+    """Width, colour and dashes of the lines that make an edge between branches, from below."""
+    return (
+        (2.4 * style.line_scale, "white", "solid"),
+        (1.1 * style.line_scale, INK, (0, (3.0, 1.6))),
+    )
+
+
+def _legend(
+    result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: PictureStyle
+) -> list[Entry]:
+    """What lines, white and grey mean, as far as they are there."""
+    legend = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
+    if any(jump.any() for jump in field.jumps or ()):
+        legend.append(Entry((f"the branch of {pose_words(result, field)} changes",), _edge_mark))
+    unknown = field.region == NONE
+    if (np.isnan(field.values) & ~unknown).any() and field.known.size:
+        what = "barrier" if field.quantity == "barrier" else pose_words(result, field)
+        legend.append(
+            Entry((f"no {what}" if not field.missed + field.beyond else "no value",), Fill(_EMPTY))
+        )
+    if unknown.any():
+        # a pixel of an exact map is open where its centre is on a curve
+        words = "on a curve" if result.cover is None else "undetermined"
+        legend.append(Entry((words,), undetermined_fill(style.palette)))
+    return legend
+
+
+_edge_mark = line_mark(
+    *({"color": c, "linewidth": width, "linestyle": kind} for width, c, kind in _edge(DEFAULT))
+)
+
+
+def _set_page(
+    figure: Figure, axes: Any, bar: Any, title: str, legend: Sequence[Entry], style: PictureStyle
+) -> None:
+    """Give all parts their places; a page without a size gets the one that it needs.
+
+    What stands beside axes is measured, thrice, as how many numbers an axis has depends on its
+    length.
+
+    Raises
+    ------
+    ConfigError
+        When a size leaves too little to the map.
+    """
+    font, size = style.base_font, style.size
+    em, scale = font / 72, font / 9
+    side, least = SIDE * scale, MIN_SIDE * em
+    wide, tall = size or (side + 2.2 * scale, side + 1.5 * scale)
+    around = HeadAndFoot.of(title, legend, wide, style, Type.of(style))
+    for _ in range(3):
+        left, below, right, above = beside(figure, axes)
+        if bar is not None:
+            right = max(right, (GAP + BAR) * scale + beside(figure, bar)[2])
+        rest = (left + right + 0.8 * em, below + above + around.head + around.foot)
+        if size is None:
+            wide, tall = side + rest[0], side + rest[1]
+            figure.set_size_inches(wide, tall)
+        chart = (wide - rest[0], tall - rest[1])
+        if min(chart) < least:
+            needed = (rest[0] + max(least, chart[0]), rest[1] + max(least, chart[1]))
+            raise ConfigError(
+                f"the map with its scale does not fit into {wide:.2f}x{tall:.2f}in in text of {font:g} points; "
+                f"it needs at least {needed[0] + 0.01:.2f}x{needed[1] + 0.01:.2f}in", key="size",
+            )  # fmt: skip
+        corner = (0.4 * em + left, around.foot + below)
+        _place(axes, (*corner, *chart), (wide, tall))
+        if bar is not None:
+            at = (corner[0] + chart[0] + GAP * scale, corner[1], BAR * scale, chart[1])
+            _place(bar, at, (wide, tall))
+            _thin_numbers(bar, chart[1])
+    around.draw(figure)
+
+
+def _place(axes: Any, box: Box, size: Size) -> None:
+    axes.set_position((box[0] / size[0], box[1] / size[1], box[2] / size[0], box[3] / size[1]))
+
+
+def _thin_numbers(bar: Any, tall: float) -> None:
+    """Leave out numbers at the scale that would lie on each other."""
+    ticks = [float(v) for v in bar.get_yticks() if bar.get_ylim()[0] <= v <= bar.get_ylim()[1]]
+    apart = 1.3 * bar.yaxis.get_ticklabels()[0].get_fontsize() / 72 if ticks else 0.0
+    if (
+        len(ticks) > 1
+        and tall * (ticks[1] - ticks[0]) / (bar.get_ylim()[1] - bar.get_ylim()[0]) < apart
+    ):
+        bar.set_yticks(ticks[::2])
+
+
+def bar_text(field: Field) -> str:
+    """The quantity with its unit, beside the scale."""
+    return with_unit(_name(field), field.unit)
+
+
+def _name(field: Field) -> str:
+    """The quantity with the symbols of its names."""
+    return with_symbols(field.quantity.replace(":", " "))
+
+
+def _absent(field: Field) -> str:
+    """Why nothing is shown."""
+    if field.beyond:
+        return f"{_name(field)} is beyond doubles"
+    return "no pixel has a value"
+
+
+def _shares(result: RegionMap, points: Floats) -> Floats:
+    """Points as fractions of the window's sides."""
+    lows = np.array([float(a.low) for a in result.slice.axes])
+    widths = np.array([float(a.width) for a in result.slice.axes])
+    shares: Floats = (points - lows) / widths
+    return shares

@@ -1,0 +1,156 @@
+"""Polygons and polylines with fewer corners, and as the data of SVG paths in few characters.
+
+Guarantee: every corner that is left out is within the tolerance of the side that takes its place,
+and none is moved. In a path's data, whole steps of a grid from corner to corner, every corner is
+within half a step of its place in each direction, and corners at one place are drawn alike:
+browsers add the steps up in single precision, in which whole numbers of this size are exact.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.show.render.view import Floats
+
+Integers = NDArray[np.int64]
+
+
+_MAX_DEPTH = 32
+"""Halvings of a piece, and corners of the shorter ones into which it is cut when it still departs
+too far then.
+"""
+
+
+def distinct(corners: Integers) -> Integers:
+    """Without corners that are where the one before them is."""
+    kept: Integers = corners[np.concatenate([[True], (corners[1:] != corners[:-1]).any(axis=1)])]
+    return kept
+
+
+def simplified_polygons(points: Floats, sizes: Integers, tolerance: float) -> list[Floats]:
+    """Closed polygons with fewer corners, their own, from which they depart by at most the
+    tolerance.
+
+    Method: Ramer, Douglas and Peucker; the two halves are those between the first corner and the
+    one farthest from it.
+
+    Parameters
+    ----------
+    points : shape (n, 2), the corners of all of them, one polygon after the other.
+    sizes : the number of corners of each.
+    """
+    parts = np.split(points, np.cumsum(sizes)[:-1]) if len(sizes) else []
+    return [_simplified_polygon(part, tolerance) for part in parts]
+
+
+def _simplified_polygon(corners: Floats, tolerance: float) -> Floats:
+    corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]
+    if len(corners) < 4:
+        return corners
+    far = int(((corners - corners[0]) ** 2).sum(axis=1).argmax())
+    line = np.vstack([corners, corners[:1]])
+    few: Floats = line[_kept(line, np.array([0, far, len(corners)]), tolerance)][:-1]
+    return few
+
+
+def simplified_line(points: Floats, tolerance: float) -> Floats:
+    """A polyline from the same end to the same end with fewer corners, by the same method."""
+    return (
+        points
+        if len(points) < 3
+        else points[_kept(points, np.array([0, len(points) - 1]), tolerance)]
+    )
+
+
+def _kept(line: Floats, at_first: Integers, tolerance: float) -> NDArray[np.bool_]:
+    """Which points of a polyline are kept, among them those at first and its ends.
+
+    Of a flight of stairs higher than the tolerance each halving splits off one stair only. After
+    `_MAX_DEPTH` halvings such pieces are cut into short ones, by corners that would mostly be kept
+    in any case.
+    """
+    kept = np.zeros(len(line), dtype=np.bool_)
+    kept[at_first] = True
+    # all pieces are halved at once: `inner` are the corners whose piece may still depart too far
+    inner = np.flatnonzero(~kept)
+    depth = 0
+    while len(inner):
+        if depth == _MAX_DEPTH:
+            kept[inner[::_MAX_DEPTH]] = True
+            inner = inner[~kept[inner]]
+        depth += 1
+        ends = np.flatnonzero(kept)
+        piece = np.searchsorted(ends, inner) - 1
+        away = _distances(line[inner], line[ends[piece]], line[ends[piece + 1]])
+        fresh = np.diff(piece, prepend=-1) != 0
+        starts, group = np.flatnonzero(fresh), np.cumsum(fresh) - 1
+        farthest = np.maximum.reduceat(away, starts)
+        halved = farthest > tolerance
+        at = np.flatnonzero((away == farthest[group]) & halved[group])
+        kept[inner[at[np.diff(group[at], prepend=-1) != 0]]] = (
+            True  # one of them, where several are farthest
+        )
+        inner = inner[halved[group]]
+        inner = inner[~kept[inner]]
+    return kept
+
+
+def _distances(points: Floats, a: Floats, b: Floats) -> Floats:
+    """From each point to its own segment, from a to b; all of shape (k, 2)."""
+    along, offset = b - a, points - a
+    square = (along * along).sum(axis=1)
+    share = np.divide(
+        (offset * along).sum(axis=1), square, out=np.zeros(len(points)), where=square > 0
+    )
+    offset = offset - np.clip(share, 0.0, 1.0)[:, None] * along
+    distances: Floats = np.hypot(offset[:, 0], offset[:, 1])
+    return distances
+
+
+GRID = 20
+"""Steps of the grid in one of the picture's units; what is drawn by such data is scaled down by as
+much.
+"""
+
+
+def path_data(line: Floats, *, closed: bool = False) -> str:
+    """The data of a polyline, or of a polygon; corners within a side along an axis are left out.
+
+    A line that is shorter than a step is drawn one step long: a browser leaves out one without
+    length.
+
+    >>> path_data(np.array([[0, 10], [2.5, 10], [3, 10], [3, 9.75], [2, 9.1], [1.5, 8.5]]))
+    'M0 200h60v-5l-20-13-10-12'
+    """
+    corners = _needed(np.rint(line * GRID).astype(np.int64))
+    if len(corners) == 1:
+        corners = np.concatenate([corners, corners + np.array([[1, 0]])])
+    x, y = corners[0].tolist()
+    parts, last = [f"M{x}{_after(y)}"], "M"
+    for dx, dy in np.diff(corners, axis=0).tolist():
+        command, numbers = (
+            ("v", f"{dy}") if not dx else ("h", f"{dx}") if not dy else ("l", f"{dx}{_after(dy)}")
+        )
+        parts.append(command if command != last else "" if numbers[0] == "-" else " ")
+        parts.append(numbers)
+        last = command
+    return "".join(parts) + "z" * closed
+
+
+def _after(steps: int) -> str:
+    """A number after another one: a minus sign parts them, too."""
+    return str(steps) if steps < 0 else f" {steps}"
+
+
+def _needed(corners: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Without corners that are where the one before them is, or on the way along an axis to the
+    next one.
+    """
+    corners = distinct(corners)
+    if len(corners) < 3:
+        return corners
+    steps = np.sign(np.diff(corners, axis=0))
+    straight = (steps[1:] == steps[:-1]).all(axis=1) & (steps[1:] == 0).any(axis=1)
+    kept: NDArray[np.int64] = corners[np.concatenate([[True], ~straight, [True]])]
+    return kept

@@ -1,0 +1,403 @@
+"""The picture of all equilibria at one point: each drawn as a mechanism, at one scale, the stable
+ones strong.
+
+Guarantee: every equilibrium has a panel, with its kind and its energy, of which every digit shown
+is certified; the figure's label holds a title and a description in words.
+`ptmcad.show.render.printing.save` writes it.
+
+Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact
+poses.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from ptmcad.answer.poses import Pose, Poses
+from ptmcad.answer.words import assignments, counted, noun, of_what, untold
+from ptmcad.errors import ConfigError
+from ptmcad.model import Mechanism, Model, Support
+from ptmcad.model.criterion import critical_point
+from ptmcad.model.joints import torsion_springs
+from ptmcad.model.work import PointForce, loads_at
+from ptmcad.question.slice import merged
+from ptmcad.show.drawable import no_drawing
+from ptmcad.show.render.axes import symbol, with_symbols
+from ptmcad.show.render.colours import INK
+from ptmcad.show.render.inches import axes_at, stroke, write, write_lines
+from ptmcad.show.render.labels import Position
+from ptmcad.show.render.legend import Entry, Type, draw_legend
+from ptmcad.show.render.mechanism import (
+    PALE,
+    STRONG,
+    bar_mark,
+    draw_sketch,
+    spring_mark,
+    symbol_mark,
+)
+from ptmcad.show.render.printing import settings
+from ptmcad.show.render.sketch import (
+    MAX_ARROW,
+    MIN_ARROW,
+    PanelFrame,
+    Scene,
+    arrow_lengths,
+    components,
+    frame_of,
+)
+from ptmcad.show.style import Size
+from ptmcad.show.units import energy_unit
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.numerals import magnitude, power_of_ten, shortest_text
+from ptmcad.text.tree import to_text
+
+MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
+"""In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of
+the title.
+"""
+_DIGITS = 6
+_MAX_VALUE = 14
+"""Longer values of parameters are rounded in the title."""
+
+
+def draw_poses(poses: Poses) -> Figure:
+    """All equilibria as mechanisms, small multiples at one scale, stable ones first.
+
+    Parameters
+    ----------
+    poses : of a mechanism; when it has none (infinitely many equilibria), its remark is the
+        picture.
+
+    Returns
+    -------
+    A figure without a canvas of pyplot, to be written by `ptmcad.show.render.printing.save`.
+
+    Raises
+    ------
+    ConfigError
+        For a system that is no mechanism: it has no points to be drawn.
+    """
+    mechanism = poses.model.whole
+    if mechanism is None:
+        raise ConfigError(no_drawing(poses.model))
+    shown = poses.in_order
+    if not shown:
+        return empty(poses)
+    frame, arrows = frame_of(shown), arrow_lengths(poses)
+    columns = 3 if len(shown) in (3, 5) or len(shown) > 5 else min(2, len(shown))
+    rows = -(-len(shown) // columns)
+    wide, tall = frame.width / 72, frame.height / 72
+    row = HEAD + tall + below_panel(shown[0], poses.model)
+    entries = tuple(legend(poses, arrows))
+    below = max(rows * row + (rows - 1) * GAP, Type().height(entries) + _SCALE_ROOM)
+    width = 2 * MARGIN + columns * (wide + GAP) + KEY
+    title = heading(poses, round(12.4 * (width - 2 * MARGIN)))
+    top = below + MARGIN
+    scene = Scene(mechanism, frame, arrows)
+    with settings():
+        figure = titled(title, (width, top + TITLE_LINE * len(title) + 0.08 + MARGIN), MARGIN)
+        figure.set_label(f"{' '.join(title)}\n{describe(poses)}")
+        for number, pose in enumerate(shown):
+            down, across = divmod(number, columns)
+            corner = (MARGIN + across * (wide + GAP), top - down * (row + GAP) - HEAD - tall)
+            panel(figure, scene, pose, number + 1, corner)
+        left = MARGIN + columns * (wide + GAP) + 0.1
+        draw_legend(figure, entries, left, top)
+        scale_bar(figure, frame, (left, top - Type().height(entries) - 0.12), poses.units)
+    return figure
+
+
+def kind(pose: Pose) -> str:
+    """What an equilibrium is, in words; just that where nothing says what is stable."""
+    if pose.multiplicity > 1:
+        return f"degenerate, multiplicity {pose.multiplicity}"
+    if pose.index is None:
+        return {True: "stable", False: "unstable", None: "equilibrium"}[pose.stable]
+    return (
+        "stable (minimum)" if pose.index == 0 else critical_point(pose.index, len(pose.eigenvalues))
+    )
+
+
+def _lines_below(model: Model, pose: Pose) -> list[str]:
+    """Energy, if there is one, and unknowns: as many of them on a line as there is room for."""
+    angles = (f"{number_text(a)}°" for a in pose.degrees)
+    unknowns = assignments(model, angles, map(number_text, pose.reals), symbol)
+    return [
+        *([] if pose.energy is None else [f"U = {number_text(pose.energy)}"]),
+        *(", ".join(unknowns[k : k + 2]) for k in range(0, len(unknowns), 2)),
+    ]
+
+
+def below_panel(pose: Pose, model: Model) -> float:
+    """Inches for the lines below a panel."""
+    return BELOW + 0.16 * (len(_lines_below(model, pose)) - 2)
+
+
+def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: Position) -> Any:
+    """One pose in axes at a place in inches, with its kind above and energy and angles below."""
+    mechanism, frame = scene.mechanism, scene.frame
+    strong = mechanism.criterion.works(pose.stable)
+    style = STRONG if strong else PALE
+    axes = pose_axes(figure, corner, frame, f"pose-{number}", strong)
+    draw_sketch(axes, scene.of(pose), style, f"pose-{number}-")
+    colour, weight = (INK, "bold") if strong else ("#555555", "normal")
+    flat = ", flat" if pose.flat else ""
+    above = (corner[0], corner[1] + frame.height / 72 + 0.12)
+    write(figure, above, f"{number}  {kind(pose)}{flat}", 9, fontweight=weight, color=colour)
+    write_lines(
+        figure, (corner[0], corner[1] - 0.11), _lines_below(mechanism, pose), 8, 0.16, color=colour
+    )
+    return axes
+
+
+def pose_axes(figure: Figure, corner: Position, frame: PanelFrame, gid: str, strong: bool) -> Any:
+    """Axes in which a unit is a point, in a dark frame or a pale one."""
+    axes = axes_at(figure, (*corner, frame.width / 72, frame.height / 72), gid)
+    axes.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
+    for spine in axes.spines.values():
+        spine.set(color=INK if strong else "#b5b5b5", linewidth=1.0 if strong else 0.6)
+    return axes
+
+
+def number_text(number: Enclosure) -> str:
+    """A certified number rounded to nearest, as it is printed."""
+    return printed_number(number.text(1 if number.told_digits(_DIGITS) is None else _DIGITS))
+
+
+def printed_number(text: str) -> str:
+    """A number as print has it: a true minus, and powers of ten as such."""
+    if " ± " in text:
+        return " ± ".join(map(printed_number, text.split(" ± ")))
+    mantissa, _, exponent = text.replace("-", "−").partition("e")
+    if not exponent:
+        return mantissa
+    power = power_of_ten(int(exponent.replace("−", "-")))
+    return {"1": power, "−1": f"−{power}"}.get(mantissa, f"{mantissa}·{power}")
+
+
+def value_text(value: Fraction) -> str:
+    """A parameter's value, exactly where that is short, else rounded and after the sign for it."""
+    text = shortest_text(value)
+    if len(text) <= _MAX_VALUE and abs(value) < 10**7:
+        return f"=\N{NO-BREAK SPACE}{printed_number(text)}"
+    known = Enclosure(value, value)
+    rounded = known.text(7)
+    exact = Fraction(rounded) == value
+    return f"{'=' if exact else '≈'}\N{NO-BREAK SPACE}{printed_number(rounded)}"
+
+
+def assigned(name: str, value: Fraction) -> str:
+    """A parameter and its value, which no line break parts."""
+    return f"{symbol(name)}\N{NO-BREAK SPACE}{value_text(value)}"
+
+
+def values(poses: Poses) -> list[str]:
+    """The parameters with their values; equal stiffnesses or free lengths as one; loads only where
+    there are any.
+    """
+    model = poses.model
+    shown = merged(poses.parameters, model)
+    loads = {name: value for name, value in shown.items() if name in model.forces}
+    rest = {name: value for name, value in shown.items() if name not in loads}
+    texts = [assigned(name, value) for name, value in rest.items()]
+    texts += [assigned(name, value) for name, value in loads.items() if value]
+    mechanism = model.whole
+    acting = () if mechanism is None else loads_at(mechanism, poses.parameters)
+    return [*texts, "no load"] if acting and not any(components(acting).values()) else texts
+
+
+def heading(poses: Poses, columns: int) -> list[str]:
+    """The title's lines: where the equilibria are."""
+    at = ",  ".join(values(poses))
+    return textwrap.wrap(
+        f"{_count(poses)} at {at}" if at else _count(poses).rstrip(","), max(columns, 30)
+    )
+
+
+def _count(poses: Poses) -> str:
+    if not poses.equilibria:
+        return noun(poses.model).capitalize()
+    stable = "" if poses.known_stable is None else f", {poses.known_stable} stable,"
+    return f"{counted(poses.model, len(poses.equilibria))}{stable}"
+
+
+def describe(poses: Poses) -> str:
+    """What the picture shows, in words."""
+    parts = [
+        f"{n}: {kind(p)}{', flat' if p.flat else ''}, "
+        + ("" if p.energy is None else f"U {number_text(p.energy)}, ")
+        + _unknowns_in_words(poses.model, p)
+        for n, p in enumerate(poses.in_order, 1)
+    ]
+    return (
+        f"{noun(poses.model).capitalize()} of the {poses.model.record_key}, {', '.join(values(poses))}. "
+        + "; ".join(parts)
+        + poses.remark
+    )
+
+
+def _unknowns_in_words(model: Model, pose: Pose) -> str:
+    """Without signs that a screen reader does not know."""
+    angles = [
+        f"{'theta' + name[2:] if name[:2] == 'th' and name[2:].isdigit() else name} {number_text(a)}"
+        for name, a in zip(model.angles, pose.degrees, strict=True)
+    ]
+    reals = [f"{name} {number_text(x)}" for name, x in zip(model.reals, pose.reals, strict=True)]
+    return ", ".join(([", ".join(angles) + " degrees"] if angles else []) + reals)
+
+
+def titled(lines: Sequence[str], size: Size, left: float) -> Figure:
+    """A page of a size in inches with a title at the top."""
+    figure = Figure(figsize=size, facecolor="white")
+    write_lines(figure, (left, size[1] - MARGIN - TITLE_LINE / 2), lines, 11, TITLE_LINE)
+    return figure
+
+
+def empty(poses: Poses) -> Figure:
+    """The picture when there is nothing to draw: it says why."""
+    lines = [
+        *heading(poses, 80),
+        "",
+        *textwrap.wrap(poses.remark or "No equilibrium is known here.", 80),
+    ]
+    with settings():
+        figure = titled(lines, (7.0, 2 * MARGIN + TITLE_LINE * len(lines)), MARGIN)
+        figure.set_label(f"{lines[0]}\n{describe(poses)}")
+    return figure
+
+
+def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
+    """What lines and colours mean."""
+    mechanism = poses.model.whole
+    assert mechanism is not None
+    yield Entry(("Poses",), strong=True)
+    if poses.known_stable is not None:
+        yield Entry(("stable: strong colours, dark frame",), bar_mark(0, STRONG))
+        yield Entry(("unstable or degenerate: pale",), bar_mark(0, PALE))
+    else:
+        yield Entry(tuple(textwrap.wrap(untold(mechanism), _KEY_COLUMNS)))
+    if any(pose.energy is not None for pose in poses.equilibria):
+        left_out = of_what(mechanism, poses.parameters)
+        yield Entry(
+            (
+                f"U: energy, in {energy_unit(mechanism, poses.units)}",
+                *textwrap.wrap(left_out, _KEY_COLUMNS),
+            )
+        )
+    yield Entry(())
+    yield Entry(("Parts",), strong=True)
+    yield from parts_legend(mechanism)
+    if arrows:
+        loads = list(_load_texts(mechanism, loads_at(mechanism, poses.parameters)))
+        shortened = any(abs(length) == MIN_ARROW < MAX_ARROW for length in arrows.values())
+        lines = ["loads; arrows in proportion to them" if len(loads) > 1 else "load"]
+        lines += ["except that short ones are lengthened"] if shortened else []
+        yield Entry((*lines, *textwrap.wrap(",  ".join(loads), _KEY_COLUMNS)), symbol_mark("load"))
+    yield Entry(())
+
+
+def parts_legend(mechanism: Mechanism) -> Iterator[Entry]:
+    """Bars, springs and supports, and where they are."""
+    bars = ["".join(map(symbol, ends)) for ends in mechanism.bars]
+    if len(bars) <= 2:
+        width = (" (wide)", " (narrow)") if len(bars) == 2 else ("",)
+        for number, name in enumerate(bars):
+            yield Entry((f"bar {name}{width[number]}",), bar_mark(number))
+    else:
+        yield Entry(
+            tuple(textwrap.wrap(f"bars {', '.join(bars)}", _KEY_COLUMNS)), bar_mark(0, many=True)
+        )
+    springs = ["".join(map(symbol, ends)) for ends in mechanism.spring_ends]
+    if springs:
+        names = textwrap.wrap(
+            f"spring{'s' * (len(springs) > 1)} {', '.join(springs)};", _KEY_COLUMNS
+        )
+        yield Entry(
+            (*names, "drawn aside where one lies on", "a bar or is very short"), spring_mark()
+        )
+    yield from torsion_legend(mechanism)
+    yield from support_legend(mechanism)
+
+
+def torsion_legend(mechanism: Mechanism) -> Iterator[Entry]:
+    """Torsion springs at their joints, and those of which no joint is known."""
+    springs = [
+        (with_symbols(to_text(spring.angle)), joint) for spring, joint in torsion_springs(mechanism)
+    ]
+    drawn = [f"{angle} at {symbol(joint.point)}" for angle, joint in springs if joint is not None]
+    others = [angle for angle, joint in springs if joint is None]
+    for texts, end, mark in ((drawn, "", symbol_mark("spiral")), (others, "; not drawn", None)):
+        if texts:
+            each = ", ".join(text.replace(" ", "\N{NO-BREAK SPACE}") for text in texts)
+            words = f"torsion spring{'s' * (len(texts) > 1)} on {each}{end}"
+            yield Entry(tuple(textwrap.wrap(words, _KEY_COLUMNS)), mark)
+
+
+def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
+    """Where the mechanism is held."""
+    at = {
+        kind: [symbol(name) for name, of in mechanism.supports.items() if of is kind]
+        for kind in Support
+    }
+    if pins := at[Support.PIN]:
+        yield Entry(
+            (f"fixed support{'s' * (len(pins) > 1)}, at {', '.join(pins)}",), symbol_mark("support")
+        )
+    on_base = pins and len(at[Support.SLIDER_X]) == 1
+    words = {Support.SLIDER_X: "slider", Support.SLIDER_Y: "vertical slider"}
+    for kind, what in words.items():
+        if names := at[kind]:
+            many = (
+                " on the base" if kind is Support.SLIDER_X and on_base else "s" * (len(names) > 1)
+            )
+            yield Entry((f"{what}{many}, at {', '.join(names)}",), symbol_mark("slider"))
+
+
+def _load_texts(mechanism: Mechanism, acting: Sequence[PointForce]) -> Iterator[str]:
+    """The components of loads that are not zero: a parameter by its name, with the points where it
+    acts at several.
+
+    What was given as a number or an expression is a force across, Fx, or up, Fy, at its point.
+    """
+    places: dict[tuple[str, str], list[str]] = {}
+    known = components(acting)
+    for load in acting:
+        for axis, name in zip("xy", load.names, strict=True):
+            what = (
+                symbol(name) if name in mechanism.parameters else f"F{axis} at {symbol(load.point)}"
+            )
+            if known[name]:
+                places.setdefault((what, name), []).append(symbol(load.point))
+    for (what, name), points in places.items():
+        several = name in mechanism.parameters and len(set(points)) > 1
+        at = f" at {', '.join(dict.fromkeys(points))}" if several else ""
+        yield f"{what}{at} {value_text(known[name])}".replace(" ", "\N{NO-BREAK SPACE}")
+
+
+_KEY_COLUMNS = 33
+"""Characters of a line of the legend."""
+_SCALE_ROOM = 0.3
+
+
+def scale_bar(figure: Figure, frame: PanelFrame, place: Position, units: Mapping[str, str]) -> None:
+    """A bar of known length, at most 60 points long, from a place in inches to the right."""
+    left, middle = place
+    step = _round_below(Fraction(60) / frame.scale)
+    length = float(step * frame.scale) / 72
+    xs = (left, left, left, left + length, left + length, left + length)
+    ys = (middle - 0.04, middle + 0.04, middle, middle, middle + 0.04, middle - 0.04)
+    stroke(figure, xs, ys, color=INK, linewidth=0.9, gid="scale")
+    text = f"length {printed_number(Enclosure(step, step).text(2))}"
+    text += f" {units['length']}" if "length" in units else ""
+    write(figure, (left + length + 0.1, middle), text, 8, va="center_baseline", color="#444444")
+
+
+def _round_below(value: Fraction) -> Fraction:
+    """The largest 1, 2 or 5 times a power of ten that is not above the value."""
+    power = Fraction(10) ** magnitude(value)
+    return next(power * k for k in (5, 2, 1) if power * k <= value)

@@ -1,1 +1,0 @@
-"""Sweeps as tables, as a page and as pictures one after another."""
