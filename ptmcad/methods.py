@@ -304,8 +304,8 @@ def _html_by(home: str) -> Callable[[Any], str]:
 METHODS |= {
     "RegionMap": {
         "locate": "ask.location:locate",
-        "to_json": "show.document.regionmap:write",
-        "from_json": Method("show.document.regionmap:read", bound=False),
+        "to_json": "show.document.mapdocument:write",
+        "from_json": Method("show.document.mapdocument:read", bound=False),
         "table": "show.table:table",
         "boundaries": "ask.boundaries:boundaries",
         "grid": "ask.pixels:grid",
@@ -337,20 +337,20 @@ METHODS |= {
         "_repr_png_": "show.notebook:family_png",
     },
     "BoundarySurface": {
-        "to_obj": "show.export.mesh:obj_text",
-        "to_ply": "show.export.mesh:ply_text",
+        "to_obj": "show.mesh:obj_text",
+        "to_ply": "show.mesh:ply_text",
         "_repr_html_": _html(lambda surface: f"{surface!r}\n{surface.words()}"),
     },
     "BestDesign": {
         "table": "show.designtable:design_table",
-        "to_json": "show.document.design:write_design",
-        "from_json": Method("show.document.design:read_design", bound=False),
+        "to_json": "show.document.designdocument:write_design",
+        "from_json": Method("show.document.designdocument:read_design", bound=False),
         "save": _design_save,
         "_repr_html_": "show.notebook:design_html",
     },
     "Changes": {
-        "table": "show.changestable:changes_table",
-        "_repr_html_": _html_by("show.changestable:changes_table"),
+        "table": "show.familytable:changes_table",
+        "_repr_html_": _html_by("show.familytable:changes_table"),
     },
     "Sweep": {
         "__iter__": "workbench.sweeps.index:members",
@@ -367,8 +367,8 @@ METHODS |= {
     },
     "Poses": {
         "table": "show.posetable:table",
-        "to_json": "show.document.poses:write_poses",
-        "from_json": Method("show.document.poses:read_poses", bound=False),
+        "to_json": "show.document.posedocument:write_poses",
+        "from_json": Method("show.document.posedocument:read_poses", bound=False),
         "_repr_html_": "show.notebook:poses_html",
     },
     "CountIntervals": {"_repr_html_": _html_by("show.ranges.table:table")},
