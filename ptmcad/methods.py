@@ -115,7 +115,7 @@ def _map_plot(
     map drawn into them.
 
     Axes have the units of the map's own axes and a caller's settings, no insets, and a legend
-    beside them unless ``legend="none"``. A figure is that of ``ptmcad plot``; `Figure.savefig`
+    next to them unless ``legend="none"``. A figure is that of ``ptmcad plot``; `Figure.savefig`
     writes it.
 
     Parameters

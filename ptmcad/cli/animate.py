@@ -13,8 +13,8 @@ import click
 from ptmcad.answer.motion import Fall, Motion
 from ptmcad.answer.words import assignments
 from ptmcad.cli.commonoptions import Formats, format_option, gathered, name_option, out_option
+from ptmcad.cli.drawing import picture, report_written
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import question_of, slice_options
 from ptmcad.cli.storedresults import made_map, stored_in, stored_map, tolerance_option
@@ -50,7 +50,7 @@ def _style(size: str | None, palette: str | None, title: str | None) -> PictureS
 @click.option("--pose", default="stable:1", show_default=True, metavar="KIND:N",
               help="Which pose is followed, as `ptmcad map` numbers them, at the path's start.")  # fmt: skip
 @click.option("--frames", type=click.IntRange(2, 600), default=90, show_default=True,
-              help="Pictures along the path; each fall has a third of that beside.")  # fmt: skip
+              help="Pictures along the path; each fall has a third of that in addition.")  # fmt: skip
 @click.option(
     "--fps",
     type=click.IntRange(1, MAX_FPS),

@@ -9,10 +9,10 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.commonoptions import PATH, out_option, reading
+from ptmcad.cli.completion import files
+from ptmcad.cli.drawing import report_written
 from ptmcad.cli.limits import seconds_of
-from ptmcad.cli.pictures import report_written
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.proposals import files
 from ptmcad.errors import ConfigError
 from ptmcad.extras import Extra, require
 from ptmcad.process.output import check_writable

@@ -22,9 +22,18 @@ from ptmcad.cli.commonoptions import (
     reading,
     report_idle,
 )
-from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Output, drawing_options, names_of, share_of
+from ptmcad.cli.drawing import (
+    DATA,
+    MESHES,
+    PICTURES,
+    Output,
+    drawing_options,
+    names_of,
+    report_written,
+    share_of,
+    write_result,
+)
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
-from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import (
     Third,

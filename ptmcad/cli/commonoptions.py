@@ -17,8 +17,8 @@ from typing import Any, TypeVar
 import click
 from click.core import ParameterSource
 
-from ptmcad.cli.proposals import files
-from ptmcad.cli.proposals import formats as completed
+from ptmcad.cli.completion import files
+from ptmcad.cli.completion import formats as completed
 
 F = TypeVar("F", bound=Callable[..., Any])
 

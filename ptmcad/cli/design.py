@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -19,15 +19,13 @@ from ptmcad.cli.commonoptions import (
     record_argument,
     report_idle,
 )
-from ptmcad.cli.drawing import share_of
+from ptmcad.cli.completion import names, settings
+from ptmcad.cli.drawing import figure, report_written, share_of, write_result
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
-from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.proposals import names, settings
 from ptmcad.cli.slices import question_in
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name
-from ptmcad.question.config.designed import Design
 from ptmcad.question.config.designkey import design_from_options
 from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.show import render
@@ -38,31 +36,9 @@ _RESERVE = 0.9
 """Of the time limit for search and proof; the rest is for what is written."""
 
 
-@dataclass(frozen=True, slots=True)
-class DesignOptions:
-    """The record and what changes its design, as it was typed."""
-
-    config: Path
-    maximise: str | None
-    along: str | None
-    over: tuple[str, ...]
-    stable: int | None
-    tension: bool
-    conditions: tuple[str, ...]
-    pose: str | None
-
-    def design(self) -> Design:
-        """The question.
-
-        Raises
-        ------
-        ConfigError
-            For anything wrong with the record or the options.
-        """
-        where = {"stable": self.stable, "tension": self.tension, "conditions": self.conditions}
-        return design_from_options(
-            self.config, self.maximise, self.along, self.over, where, self.pose
-        )
+QUESTION = ("config", "maximise", "along", "over", "pose")
+CONDITIONS = ("stable", "tension", "conditions")
+"""The options that say what holds of every design."""
 
 
 @click.command("design")
@@ -100,10 +76,11 @@ class DesignOptions:
 @name_option("NAME-design")
 @format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.  [default: none]")
 @limit_options
-@gathered(asked=DesignOptions)
+@gathered(where=(CONDITIONS, dict), asked=(QUESTION, dict))
 def command(
     *,
-    asked: DesignOptions,
+    asked: dict[str, Any],
+    where: dict[str, Any],
     tolerance: Fraction | None,
     seed: int,
     evaluations: int | None,
@@ -127,7 +104,7 @@ def command(
         ptmcad design fig4 --maximise area --over L1=1/2:1 --tolerance 1/10
         ptmcad design fig4 --maximise barrier --pose stable:2 --over rho=1/4:2 --over L2=1/4:2
     """
-    question = asked.design()
+    question = design_from_options(where=where, **asked)
     stem = question.name if name is None else file_name(name, "--name")
     wanted = tuple(f"{stem}.{kind}" for kind in sorted(formats, key=lambda kind: kind == "json"))
     report_idle(idle_output(wanted))

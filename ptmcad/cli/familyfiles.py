@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.commonoptions import Formats
-from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, Output, names_of
-from ptmcad.cli.pictures import figure
+from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, Output, figure, names_of
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Third
 from ptmcad.cli.storedresults import read_other, read_result

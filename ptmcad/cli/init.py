@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.commonoptions import PATH
+from ptmcad.cli.completion import mechanisms
 from ptmcad.cli.mechanisms import known_starter
-from ptmcad.cli.proposals import mechanisms
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.process.output import reason
 from ptmcad.question.config.starters import NAMES, starter_text

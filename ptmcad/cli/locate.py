@@ -6,7 +6,6 @@ import csv
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 import click
 
@@ -14,8 +13,8 @@ from ptmcad.answer.location import Location
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words
 from ptmcad.cli.commonoptions import PATH, result_argument
+from ptmcad.cli.completion import point as propose_point
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.proposals import point as propose_point
 from ptmcad.cli.storedresults import read_result
 from ptmcad.errors import ConfigError, shown
 from ptmcad.process.streams import reader_left
@@ -71,13 +70,8 @@ def point_of(text: str) -> dict[str, str]:
     return point
 
 
-class CsvRow(NamedTuple):
-    """A row of a CSV file: the line on which it ends, from 1, and its texts by their columns'
-    names.
-    """
-
-    line: int
-    values: dict[str, str]
+CsvRow = tuple[int, dict[str, str]]
+"""The line on which a row of a CSV file ends, from 1, and its texts by their columns' names."""
 
 
 def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Iterator[CsvRow]:
@@ -110,9 +104,7 @@ def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Ite
             point = {name: (row[name] or "").strip() for name in names}
             if "" in point.values():
                 raise ConfigError("a value is missing", file=str(path), line=reader.line_num)
-            yield CsvRow(
-                reader.line_num, point | {name: (row.get(name) or "").strip() for name in further}
-            )
+            yield reader.line_num, point | {name: (row.get(name) or "").strip() for name in further}
     except csv.Error as error:
         raise ConfigError(
             f"is not a CSV file: {error}", file=str(path), line=lines.number

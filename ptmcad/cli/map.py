@@ -15,11 +15,10 @@ import click
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.field import Field
 from ptmcad.cli.commonoptions import Formats, format_option, idle_style, out_option, report_idle
-from ptmcad.cli.drawing import pixels_of, style_options
+from ptmcad.cli.completion import poses, quantity_names
+from ptmcad.cli.drawing import figure, picture, pixels_of, style_options
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.pictures import figure, picture
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.proposals import poses, quantity_names
 from ptmcad.cli.slices import question_of, slice_options
 from ptmcad.cli.storedresults import made_map, stored_in, stored_map, tolerance_option
 from ptmcad.errors import ConfigError, PtmcadError, shown_path
@@ -117,7 +116,7 @@ def command(
         )  # what means nothing is refused before anything is computed
         options = Options(areas=False, progress=progress, timeout=limits.timeout)
         result = stored or made_map(slice, options, tolerance)
-        expect_somewhere(result, request.choice)
+        expect_somewhere(result, request[1])
         with stored_in(asked.config if stored else None):
             field = field_of(result, request, *pixels, checks=checks, progress=progress)
             _expect_values(field)

@@ -10,8 +10,8 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.commonoptions import PATH
-from ptmcad.cli.pictures import figure
-from ptmcad.cli.proposals import mechanisms as known_mechanisms
+from ptmcad.cli.completion import mechanisms as known_mechanisms
+from ptmcad.cli.drawing import figure
 from ptmcad.errors import ConfigError, quoted
 from ptmcad.model import Model
 from ptmcad.process.output import check_writable, write_files

@@ -25,11 +25,18 @@ from ptmcad.cli.commonoptions import (
     report_idle,
     result_argument,
 )
-from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, drawing_options, names_of
+from ptmcad.cli.drawing import (
+    DATA,
+    MESHES,
+    PICTURES,
+    DrawingOptions,
+    drawing_options,
+    figure,
+    names_of,
+)
 from ptmcad.cli.familyfiles import mesh_writers, picture_writers, read_family_file
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.locate import point_of, rows_of
-from ptmcad.cli.pictures import figure
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.storedresults import kind_of, read_result, stored_in
 from ptmcad.errors import ConfigError, ExpressionError, blamed, shown, shown_path

@@ -5,9 +5,9 @@ stable poses snap.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import click
 from click.core import ParameterSource
@@ -22,17 +22,18 @@ from ptmcad.cli.commonoptions import (
     record_argument,
     report_idle,
 )
+from ptmcad.cli.completion import names, pair_of_names, point, quantity_names
+from ptmcad.cli.drawing import figure, report_written, write_result
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.proposals import names, pair_of_names, point, quantity_names
 from ptmcad.cli.range_answers import RangeAnswer, RangeRequest, answer, is_enclosed, request_codec
-from ptmcad.cli.slices import range_option, set_option
+from ptmcad.cli.slices import range_option, set_option, typed_line
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.model import ptm
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name, names_in_record, slice_from_options
+from ptmcad.question.config.typed import Typed
 from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.question.slice import Slice
 from ptmcad.text.parsing import rational
@@ -40,27 +41,13 @@ from ptmcad.text.parsing import rational
 FORMATS = ("json", "png", "svg", "pdf")
 
 
-@dataclass(frozen=True, slots=True)
-class AskedLine:
-    """The record, what changes it, the line in the slice, and what is asked for beside it, as they
-    were typed.
-    """
-
-    config: Path | None
-    along: str
-    at: str | None
-    axes: str | None
-    sets: tuple[str, ...]
-    ranges: tuple[str, ...]
-    over: str | None
-    rows: int
-    start: str | None
-    pose: int | None
-    digits: int
-    quantities: tuple[str, ...]
+REQUEST = ("over", "rows", "start", "pose", "digits", "quantities")
+"""The options that say what is asked of the line, by their parameters' names."""
 
 
-def slice_and_line(asked: AskedLine) -> tuple[Slice, dict[str, str]]:
+def slice_and_line(
+    asked: Typed, along: str, at: Mapping[str, str], over: str | None
+) -> tuple[Slice, dict[str, str]]:
     """The slice that holds the line, and the value of its other axis.
 
     Every name of ``--at`` but that of the other axis fixes a parameter. The other axis is that of
@@ -72,9 +59,8 @@ def slice_and_line(asked: AskedLine) -> tuple[Slice, dict[str, str]]:
     ConfigError
         For anything wrong with the record or the options.
     """
-    at = {} if asked.at is None else point_of(asked.at)
     given = _axes(asked)
-    along, other = asked.along, _other_axis(asked, given, at)
+    other = _other_axis(along, given, at) if over is None else over
     if not other:
         raise ConfigError(
             f"give the values at which {along} varies, as in {SECOND if along == FIRST else FIRST}=3/2",
@@ -82,55 +68,56 @@ def slice_and_line(asked: AskedLine) -> tuple[Slice, dict[str, str]]:
         )
     if along == other:
         raise ConfigError(f"{along} varies along the line: it has no fixed value", key="--at")
-    if asked.over is None and other not in at:
+    if over is None and other not in at:
         raise ConfigError(f"the other axis, {other}, has no value: add {other}=VALUE", key="--at")
     fixed = tuple(f"{name}={value}" for name, value in at.items() if name != other)
     known = ptm().parameters if asked.config is None else names_in_record(asked.config)[1]
     for name in at:
         if name != other and name not in known:
             raise ConfigError(f"'{name}' is neither an axis nor a parameter", key="--at")
-    axes = asked.axes if {along, other} == set(given) else f"{along},{other}"
+    axes = asked.slice if {along, other} == set(given) else f"{along},{other}"
     try:
         slice = slice_from_options(asked.config, axes, (*asked.sets, *fixed), asked.ranges)
     except ConfigError as error:
-        if asked.axes is not None or error.key != "--slice":
+        if asked.slice is not None or error.key != "--slice":
             raise
         # the axes were named by other options than the one that the message speaks of
-        named = {"--along": along, "--over": asked.over, "--at": other}
+        named = {"--along": along, "--over": over, "--at": other}
         wrong = next((key for key, name in named.items() if f"'{name}'" in error.message), "--at")
         raise ConfigError(error.message, key=wrong) from error
     return slice, {other: at[other]} if other in at else {}
 
 
-def _other_axis(asked: AskedLine, given: tuple[str, ...], at: Mapping[str, str]) -> str:
-    """The name of the axis that does not vary along the line; empty when nothing tells it."""
-    if asked.over is not None:
-        return asked.over
-    if asked.along in given:
-        return given[1 - given.index(asked.along)]
+def _other_axis(along: str, given: tuple[str, ...], at: Mapping[str, str]) -> str:
+    """The name of the axis that does not vary along the line; empty when nothing says which."""
+    if along in given:
+        return given[1 - given.index(along)]
     return next((n for n in given if n in at), next(iter(at), ""))
 
 
-def _axes(asked: AskedLine) -> tuple[str, ...]:
+def _axes(asked: Typed) -> tuple[str, ...]:
     """The axes' names before the options of the line are looked at."""
-    if asked.axes is not None:
-        return tuple(name.strip() for name in asked.axes.split(","))
+    if asked.slice is not None:
+        return tuple(name.strip() for name in asked.slice.split(","))
     return () if asked.config is None else names_in_record(asked.config)[0]
 
 
-def request_of(asked: AskedLine, at: Mapping[str, str]) -> RangeRequest:
-    """What is asked for beside the line, checked.
+def request_of(along: str, at: Mapping[str, str], **asked: Any) -> RangeRequest:
+    """What is asked of the line, checked.
+
+    Parameters
+    ----------
+    at : the value of the slice's other axis.
+    asked : the options of `REQUEST`.
 
     Raises
     ------
     ConfigError
         For an option that needs another one.
     """
-    over, start = asked.over is not None, _start(asked.start, at)
-    quantities = tuple(dict.fromkeys(asked.quantities))
-    request = RangeRequest(
-        asked.along, at, over, asked.rows, start, asked.pose, asked.digits, quantities
-    )
+    over, quantities = asked["over"] is not None, tuple(dict.fromkeys(asked["quantities"]))
+    path = {"over": over, "start": _start(asked["start"], at), "quantities": quantities}
+    request = RangeRequest(along=along, at=at, **{**asked, **path})
     if quantities and not at:
         raise ConfigError(
             f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--quantity"
@@ -142,7 +129,7 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> RangeRequest:
         raise ConfigError(
             "is for the table over the other axis: give --over NAME too", key="--rows"
         )
-    if asked.pose is not None and asked.start is None:
+    if request.pose is not None and request.start is None:
         raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
     return request
 
@@ -205,9 +192,17 @@ def request_of(asked: AskedLine, at: Mapping[str, str]) -> RangeRequest:
                    "eigenvalue), force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT or y:POINT. "
                    "Repeatable.")  # fmt: skip
 @limit_options
-@gathered(asked=AskedLine)
+@gathered(typed=typed_line, asked=(REQUEST, dict))
 def command(
-    *, asked: AskedLine, out: Path, name: str | None, formats: Formats, limits: ResourceLimits
+    *,
+    typed: Typed,
+    along: str,
+    at: str | None,
+    asked: dict[str, Any],
+    out: Path,
+    name: str | None,
+    formats: Formats,
+    limits: ResourceLimits,
 ) -> None:
     """Find the intervals of constant count along one axis, and the operation range, where the most are stable.
 
@@ -226,8 +221,8 @@ def command(
         ptmcad range --along rho --over L2 --range L2=0:2 --at F3=-10,F4=-10
         ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --quantity th1 --quantity energy --format png
     """
-    slice, at = slice_and_line(asked)
-    request = request_of(asked, at)
+    slice, fixed = slice_and_line(typed, along, {} if at is None else point_of(at), asked["over"])
+    request = request_of(along, fixed, **asked)
     stem = f"{slice.name}-range" if name is None else file_name(name, "--name")
     suffixes = [suffix for suffix in formats if suffix != "json"]
     with held(limits):

@@ -26,7 +26,7 @@ MAX_TEXT = 10_000
 
 @dataclass(frozen=True, slots=True)
 class RangeRequest:
-    """What is asked for beside the slice.
+    """What is asked for besides the slice.
 
     Attributes
     ----------

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import click
 
 from ptmcad.cli.commonoptions import F, gathered, record_argument
-from ptmcad.cli.proposals import mechanisms, pair_of_names, settings
+from ptmcad.cli.completion import mechanisms, pair_of_names, settings
 from ptmcad.errors import ConfigError, HypothesisError, PtmcadError, shown
 from ptmcad.model import Model
 from ptmcad.question.config import (
@@ -47,14 +47,15 @@ class Third(NamedTuple):
         return self.members == BETWEEN
 
 
-def _typed(
-    config: Path | None,
-    axes: str | None,
-    sets: tuple[str, ...],
-    ranges: tuple[str, ...],
-    mechanism: str | None,
+def typed_line(
+    config: Path | None, axes: str | None, sets: tuple[str, ...], ranges: tuple[str, ...]
 ) -> Typed:
-    return Typed(config, axes, sets, ranges, mechanism=mechanism)
+    """A record and what changes it, as they were typed."""
+    return Typed(config, axes, sets, ranges)
+
+
+def _typed(mechanism: str | None, **line: Any) -> Typed:
+    return typed_line(**line)._replace(mechanism=mechanism)
 
 
 def question_asked(asked: Typed, count: str | None, third: Third) -> Slice | Family:
@@ -113,9 +114,11 @@ def slice_options(command: F) -> F:
     """Add CONFIG, ``--mechanism``, ``--slice``, ``--set`` and ``--range``, which the command gets
     as ``asked``.
 
-    What an engine finds wrong with the question is told with its place in the record.
+    What an engine finds wrong with the question is reported with its place in the record.
     """
-    command = gathered(asked=_typed)(_with_places(command))
+    command = gathered(asked=(("config", "axes", "sets", "ranges", "mechanism"), _typed))(
+        _with_places(command)
+    )
     for add in (
         range_option,
         set_option,

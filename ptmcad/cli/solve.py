@@ -20,11 +20,11 @@ from ptmcad.cli.commonoptions import (
     record_argument,
     report_idle,
 )
+from ptmcad.cli.completion import point
+from ptmcad.cli.drawing import figure, report_written, write_result
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.proposals import point
 from ptmcad.cli.slices import set_option
 from ptmcad.errors import ConfigError
 from ptmcad.model import Model

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ptmcad.cli.commonoptions import Formats, format_option, out_option
+from ptmcad.cli.drawing import figure, report_written, write_result
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
-from ptmcad.cli.pictures import figure, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.process.output import Writer, check_writable, text_writer
@@ -88,7 +88,7 @@ def command(
 
     NAMES are cases or families, or all; without any, all are run. Each case has an answer that is known beforehand,
     from a theorem, a construction or a second method; ptmcad's poses are held against 100 digits, and what double
-    precision makes of the same question is shown beside. Writes stress.json, .csv, .png and .svg, and .md when asked
+    precision makes of the same question is shown next to it. Writes stress.json, .csv, .png and .svg, and .md when asked
     for. The exit status is 1 when ptmcad is wrong anywhere, or undecided.
 
     \b

@@ -13,11 +13,10 @@ import click
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import State, Sweep
 from ptmcad.cli.commonoptions import PATH, Formats, format_option, gathered, record_argument
-from ptmcad.cli.drawing import share_of
+from ptmcad.cli.completion import names
+from ptmcad.cli.drawing import picture, report_written, share_of
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
-from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.proposals import names
 from ptmcad.cli.slices import engine_option, question_in
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.extras import Extra, require, require_ffmpeg
@@ -58,7 +57,7 @@ def _wanted(
 @click.option("--out", type=PATH, help="Folder of the sweep.  [default: NAME-sweep]")
 @format_option(
     FORMATS,
-    "What to write of the whole sweep beside the index and the results: csv (a line for each member), "
+    "What to write of the whole sweep besides the index and the results: csv (a line for each member), "
     "html (an atlas), gif or mp4 (a film of the maps).  [default: none]",
 )
 @click.option(

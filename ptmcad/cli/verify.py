@@ -237,9 +237,9 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
             return f"as member {member.same_as}"
         areas = any(area.area != ("", "") for area in summary.areas)
         true = summary_of(stored, Wanted(areas=areas, along=along))
-        widest, untold = summary.widest, ""
+        widest, doubt = summary.widest, ""
         if widest is not None and widest.proof == Attainment.UNDECIDED.value:
-            untold = "; where a width is attained"
+            doubt = "; where a width is attained"
             if true.widest is not None and _meet(widest.width, true.widest.width):
                 true = replace(
                     true, widest=widest
@@ -252,8 +252,8 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
         report = verify(stored, **how)
         if report.violation is not None:
             raise Violation(report.violation)
-        untold += f"; which value {unknown} has" * bool(unknown)
-        return Unchecked(f"{report.verdict}{untold}") if untold else report.verdict
+        doubt += f"; which value {unknown} has" * bool(unknown)
+        return Unchecked(f"{report.verdict}{doubt}") if doubt else report.verdict
 
     def numbers(_claims: object) -> str:
         if [member.number for member in found] != list(range(min(len(found), len(sweep)))):

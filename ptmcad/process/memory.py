@@ -21,7 +21,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.process.handover import watched
 
 MIN_ROOM = 32 << 20
-"""What there must be beside the libraries once they are loaded, for anything to be computed or
+"""The room that there must be besides the libraries once they are loaded, for anything to be computed or
 drawn.
 """
 
@@ -79,7 +79,7 @@ def loading(what: str = "") -> Iterator[None]:
 
     Parameters
     ----------
-    what : what they are for, if a bound is to be refused that leaves too little room beside them.
+    what : what they are for, if a bound is to be refused that leaves too little room besides them.
 
     Raises
     ------

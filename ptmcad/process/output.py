@@ -7,7 +7,7 @@ carry its hash.
 Guarantee: every file under its own name is whole. Whatever ends the process, at every moment those
 that can be seen of the names of a set are of one set: the voucher is the old one or the new one,
 and the others are of the same set or missing. A picture in a format that is not written now stays
-as it is; its stamp tells that it is of an older result. Nothing is put into place before everything
+as it is; its stamp says that it is of an older result. Nothing is put into place before everything
 is written and on disk; then the old pictures are hidden, the new voucher is renamed over the old
 one, and the new pictures are renamed. An error before the voucher is in place restores the older
 set; one after it costs the pictures that it concerns. What is hidden lies in a folder

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from ptmcad.model import Mechanism, Model
 from ptmcad.model.elements import difference, squared
@@ -77,23 +77,18 @@ class Margin(Generic[V]):
     squares: tuple[V, ...] = ()
 
 
-class _Posed(Protocol):
-    @property
-    def forces(self) -> Sequence[Enclosure]: ...
-
-
 @dataclass(frozen=True, slots=True)
 class PoseColumn:
     """How tables of poses say whether a predicate holds.
 
     Attributes
     ----------
-    margins : numbers of a pose that are positive exactly where the predicate's margins are.
+    margins : numbers of a `Pose` that are positive exactly where the predicate's margins are.
     head, note, tally : above the column, its meaning, and what follows the number of poses at which
         it holds.
     """
 
-    margins: Callable[[_Posed], Sequence[Enclosure]]
+    margins: Callable[[Any], Sequence[Enclosure]]
     head: str
     note: str
     tally: str

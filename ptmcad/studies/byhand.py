@@ -112,7 +112,7 @@ def derivatives(
 
 
 def sextic(p: Elements) -> tuple[tuple[Any, ...], ...]:
-    """The sextic N, and beside it V, W and X^2 + Y^2, each times 1 + t^2: coefficients of 1, t,
+    """The sextic N, and in addition V, W and X^2 + Y^2, each times 1 + t^2: coefficients of 1, t,
     t^2, ...
 
     Parameters

@@ -25,7 +25,7 @@ import pytest
 from test_faults import FIG2, IN_C, PARTIAL, ROOT, Running, classified, linux
 
 from ptmcad.cli import run
-from ptmcad.cli.pictures import picture, write_result
+from ptmcad.cli.drawing import picture, write_result
 from ptmcad.errors import ConfigError, PictureError
 from ptmcad.process.memory import MIN_ROOM, Bound, bounded, loading
 from ptmcad.process.streams import quiet_stream

@@ -66,18 +66,18 @@ def test_members_are_all_combinations_in_their_order(
     ]
     record = {"axes": AXES, "sweep": mappings[0] if alone else mappings}
     VALIDATOR.validate(record)
-    sweep = sweep_from(record).sweep
+    sweep = sweep_from(record)
     expected = []
     for k, (first, second) in enumerate(parts):
         if k % 2 == 0:
             expected += [{"F3": a, "F4": b} for a, b in product(first[1], second[1])]
         else:
             expected += [{"F3": a, "F4": b} for b, a in product(second[1], first[1])]
-    assert [sweep[k] for k in range(len(sweep))] == expected
+    assert [sweep.values(k) for k in range(len(sweep))] == expected
     with pytest.raises(IndexError):
-        sweep[len(sweep)]
+        sweep.values(len(sweep))
     with pytest.raises(IndexError):
-        sweep[-1]
+        sweep.values(-1)
 
 
 @pytest.fixture(name="family")

@@ -24,7 +24,7 @@ import ptmcad
 from ptmcad.answer.poses import Poses
 from ptmcad.ask.solving import poses_at
 from ptmcad.cli import run
-from ptmcad.cli.pictures import picture
+from ptmcad.cli.drawing import picture
 from ptmcad.errors import ConfigError, PictureError
 from ptmcad.question.config import point_from_mapping
 from ptmcad.show.drawable import no_landscape

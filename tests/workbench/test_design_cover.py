@@ -14,11 +14,11 @@ from ptmcad.workbench.designs.designlines import (
     Space,
     certain,
     longest,
+    longest_on_line,
     measure,
     refined,
     root_bound,
 )
-from ptmcad.workbench.designs.designspace import longest_on_line
 
 WINDOW = (fmpq(0), fmpq(1))
 Terms = list[tuple[tuple[int, int, int], int]]

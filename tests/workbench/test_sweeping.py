@@ -468,7 +468,7 @@ def test_a_cluster_gives_the_same_index_although_a_worker_is_killed(tmp_path: Pa
 def test_a_scheduler_that_does_not_answer_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from ptmcad.workbench.sweeps import cluster
+    from ptmcad.workbench.sweeps import pool as cluster
 
     monkeypatch.setattr(cluster, "CONNECT_SECONDS", 1)
     with pytest.raises(ConfigError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:1"):

@@ -17,7 +17,7 @@ STRIDE = 0.05
 STEPS = 5000
 ASIDE = 1e-4
 """By how much the start is moved along the softest direction, to the lower side: at a place of
-symmetry nothing else tells where to go."""
+symmetry nothing else says where to go."""
 
 STEPS_TO_SOLUTION, NEAR = 16, 1e-10
 """Of Newton's method at one place, and its last one against the solution's size."""

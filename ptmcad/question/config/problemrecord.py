@@ -160,7 +160,7 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
     ----------
     model : what the record is about; it has been read.
     """
-    told = reading(lambda node: None)
+    unread = reading(lambda node: None)
     unit = reading(_unit, type="string", minLength=1, maxLength=MAX_UNIT)
     units = {
         "type": "object",
@@ -182,14 +182,14 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
         title=part(
             reading(title_in, type="string", maxLength=MAX_TITLE), "The picture's title.", ""
         ),
-        notes=part(told.narrowed(type="string"), "Free text for the reader of the record.", None),
+        notes=part(unread.narrowed(type="string"), "Free text for the reader of the record.", None),
         mechanism=part(
-            told,
+            unread,
             "A built-in mechanism's name, a file below the record's folder that describes one, or a description.",
             None,
             shown=ptm().name,
         ),
-        system=part(told, "Another parametric system, in place of a mechanism.", None),
+        system=part(unread, "Another parametric system, in place of a mechanism.", None),
         parameters=part(
             reading(
                 lambda node: _values(node, model),

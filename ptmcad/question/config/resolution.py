@@ -70,7 +70,7 @@ def _unread(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
     if hidden:  # any name may be one of those, and any parameter without a value
         found |= record.model.parameters.keys() - record.values.keys()
         for scalar in record.values.values():
-            with Faults():  # a text that cannot be read is told with the others
+            with Faults():  # a text that cannot be read is reported with the others
                 found.update(names_in_scalar(scalar))
     return frozenset(found - record.axes.keys())
 
@@ -131,7 +131,7 @@ def _note_unnamed_axes(record: Record, faults: Faults) -> None:
         try:
             named.update(names_of(parse(scalar.text)))
         except ExpressionError:
-            return  # this is told with the others, and such a text may be meant to name any axis
+            return  # this is reported with the others, and such a text may be meant to name any axis
     if named - record.model.parameters.keys() - record.axes.keys() - record.unread:
         return  # an unknown name may be a slip of the axis's
     for name in _needed_axes(record)[:2]:
@@ -321,7 +321,7 @@ def without_shorthands(values: Mapping[str, Fraction], mechanism: Model) -> dict
 
 
 def _names_free_lengths(model: Model, values: Expressions) -> bool:
-    """Whether parameters that are free lengths are told: where one is not zero, or a spring has
+    """Whether parameters that are free lengths are shown: where one is not zero, or a spring has
     another free length.
     """
     given = (values[name] for name in model.free_lengths if name in values)

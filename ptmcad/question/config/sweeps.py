@@ -52,43 +52,6 @@ Product = Mapping[str, Values]
 """Every combination of the parameters' values."""
 
 
-@dataclass(frozen=True, slots=True)
-class Sweep:
-    """Products of values, one after another; all of them are of the same parameters.
-
-    >>> half = Spaced(Fraction(0), Fraction(1, 2), 3)
-    >>> sweep = Sweep(({"F3": (Fraction(-10),), "F4": half},))
-    >>> len(sweep), sweep[1]
-    (3, {'F3': Fraction(-10, 1), 'F4': Fraction(1, 2)})
-    """
-
-    products: tuple[Product, ...]
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """What is swept, in the record's order."""
-        return tuple(self.products[0])
-
-    def __len__(self) -> int:
-        return sum(map(_size, self.products))
-
-    def __getitem__(self, number: int) -> dict[str, Fraction]:
-        """The values of a member.
-
-        Raises
-        ------
-        IndexError
-            When there is no such member.
-        """
-        rest = number
-        for product in self.products:
-            if 0 <= rest < _size(product):
-                chosen = _chosen(product, rest)
-                return {name: chosen[name] for name in self.names}
-            rest -= _size(product)
-        raise IndexError(f"there is no member {number} of {len(self)}")
-
-
 def _size(product: Product) -> int:
     return prod(map(len, product.values()))
 
@@ -109,18 +72,41 @@ _EXPECTED = f"expected parameters with their values, such as {A_SWEEP}"
 
 @dataclass(frozen=True, slots=True)
 class Sweeping:
-    """A record and the values that its sweep gives to some of its parameters."""
+    """A record and the values that its sweep gives to some of its parameters: products, one after
+    another, all of the same parameters.
+    """
 
     record: Record
-    sweep: Sweep
+    products: tuple[Product, ...]
 
     @property
     def name(self) -> str:
         """The start of the names of the files that are written."""
-        return self.record.name or f"sweep-{'-'.join(self.sweep.names)}"
+        return self.record.name or f"sweep-{'-'.join(self.names)}"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What is swept, in the record's order."""
+        return tuple(self.products[0])
 
     def __len__(self) -> int:
-        return len(self.sweep)
+        return sum(map(_size, self.products))
+
+    def values(self, number: int) -> dict[str, Fraction]:
+        """The values of a member.
+
+        Raises
+        ------
+        IndexError
+            When there is no such member.
+        """
+        rest = number
+        for product in self.products:
+            if 0 <= rest < _size(product):
+                chosen = _chosen(product, rest)
+                return {name: chosen[name] for name in self.names}
+            rest -= _size(product)
+        raise IndexError(f"there is no member {number} of {len(self)}")
 
     def slice(self, number: int) -> Slice:
         """The slice of a member.
@@ -130,7 +116,7 @@ class Sweeping:
         ConfigError
             When these values are not what the mechanism needs.
         """
-        return slice_of(with_values(self.record, self.sweep[number]))
+        return slice_of(with_values(self.record, self.values(number)))
 
 
 def with_values(record: Record, values: Mapping[str, Fraction]) -> Record:
@@ -184,11 +170,11 @@ def checked_sweep(tree: Tree) -> Sweeping:
     if sweep is None:  # of the values only what does not depend on what is swept
         note_values(record, faults, swept_names(record))
     assert sweep is not None
-    slice_of(with_values(record, sweep[0]), faults)
-    return Sweeping(record, sweep)
+    slice_of(with_values(record, sweep.values(0)), faults)
+    return sweep
 
 
-def _read(sweep: Node, record: Record) -> Sweep | None:
+def _read(sweep: Node, record: Record) -> Sweeping | None:
     """The sweep of a record; None where there is nothing to go on with."""
     parts = sweep.items(most=MAX_MEMBERS) if isinstance(sweep.value, Sequence) else [sweep]
     if not parts:
@@ -211,7 +197,7 @@ def _read(sweep: Node, record: Record) -> Sweep | None:
     products = sweep.gathered(product, parts)
     if len(products) < max(len(parts), 1) or not all(products):
         return None
-    found = Sweep(tuple(products))
+    found = Sweeping(record, tuple(products))
     if len(found) > MAX_MEMBERS:
         sweep.note(
             sweep.fault(

@@ -23,7 +23,7 @@ from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import load
 from ptmcad.question.savings import ALL, SAVINGS, Engine
 from ptmcad.question.slice import Slice
-from ptmcad.studies.bench import growth as scaling
+from ptmcad.studies.bench import growth
 from ptmcad.studies.bench.harness import Job, classification, made_with, summary, table, turns
 from ptmcad.studies.bench.stored import write_study
 from ptmcad.studies.bench.study import difference
@@ -128,8 +128,8 @@ STUDIES: dict[str, tuple[str, Callable[[argparse.Namespace], pd.DataFrame], str]
     "ablation": ("ablation", ablation, "what each saving is worth"),
     "scaling": (
         "scaling",
-        scaling.measure,
-        f"how cost grows, along the families {', '.join(scaling.FAMILIES)}",
+        growth.measure,
+        f"how cost grows, along the families {', '.join(growth.FAMILIES)}",
     ),
 }
 """The name of the file, the measurement, and what it is."""
@@ -174,7 +174,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             found["rows"] = [row.dropna().to_dict() for _, row in rows.iterrows()]
             write_files(options.out, {f"{name}.json": text_writer(write_study(found))})
             if options.study == "scaling":
-                scaling.save_picture(rows, options.out)
+                growth.save_picture(rows, options.out)
     except (PtmcadError, OSError) as error:
         print(f"{options.study}: {error}", file=sys.stderr)
         return 2

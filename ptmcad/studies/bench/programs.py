@@ -1,4 +1,4 @@
-"""Programs beside ptmcad: msolve and Singular make the critical curve, gcad and QEPCAD cells.
+"""Programs besides ptmcad: msolve and Singular make the critical curve, gcad and QEPCAD cells.
 
 Guarantee: an answer is what a run said that came to the end of its script without an error. It is
 compared exactly with ptmcad's map: curves as sets of irreducible polynomials, and cells by locating
@@ -212,7 +212,7 @@ def incomplete(end: str, usage: Usage) -> str:
 
 
 def read(case: Case, job: Job) -> Row:
-    """What an answer without counts is beside the map, with "DIFFERS" where it is another or cannot
+    """How an answer without counts compares with the map, with "DIFFERS" where it is another or cannot
     be read.
     """
     if case.exact is None:

@@ -39,7 +39,7 @@ _LABELLED = {
 
 
 def sentences(study: Row) -> list[str]:
-    """Which grid is the first to see every region, and where the exact engine is beside the grids."""
+    """Which grid is the first to see every region, and how the exact engine compares with the grids."""
     table = frame(study)
     grids = table[(table["method"] == "companion") & table["wrong_low"].notna()]
     sizes = grids["setting"].str.removeprefix("N = ").astype(int)

@@ -85,7 +85,7 @@ def elimination() -> Facts:
 
 
 def spurious() -> Facts:
-    """Whether there are real roots beside the equilibria, as many of which are proved one by one."""
+    """Whether there are more real roots than equilibria, which are proved one by one."""
     found, poses = elimination(), equilibria(ELIMINATED)
     number = len(poses.equilibria)
     return {

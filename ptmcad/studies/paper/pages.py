@@ -121,7 +121,7 @@ def _title(section: str) -> str:
 
 
 def _said(c: Claim) -> list[tuple[str, str]]:
-    """What is said beside the evidence, with what it is."""
+    """The remarks on the evidence, each with its kind."""
     return [
         (name.capitalize(), text)
         for name in ("right", "witness", "reason")

@@ -188,7 +188,7 @@ def degenerate(
     Raises
     ------
     ValueError
-        When there are none: a cosine, h11, h12 or the derivative that tells the sides is zero.
+        When there are none: a cosine, h11, h12 or the derivative that distinguishes the sides is zero.
     """
     (first, second), (k1, k2, k3) = lengths, springs
     (c1, s1), (c2, s2) = map(on_circle, tangents)

@@ -27,7 +27,6 @@ from ptmcad.workbench.designs.evaluation import Evaluate, Value, evaluator
 from ptmcad.workbench.designs.optimiser import Enough, Point, best_of, within
 from ptmcad.workbench.designs.proof import (
     Proof,
-    ProofLimits,
     bounded,
     bounder_of,
     exact_maximum,
@@ -153,7 +152,7 @@ class _DesignSearch:
         self._search(seed, evaluations or (UNPROVED * usual if isinstance(bounder, str) else usual))
         if isinstance(bounder, str):
             return Proof(None, bounder)
-        proof = bounded(asked, bounder, self._improved, ProofLimits(tolerance, boxes, self._go_on))
+        proof = bounded(asked, bounder, self._improved, tolerance, boxes, self._go_on)
         if space is not None:
             self._confirm()
         return (

@@ -120,7 +120,7 @@ def _range_of(design: Design) -> Evaluate:
 
 
 def _range_in(design: Design, space: Space) -> Evaluate:
-    from ptmcad.workbench.designs.designspace import longest_on_line
+    from ptmcad.workbench.designs.designlines import longest_on_line
 
     names = [axis.name for axis in design.over]
 

@@ -38,23 +38,10 @@ from ptmcad.workbench.designs.designbounds import (
     Point,
     search,
 )
-from ptmcad.workbench.designs.designspace import Axes, space_of_family, space_of_slice
+from ptmcad.workbench.designs.designlines import Axes, space_of_family, space_of_slice
 
 Look = Callable[[Mapping[str, Fraction]], Fraction]
 """From a design to a lower bound of the best value that is known after it was evaluated."""
-
-
-class ProofLimits(NamedTuple):
-    """How far a proof may go.
-
-    Attributes
-    ----------
-    go_on : called with the number of boxes, the bound and the best value.
-    """
-
-    tolerance: Fraction
-    boxes: int
-    go_on: Callable[[int, float, float], bool]
 
 
 class Proof(NamedTuple):
@@ -151,8 +138,21 @@ def _bounder(design: Design, tolerance: fmpq) -> Bounder | None:
     return AreaBounder(found, ranges[0]) if design.aim is Aim.AREA else Lengths(found, tolerance)
 
 
-def bounded(design: Design, bounder: Bounder, look: Look, limits: ProofLimits) -> Proof:
-    """A bound by branch and bound."""
+def bounded(
+    design: Design,
+    bounder: Bounder,
+    look: Look,
+    tolerance: Fraction,
+    most: int,
+    go_on: Callable[[int, float, float], bool],
+) -> Proof:
+    """A bound by branch and bound.
+
+    Parameters
+    ----------
+    most : boxes.
+    go_on : called with the number of boxes, the bound and the best value.
+    """
     names = [axis.name for axis in design.over]
 
     def feasible(place: Place) -> bool:
@@ -169,12 +169,10 @@ def bounded(design: Design, bounder: Bounder, look: Look, limits: ProofLimits) -
         return from_fraction(look(values))
 
     def check(boxes: int, bound: fmpq, best: fmpq) -> bool:
-        return limits.go_on(boxes, float(to_fraction(bound)), float(to_fraction(best)))
+        return go_on(boxes, float(to_fraction(bound)), float(to_fraction(best)))
 
     size = prod((axis.width for axis in design.axes), start=Fraction(1))  # of the window
-    wanted = Goal(
-        from_fraction(limits.tolerance), from_fraction(limits.tolerance * size), limits.boxes
-    )
+    wanted = Goal(from_fraction(tolerance), from_fraction(tolerance * size), most)
     whole = tuple(interval_of(axis) for axis in design.over)
     try:
         outcome = search(bounder, whole, feasible, improved, wanted, check)

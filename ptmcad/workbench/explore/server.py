@@ -56,7 +56,7 @@ HEADERS = {
 }
 STATUS = {"done": 200, "superseded": 409, "refused": 422, "lost": 503}
 KINDS = {"map": ("fine", "framed"), "point": ("at",), "record": (), "save": ("name", "formats")}
-"""What a question of each kind says beside its tab and the sliders' values."""
+"""The entries of a question of each kind, besides its tab and the sliders' values."""
 _LOG = logging.getLogger("ptmcad.explore")
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 

@@ -12,8 +12,6 @@ to another's.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from ptmcad.answer.boundaries import NONE
@@ -33,7 +31,6 @@ def jumps(
     solutions: Filling,
     chosen: Integers,
     region: Integers,
-    check: Callable[[], None] = lambda: None,
 ) -> tuple[Flags, Flags]:
     """Between which neighbours of one region the branch of the chosen solution changes.
 
@@ -42,7 +39,6 @@ def jumps(
     solutions : at the follower's places.
     chosen : shape (rows, columns): the number of the chosen solution, `NONE` where there is none.
     region : shape (rows, columns).
-    check : called again and again; may raise to stop.
 
     Returns
     -------
@@ -58,7 +54,6 @@ def jumps(
         known = (chosen[here] != NONE) & (chosen[there] != NONE) & (region[here] == region[there])
         r, c = np.nonzero(known)
         for first in range(0, len(r), 100 * BATCH):
-            check()
             part = slice(first, first + 100 * BATCH)
             own = (r[part], c[part])
             jump[own] = _differ(

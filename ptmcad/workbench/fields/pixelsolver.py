@@ -11,7 +11,7 @@ What is not done in this way is left to exact poses, one by one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,23 +40,6 @@ SMALL = 1e-9
 """The last step, against the solution's size."""
 APART = 1e-7
 """Solutions are different when they are further apart, and than a thousand last steps."""
-
-
-@dataclass(frozen=True, slots=True)
-class PixelCounts:
-    """How many solutions each pixel has, by the map: all of them, or the stable ones where only
-    these are known.
-
-    Attributes
-    ----------
-    total : shape (rows, columns); `NONE` where it is not known.
-    index : for each cell its counts by index; None where they are not known.
-    """
-
-    total: Integers
-    cell: Integers
-    index: tuple[tuple[int, ...] | None, ...]
-    only_stable: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,14 +72,6 @@ class Filling:
     done: Flags
 
 
-def wanted_of(result: RegionMap, cell: Integers) -> PixelCounts:
-    """What the exact map says of each pixel, by the numbers of their cells."""
-    only_stable = result.only_stable
-    counts = [c.stable if only_stable else c.total for c in result.cells]
-    table = np.array([*(NONE if v is None else v for v in counts), NONE], dtype=np.int64)
-    return PixelCounts(table[cell], cell, tuple(c.index for c in result.cells), only_stable)
-
-
 def starting_points(model: Model, cell: Cell, only_stable: bool) -> Floats:
     """The certified solutions at a cell's sample: shape (n, number)."""
     angles, width = len(model.angles), 2 * len(model.angles) + len(model.reals)
@@ -113,15 +88,23 @@ def starting_points(model: Model, cell: Cell, only_stable: bool) -> Floats:
 
 
 class PixelSolver:
-    """Newton's method for a slice's model at any of some places."""
+    """Newton's method for a slice's model at any of some places.
+
+    Attributes
+    ----------
+    total : how many solutions each place has, by the map: all of them, or the stable ones where
+        only these are known; `NONE` where it is not known.
+    index : for each cell its counts by index; None where they are not known.
+    """
 
     def __init__(self, result: RegionMap, places: GridPoints):
         self.model = result.slice.model
-        self.names, self.places, self.wanted = (
-            result.slice.axis_names,
-            places,
-            wanted_of(result, places.cell),
-        )
+        self.names, self.places = result.slice.axis_names, places
+        self.only_stable = result.only_stable
+        counts = [c.stable if self.only_stable else c.total for c in result.cells]
+        table = np.array([*(NONE if v is None else v for v in counts), NONE], dtype=np.int64)
+        self.total: Integers = table[places.cell]
+        self.index = tuple(c.index for c in result.cells)
         self.values = parameters_at(result.slice, places.x, places.y)
         self.angles = len(self.model.angles)
 
@@ -176,15 +159,15 @@ class PixelSolver:
         """Whether the solutions count, and as many have each index as the map says."""
         state = self.state(rows, columns, np.nan_to_num(at))
         good = np.asarray((state.counts | empty).all(axis=1))
-        if self.wanted.only_stable:
+        if self.only_stable:
             return np.asarray(good & (state.stable | empty).all(axis=1))
         good &= ((determinant(state.jacobian) != 0) | empty).all(axis=1)
         negative, cells = (
             (eigenvalues(state.hessian) < 0).sum(axis=0),
-            self.wanted.cell[rows, columns],
+            self.places.cell[rows, columns],
         )
         for cell in np.unique(cells):
-            index = self.wanted.index[cell] if cell != NONE else None
+            index = self.index[cell] if cell != NONE else None
             if index is not None:
                 here = cells == cell
                 for k, number in enumerate(index):
@@ -192,27 +175,20 @@ class PixelSolver:
         return good
 
 
-def filled(
-    result: RegionMap, follower: PixelSolver, check: Callable[[], None] = lambda: None
-) -> Filling:
-    """The solutions at every pixel, as far as neighbours lead to them.
-
-    Parameters
-    ----------
-    check : called again and again; may raise to stop.
-    """
-    wanted = follower.wanted
-    most = max(int(wanted.total.max()), 1)
-    rows, columns = wanted.total.shape
+def filled(result: RegionMap, follower: PixelSolver) -> Filling:
+    """The solutions at every pixel, as far as neighbours lead to them."""
+    total = follower.total
+    most = max(int(total.max()), 1)
+    rows, columns = total.shape
     filling = Filling(
-        np.full((len(result.slice.model.unknowns), rows, columns, most), np.nan), wanted.total <= 0
+        np.full((len(result.slice.model.unknowns), rows, columns, most), np.nan), total <= 0
     )
     for stride in _strides(max(rows, columns)):
         seen = np.zeros((rows, columns), dtype=np.bool_)
         seen[::stride, ::stride] = True
-        _spread(filling, follower, seen, stride, check)
-        _begin(result, filling, follower, seen, check)
-        _spread(filling, follower, seen, stride, check)
+        _spread(filling, follower, seen, stride)
+        _begin(result, filling, follower, seen)
+        _spread(filling, follower, seen, stride)
     return filling
 
 
@@ -230,17 +206,15 @@ def _begin(
     filling: Filling,
     follower: PixelSolver,
     seen: Flags,
-    check: Callable[[], None],
 ) -> None:
     """In each cell of which no pixel is done: from the sample's solutions to the pixels that are
     nearest to it.
     """
-    cells = follower.wanted.cell
+    cells = follower.places.cell
     finished = set(np.unique(cells[filling.done & (cells != NONE)]).tolist())
     for number in np.unique(cells[seen & ~filling.done & (cells != NONE)]).tolist():
-        check()
         cell = result.cells[number]
-        start = starting_points(result.slice.model, cell, follower.wanted.only_stable)
+        start = starting_points(result.slice.model, cell, follower.only_stable)
         if number in finished or not start.shape[1]:
             continue
         rows, columns = np.nonzero(seen & ~filling.done & (cells == number))
@@ -252,19 +226,17 @@ def _begin(
             )
         )
         nearest = np.argsort(away, kind="stable")[:9]
-        if start.shape[1] == follower.wanted.total[rows[0], columns[0]]:
+        if start.shape[1] == follower.total[rows[0], columns[0]]:
             guess = np.full((len(start), len(nearest), filling.at.shape[3]), np.nan)
             guess[:, :, : start.shape[1]] = start[:, None, :]
             _take(filling, follower, rows[nearest], columns[nearest], guess)
 
 
-def _spread(
-    filling: Filling, follower: PixelSolver, seen: Flags, stride: int, check: Callable[[], None]
-) -> None:
+def _spread(filling: Filling, follower: PixelSolver, seen: Flags, stride: int) -> None:
     """From pixels that are done to their neighbours of the same count, until none is left that this
     helps.
     """
-    total = follower.wanted.total
+    total = follower.total
     steps = [
         (a * stride, b * stride)
         for a, b in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
@@ -274,7 +246,6 @@ def _spread(
     while moved:
         moved = False
         for step in steps:
-            check()
             rows, columns = np.nonzero(~tried[step] & ~filling.done)
             s, t = rows + step[0], columns + step[1]
             inside = (s >= 0) & (s < total.shape[0]) & (t >= 0) & (t < total.shape[1])

@@ -40,7 +40,7 @@ from ptmcad.workbench.fields.quantityfield import Choice, choice_of, complete, e
 FRAMES, MAX_FRAMES = 90, 600
 MAX_FALLS = 20
 SLIP = 0.05
-"""A shorter fall is none to be seen: the pose goes on beside, as where a symmetric one gives way to
+"""A shorter fall is invisible: the pose goes on next to it, as where a symmetric one gives way to
 two.
 """
 SAME = 1e-6
@@ -125,7 +125,7 @@ class _Walk(Track):
 
 
 def _stops(walk: _Walk, frames: int) -> list[_Stop]:
-    """The steps along the path with their counts and all solutions, each beside any curve on which
+    """The steps along the path with their counts and all solutions, each next to any curve on which
     it would lie.
     """
     result, points, cells, shares = walk.result, [], [], []
@@ -144,31 +144,31 @@ def _stops(walk: _Walk, frames: int) -> list[_Stop]:
     x, y = (np.array([[float(point[k]) for point in points]]) for k in (0, 1))
     places = GridPoints(x, y, np.array([cells], dtype=np.int64))
     follower = PixelSolver(result, places)
-    solutions, wanted = filled(result, follower), follower.wanted
-    complete(result, lambda _, column: points[column], solutions, wanted.total, lambda: None)
+    solutions = filled(result, follower)
+    complete(result, lambda _, column: points[column], solutions, follower.total)
     stops: list[_Stop] = []
     for k, (share, point, number) in enumerate(zip(shares, points, cells, strict=True)):
         step = Step(float(share), point, (), None)
         if number == NONE:
             stops.append(_open(walk, share, step))
             continue
-        counts, many = result.cells[number], int(wanted.total[0, k])
+        counts, many = result.cells[number], int(follower.total[0, k])
         known = solutions.at[:, 0, k, :many] if solutions.done[0, k] and many >= 0 else None
-        told = replace(step, total=counts.total, stable=counts.stable)
-        stops.append((share, _with_others(walk, told, known), known))
+        counted = replace(step, total=counts.total, stable=counts.stable)
+        stops.append((share, _with_others(walk, counted, known), known))
     return stops
 
 
 def _open(walk: _Walk, share: Fraction, step: Step) -> _Stop:
-    """Where the map tells nothing: by an exact solution at the point."""
+    """Where the map is silent: by an exact solution at the point."""
     poses = exact_at(walk.result, *step.at)
     if poses.status not in (Status.EXACT, Status.CERTIFIED):
         return share, step, None
     found = (
         np.array([unknowns_of(p) for p in poses.equilibria]).reshape(-1, len(walk.model.unknowns)).T
     )
-    told = replace(step, total=len(poses.equilibria), stable=poses.known_stable)
-    return share, _with_others(walk, told, found), found
+    counted = replace(step, total=len(poses.equilibria), stable=poses.known_stable)
+    return share, _with_others(walk, counted, found), found
 
 
 def _with_others(walk: _Walk, step: Step, known: Floats | None) -> Step:

@@ -98,12 +98,8 @@ def choice_of(text: str, model: Model) -> Choice:
     return Choice(match[1], int(match[2] or 1))
 
 
-@dataclass(frozen=True, slots=True)
-class FieldRequest:
-    """A quantity of a pose, both of which have a meaning for the slice."""
-
-    quantity: Valued
-    choice: Choice
+FieldRequest = tuple[Valued, Choice]
+"""A quantity of a pose, both of which have a meaning for the slice."""
 
 
 def request_of(slice: Slice, value: str, pose: str) -> FieldRequest:
@@ -132,7 +128,7 @@ def request_of(slice: Slice, value: str, pose: str) -> FieldRequest:
                 f"under the {what} a pose's energy is not what a barrier is counted from",
                 key=OPTION,
             )
-    return FieldRequest(quantity, choice)
+    return quantity, choice
 
 
 def field_of(
@@ -141,7 +137,6 @@ def field_of(
     columns: int = 400,
     rows: int | None = None,
     checks: int = CHECKS,
-    check: Callable[[], None] = lambda: None,
     progress: Progress = lambda _stage, _done, _total: None,
 ) -> Field:
     """A quantity of a pose at the centres of columns x rows pixels.
@@ -150,7 +145,6 @@ def field_of(
     ----------
     request : of the map's slice.
     checks : number of pixels that are compared with exact poses.
-    check : called again and again; may raise to stop.
     progress : called as progress(stage, done, total).
 
     Raises
@@ -158,30 +152,26 @@ def field_of(
     ConfigError
         For what this map does not know, or a map without cells.
     """
-    model, quantity, choice = result.slice.model, request.quantity, request.choice
+    model, (quantity, choice) = result.slice.model, request
     grid = grid_of(result, columns, rows)
     follower = PixelSolver(result, places_of(grid))
-    wanted = follower.wanted
-    if wanted.only_stable and choice.kind != "stable":
+    if follower.only_stable and choice.kind != "stable":
         raise ConfigError(
             "this map knows the stable equilibria only: ask for stable:1", key="--pose"
         )
-    if wanted.only_stable and quantity.is_barrier:
+    if follower.only_stable and quantity.is_barrier:
         raise ConfigError(
             "this map knows the stable equilibria only, and a barrier is a saddle's", key=OPTION
         )
-    solutions = filled(result, follower, check)
-    missed = complete(
-        result, lambda r, c: centre(result, grid, r, c), solutions, wanted.total, check
-    )
+    solutions = filled(result, follower)
+    missed = complete(result, lambda r, c: centre(result, grid, r, c), solutions, follower.total)
     values, chosen = (
         np.full(grid.region.shape, np.nan),
         np.full(grid.region.shape, NONE, dtype=np.int64),
     )
-    places = np.nonzero(solutions.done & (wanted.total > 0))
+    places = np.nonzero(solutions.done & (follower.total > 0))
     batch = LARGE_BATCH if quantity.is_barrier else BATCH
     for first in range(0, len(places[0]), batch):
-        check()
         progress("pixels", first, len(places[0]))
         r, c = (p[first : first + batch] for p in places)
         values[r, c], chosen[r, c] = _at_pixels(
@@ -193,7 +183,7 @@ def field_of(
         )
     beyond = np.isinf(values)
     values[beyond] = np.nan
-    other = jumps(result, follower, solutions, chosen, grid.region, check)
+    other = jumps(result, follower, solutions, chosen, grid.region)
     number, difference = _checked(result, quantity, choice, values, follower, checks)
     return Field(
         quantity.name,
@@ -330,7 +320,6 @@ def complete(
     point: Callable[[int, int], tuple[Fraction, Fraction]],
     solutions: Filling,
     total: Integers,
-    check: Callable[[], None],
 ) -> int:
     """Exact poses where neighbours led nowhere; the number of places that stay without their
     solutions.
@@ -341,7 +330,6 @@ def complete(
     """
     rows, columns = np.nonzero(~solutions.done & (total > 0))
     for row, column in list(zip(rows.tolist(), columns.tolist(), strict=True))[:MAX_LEFT]:
-        check()
         poses = exact_at(result, *point(row, column))
         points = [unknowns_of(p) for p in poses.equilibria]
         if len(points) != total[row, column]:  # of a map of the stable ones only
@@ -375,7 +363,7 @@ def _checked(
 ) -> tuple[int, float]:
     """How many random pixels were compared with exact poses, and the largest difference as a share.
 
-    Where certified poses could not be told apart there is nothing to compare with.
+    Where certified poses could not be distinguished there is nothing to compare with.
     """
     rows, columns = np.nonzero(~np.isnan(values))
     if not len(rows) or not checks:

@@ -26,7 +26,7 @@ ENOUGH = 1.0
 
 def sweep_text(question: Sweeping, first: CheckedSlice) -> Iterator[str]:
     """The number of members and the time that they take here, as lines of text."""
-    yield f"{'sweep':<12}{len(question)} members over {', '.join(question.sweep.names)}; above is the first member"
+    yield f"{'sweep':<12}{len(question)} members over {', '.join(question.names)}; above is the first member"
     if (
         first.engine != "exact"
         or first.complex_solutions is None

@@ -403,8 +403,8 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
         exact = [values[name] for name in names]
         if state == State.DONE.value:
             counted = AREAS.read(Node(json.loads(areas), "areas"))
-            told = None if widest is None else WIDEST.read(Node(json.loads(widest), "widest"))
-            summary = Summary(status, cells, regions, open_share, counted, told)
+            found = None if widest is None else WIDEST.read(Node(json.loads(widest), "widest"))
+            summary = Summary(status, cells, regions, open_share, counted, found)
             exact += [open_share, *(bound for area in counted for bound in area.area if bound)]
             if file != _name(number if same_as is None else same_as):
                 raise ValueError("it names another result")

@@ -195,7 +195,7 @@ def _width(maxima: tuple[Maximum, ...]) -> Bounds:
 
 
 def _width_from(*values: Any) -> Widest:
-    """A width; an index that was written before attainment was told says of limits that they are
+    """A width; an index from before attainment was recorded says of limits that they are
     attained.
     """
     found = Widest(*values)

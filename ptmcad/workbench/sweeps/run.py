@@ -38,7 +38,7 @@ from ptmcad.workbench.sweeps.pool import Pool, answers_of
 
 if TYPE_CHECKING:
     from ptmcad.show.report.atlas import Thumbnail
-    from ptmcad.workbench.sweeps.cluster import Cluster
+    from ptmcad.workbench.sweeps.pool import Cluster
 
 RETRIES = 2
 """How often a member is tried again that has failed."""
@@ -94,7 +94,7 @@ def sweep(
     work = Work(question, wanted)
     with opened(place) as index:
         index.claim(_facts(question), _asked(question, wanted))
-        index.check(question.sweep.names)
+        index.check(question.names)
         run = _Run(work, index, retries, progress, timeout)
         try:
             run.all(_workers(work, jobs, scheduler))
@@ -156,7 +156,7 @@ def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[]
             return Pool(work, jobs or processors(), work.wanted.timeout)
 
         return pool
-    from ptmcad.workbench.sweeps.cluster import Cluster
+    from ptmcad.workbench.sweeps.pool import Cluster
 
     require(
         Extra.distributed, key="--scheduler"
@@ -174,7 +174,7 @@ def _facts(question: Sweeping) -> dict[str, str]:
     """What the index says of the sweep as a whole."""
     return {
         "name": question.name,
-        "names": json.dumps(question.sweep.names, ensure_ascii=False),
+        "names": json.dumps(question.names, ensure_ascii=False),
         "members": str(len(question)),
         "version": __version__,
     }
@@ -182,10 +182,10 @@ def _facts(question: Sweeping) -> dict[str, str]:
 
 def _asked(question: Sweeping, wanted: Wanted) -> str:
     """A digest of all that results depend on."""
-    record, sweep = question.record, question.sweep
+    record = question.record
     first = _slice_data(question.slice(0))
     values = [
-        [[name, *_values_data(v)] for name, v in product.items()] for product in sweep.products
+        [[name, *_values_data(v)] for name, v in product.items()] for product in question.products
     ]
     texts = {name: scalar.text for name, scalar in record.values.items()}
     options = [None if value is None else str(value) for value in dataclasses.astuple(wanted)]
@@ -302,7 +302,7 @@ class _Run:
         self, question: Sweeping, number: int
     ) -> tuple[int, dict[str, str], bytes | None, str]:
         """A member's number, its values, a digest of its slice, and why there is no slice."""
-        values: dict[str, Fraction] = question.sweep[number]
+        values: dict[str, Fraction] = question.values(number)
         parameters = {name: text_of(value) for name, value in values.items()}
         try:
             data = json.dumps(_slice_data(question.slice(number)), sort_keys=True)
