@@ -362,8 +362,8 @@ METHODS |= {
         "_repr_html_": _html(repr),
     },
     "SliceVariety": {
-        "text": "show.export:variety_text",
-        "_repr_html_": _html_by("show.export:variety_text"),
+        "text": "show.varietytext:variety_text",
+        "_repr_html_": _html_by("show.varietytext:variety_text"),
     },
     "Poses": {
         "table": "show.posetable:table",
