@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[1]
 @pytest.fixture(autouse=True)
 def without_numba(monkeypatch: pytest.MonkeyPatch) -> None:
     loaded = [name for name in sys.modules if name.startswith("ptmcad.certified.")]
-    for name in (*loaded, *({"ptmcad.formulas.compiled"} & sys.modules.keys())):
+    for name in (*loaded, *({"ptmcad.formulas.compilation"} & sys.modules.keys())):
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "numba", None)
 

@@ -50,7 +50,7 @@ def lost(text: str) -> list[str]:
 @pytest.mark.parametrize(
     ("text", "there"),
     [("`exact/cad/area.py`", True), ("`certified/specks`", True), ("`exact/cad/surface.py`", False),
-     ("`ptmcad.model.loops`", True), ("`ptmcad.model.closures`", False),
+     ("`ptmcad.model.closedloops`", True), ("`ptmcad.model.closures`", False),
      ("`ptmcad.answer.regionmap.RegionMap.cells`", True)],
 )  # fmt: skip
 def test_what_is_lost_is_seen(text: str, there: bool) -> None:

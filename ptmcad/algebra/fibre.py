@@ -29,7 +29,6 @@ from ptmcad.algebra.groebner import grevlex_key, shifted
 from ptmcad.algebra.membership import Rules
 from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient import border_of, divided, standard_monomials
-from ptmcad.algebra.trigonometric import angle_sum
 from ptmcad.errors import LimitReached
 
 RationalPolynomial = Mapping[Monomial, fmpq]
@@ -171,30 +170,6 @@ def _normal_forms(basis: Sequence[Monomial], rules: Rules) -> dict[Monomial, lis
                         ]
         table[m] = row
     return table
-
-
-def combined_angles(
-    algebra: FibreAlgebra, matrix: Sequence[Sequence[int]], reals: int
-) -> FibreAlgebra:
-    """The fibre with the cosines and sines of sums of its angles as further coordinates, before the
-    others.
-
-    Parameters
-    ----------
-    algebra : its coordinates are cosine and sine of each angle, then so many real unknowns.
-    matrix : the multiples of the angles in each sum, one for each angle.
-
-    Returns
-    -------
-    Coordinates of the sums, the real unknowns, the coordinates of the angles.
-    """
-    size, angles = algebra.dimension, len(matrix)
-    one = scalar_matrix(size, fmpq(1))
-    own, real = algebra.multiplication[: 2 * angles], algebra.multiplication[2 * angles :]
-    turns = list(zip(own[::2], own[1::2], strict=True))
-    sums = [c for row in matrix for c in angle_sum(turns, row, one)]
-    basis = tuple((*(0,) * (2 * angles), *m[2 * angles :], *m[: 2 * angles]) for m in algebra.basis)
-    return FibreAlgebra(basis, (*sums, *real[:reals], *own), algebra.by_msolve)
 
 
 def evaluate(algebra: FibreAlgebra, p: RationalPolynomial) -> fmpq_mat:

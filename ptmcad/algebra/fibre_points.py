@@ -12,14 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import prod
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
 from ptmcad.algebra.fibre import (
     FibreAlgebra,
     RationalPolynomial,
-    evaluate,
     univariate_representation,
 )
 from ptmcad.algebra.isolation import root_bound
@@ -89,18 +87,6 @@ def points(algebra: FibreAlgebra, bound: int | None = 1) -> FibrePoints:
 def value_at(point: RealPoint, p: RationalPolynomial) -> FieldElement:
     """A polynomial in the unknowns as a number."""
     return polynomial_at(point.field, point.unknowns, p)
-
-
-def real_values(
-    algebra: FibreAlgebra, p: RationalPolynomial, bound: fmpq | None = None
-) -> tuple[RealRoot, ...]:
-    """The real numbers, in (-bound, bound), that p takes at complex points of the fibre, in
-    increasing order.
-    """
-    factors = evaluate(algebra, p).charpoly().numer().factor()[1]
-    radical = prod((factor for factor, _ in factors), start=fmpz_poly([1]))
-    limit = root_bound(radical) if bound is None else bound
-    return isolate(radical, -limit, limit)
 
 
 def _coordinates(field: RealField, numerators: Sequence[fmpq_poly]) -> list[Expression]:

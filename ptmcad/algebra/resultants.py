@@ -59,7 +59,7 @@ Check = Callable[[], None]
 LONG = 100_000
 """Points times the product of the degrees in v; less takes milliseconds."""
 CALL = 150
-"""What one value modulo a prime costs besides Euclid's algorithm, in its steps (products of
+"""The cost of one value modulo a prime in addition to Euclid's algorithm, in its steps (products of
 residues).
 """
 

@@ -7,26 +7,12 @@ an energy is its true gradient.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.algebra.polynomials import Monomial
-
-
-def angle_sum(
-    turns: Sequence[tuple[Any, Any]], multiples: Sequence[int], one: Any
-) -> tuple[Any, Any]:
-    """Cosine and sine of a sum of multiples of angles, from those of each, in any commutative ring."""
-    cosine, sine = one, one - one
-    for (c, s), multiple in zip(turns, multiples, strict=True):
-        way = -s if multiple < 0 else s
-        for _ in range(abs(multiple)):
-            cosine, sine = cosine * c - sine * way, sine * c + cosine * way
-    return cosine, sine
-
 
 TrigonometricPolynomial = fmpq_mpoly
 """An element of a `TrigonometricRing`."""

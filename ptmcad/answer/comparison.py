@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.text.bounds import share_text
+from ptmcad.text.numerals import share_text
 
 Bounds = tuple[Fraction, Fraction]
 

@@ -14,7 +14,7 @@ from ptmcad.answer import with_methods
 from ptmcad.answer.changes import Changes
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.slice import Axes, Axis
-from ptmcad.text.terms import terms_text
+from ptmcad.text.plane import terms_text
 
 if TYPE_CHECKING:
     from typing import Any

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from ptmcad.answer import with_methods
 from ptmcad.answer.regionmap import Component, Kind
 from ptmcad.question.slice import Slice
-from ptmcad.text.terms import terms_text
+from ptmcad.text.plane import terms_text
 
 Term = tuple[tuple[int, ...], int]
 """Exponents of the unknowns, then of the two axes; and the coefficient."""

@@ -32,8 +32,8 @@ def described(before: Picture, after: Picture) -> tuple[str, ...]:
 def _groups(before: Picture, after: Picture) -> list[_Same]:
     number = len(before.arrangement.keys)
     keys = (*before.arrangement.keys, *after.arrangement.keys)
-    links = [Link(a, number + b, 1) for a, b in _shared(before, after)]
-    links += [Link(a, number + b, 1) for b, a in _shared(after, before)]
+    links: list[Link] = [(a, number + b, 1) for a, b in _shared(before, after)]
+    links += [(a, number + b, 1) for b, a in _shared(after, before)]
     groups = members(merge(keys, links))
     return [([n for n in g if n < number], [n - number for n in g if n >= number]) for g in groups]
 

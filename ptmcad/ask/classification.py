@@ -208,7 +208,7 @@ def load_certified(progress: Progress | None = None, options: Options | None = N
         Where numba is missing, or the memory limit leaves no room.
     """
     with loading("the certified engine"):
-        import_module("ptmcad.formulas.compiled")  # first: where numba is missing, it says so
+        import_module("ptmcad.formulas.compilation")  # first: where numba is missing, it says so
         from ptmcad.certified.loading import load
     return load(progress, options)
 

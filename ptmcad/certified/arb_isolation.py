@@ -7,23 +7,14 @@ Guarantee: as for `ptmcad.certified.uniqueness`, with the same lemmas but none o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from flint import arb, arb_mat, ctx, fmpq
 
 from ptmcad.certified.equationsystem import EquationSystem
-from ptmcad.formulas.balls import EmptyMeet, run_arb
+from ptmcad.formulas.ballarithmetic import EmptyMeet, run_arb
 
 Box = tuple[arb, ...]
 """The balls of all variables, by number; those that are not searched are the same in all boxes."""
-
-
-@dataclass(frozen=True, slots=True)
-class Isolated:
-    """A zero of the equations: the only one in ``unique``, and in ``narrow``, which lies in it."""
-
-    unique: Box
-    narrow: Box
 
 
 def newton(system: EquationSystem, box: Box, precision: int) -> tuple[Box, bool] | None:
@@ -149,9 +140,11 @@ def isolate_arb(
     start: Sequence[Box],
     precision: int,
     budget: int,
-) -> list[Isolated] | None:
-    """Isolate the solutions in some boxes; a zero may be found more than once. None when the budget
-    does not suffice.
+) -> list[tuple[Box, Box]] | None:
+    """Isolate the solutions in some boxes: for each the box in which it is the only one, and a
+    narrow one in there.
+
+    A zero may be found more than once. None when the budget does not suffice.
 
     Parameters
     ----------
@@ -160,7 +153,7 @@ def isolate_arb(
     precision : in bits; boxes are bisected down to about half as many.
     budget : number of boxes.
     """
-    found: list[Isolated] = []
+    found: list[tuple[Box, Box]] = []
     waiting = list(start)
     finest = arb(fmpq(1, 2 ** (precision * 2 // 3)))
     while waiting:
@@ -174,7 +167,7 @@ def isolate_arb(
         size = width(system, step[0])
         proved = _proved(equations, step[0], size, precision)
         if proved is not None:
-            found.append(Isolated(proved, refined(equations, proved, precision)))
+            found.append((proved, refined(equations, proved, precision)))
         elif 2 * size < width(system, box):
             waiting.append(step[0])
         elif size < finest:

@@ -27,8 +27,8 @@ from ptmcad.certified.contraction import (
     workspace,
 )
 from ptmcad.certified.equationsystem import Arguments
-from ptmcad.formulas.compiled import compiled, inlined
-from ptmcad.formulas.intervals import Floats
+from ptmcad.formulas.compilation import compiled, inlined
+from ptmcad.formulas.intervalarithmetic import Floats
 from ptmcad.formulas.rounding import down, multiply, reciprocal, up
 
 Strips = NDArray[np.float64]

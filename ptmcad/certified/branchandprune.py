@@ -22,8 +22,8 @@ from ptmcad.certified.equationsystem import Arguments
 from ptmcad.certified.linear import space_for
 from ptmcad.certified.uniqueness import inflated
 from ptmcad.formulas.affine import LANES
-from ptmcad.formulas.compiled import ZERO, compiled, inlined
-from ptmcad.formulas.intervals import Floats
+from ptmcad.formulas.compilation import ZERO, compiled, inlined
+from ptmcad.formulas.intervalarithmetic import Floats
 
 Boxes = Floats
 """Shape (k, 2v): low ends of the v variables, then high ends."""

@@ -18,8 +18,8 @@ import numpy as np
 
 from ptmcad.certified.equationsystem import Arguments
 from ptmcad.certified.linear import Linear, contract_linear
-from ptmcad.formulas.compiled import ZERO, compiled, inlined
-from ptmcad.formulas.intervals import Floats, Indices, run
+from ptmcad.formulas.compilation import ZERO, compiled, inlined
+from ptmcad.formulas.intervalarithmetic import Floats, Indices, run
 from ptmcad.formulas.rounding import down, magnitude, multiply, reciprocal, up
 
 MIN_PIVOT = 1e-200

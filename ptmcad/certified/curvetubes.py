@@ -21,8 +21,8 @@ from ptmcad.certified.branchandprune import Boxes, halved, widest_of
 from ptmcad.certified.contraction import Workspace, contract, workspace
 from ptmcad.certified.equationsystem import Arguments
 from ptmcad.certified.expansion import approach, eliminated, expanded, residual
-from ptmcad.formulas.compiled import ZERO, compiled, inlined
-from ptmcad.formulas.intervals import Floats, run
+from ptmcad.formulas.compilation import ZERO, compiled, inlined
+from ptmcad.formulas.intervalarithmetic import Floats, run
 from ptmcad.formulas.rounding import down, magnitude, multiply, up
 
 ITERATIONS = 30

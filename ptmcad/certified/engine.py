@@ -45,7 +45,7 @@ from ptmcad.options import DEFAULTS, Options
 from ptmcad.process.handover import LAST_SECONDS, leave_if_asked
 from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice
-from ptmcad.text.bounds import percent
+from ptmcad.text.numerals import percent
 from ptmcad.version import __version__
 
 TOLERANCE = Fraction(1, 1000)

@@ -13,11 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.formulas.graph import Formula, Operation
-from ptmcad.formulas.intervals import Indices, Program, program
+from ptmcad.formulas.evaluation import nodes_of, substituted
+from ptmcad.formulas.graph import Formula, Operation, gradient
+from ptmcad.formulas.intervalarithmetic import Indices, Program, program
 from ptmcad.formulas.tape import Tape, record
-from ptmcad.formulas.values import nodes_of, substituted
-from ptmcad.model.determinants import gradient
 
 
 @dataclass(frozen=True, slots=True, eq=False)

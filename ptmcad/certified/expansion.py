@@ -11,8 +11,8 @@ import numpy as np
 
 from ptmcad.certified.contraction import Workspace, precondition
 from ptmcad.certified.equationsystem import Arguments
-from ptmcad.formulas.compiled import ZERO, compiled, inlined
-from ptmcad.formulas.intervals import Floats, run
+from ptmcad.formulas.compilation import ZERO, compiled, inlined
+from ptmcad.formulas.intervalarithmetic import Floats, run
 from ptmcad.formulas.rounding import down, magnitude, multiply, up
 from ptmcad.formulas.taylor import extend, series
 

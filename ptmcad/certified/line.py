@@ -25,7 +25,7 @@ from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.zeros import PointCount
 from ptmcad.certified.refinement import CriticalCurve
-from ptmcad.formulas.balls import ball, lower, upper
+from ptmcad.formulas.ballarithmetic import ball, lower, upper
 from ptmcad.formulas.tape import enclosing_floats
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice

@@ -27,8 +27,8 @@ from ptmcad.formulas.affine import (
     run_affine,
     set_frame,
 )
-from ptmcad.formulas.compiled import compiled
-from ptmcad.formulas.intervals import Floats, Indices
+from ptmcad.formulas.compilation import compiled
+from ptmcad.formulas.intervalarithmetic import Floats, Indices
 from ptmcad.formulas.rounding import down, up
 
 MIN_GAIN = 0.5

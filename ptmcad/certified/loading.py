@@ -22,9 +22,9 @@ from ptmcad.certified.branchandprune import isolate
 from ptmcad.certified.curvetubes import tubes
 from ptmcad.certified.equationsystem import EquationSystem, system
 from ptmcad.certified.uniqueness import distinct
-from ptmcad.formulas.compiled import FUNCTIONS, in_turn
+from ptmcad.formulas.compilation import FUNCTIONS, in_turn
 from ptmcad.formulas.graph import Graph
-from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.intervalarithmetic import program, run
 from ptmcad.options import Options
 
 STAGE = "compiling the certified engine, once on this machine:"

@@ -31,7 +31,7 @@ from ptmcad.certified.refinement import CurveEnclosure
 from ptmcad.cover import tubeframes as exact
 from ptmcad.cover.lattice import from_boxes
 from ptmcad.cover.rectangles import Cover, Patch, Rectangle, Tube
-from ptmcad.formulas.intervals import Floats
+from ptmcad.formulas.intervalarithmetic import Floats
 from ptmcad.text.flint_numbers import from_fraction
 
 FINER = 64

@@ -25,8 +25,8 @@ from ptmcad.certified.contraction import (
     row_constant,
 )
 from ptmcad.certified.equationsystem import Arguments
-from ptmcad.formulas.compiled import compiled, inlined
-from ptmcad.formulas.intervals import Floats
+from ptmcad.formulas.compilation import compiled, inlined
+from ptmcad.formulas.intervalarithmetic import Floats
 from ptmcad.formulas.rounding import down, magnitude, mignitude, up
 
 INFLATION = 1e-5

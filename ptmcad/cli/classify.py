@@ -53,7 +53,7 @@ from ptmcad.question.config.typed import Typed
 from ptmcad.question.counts import Count
 from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Slice
-from ptmcad.text.bounds import percent
+from ptmcad.text.numerals import percent
 
 FORMATS = ("json", *PICTURES, *DATA, *MESHES)
 MIN_SECONDS = 0.01

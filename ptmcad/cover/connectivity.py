@@ -230,28 +230,10 @@ def _assembled(
     free, patches = nodes.free, cover.patches
     count = len(parts)
     outside = nodes.frame_of < 0
-    total = [0] * len(free)
-    rest = []
-    for f, patch in enumerate(patches):
-        left, right, bottom, top = patch.frame
-        areas = tubes.part_areas(patch)
-        total[nodes.part[f] : nodes.part[f] + len(areas)] = areas
-        rest.append((right - left) * (top - bottom) - sum(areas))
     is_root = label == np.arange(len(label))  # a label is the smallest node of what is connected
     roots, inverse = np.flatnonzero(is_root), (np.cumsum(is_root) - 1)[label]
     leaves, group = nodes.leaves[outside], inverse[:count][outside]
-    sums = sums_of_areas(leaves, group, len(roots))
-    present = np.zeros(len(roots), dtype=np.bool_)
-    present[group] = True
-    for f, patch in enumerate(patches):
-        for k in range(len(patch.tubes) + 1):
-            node = nodes.part[f] + k
-            sums[inverse[node]] += total[node]
-            present[inverse[node]] |= total[node] > 0
-        clusters = {int(inverse[nodes.tube[f] + k]) for k in range(len(patch.tubes))}
-        for cluster in clusters:  # each may have all of what is not in the parts
-            sums[cluster] += rest[f]
-            present[cluster] = True
+    sums, present = _areas(nodes, patches, inverse, leaves, group, len(roots))
     kind = np.zeros(len(roots), dtype=np.bool_)
     kind[inverse] = free
     # the first from the left and below is the last one that is written; what is in frames alone
@@ -296,6 +278,32 @@ def _assembled(
         owner,
         Frames(tree.labels(parts, nodes.frame_of), owners) if patches else None,
     )
+
+
+def _areas(
+    nodes: _Nodes,
+    patches: tuple[Patch, ...],
+    inverse: Integers,
+    leaves: Integers,
+    group: Integers,
+    groups: int,
+) -> tuple[list[int], NDArray[np.bool_]]:
+    """The area of each group, and whether there is anything of it in the window."""
+    sums = sums_of_areas(leaves, group, groups)
+    present = np.zeros(groups, dtype=np.bool_)
+    present[group] = True
+    for f, patch in enumerate(patches):
+        left, right, bottom, top = patch.frame
+        areas = tubes.part_areas(patch)
+        for k, area in enumerate(areas, nodes.part[f]):
+            sums[inverse[k]] += area
+            present[inverse[k]] |= area > 0
+        rest = (right - left) * (top - bottom) - sum(areas)
+        clusters = {int(inverse[nodes.tube[f] + k]) for k in range(len(patch.tubes))}
+        for cluster in clusters:  # each may have all of what is not in the parts
+            sums[cluster] += rest
+            present[cluster] = True
+    return sums, present
 
 
 def _rectangles(

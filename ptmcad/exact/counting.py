@@ -46,8 +46,8 @@ class Equilibrium(NamedTuple):
     center, radius : decimals.
     signs : of the Hessian's eigenvalues, positive ones first; without a potential, of the stability
         conditions in their order, 0 where one is zero.
-    is_held : whether all conditions for stability are positive; of a potential those that a count
-        asks for besides.
+    is_held : whether all conditions for stability are positive; of a potential the additional
+        ones of a count.
     """
 
     center: tuple[fmpq, ...]

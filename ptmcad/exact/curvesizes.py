@@ -35,7 +35,7 @@ from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.stages import SliceProblem, decomposition_of
 
 MAX_POINTS = 256
-"""On a line; they tell degrees of 60 and more, and tell of more that they are more."""
+"""On a line; they determine degrees of 60 and more, and show that larger ones are larger."""
 _FIRST_POINTS = 24
 _GENERIC = fmpq(10_007), fmpq(20_011)
 """Where the monomial basis is the usual one."""
@@ -57,7 +57,7 @@ class CurveSizes(NamedTuple):
     tables : of the multiplication tables of the unknowns, the degrees in the axes and in both
         together.
     lines : for each axis, whether the line on which its value is zero is a component. It takes
-        hardly any time, and powers of the axis' value are told without it.
+        hardly any time, and powers of the axis' value are known without it.
     """
 
     degrees: tuple[int, int]

@@ -26,19 +26,12 @@ from ptmcad.exact.cad.projection import (
     predicted_cost,
     project,
 )
-from ptmcad.exact.cad.stacks import Avoided, StackData, level_at, lift
+from ptmcad.exact.cad.stacks import StackData, level_at, lift
 from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import to_fraction
 
-
-class Link(NamedTuple):
-    """Cells ``first`` and ``second`` share an open arc; ``component`` is the variety's component on
-    it, or None.
-    """
-
-    first: int
-    second: int
-    component: int | None
+Link = tuple[int, int, int | None]
+"""Two cells that share an open arc, and the variety's component on it, or None."""
 
 
 def merge(keys: Sequence[Hashable], links: Sequence[Link]) -> tuple[int, ...]:
@@ -61,14 +54,14 @@ def merge(keys: Sequence[Hashable], links: Sequence[Link]) -> tuple[int, ...]:
             i = parent[i]
         return i
 
-    for link in links:
-        equal = keys[link.first] == keys[link.second]
-        if link.component is None and not equal:
+    for first, second, component in links:
+        equal = keys[first] == keys[second]
+        if component is None and not equal:
             raise ArithmeticError(
-                f"cells {link.first} and {link.second} are joined off the variety but differ in count"
+                f"cells {first} and {second} are joined off the variety but differ in count"
             )
         if equal:
-            a, b = root(link.first), root(link.second)
+            a, b = root(first), root(second)
             parent[max(a, b)] = min(a, b)
     numbers: dict[int, int] = {}
     return tuple(numbers.setdefault(root(i), len(numbers)) for i in range(len(keys)))
@@ -89,7 +82,7 @@ Report = Callable[[int, int], None]
 
 
 def unreported(_done: int, _total: int) -> None:
-    """The report that nobody asked for."""
+    """No report."""
 
 
 class Variety(NamedTuple):
@@ -211,8 +204,14 @@ def stacks_of(window: Window, variety: Variety, projection: Projection) -> Decom
     base = variety.base
     # there real solutions stay regular but complex ones are lost, and a fibre may not be finite
     lines = lines_of(variety.components, base, HARMLESS)
-    avoided = Avoided(curves_of(variety.components, base, HARMLESS), list(lines.values()))
-    stacks = lift(variety.curves, projection.abscissae, window[base], window[1 - base], avoided)
+    stacks = lift(
+        variety.curves,
+        projection.abscissae,
+        window[base],
+        window[1 - base],
+        curves_of(variety.components, base, HARMLESS),
+        list(lines.values()),
+    )
     points = (
         ((s.sample, height) if base == 0 else (height, s.sample))
         for s in stacks
@@ -244,7 +243,7 @@ def neighbours_of(
 
     Parameters
     ----------
-    keys : by which regions are told apart, of each cell.
+    keys : of each cell, distinguishing regions.
 
     Raises
     ------
@@ -252,7 +251,7 @@ def neighbours_of(
         When the counts contradict the decomposition.
     """
     adjacencies = tuple(adjacencies_of(cut, crossings, keys))
-    region_of = merge(keys, [Link(a.first, a.second, a.component) for a in adjacencies])
+    region_of = merge(keys, [(a.first, a.second, a.component) for a in adjacencies])
     return Neighbours(crossings, adjacencies, region_of)
 
 
@@ -266,7 +265,7 @@ def joined_cells(cut: Decomposition, crossings: Sequence[Crossing]) -> tuple[int
     """
     keys = [()] * len(cut.points)
     links = adjacencies_of(cut, crossings, keys)
-    return merge(keys, [Link(a.first, a.second, None) for a in links if a.component is None])
+    return merge(keys, [(a.first, a.second, None) for a in links if a.component is None])
 
 
 def adjacencies_of(

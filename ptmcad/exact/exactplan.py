@@ -88,7 +88,7 @@ def _has_conditions(slice: Slice) -> bool:
 
 
 def _sign_curve(model: Model, without: frozenset[str]) -> Iterator[PlanStep]:
-    """What could tell indices apart besides det H: nothing of one unknown, and equations have no
+    """What else than det H could distinguish indices: nothing of one unknown, and equations have no
     index.
     """
     order = model.criterion.order

@@ -2,8 +2,8 @@
 depend on rounding.
 
 Guarantee: all real equilibria are there, each once, with its multiplicity; when none is degenerate,
-minima - saddles + maxima is zero. Which of two energies is smaller, or that they are equal, is
-decided by the characteristic polynomial of the energy in the quotient algebra.
+minima - saddles + maxima is zero. Energies that agree in all digits asked for count as equal, in the
+order of the poses alone.
 """
 
 from __future__ import annotations
@@ -13,23 +13,21 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
-from flint import ctx, fmpq
+from flint import fmpq
 
 from ptmcad.algebra.fibre import WorkLimit
-from ptmcad.algebra.fibre_points import FibrePoints, RealPoint, points, real_values
+from ptmcad.algebra.fibre_points import FibrePoints, RealPoint, points
 from ptmcad.algebra.polynomials import Values
-from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import noun
 from ptmcad.exact.continua import is_free
-from ptmcad.exact.models.modelsystem import elements_of, system_from
-from ptmcad.exact.models.system import ParametricSystem, polynomial_at
+from ptmcad.exact.models.modelsystem import system_from
+from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_systems
 from ptmcad.exact.statics import ExactSolution, pose_of, solution_at
 from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled
-from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction
 
 BY_MSOLVE = "the Groebner basis was computed by msolve and proved to be one of the equations"
@@ -62,8 +60,7 @@ def exact_poses(
             f"infinitely many {what}{'' if is_free(system, values) else ', complex ones included'}"
         )
         return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, remark)
-    # where equations are simpler in other angles there are more coordinates than those of the
-    # unknowns
+    # where solutions are left out there is one coordinate more than those of the unknowns
     real = [replace(p, unknowns=p.unknowns[: system.ring.width]) for p in found.real]
     relaxed = dict.fromkeys(given.free_lengths, fmpq(0)) | values
     solutions = [
@@ -74,9 +71,7 @@ def exact_poses(
     degenerate = any(pose.multiplicity > 1 for pose in poses)
     if not degenerate and system.is_on_torus:
         _check_euler_sum(poses)
-    energies = _energy_ranks(given, poses)
-    if energies is None:
-        energies = _exact_energy_ranks(given, values, point, solutions)
+    energies = _energy_ranks(poses)
     # of equal energies the larger value of the separating form comes first, in which ``found.real``
     # increases
     order = sorted(range(len(poses)), key=lambda k: (poses[k].stable is not True, energies[k], -k))
@@ -162,51 +157,14 @@ def _check_euler_sum(poses: Sequence[Pose]) -> None:
         raise ArithmeticError(f"{len(poses)} equilibria with Euler sum {total}")
 
 
-def _energy_ranks(given: Model, poses: Sequence[Pose]) -> list[int] | None:
-    """A number for each pose, ordered as their energies are and equal where these are, as all are
-    without energies.
-
-    None where that takes more than their enclosures.
+def _energy_ranks(poses: Sequence[Pose]) -> list[int]:
+    """A number for each pose, ordered as their energies are; equal where their digits do not separate
+    them, as all are without energies.
     """
     energies = [pose.energy for pose in poses if pose.energy is not None]
-    if len(energies) < len(poses):
-        return [0] * len(poses)
-    ranks = _ranks_by_enclosures(energies)
-    # with X-joints the energy is no polynomial in the algebra's coordinates
-    return ranks if len({*ranks}) == len(poses) or compiled(given).followers else None
-
-
-def _exact_energy_ranks(
-    given: Model, values: Values, point: PointSystem, solutions: Sequence[ExactSolution]
-) -> list[int]:
-    """The same, by the values that the energy takes at all solutions."""
-    (smooth,) = filter(None, [compiled(given).smooth])
-    (energy,) = elements_of(given, [smooth])
-    p = polynomial_at(system_from(given), energy, values)
-    # cosines and sines are at most 1
-    bound = 1 + sum((abs(c) for c in p.values()), fmpq(0)) if point.is_bounded else None
-    taken = real_values(point.algebra, p, bound)
-    return [_rank(solution, taken) for solution in solutions]
-
-
-def _ranks_by_enclosures(energies: Sequence[Enclosure]) -> list[int]:
-    """The same, where energies that all their digits do not tell apart count as equal."""
-    order = sorted(range(len(energies)), key=lambda k: energies[k].center)
-    ranks = [0] * len(energies)
-    for a, b in pairwise(order):
-        ranks[b] = ranks[a] + int(energies[a].high < energies[b].low)
+    ranks = [0] * len(poses)
+    if len(energies) == len(poses):
+        order = sorted(range(len(poses)), key=lambda k: energies[k].center)
+        for a, b in pairwise(order):
+            ranks[b] = ranks[a] + int(energies[a].high < energies[b].low)
     return ranks
-
-
-def _rank(solution: ExactSolution, values: Sequence[RealRoot]) -> int:
-    """Which of the isolated real numbers the energy is."""
-    bits = 64
-    while True:
-        with ctx.workprec(bits):
-            ball = solution.quantities.energy.ball(solution.point.field.evaluation())
-            met = [k for k, root in enumerate(values) if not (ball < root.low or ball > root.high)]
-        if len(met) == 1:
-            return met[0]
-        if not met:
-            raise ArithmeticError("an energy is no root of the energy's characteristic polynomial")
-        bits *= 2

@@ -171,6 +171,7 @@ def _non_adjacencies(
                 reason=gap.reason,
             )
             for gap in crossing.gaps
+            if gap.reason is not None
         ]
         first = following
     return tuple(found)

@@ -28,7 +28,6 @@ from ptmcad.algebra.trigonometric import RationalPolynomial
 from ptmcad.answer.words import with_article
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.models.system import ParametricSystem, at_point, polynomial_at
-from ptmcad.exact.models.turns import in_old_angles
 
 
 class DegeneratePoint(HypothesisError):
@@ -41,8 +40,7 @@ class PointSystem(NamedTuple):
     Attributes
     ----------
     algebra : of all solutions, or of those at which no inequality's polynomial vanishes
-        (`saturated`); then it has one coordinate more, and where equations are simpler in other
-        angles it has those of these angles too.
+        (`saturated`); then it has one coordinate more.
     """
 
     jacobian: tuple[tuple[RationalPolynomial, ...], ...]
@@ -79,9 +77,6 @@ def point_system(
         for conditions in (system.inequalities, system.stability)
     )
     ring = system.ring
-    turns = None if saturated else system.turns
-    if turns is not None:
-        equations, _ = at_point(turns.system, values)
     generators = [e for e in equations if e] + [
         {m: fmpq(c) for m, c in circle.items()} for circle in ring.circles
     ]
@@ -94,8 +89,6 @@ def point_system(
     algebra = quotient(generators, width, most)
     if algebra is None:
         raise DegeneratePoint(f"infinitely many solutions at {text_of_point(values)}")
-    if turns is not None:
-        algebra = in_old_angles(system, algebra, turns)
     return PointSystem(
         jacobian, inequalities, stability, algebra, not (ring.reals or saturated), saturated
     )
@@ -171,7 +164,7 @@ def degree_bound(system: ParametricSystem, values: Values) -> tuple[int, int]:
     """The greatest degree of an equation, and Bezout's bound for the number of complex solutions,
     were it finite.
     """
-    equations, _ = at_point(system.simplest, values)
+    equations, _ = at_point(system, values)
     degrees = [max(map(sum, e), default=0) for e in equations]
     return max(degrees), prod(degrees) * 2 ** len(system.ring.angles)
 

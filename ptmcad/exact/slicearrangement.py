@@ -170,7 +170,7 @@ of its size.
 """
 
 Key = tuple[int, ...]
-"""The count by which regions are told apart."""
+"""The count that distinguishes regions."""
 
 
 class _StackPart(NamedTuple):

@@ -86,7 +86,7 @@ class SliceProblem(NamedTuple):
 
 
 class SampleCounts(NamedTuple):
-    """The equilibria at each cell's sample, and the counts by which regions are told apart."""
+    """The equilibria at each cell's sample, and the counts that distinguish regions."""
 
     found: tuple[Equilibria, ...]
     keys: tuple[tuple[int, ...], ...]
@@ -175,8 +175,10 @@ def _explained(
     # what tells faults apart is loaded only where there is one
     from ptmcad.exact.witness import points, with_folds, with_witness
 
-    told = with_folds(error, problem.slice.model, problem.on, points(problem.window))
-    return with_witness(error, problem.on, problem.window, problem.place) if told is error else told
+    found = with_folds(error, problem.slice.model, problem.on, points(problem.window))
+    return (
+        with_witness(error, problem.on, problem.window, problem.place) if found is error else found
+    )
 
 
 def counts_of(
@@ -191,7 +193,7 @@ def counts_of(
 
 
 def with_keys(problem: SliceProblem, found: Sequence[Equilibria]) -> SampleCounts:
-    """The equilibria with what tells regions apart."""
+    """The equilibria with the keys that distinguish regions."""
     count = problem.slice.count
     is_predicate = count.kind.predicate is not None
     keys = ((e.held,) if is_predicate else count_key(e.counts, count) for e in found)
@@ -199,7 +201,7 @@ def with_keys(problem: SliceProblem, found: Sequence[Equilibria]) -> SampleCount
 
 
 def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
-    """The count by which regions are told apart."""
+    """The count that distinguishes regions."""
     known = counts.number(count)
     return (counts.total,) if known is None else known if isinstance(known, tuple) else (known,)
 

@@ -5,8 +5,8 @@ Guarantee: a number that is rational is given exactly (so what is zero is known 
 every other one is enclosed so narrowly that the digits asked for are settled. A number is found to
 be rational by algebra, never by its enclosure: cosines, sines, coordinates, squared lengths and the
 energy are elements of the real field of the solution; an eigenvalue is a root of a polynomial over
-it; and an angle is a rational number of radians only when it is zero (Lindemann), of degrees only
-when its cosine is that of a root of unity.
+it; and an angle is a rational number of radians only when it is zero (Lindemann), of degrees, as
+far as that is looked for, where the square of its cosine is rational.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from math import gcd
 from typing import Any, NamedTuple
 
 from flint import arb, ctx, fmpq
@@ -25,7 +24,7 @@ from ptmcad.algebra.polynomials import Values
 from ptmcad.answer.poses import Pose, springs_of
 from ptmcad.exact.point_system import PointSystem
 from ptmcad.exact.stiffness import RealNumber, Stiffness, eigenvalues, square_root, stiffness_of
-from ptmcad.formulas.values import evaluated, values
+from ptmcad.formulas.evaluation import evaluated, values
 from ptmcad.model.compile import CompiledSystem
 from ptmcad.model.criterion import Criterion
 from ptmcad.text.balls import ball_of
@@ -38,10 +37,8 @@ unnoticed.
 """
 _OPEN = Enclosure(Fraction(0), Fraction(0))
 """Stands for the enclosure of a number that is not settled, in a pose that nobody is given."""
-_MIN_ORDER = 42
-"""Orders of roots of unity that are tried at least: up to degree 6 a field has cosines of no
-others.
-"""
+_COMMON_DEGREES = 15
+"""Of which 0, 30, 45, 60 and 90 degrees are multiples."""
 
 
 class Quantities(NamedTuple):
@@ -272,37 +269,16 @@ def _angle(cosine: RealNumber, sine: RealNumber) -> RealNumber:
 
 
 def _degrees(angle: RealNumber, cosine: FieldElement) -> RealNumber:
-    """The angle in degrees; it is exact when it is rational, that is when cos + i sin is a root of
-    unity.
+    """The angle in degrees; exact where four times the square of the cosine is a whole number.
+
+    That is where both are rational (Niven).
     """
     if angle.exact is not None:
         return angle
-    if cosine.rational == -1:
-        return RealNumber(Fraction(180), arb(180))
-    turns = angle.ball / (2 * arb.pi())
-    if turns.rel_accuracy_bits() < ctx.prec // 2:
-        return RealNumber(
-            None, arb.nan()
-        )  # a wide ball holds many fractions, and each is tried by algebra
-    # a field of degree d has cosines of those of totient at most 2d, and n is at most twice its
-    # totient's square
-    degree = cosine.field.modulus.degree
-    for order in range(3, (_MIN_ORDER if degree <= 6 else 8 * degree**2) + 1):
-        number = (turns * order).unique_fmpz()
-        # other fractions are in lowest terms with a smaller order, and 0 and 1/2 are where the sine
-        # is zero
-        if (
-            number is not None
-            and gcd(int(number), order) == 1
-            and _chebyshev(order, cosine).rational == 1
-        ):
-            return RealNumber(Fraction(360 * int(number), order), turns * 360)
-    return RealNumber(None, turns * 360)
-
-
-def _chebyshev(order: int, cosine: FieldElement) -> FieldElement:
-    """cos(order * angle)."""
-    last, this = cosine.field.constant(fmpq(1)), cosine
-    for _ in range(order - 1):
-        last, this = this, (cosine * this).times(fmpq(2)) - last
-    return this
+    degrees = angle.ball * 180 / arb.pi()
+    if (cosine * cosine).times(fmpq(4)).rational not in range(5):
+        return RealNumber(None, degrees)
+    number = (degrees / _COMMON_DEGREES).unique_fmpz()
+    if number is None:
+        return RealNumber(None, arb.nan())
+    return RealNumber(Fraction(_COMMON_DEGREES * int(number)), degrees)

@@ -94,9 +94,7 @@ def eigenvalues(
     entries = [[number(entry).ball for entry in row] for row in stiffness.hessian]
     try:
         found = acb_mat(size, size, [x for row in entries for x in row]).eig(multiple=True)
-    except (
-        ValueError
-    ):  # the balls are too wide for the eigenvalues to be told from each other's clusters
+    except ValueError:  # the balls are too wide to separate the eigenvalues' clusters
         return unknown
     balls = sorted((value.real for value in found), key=lambda ball: float(ball.mid()))
     near_zero = [ball for ball in balls if ball.contains(0)]

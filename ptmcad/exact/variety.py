@@ -126,9 +126,8 @@ def discriminant_variety(
     for factors, why in ((hidden, NO_POINT), (proved, HARMLESS), (doubtful, "")):
         seen.adopt([f for f in factors if f in unbounded], Kind.INFINITY, why)
     if "sign-curve" in without:
-        simplest = on.system.simplest
         for order in range(1, on.system.criterion.order):
-            minor = element_on_slice(simplest, leading_minor(simplest, order), on.parameters)
+            minor = element_on_slice(on.system, leading_minor(on.system, order), on.parameters)
             seen.adopt(
                 irreducible_factors(norm(algebra, lifted(minor, equations.unknowns))[0]),
                 Kind.AUXILIARY,

@@ -3,9 +3,9 @@
 Guarantee: the graph (`graph`) is exact; each evaluator says what its values enclose. Both engines,
 pictures and pages use it; the checker has formulas of its own.
 
-`values` evaluates formulas in any numbers that can be added and multiplied: rationals, bounds,
-polynomials over Q(x, y). `doubles` are for formulas that are evaluated often, at many points at
-once; a `script` is formulas as data for a page. A `tape` is formulas written out as data, which the
-evaluators that are `compiled` once for all run on boxes: in `intervals`, in `affine` forms, on
-`taylor` series; and `balls` at any precision.
+`evaluation` is in any numbers that can be added and multiplied: rationals, bounds, polynomials over
+Q(x, y). `instructions` are for formulas that are evaluated often, at many points at once, and for
+pages. A `tape` is formulas written out as data, which the evaluators that are compiled once for all
+(`compilation`) run on boxes: in `intervalarithmetic`, in `affine` forms, on `taylor` series; and in
+`ballarithmetic` at any precision.
 """

@@ -26,8 +26,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.formulas.compiled import compiled
-from ptmcad.formulas.intervals import (
+from ptmcad.formulas.compilation import compiled
+from ptmcad.formulas.intervalarithmetic import (
     ADD,
     CONSTANT,
     COSINE,

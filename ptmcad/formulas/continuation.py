@@ -17,7 +17,7 @@ from fractions import Fraction
 
 from flint import arb, arb_mat, ctx, fmpq
 
-from ptmcad.formulas.balls import evaluated, run_arb
+from ptmcad.formulas.ballarithmetic import evaluated, run_arb
 from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.text.balls import ball_of, ball_over

@@ -1,9 +1,9 @@
 """Formulas: expressions in variables, shared as nodes of one graph, with exact constants and exact
-derivatives.
+derivatives; gradients and determinants of a few rows, and rational functions of the two axes.
 
 Guarantee: a node is created once for the same operation on the same nodes; rational constants are
 folded exactly; and terms that are zero, such as those of a load or a free length that a slice does
-not have, are left out.
+not have, are left out. Determinants are exact identities.
 
 >>> graph = Graph()
 >>> x, y = graph.variable(0), graph.variable(1)
@@ -15,11 +15,13 @@ True
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from fractions import Fraction
 from typing import Any
+
+from ptmcad.text.expressions import Expression, Term
 
 
 class Operation(IntEnum):
@@ -271,3 +273,64 @@ def _operand(formula: Formula) -> Formula:
 
 def _sorted(a: Formula, b: Formula) -> tuple[Formula, Formula]:
     return (a, b) if a.number <= b.number else (b, a)
+
+
+Rows = Sequence[tuple[Formula, ...]]
+
+
+def gradient(f: Formula, variables: Iterable[int]) -> tuple[Formula, ...]:
+    """The derivatives by the variables of these numbers."""
+    return tuple(f.graph.derivative(f, k) for k in variables)
+
+
+def determinant(matrix: Rows) -> Formula:
+    """Of a square matrix with at least one row."""
+    if len(matrix) == 1:
+        return matrix[0][0]
+    total = matrix[0][0].graph.constant(0)
+    for j, entry in enumerate(matrix[0]):
+        minor = determinant(_without(matrix[1:], j))
+        total = total + entry * minor if j % 2 == 0 else total - entry * minor
+    return total
+
+
+def cofactors(rows: Rows) -> tuple[Formula, ...]:
+    """What a further row's entries are multiplied by in the determinant: a vector at right angles
+    to all rows.
+
+    Parameters
+    ----------
+    rows : one fewer than columns, and at least one.
+    """
+    minors = (determinant(_without(rows, k)) for k in range(len(rows) + 1))
+    return tuple(minor if (len(rows) + k) % 2 == 0 else -minor for k, minor in enumerate(minors))
+
+
+def _without(rows: Rows, column: int) -> Rows:
+    return [row[:column] + row[column + 1 :] for row in rows]
+
+
+def expression_formula(graph: Graph, expression: Expression) -> Formula:
+    """A rational function of the axes, by Horner's rule in the first axis over polynomials in the
+    second.
+    """
+    return _polynomial(graph, expression.numerator) / _polynomial(graph, expression.denominator)
+
+
+def _polynomial(graph: Graph, terms: tuple[Term, ...]) -> Formula:
+    rows: dict[int, dict[int, Fraction]] = {}
+    for i, j, c in terms:
+        rows.setdefault(i, {})[j] = c
+    x, y = graph.variable(0), graph.variable(1)
+    coefficients = {
+        i: _horner(graph, {j: graph.constant(c) for j, c in row.items()}, y)
+        for i, row in rows.items()
+    }
+    return _horner(graph, coefficients, x)
+
+
+def _horner(graph: Graph, coefficients: Mapping[int, Formula], variable: Formula) -> Formula:
+    value = graph.constant(0)
+    for power in range(max(coefficients, default=0), -1, -1):
+        value = value * variable + coefficients.get(power, 0)
+    return value

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from math import floor, inf, sqrt
 
-from ptmcad.formulas.compiled import compiled, inlined
+from ptmcad.formulas.compilation import compiled, inlined
 
 UNIT = 1.5 * 2.0**-52
 """An operation rounded to nearest, and the step that makes up for it, err by less than this part of

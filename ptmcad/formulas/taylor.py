@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.formulas.compiled import ONE, ZERO, compiled, inlined
-from ptmcad.formulas.intervals import (
+from ptmcad.formulas.compilation import ONE, ZERO, compiled, inlined
+from ptmcad.formulas.intervalarithmetic import (
     ADD,
     CONSTANT,
     COSINE,

@@ -7,11 +7,11 @@ ring.
 
 from __future__ import annotations
 
+from ptmcad.model.builtin import built_in, known_of, mechanism_of, ptm, recognised
 from ptmcad.model.description import ClosedMechanism, Mechanism, Model, System
 from ptmcad.model.elements import Kind, Parameter, Support
-from ptmcad.model.mechanisms import built_in, known_of, mechanism_of, ptm, recognised
-from ptmcad.model.record import described, read_mechanism
-from ptmcad.model.systems import described_system, read_system
+from ptmcad.model.mechanismrecord import described, read_mechanism
+from ptmcad.model.systemrecord import described_system, read_system
 
 __all__ = [
     "ClosedMechanism",

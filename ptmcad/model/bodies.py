@@ -14,7 +14,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from ptmcad.errors import ConfigError
-from ptmcad.model.elements import LEVEL, Place, XJoint
+from ptmcad.model.antiparallelogram import XJoint
+from ptmcad.model.elements import LEVEL, Place
 from ptmcad.model.reading import (
     MAX_BODIES,
     MAX_UNKNOWNS,

@@ -14,8 +14,8 @@ from ptmcad.formulas.graph import Formula
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.model.crossed import MAX_PRODUCTS
 from ptmcad.model.description import ClosedMechanism, Mechanism, Model, equations_in
-from ptmcad.model.identities import Ring
-from ptmcad.model.sizes import MAX_TERMS, TOO_LARGE, Sizes
+from ptmcad.model.identities import PolynomialRing
+from ptmcad.model.termbounds import MAX_TERMS, TOO_LARGE, Sizes
 from ptmcad.model.work import tree_of
 from ptmcad.text.tree import Tree
 
@@ -73,7 +73,9 @@ def conditions_of(model: Model) -> tuple[Trees, Mapping[str, Tree], Trees]:
     system = compiled(model)
 
     def written(formulas: Sequence[Formula]) -> Trees:
-        return tuple(tree_of(p, model.angles) for p in system.values(formulas, Ring(MAX_PRODUCTS)))
+        return tuple(
+            tree_of(p, model.angles) for p in system.values(formulas, PolynomialRing(MAX_PRODUCTS))
+        )
 
     if system.are_slopes:
         return (), model.conditions, ()

@@ -6,8 +6,8 @@ read it; the checker does not.
 
 Guarantee: exact, and nothing is known by name: each formula follows from the description's
 expressions. All are polynomials in the parameters, the unknowns on the line, and the cosines and
-sines of angles; what a spring with a free length takes off the energy is kept beside them, as that
-has a root.
+sines of angles; what a spring with a free length takes off the energy is kept apart, as that has a
+root.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from operator import sub
 from typing import TypeVar
 
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.graph import Formula, Graph
-from ptmcad.formulas.values import Substitution, values
-from ptmcad.formulas.values import evaluated as with_values
-from ptmcad.model import crossed, loops
+from ptmcad.formulas.evaluation import Substitution, values
+from ptmcad.formulas.evaluation import evaluated as with_values
+from ptmcad.formulas.graph import Formula, Graph, gradient
+from ptmcad.model import closedloops as loops
+from ptmcad.model import crossed
+from ptmcad.model.antiparallelogram import second_bar
 from ptmcad.model.criterion import Criterion
 from ptmcad.model.crossed import Follower
 from ptmcad.model.description import Mechanism, Model, equations_in
-from ptmcad.model.determinants import gradient
-from ptmcad.model.elements import second_bar
-from ptmcad.model.evaluate import ByNames, Element, Ring, evaluate, evaluated
+from ptmcad.model.evaluate import ByNames, Ring, RingElement, evaluate, evaluated
 from ptmcad.model.springs import AngularSpring, ElasticLine, Vector
 from ptmcad.model.work import split_moments
 from ptmcad.text.tree import Tree
 
-E = TypeVar("E", bound=Element)
+E = TypeVar("E", bound=RingElement)
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +173,7 @@ class CompiledSystem:
         return self.energy(relaxed) if self.criterion.order else None
 
     def stored(self, relaxed: Iterable[int] | None = None) -> Formula | None:
-        """The same, whatever acts beside it."""
+        """The same, whatever else acts."""
         if self.smooth is None:
             return None
         counted = range(len(self.springs)) if relaxed is None else relaxed
@@ -261,15 +261,15 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
 
 def _with_followers(
     known: CompiledSystem, model: Model, variables: Mapping[str, Formula]
-) -> crossed.AngleConditions:
+) -> loops.EquilibriumConditions:
     """What holds in the unknowns alone. It is multiplied out in names, which variables have in
     their own places.
     """
     if any(formula is not known.graph.variable(k) for k, formula in enumerate(variables.values())):
         own = compiled(model)
         places = {k: variables[name] for k, name in enumerate(own.names)}
-        found = own.equations, own.inequalities[len(known.inequalities) :], own.stability
-        return crossed.AngleConditions(*with_values(found, Substitution(known.graph, places)))
+        found = own.equations, own.stability, (), own.inequalities[len(known.inequalities) :]
+        return loops.EquilibriumConditions(*with_values(found, Substitution(known.graph, places)))
     assert known.smooth is not None
     moments = dict(zip(model.sorted_unknowns, known.moments, strict=True))
     return crossed.conditions(known.smooth, known.followers, moments, variables)
@@ -373,4 +373,4 @@ def _with_loops(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> Com
     own = len(known.unknowns) - len(mechanism.force_densities)
     tensions = tuple(map(known.graph.variable, known.unknowns[own:]))
     found = loops.conditions(tuple(closing), known.forces[:own], known.unknowns[:own], tensions)
-    return replace(known, **found._asdict())
+    return replace(known, **found._replace(inequalities=known.inequalities)._asdict())

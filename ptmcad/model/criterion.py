@@ -1,4 +1,4 @@
-"""What is known of a solution beside that it is one: whether it is stable, and its index.
+"""The stability and the index of a solution, as far as they are known.
 
 Guarantee: a model has one criterion, which decides, counts and names what is known in its case.
 Whoever needs a number, a word or a matrix asks for that; where nothing is known there is none.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from ptmcad.text.tree import Tree, to_text
 
@@ -109,7 +109,7 @@ class Criterion:
         return stable is True or not self.is_told
 
     def kind(self, stable: bool | None, index: int | None) -> str:
-        """What a solution is called where it stands beside others."""
+        """The name of a solution among others."""
         if stable is None:
             return self.undecided
         return critical_point(index, self.order) if index else "stable" if stable else "unstable"
@@ -128,14 +128,6 @@ class Criterion:
     def entry(self, row: int, column: int) -> tuple[int, int]:
         """Which of the equal entries of the matrix stands for one."""
         return (max(row, column), min(row, column)) if self.order else (row, column)
-
-    def turned(self, equations: Sequence[Any], i: int, j: int, sign: int) -> tuple[Any, ...]:
-        """Equations where the angle i is a new one and sign times the angle j: slopes are those by
-        the new angles.
-        """
-        if not self.order:
-            return tuple(equations)
-        return tuple(e + sign * equations[i] if k == j else e for k, e in enumerate(equations))
 
     def decisive(self, conditions: tuple[T, ...]) -> tuple[T, ...]:
         """Those of the conditions for stability off whose zeros no solution loses it."""

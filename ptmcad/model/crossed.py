@@ -24,12 +24,12 @@ from math import prod
 from typing import NamedTuple
 
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.values import values
-from ptmcad.model.determinants import determinant
+from ptmcad.formulas.evaluation import values
+from ptmcad.formulas.graph import Formula, determinant
+from ptmcad.model.closedloops import EquilibriumConditions
 from ptmcad.model.evaluate import ByNames
-from ptmcad.model.identities import Polynomial, Ring
-from ptmcad.model.sizes import MAX_TERMS, TOO_LARGE
+from ptmcad.model.identities import Polynomial, PolynomialRing
+from ptmcad.model.termbounds import MAX_TERMS, TOO_LARGE
 
 MAX_PRODUCTS = 2_000_000
 """Products of terms while the energy is made: some seconds. Two joints with symbolic lengths take a
@@ -56,27 +56,13 @@ class Follower(NamedTuple):
     below: Formula
 
 
-class AngleConditions(NamedTuple):
-    """What holds in the unknowns alone.
-
-    Attributes
-    ----------
-    equations : e_i, for each unknown.
-    inequalities, stability : positive at all solutions, and at stable ones.
-    """
-
-    equations: tuple[Formula, ...]
-    inequalities: tuple[Formula, ...]
-    stability: tuple[Formula, ...]
-
-
 def conditions(
     energy: Formula,
     followers: Sequence[Follower],
     moments: Mapping[str, Formula],
     variables: Mapping[str, Formula],
-) -> AngleConditions:
-    """What holds at equilibria, multiplied out.
+) -> EquilibriumConditions:
+    """What holds at equilibria in the unknowns alone, multiplied out: the equations are the e_i.
 
     Parameters
     ----------
@@ -90,7 +76,7 @@ def conditions(
         When the equations may have too many terms.
     """
     names = tuple(variables)
-    expanded = ByNames(names, Ring(MAX_PRODUCTS))
+    expanded = ByNames(names, PolynomialRing(MAX_PRODUCTS))
     left, *steady = values([energy, *moments.values()], expanded)
     bars = [
         _SecondBar(names[f.leader], names[f.variable], *values(f[2:], expanded)) for f in followers
@@ -101,10 +87,10 @@ def conditions(
     if sum(len(e.terms) for e in equations) > MAX_TERMS or most > MAX_MINOR:
         raise ExpressionError(f"{TOO_LARGE}; numbers for lengths make it smaller")
     hessian = [tuple(_formula(entry, variables) for entry in row) for row in rows]
-    return AngleConditions(
+    return EquilibriumConditions(
         tuple(_formula(e, variables) for e in equations),
-        tuple(follower.below for follower in followers) if len(followers) > 1 else (),
         tuple(determinant([row[:k] for row in hessian[:k]]) for k in range(1, len(hessian) + 1)),
+        inequalities=tuple(f.below for f in followers) if len(followers) > 1 else (),
     )
 
 

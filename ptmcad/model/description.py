@@ -3,7 +3,7 @@ expressions.
 
 And any other parametric system: equations or a potential, and what a solution has to satisfy.
 
-Guarantee: what `ptmcad.model.record` has read is consistent: every name that occurs is a parameter,
+Guarantee: what `ptmcad.model.mechanismrecord` has read is consistent: every name that occurs is a parameter,
 an unknown or a point, angles stand inside of cosines and sines only, and every tree has a value in
 any ring (`evaluate`).
 """
@@ -16,6 +16,7 @@ from functools import cached_property
 from typing import Any
 
 from ptmcad.errors import ExpressionError
+from ptmcad.model.antiparallelogram import XJoint
 from ptmcad.model.criterion import CONDITIONS, DEFINITENESS, NOTHING, Criterion, by_hessian
 from ptmcad.model.elements import (
     NAMES,
@@ -30,7 +31,6 @@ from ptmcad.model.elements import (
     TorsionSpring,
     Unit,
     UnknownKind,
-    XJoint,
 )
 from ptmcad.model.evaluate import multiples
 from ptmcad.model.parametric import UNITS, Model, Nouns

@@ -33,7 +33,7 @@ _QUOTIENT = (
 )
 
 
-class Element(Protocol):
+class RingElement(Protocol):
     """What the values of a ring can do."""
 
     def __add__(self, other: Any, /) -> Any: ...
@@ -43,8 +43,8 @@ class Element(Protocol):
     def __mul__(self, other: Any, /) -> Any: ...
 
 
-E = TypeVar("E", bound=Element)
-_E_co = TypeVar("_E_co", bound=Element, covariant=True)
+E = TypeVar("E", bound=RingElement)
+_E_co = TypeVar("_E_co", bound=RingElement, covariant=True)
 
 
 class Ring(Protocol[_E_co]):

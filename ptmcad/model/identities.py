@@ -35,7 +35,7 @@ class Polynomial:
 
     __slots__ = ("ring", "terms")
 
-    def __init__(self, ring: Ring, terms: dict[Monomial, Fraction]):
+    def __init__(self, ring: PolynomialRing, terms: dict[Monomial, Fraction]):
         self.ring = ring
         self.terms = terms
 
@@ -85,7 +85,7 @@ class Polynomial:
         return self._collected(slopes)
 
 
-class Ring:
+class PolynomialRing:
     """Q[parameters, lengths][cos, sin], as a ring in which trees have values; it stops after so
     much work.
     """
@@ -149,11 +149,11 @@ class Points:
     def __init__(
         self,
         mechanism: Mechanism,
-        ring: Ring | None = None,
+        ring: PolynomialRing | None = None,
         images: Mapping[str, Tree] | None = None,
     ):
         self.mechanism = mechanism
-        self.ring = ring or Ring()
+        self.ring = ring or PolynomialRing()
         self.images = images or {}
         self.placed = Named(
             self.ring,

@@ -29,7 +29,7 @@ from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula
 from ptmcad.model.compile import compiled
 from ptmcad.model.elements import UnknownKind
-from ptmcad.model.identities import Monomial, Polynomial, Ring
+from ptmcad.model.identities import Monomial, Polynomial, PolynomialRing
 from ptmcad.model.parametric import Model
 from ptmcad.text.expressions import Expressions, constant
 
@@ -51,7 +51,7 @@ constant.
 """
 
 
-class _Part(NamedTuple):
+class _KeptPolynomial(NamedTuple):
     """A polynomial that an involution takes to one of some polynomials, or to the negative of one
     if it may.
     """
@@ -179,7 +179,7 @@ def involutions(
     return list(dict.fromkeys(found))[1:]  # the identity comes first
 
 
-class SliceRing(Ring):
+class SliceRing(PolynomialRing):
     """The ring with the slice's parameters in it, as polynomials in the axes, measured from the
     window's middle.
 
@@ -216,7 +216,7 @@ class SliceRing(Ring):
         return total * self.variable(f"over {given.denominator}")
 
 
-def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
+def _parts(model: Model, ring: SliceRing) -> Iterator[_KeptPolynomial]:
     """What an involution has to keep, but for the order."""
     system = compiled(model)
     unknowns = {name for u in model.unknowns for name in (u, f"cos {u}", f"sin {u}")}
@@ -250,10 +250,10 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_Part]:
         kept += [[felt], [marked(dict(moments))], lengths]
     elif lengths:
         raise ExpressionError("free lengths are in none of a closed loop's equations")
-    yield from (_Part(f, images) for images in kept for f in images)
+    yield from (_KeptPolynomial(f, images) for images in kept for f in images)
     if not system.are_slopes:
         equations = [p.terms for p in values(system.equations)]
-        yield from (_Part(f, equations, True) for f in equations)
+        yield from (_KeptPolynomial(f, equations, True) for f in equations)
 
 
 class _Change(NamedTuple):
@@ -319,7 +319,7 @@ class _Change(NamedTuple):
         return tuple(sorted(powers)), mask
 
 
-def _kept(change: _Change, parts: Sequence[_Part], known: _Bits) -> list[_Bits]:
+def _kept(change: _Change, parts: Sequence[_KeptPolynomial], known: _Bits) -> list[_Bits]:
     """The equations for the bits with which all polynomials are kept, for each choice of what they
     become.
     """

@@ -6,9 +6,9 @@ not turn. As complex numbers, the way from one point of a rigid part to another 
 where n are whole numbers and u the angles: n is the part's direction. A spring on the angle m.u
 belongs to a point at which parts meet whose directions differ by m or by -m.
 
-Guarantee: exact; the direction is read off the derivatives by the unknowns. A joint is told only
+Guarantee: exact; the direction is read off the derivatives by the unknowns. A joint is named only
 where there is one such point, else none: the sides of a parallelogram have the same angle at two
-points, and a description may show neither part. What is told is for drawings alone.
+points, and a description may show neither part. It is for drawings alone.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ptmcad.errors import ExpressionError
 from ptmcad.model.description import Mechanism
 from ptmcad.model.elements import Support, TorsionSpring
 from ptmcad.model.evaluate import multiples
-from ptmcad.model.identities import Points, Ring
+from ptmcad.model.identities import Points, PolynomialRing
 
 MAX_WORK = 20_000
 """Products of terms for all the points' coordinates; larger ones have no derived joints."""
@@ -40,7 +40,7 @@ class Joint(NamedTuple):
     towards: str = ""
 
 
-class _Part(NamedTuple):
+class _RigidPart(NamedTuple):
     points: tuple[str, ...]
     direction: Direction
 
@@ -52,7 +52,7 @@ def joints_of(mechanism: Mechanism) -> tuple[Joint | None, ...]:
     """
     if not mechanism.torsion:
         return ()
-    meeting: dict[str, dict[Direction, _Part]] = {}
+    meeting: dict[str, dict[Direction, _RigidPart]] = {}
     try:
         for part in _parts(mechanism):
             for point in part.points:
@@ -82,14 +82,16 @@ def _joint_at(mechanism: Mechanism, point: str) -> Joint:
 
 
 def _derived(
-    mechanism: Mechanism, meeting: Mapping[str, Mapping[Direction, _Part]], spring: TorsionSpring
+    mechanism: Mechanism,
+    meeting: Mapping[str, Mapping[Direction, _RigidPart]],
+    spring: TorsionSpring,
 ) -> Joint | None:
     """The joint by the parts that meet at each point."""
     turned = multiples(spring.angle)
     angle = [turned.get(name, Fraction(0)) for name in _turning(mechanism)]
     if not any(angle):
         return None
-    found: dict[str, _Part] = {}
+    found: dict[str, _RigidPart] = {}
     for point, parts in meeting.items():
         for direction in parts:
             other = tuple(m - n for m, n in zip(direction, angle, strict=True))
@@ -106,15 +108,15 @@ def _turning(mechanism: Mechanism) -> tuple[str, ...]:
     return (*mechanism.angles, *mechanism.followers)
 
 
-def _parts(mechanism: Mechanism) -> Iterator[_Part]:
+def _parts(mechanism: Mechanism) -> Iterator[_RigidPart]:
     """The frame, then bars and bodies, as far as they have a direction."""
     sliding = [name for name, kind in mechanism.supports.items() if kind is not Support.PIN]
     frame = tuple(n for n in mechanism.points if n not in mechanism.moving or n in sliding)
-    yield _Part(frame, tuple(Fraction(0) for _ in _turning(mechanism)))
-    places = Points(mechanism, Ring(MAX_WORK))
+    yield _RigidPart(frame, tuple(Fraction(0) for _ in _turning(mechanism)))
+    places = Points(mechanism, PolynomialRing(MAX_WORK))
     for points in (*mechanism.bars, *mechanism.bodies.values()):
         for pair in combinations(points, 2):
             turns = places.turning(*pair)
             if turns is not None and not any(turns[name] for name in mechanism.reals):
-                yield _Part(points, tuple(turns[name] for name in _turning(mechanism)))
+                yield _RigidPart(points, tuple(turns[name] for name in _turning(mechanism)))
                 break

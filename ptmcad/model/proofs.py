@@ -78,7 +78,7 @@ def check_numbers(model: Model, faults: Faults) -> None:
     """Note each stiffness or length that is a number, and one that makes no sense."""
     for part in model.parts:
         if names_of(part.tree):
-            continue  # a slice tells what it is in its window
+            continue  # it has a value in the window of a slice only
         with faults:
             if problem := part.fault(value_at(part.tree, {})):
                 raise ConfigError(problem, key=part.key)

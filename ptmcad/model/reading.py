@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.model.elements import Kind, Parameter, UnknownKind
 from ptmcad.model.evaluate import evaluate, value_at
-from ptmcad.model.sizes import Size, Sizes
+from ptmcad.model.termbounds import Size, Sizes
 from ptmcad.model.trees import PI, ZERO, split_angle, without_quarter_turns
 from ptmcad.text.codec import Codec, Key, choice, part, reading, record
 from ptmcad.text.entry import Scalar, as_written

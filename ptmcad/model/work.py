@@ -19,7 +19,7 @@ from typing import NamedTuple
 from ptmcad.model.description import Mechanism, Model
 from ptmcad.model.elements import Moment
 from ptmcad.model.evaluate import evaluate, value_at
-from ptmcad.model.identities import Monomial, Polynomial, Ring
+from ptmcad.model.identities import Monomial, Polynomial, PolynomialRing
 from ptmcad.model.trees import product, total
 from ptmcad.text.numerals import Numbers
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, names_of
@@ -48,7 +48,7 @@ class Split(NamedTuple):
 
     @property
     def beside(self) -> tuple[Moment, ...]:
-        """What acts beside all energies."""
+        """The moments that act in addition to all energies."""
         return self.steady + self.coupled
 
 
@@ -69,7 +69,7 @@ def split_moments(mechanism: Model) -> Split:
         if unknown not in names_of(moment):
             steady.append(Moment(unknown, moment))
             continue
-        constant, energy = _integrated(evaluate(moment, Ring(MAX_WORK)), unknown)
+        constant, energy = _integrated(evaluate(moment, PolynomialRing(MAX_WORK)), unknown)
         if constant.terms:
             steady.append(Moment(unknown, tree_of(constant, mechanism.angles)))
         if energy.terms:

@@ -15,8 +15,8 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from ptmcad.model import Mechanism, Model
+from ptmcad.model.builtin import title_of
 from ptmcad.model.elements import difference, squared
-from ptmcad.model.mechanisms import title_of
 from ptmcad.model.trees import negative, total
 from ptmcad.text.tree import Tree
 

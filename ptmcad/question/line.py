@@ -11,8 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.errors import A_SLICE, ConfigError, ExpressionError, expect
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.graph import Graph
+from ptmcad.formulas.graph import Graph, expression_formula
 from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled_with
 from ptmcad.question.slice import Axis, Slice, have_free_lengths, without_free_lengths

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from ptmcad.errors import ConfigError
-from ptmcad.formulas.doubles import Doubles
+from ptmcad.formulas.instructions import Doubles
 from ptmcad.model import Mechanism
 from ptmcad.model.compile import compiled
 from ptmcad.model.joints import joints_of

@@ -15,8 +15,7 @@ from functools import partial
 from keyword import kwlist
 
 from ptmcad.text.numerals import integer_text
-from ptmcad.text.plane import PlanePolynomial
-from ptmcad.text.terms import signed_terms
+from ptmcad.text.plane import PlanePolynomial, signed_terms
 
 
 class Style(Enum):

@@ -14,7 +14,7 @@ from ptmcad.show.document import designdocument, mapdocument, posedocument
 from ptmcad.show.document.varietydocument import FORMAT as VARIETY
 from ptmcad.show.document.varietydocument import variety_codec
 from ptmcad.show.ranges import document as ranges
-from ptmcad.text.codec import Schema, document_schema
+from ptmcad.text.documents import Schema, document_schema
 
 PROSE = ("$schema", "title", "description")
 

@@ -14,8 +14,7 @@ from ptmcad.answer.timings import COMPILATION
 from ptmcad.answer.words import count_words, noun, several
 from ptmcad.question.counts import Count
 from ptmcad.show.units import area_unit
-from ptmcad.text.bounds import certified_digits, interval_text, percent
-from ptmcad.text.numerals import magnitude
+from ptmcad.text.numerals import certified_digits, interval_text, magnitude, percent
 
 if TYPE_CHECKING:  # a map of the exact engine has no cover
     from ptmcad.cover.rectangles import Cover

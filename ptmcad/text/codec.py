@@ -8,8 +8,7 @@ its place. Records are read by codecs too (`part`, `reading`).
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import MISSING, Field, fields
 from enum import Enum
 from fractions import Fraction
@@ -18,13 +17,13 @@ from operator import attrgetter, or_
 from types import MappingProxyType, NoneType
 from typing import Any, Generic, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
 
+from ptmcad.text.documents import CLASS, Schema
 from ptmcad.text.node import Node
 from ptmcad.text.numerals import integer_text, shortest_text, text_of
 
 T = TypeVar("T")
 S = TypeVar("S")
 Choice = TypeVar("Choice", bound=Enum)
-Schema = Mapping[str, Any]
 
 
 class Codec(NamedTuple, Generic[T]):
@@ -52,7 +51,6 @@ def _itself(value: Any) -> Any:
     return value
 
 
-RATIONAL_SCHEMA = {"type": "string", "pattern": r"^-?[0-9]+(/[0-9]+|(\.[0-9]+)?(e-?[0-9]{1,6})?)$"}
 _RATIONAL = {"$ref": "#/$defs/rational"}
 
 TEXT: Codec[str] = Codec(_itself, Node.text, {"type": "string"})
@@ -366,7 +364,7 @@ def record_of(
     for name, key in bare.items():
         found[name] = key._replace(codec=codec_of(hints[key.field or name], known))
     made = record(make or kind, **{name: key for name, key in found.items() if key is not None})
-    return made.narrowed(**{_CLASS: kind.__name__})
+    return made.narrowed(**{CLASS: kind.__name__})
 
 
 def row_of(kind: type[T], make: Callable[..., T] | None = None) -> Codec[T]:
@@ -418,73 +416,3 @@ def _hints(kind: Any, names: tuple[str, ...]) -> dict[str, Any]:
         {"__annotations__": {n: written[n] for n in names}, "__module__": kind.__module__},
     )
     return get_type_hints(some)
-
-
-# ---------------------------------------------------------------------------------------------------------- documents
-
-
-def document_text(format: str, data: Mapping[str, Any], further: tuple[str, ...] = ()) -> str:
-    """A document as JSON text: a key a line, and of lists of objects each on a line, so that
-    differences stay small.
-
-    Parameters
-    ----------
-    further : lines of keys that are written already.
-    """
-    lines = [f'  "format": {json.dumps(format)}']
-    for key, value in data.items():
-        text = json.dumps(value, ensure_ascii=False)
-        if isinstance(value, list) and value and isinstance(value[0], dict):
-            items = ",\n".join("    " + json.dumps(item, ensure_ascii=False) for item in value)
-            text = f"[\n{items}\n  ]"
-        lines.append(f"  {json.dumps(key)}: {text}")
-    return "{\n" + ",\n".join((*lines, *further)) + "\n}\n"
-
-
-_CLASS = "$class"
-"""Which class a schema is of, until it is complete."""
-
-
-def document_schema(format: str, schema: Schema) -> dict[str, Any]:
-    """The JSON Schema of a document, without its prose; what a class has in several places is
-    defined apart.
-    """
-    forms: dict[str, list[Schema]] = {}
-    for found in _of_classes(schema):
-        forms.setdefault(found[_CLASS], []).append(found)
-    shared = {
-        name
-        for name, found in forms.items()
-        if len(found) > 1 and all(form == found[0] for form in found)
-    }
-    whole = _without(schema, shared)
-    definitions = {
-        name: _without({**forms[name][0], _CLASS: ""}, shared) for name in sorted(shared)
-    }
-    return {
-        **whole,
-        "properties": {"format": {"const": format}, **whole["properties"]},
-        "required": ["format", *whole["required"]],
-        "$defs": {"rational": RATIONAL_SCHEMA, **definitions},
-    }
-
-
-def _of_classes(schema: Any) -> Iterator[Schema]:
-    """The parts of a schema that are those of classes."""
-    if isinstance(schema, Mapping):
-        if _CLASS in schema:
-            yield schema
-        schema = schema.values()
-    for part in schema if not isinstance(schema, str | int) else ():
-        yield from _of_classes(part)
-
-
-def _without(schema: Any, shared: Collection[str]) -> Any:
-    """A schema with references in place of the classes that are defined apart."""
-    if isinstance(schema, list):
-        return [_without(part, shared) for part in schema]
-    if not isinstance(schema, Mapping):
-        return schema
-    if (name := schema.get(_CLASS)) in shared:
-        return {"$ref": f"#/$defs/{name}"}
-    return {key: _without(part, shared) for key, part in schema.items() if key != _CLASS}

@@ -16,7 +16,7 @@ from math import gcd, lcm
 
 from ptmcad.errors import ExpressionError, PoleError
 from ptmcad.text.numerals import text_of
-from ptmcad.text.terms import terms_text
+from ptmcad.text.plane import terms_text
 
 Term = tuple[int, int, Fraction]
 _Polynomial = dict[tuple[int, int], Fraction]

@@ -12,6 +12,7 @@ import pytest
 from flint import Ordering, fmpq, fmpq_mat, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_mpoly_vec, fmpz_poly
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from support.counting import system_of
 from support.examples import examples
 from support.maps import CONFIGS, shipped
 from support.poles import power_trace_denominators
@@ -53,7 +54,6 @@ from ptmcad.algebra.resultants import discriminant, interpolate, nothing, result
 from ptmcad.answer.regionmap import Kind
 from ptmcad.exact.cad.criticalpoints import _discriminant
 from ptmcad.exact.cad.projection import curve
-from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
 from ptmcad.exact.stages import problem_of
 from ptmcad.exact.variety import algebra_of

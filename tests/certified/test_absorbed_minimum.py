@@ -20,7 +20,7 @@ import ptmcad
 from ptmcad.certified.branchandprune import search_curve
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.pointcounts import plain_counter as point_counter
-from ptmcad.model.mechanisms import RECORD
+from ptmcad.model.builtin import RECORD
 from ptmcad.question.slice import Count, Slice
 
 FLAT_CONE = {

@@ -25,7 +25,7 @@ from ptmcad.certified import engine
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.errors import ConfigError, DegenerateSliceError
-from ptmcad.model.mechanisms import RECORD
+from ptmcad.model.builtin import RECORD
 from ptmcad.question.slice import Count, Slice
 from ptmcad.verification import verify
 

@@ -26,7 +26,7 @@ from ptmcad.certified.plain.zeros import PointCount
 from ptmcad.cli import run as run_command
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Graph
-from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.intervalarithmetic import program, run
 from ptmcad.formulas.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice

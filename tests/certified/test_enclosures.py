@@ -26,9 +26,9 @@ from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.springchart import SpringChart, chart
 from ptmcad.certified.refinement import CriticalCurve
-from ptmcad.formulas.balls import run_arb
+from ptmcad.formulas.ballarithmetic import run_arb
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.intervalarithmetic import program, run
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice

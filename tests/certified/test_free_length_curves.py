@@ -19,7 +19,7 @@ from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.springchart import chart
 from ptmcad.certified.refinement import CriticalCurve
-from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.intervalarithmetic import program, run
 from ptmcad.formulas.tape import record
 from ptmcad.model import ptm
 from ptmcad.question.slice import Axis, Count, Slice

@@ -501,7 +501,7 @@ def test_the_equations_are_the_energy_s_slope_along_the_loop() -> None:
 
 
 def value_of(counter: Any, equation: int, t: Numbers) -> float:
-    from ptmcad.formulas.balls import ball, run_arb
+    from ptmcad.formulas.ballarithmetic import ball, run_arb
 
     box = [ball(Fraction(x), Fraction(x)) for x in (1.0, 1.5, *t)]
     values = run_arb(counter.equations.tape, box, 90)

@@ -17,7 +17,7 @@ import ptmcad
 from ptmcad.certified.peaks import peaks, values_at
 from ptmcad.certified.plain.pointcounts import BranchCounter, plain_counter
 from ptmcad.certified.plain.zeros import PointCount
-from ptmcad.formulas.balls import ball, run_arb
+from ptmcad.formulas.ballarithmetic import ball, run_arb
 from ptmcad.model import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis

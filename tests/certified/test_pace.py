@@ -28,7 +28,7 @@ from ptmcad.certified.pace import (
     SearchProgress,
 )
 from ptmcad.errors import LimitReached
-from ptmcad.formulas.compiled import FUNCTIONS
+from ptmcad.formulas.compilation import FUNCTIONS
 from ptmcad.options import Options
 
 

@@ -27,8 +27,8 @@ from ptmcad.certified.plain.pointcounts import plain_counter as point_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.unknownranges import ranges
-from ptmcad.errors import ConfigError, GeometryError
-from ptmcad.model.mechanisms import RECORD
+from ptmcad.errors import ConfigError, ExpressionError, GeometryError
+from ptmcad.model.builtin import RECORD
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.ranges.certified import table as interval_table
@@ -281,6 +281,14 @@ def test_minima_need_the_chart_of_a_spring_that_depends_on_both_angles_alone() -
         for curve in curves(_slice(PLAIN_PTM), Count.STABLE, frozenset({"cones-and-creases"}))
     ]
     assert every == [*names, *(name.replace("crease", "point") for name in NO_LENGTH)]
+
+
+def test_an_angle_that_a_ring_does_not_have_is_refused() -> None:
+    """Its cosine would else be that of the angle zero."""
+    ring = Harmonics(("s", "x"), ("x",))
+    for angle, of in (("t", ring.cos), ("x", ring.sin)):
+        with pytest.raises(ExpressionError, match=f"{angle} is not an unknown angle"):
+            of(angle)
 
 
 def test_harmonics_are_in_normal_form() -> None:

@@ -20,7 +20,7 @@ from ptmcad.certified.plain.geometry import common_factors, geometry
 from ptmcad.certified.plain.problem import Problem, problem_of
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
 from ptmcad.formulas.graph import Formula, Operation
-from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.intervalarithmetic import program, run
 from ptmcad.formulas.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Slice

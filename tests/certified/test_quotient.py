@@ -29,7 +29,7 @@ from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.springchart import chart
 from ptmcad.certified.plain.unknownranges import ranges
-from ptmcad.formulas.balls import run_arb
+from ptmcad.formulas.ballarithmetic import run_arb
 from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.tape import record
 from ptmcad.model.involutions import Involution

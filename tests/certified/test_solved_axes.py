@@ -21,7 +21,7 @@ from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.springchart import SpringChart, chart
 from ptmcad.formulas.graph import Formula, Graph
-from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.intervalarithmetic import program, run
 from ptmcad.formulas.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice

@@ -14,7 +14,7 @@ pytest.importorskip("numba")
 from ptmcad.certified.curvetubes import Tubes, tubes
 from ptmcad.certified.equationsystem import system
 from ptmcad.formulas.graph import Formula, Graph, direction, length
-from ptmcad.formulas.intervals import program
+from ptmcad.formulas.intervalarithmetic import program
 from ptmcad.formulas.tape import record
 from ptmcad.formulas.taylor import extend, series
 

@@ -57,9 +57,12 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
             )
         return replace(certified_map(slice.count), slice=slice, timings={"curves": 1.0})
 
-    compiled, module = ModuleType("ptmcad.formulas.compiled"), ModuleType("ptmcad.certified.engine")
+    compiled, module = (
+        ModuleType("ptmcad.formulas.compilation"),
+        ModuleType("ptmcad.certified.engine"),
+    )
     module.certified_map = stand_in  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "ptmcad.formulas.compiled", compiled)
+    monkeypatch.setitem(sys.modules, "ptmcad.formulas.compilation", compiled)
     monkeypatch.setitem(sys.modules, "ptmcad.certified.engine", module)
     loading = ModuleType("ptmcad.certified.loading")
     loading.load = lambda progress, options: 0.0  # type: ignore[attr-defined]
@@ -232,7 +235,7 @@ def test_without_numba_there_is_one_clear_message(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     loaded = [name for name in sys.modules if name.startswith("ptmcad.certified.")]
-    for name in (*loaded, *({"ptmcad.formulas.compiled"} & sys.modules.keys())):
+    for name in (*loaded, *({"ptmcad.formulas.compilation"} & sys.modules.keys())):
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "numba", None)
     assert run(["classify", *HAND, "--out", str(tmp_path)]) == 2
@@ -465,7 +468,7 @@ def _resumed_and_stopped(earlier: RegionMap, found: RegionMap) -> None:
     module.certified_map = stand_in  # type: ignore[attr-defined]
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(
-            sys.modules, "ptmcad.formulas.compiled", ModuleType("ptmcad.formulas.compiled")
+            sys.modules, "ptmcad.formulas.compilation", ModuleType("ptmcad.formulas.compilation")
         )
         patch.setitem(sys.modules, "ptmcad.certified.loading", loading)
         patch.setitem(sys.modules, "ptmcad.certified.engine", module)

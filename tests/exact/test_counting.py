@@ -11,6 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support import oracle
+from support.counting import system_of
 from support.examples import examples
 from support.few import few
 from support.maps import CONFIGS, shipped
@@ -18,7 +19,6 @@ from support.shipped_records import EXACT
 from support.signatures import count_by_isolation, count_by_signature
 
 from ptmcad import load
-from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.text.flint_numbers import from_fraction
 

@@ -14,6 +14,7 @@ import pytest
 from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.counting import system_of
 from support.examples import examples
 from support.work import work_of
 
@@ -26,7 +27,6 @@ from ptmcad.algebra.resultants import balanced, discriminant, resultant
 from ptmcad.answer.regionmap import Status
 from ptmcad.exact.cad import area
 from ptmcad.exact.cad.projection import FibredCurve
-from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import point_system
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.studies.stress.campaign import answer

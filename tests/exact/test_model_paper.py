@@ -13,9 +13,9 @@ from types import SimpleNamespace
 
 import pytest
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
+from support.counting import system_of
 from support.free_length_equilibria import free_length_equilibria
 
-from ptmcad.exact.models import system_of
 from ptmcad.text.flint_numbers import to_fraction
 
 NAMES = ("L1", "L2", "rho", "k", "F3", "F4", "F3x", "F4x", "c1", "s1", "c2", "s2", "t1", "t2")

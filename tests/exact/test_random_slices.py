@@ -15,6 +15,7 @@ from fractions import Fraction
 import pytest
 from flint import fmpz_poly
 from support import oracle
+from support.counting import system_of
 from support.random_slices import MODEL, NUMBERS, PAIRS, REFUSED, Draw, drawn
 from support.signatures import count_by_signature
 from support.structure import check_structure
@@ -25,7 +26,6 @@ from ptmcad.algebra.real_roots import isolate, refine, squarefree_part
 from ptmcad.answer.regionmap import Status
 from ptmcad.errors import ConfigError, HypothesisError
 from ptmcad.exact.cad.projection import curve
-from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 

@@ -14,6 +14,7 @@ import pytest
 from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.counting import system_of
 from support.examples import examples
 from support.few import few
 from support.poles import power_trace_denominators
@@ -45,7 +46,6 @@ from ptmcad.answer.regionmap import HARMLESS, Kind, RegionMap
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError, HypothesisError
 from ptmcad.exact.cad.stacks import heights_between
-from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import on_slice
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.savings import ALL, SAVINGS, Engine, switched_off

@@ -106,8 +106,7 @@ def test_the_degrees_of_the_tables_are_those_of_the_computed_ones(
     name: str, solutions: int
 ) -> None:
     problem = problem_of(load(CONFIGS / f"{name}.yaml"))
-    system = problem.system if problem.system.turns is None else problem.system.turns.system
-    algebra = quotient_algebra(basis_of(on_slice(system, problem.on.parameters)))
+    algebra = quotient_algebra(basis_of(on_slice(problem.system, problem.on.parameters)))
     assert algebra is not None
     scale = multiplication_denominator(algebra)
     rows = [algebra.table[shifted(m, k)] for m in algebra.basis for k in range(len(m))]

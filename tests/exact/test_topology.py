@@ -29,7 +29,7 @@ from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.crossings import Separator, cross
 from ptmcad.exact.cad.projection import FibredCurve, curve, project
 from ptmcad.exact.cad.stacks import StackData, lift
-from ptmcad.exact.decomposition import Link, merge
+from ptmcad.exact.decomposition import merge
 from ptmcad.exact.regionareas import before, below
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
@@ -80,7 +80,7 @@ def decompose(polynomials: Sequence[fmpz_mpoly], window: Window, base: int) -> D
         for p in found:
             check_separator(curves, p, stacks[s], stacks[s + 1])
             if not closed:
-                links.append(Link(starts[s] + p.left, starts[s + 1] + p.right, None))
+                links.append((starts[s] + p.left, starts[s + 1] + p.right, None))
     merged = merge([0] * starts[-1], links)
     pieces = [merged[a:b] for a, b in pairwise(starts)]
     return Decomposition(curves, stacks, crossings, pieces, inner, outer)

@@ -18,9 +18,9 @@ from ptmcad.certified.contraction import contract_curve, survives, workspace
 from ptmcad.certified.equationsystem import EquationSystem, quotients, system
 from ptmcad.certified.linear import contract_linear, space_for
 from ptmcad.formulas.affine import CENTER, ERROR, FIRST, LANES, frame_for, run_affine, set_frame
-from ptmcad.formulas.balls import run_arb
+from ptmcad.formulas.ballarithmetic import run_arb
 from ptmcad.formulas.graph import Formula, Graph, direction, inverse_length, length, meet
-from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.intervalarithmetic import program, run
 from ptmcad.formulas.tape import Tape, record
 
 Floats = NDArray[np.float64]

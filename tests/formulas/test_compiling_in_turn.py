@@ -13,7 +13,7 @@ import pytest
 
 pytest.importorskip("numba")
 
-from ptmcad.formulas import compiled
+from ptmcad.formulas import compilation as compiled
 
 
 @pytest.fixture(name="folder")

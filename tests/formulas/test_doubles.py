@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ptmcad.formulas.doubles import Doubles
 from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.formulas.script import Instruction, script
+from ptmcad.formulas.instructions import Doubles, Instruction, script
 
 
 def formula_and_value() -> tuple[Formula, Formula, Any]:

@@ -25,9 +25,9 @@ pytest.importorskip("numba")
 
 from numba.core.registry import CPUDispatcher
 
-from ptmcad.formulas import compiled as compilation
+from ptmcad.formulas import compilation
 from ptmcad.formulas import rounding as arithmetic
-from ptmcad.formulas.compiled import compiled
+from ptmcad.formulas.compilation import compiled
 
 PACKAGE = Path(compilation.__file__).parents[1]
 Floats = NDArray[np.float64]

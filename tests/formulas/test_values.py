@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import pytest
 
+from ptmcad.formulas.evaluation import evaluated, values
 from ptmcad.formulas.graph import Formula, Graph
-from ptmcad.formulas.values import evaluated, values
 
 
 class Counted:

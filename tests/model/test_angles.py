@@ -12,7 +12,7 @@ import ptmcad
 from ptmcad.errors import ConfigError
 from ptmcad.model import described, described_system
 from ptmcad.model.evaluate import evaluate
-from ptmcad.model.identities import Ring
+from ptmcad.model.identities import PolynomialRing
 from ptmcad.model.trees import split_angle
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import to_text
@@ -41,7 +41,7 @@ def test_a_turned_body_is_the_one_with_turned_points(angle: str, corner: list[ob
     one, other = (
         described(plate(*given, {"angle": "phi", "k": 1})) for given in ((angle, [1, 0]), ("phi", corner))
     )  # fmt: skip
-    ring = Ring()
+    ring = PolynomialRing()
     for name in ("Q", "R"):
         for a, b in zip(one.points[name], other.points[name], strict=True):
             assert evaluate(a, ring).terms == evaluate(b, ring).terms
@@ -58,11 +58,14 @@ def test_a_turn_of_a_torsion_springs_angle_is_one_of_its_rest() -> None:
             for a, r in ((angle, 0), ("phi - th", rest))
         )
         assert one.rest == other.rest
-        assert evaluate(one.energy, Ring()).terms == evaluate(other.energy, Ring()).terms
+        assert (
+            evaluate(one.energy, PolynomialRing()).terms
+            == evaluate(other.energy, PolynomialRing()).terms
+        )
 
 
 def test_points_and_equations_have_them_too() -> None:
-    ring = Ring()
+    ring = PolynomialRing()
     record = plate("phi", [1, 0], {"angle": "phi", "k": 1})
     record["points"]["P"] = ["-cos(th + pi/2)", "sin(pi/2 - th)^2 + 2*cos(2*th - th - pi)"]
     x, y = (evaluate(tree, ring) for tree in described(record).points["P"])

@@ -12,8 +12,8 @@ import pytest
 from support.shipped_records import CONFIGS
 
 from ptmcad.exact.models.modelsystem import system_from
+from ptmcad.formulas.evaluation import values
 from ptmcad.formulas.graph import Graph
-from ptmcad.formulas.values import values
 from ptmcad.model import Model, described
 from ptmcad.model.closed import without_loops
 from ptmcad.model.compile import compiled, compiled_with

@@ -12,8 +12,8 @@ from types import MappingProxyType
 import pytest
 
 import ptmcad
+from ptmcad.formulas.evaluation import Substitution, nodes_of, substituted, values
 from ptmcad.formulas.graph import Formula, Graph
-from ptmcad.formulas.values import Substitution, nodes_of, substituted, values
 from ptmcad.model import ClosedMechanism, Mechanism, System
 from ptmcad.model.compile import compiled, compiled_with
 

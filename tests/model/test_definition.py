@@ -27,7 +27,7 @@ from support.shipped_records import CONFIGS
 import ptmcad
 from ptmcad.ask.fields.equations import state_at
 from ptmcad.exact.models import system_from
-from ptmcad.formulas.values import evaluated, values
+from ptmcad.formulas.evaluation import evaluated, values
 from ptmcad.model import Mechanism, Model, described, described_system
 from ptmcad.model.closed import without_loops
 from ptmcad.model.compile import CompiledSystem, compiled

@@ -12,8 +12,8 @@ import pytest
 from ptmcad.cli.mechanisms import description
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, described, joints, ptm
+from ptmcad.model.builtin import RECORD
 from ptmcad.model.joints import Joint, joints_of
-from ptmcad.model.mechanisms import RECORD
 from ptmcad.show.linedrawing import approximate_text
 from ptmcad.show.render import draw_mechanism
 from ptmcad.show.spiral import spiral, spirals

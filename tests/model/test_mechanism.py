@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.exact.models.modelsystem import elements_of, system_from
 from ptmcad.model import Kind, Mechanism, described, mechanism_of, ptm
+from ptmcad.model.builtin import RECORD
 from ptmcad.model.compile import compiled
 from ptmcad.model.evaluate import evaluate, value_at
-from ptmcad.model.mechanisms import RECORD
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Tree, to_text

@@ -20,8 +20,8 @@ from ptmcad import RegionMap, classify, slice_from_mapping
 from ptmcad.errors import MAX_FAULTS, ConfigError, Faults
 from ptmcad.exact.models.modelsystem import system_from
 from ptmcad.model import Mechanism, described, described_system, ptm, recognised, work
+from ptmcad.model.builtin import RECORD
 from ptmcad.model.closed import without_loops
-from ptmcad.model.mechanisms import RECORD
 from ptmcad.model.proofs import check_bars, check_unknowns
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"

@@ -23,7 +23,7 @@ import pytest
 pytest.importorskip("numba")
 
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.text.bounds import percent
+from ptmcad.text.numerals import percent
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = ("free02", "free-load", "free-l0-L1")

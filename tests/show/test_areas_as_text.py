@@ -23,7 +23,7 @@ from ptmcad.show.report import page
 from ptmcad.show.report.sections import regions
 from ptmcad.show.style import DEFAULT
 from ptmcad.show.table import areas_are_known, in_order, region_area, table
-from ptmcad.text.bounds import percent, share_text
+from ptmcad.text.numerals import percent, share_text
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from mpmath import diff, mpf
 from support.mechanisms_energy import energy
 
 from ptmcad.model import ptm
-from ptmcad.model.mechanisms import RECORD
+from ptmcad.model.builtin import RECORD
 from ptmcad.studies import byhand
 
 

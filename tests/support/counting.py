@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.model import Model, known_of
+from ptmcad.exact.models import ParametricSystem, system_from
+from ptmcad.model import Model, known_of, mechanism_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.counted import CountedPoint
@@ -33,3 +34,8 @@ def counted_at(
     """The window, the way of counting, and what is counted in its middle."""
     claims = claims_of(values, count)
     return claims, claims.counting, claims.counting.at(*MIDDLE)
+
+
+def system_of(mechanism: str) -> ParametricSystem:
+    """The parametric system of a built-in mechanism by its name."""
+    return system_from(mechanism_of(mechanism))

@@ -20,7 +20,7 @@ from typing import NamedTuple
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.studies.byhand import sextic
 from ptmcad.text.expressions import Expression
-from ptmcad.text.terms import signed_terms
+from ptmcad.text.plane import signed_terms
 
 LOSES_PI = "an equilibrium at theta2 = pi over the whole window: t2 = tan(theta2/2) loses it"
 _FORMULA = re.compile(r"An equivalent quantifier-free formula:\s*(.*?)\n\s*\n", re.DOTALL)

@@ -23,11 +23,10 @@ from ptmcad.text.codec import (
     by_name,
     choice,
     derived,
-    document_schema,
-    document_text,
     record_of,
     unless_default,
 )
+from ptmcad.text.documents import document_schema, document_text
 from ptmcad.text.node import Node, opened
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.poses import Pose
-from ptmcad.formulas.doubles import Doubles
+from ptmcad.formulas.instructions import Doubles
 from ptmcad.model import Model
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.question.slice import Slice, within_doubles

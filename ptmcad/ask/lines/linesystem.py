@@ -15,10 +15,9 @@ from ptmcad.algebra.polynomials import Monomial
 from ptmcad.ask.lines.diagram import SolutionsOnLine
 from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import Part, Terms
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.balls import evaluated, signs_of
+from ptmcad.formulas.ballarithmetic import evaluated, signs_of
 from ptmcad.formulas.continuation import BITS, BranchEquations, Reached, Vector, branch_equations
-from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.formulas.graph import Formula, Graph, expression_formula
 from ptmcad.model.compile import CompiledSystem
 from ptmcad.question.line import Line, compiled_on
 from ptmcad.question.slice import relaxed_springs

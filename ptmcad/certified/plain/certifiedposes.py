@@ -23,17 +23,16 @@ from ptmcad.answer.poses import Pose, Poses, springs_of
 from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_isolation import Box
 from ptmcad.certified.peaks import peaks
-from ptmcad.certified.plain.halfangles import located
 from ptmcad.certified.plain.pointcounts import BranchCounter, PlainCounter, plain_counter
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.rational import Point, exact_eigenvalues, exact_values, rational_point
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
-from ptmcad.formulas.balls import ball, run_arb
-from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.certified.plain.straight import located
+from ptmcad.formulas.ballarithmetic import ball, run_arb
+from ptmcad.formulas.graph import Formula, Graph, gradient
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import Mechanism, Model, ptm
 from ptmcad.model.compile import CompiledSystem, compiled_with
-from ptmcad.model.determinants import gradient
 from ptmcad.model.fourbars import flat_everywhere
 from ptmcad.question.counts import POSE_COLUMNS, Count
 from ptmcad.question.domain import proved
@@ -316,9 +315,10 @@ def _all_bounded(
 
 
 def _proved_digits(number: arb, digits: int, attempt: int) -> Enclosure | None:
-    """An enclosure that settles the digits asked for, or, of a number that is still not told from
-    one halfway between two texts of so many after all that may explain it was tried, of one digit
-    more; None of a wider one.
+    """An enclosure that settles the digits asked for; None of a wider one.
+
+    A number may lie so near the middle between two texts of that many digits that no attempt tells
+    them apart: one digit more settles it.
     """
     found = enclosed(number, digits)
     return enclosed(number, digits + 1) if found is None and attempt > 1 else found
@@ -328,8 +328,8 @@ def with_further(pose: Pose) -> Pose:
     """The pose with the predicates that hold or not; without a potential nothing says what is
     stable.
     """
-    told = POSE_COLUMNS if pose.energy is not None else {}
-    found = {name: _holds(pose.stable, column.margins(pose)) for name, column in told.items()}
+    columns = POSE_COLUMNS if pose.energy is not None else {}
+    found = {name: _holds(pose.stable, column.margins(pose)) for name, column in columns.items()}
     return replace(
         pose, further={name: holds for name, holds in found.items() if holds is not None}
     )
@@ -355,7 +355,7 @@ def assembled(
     """
     mechanism = at.mechanism
 
-    def said(*whats: str) -> Callable[[Any], Any]:
+    def numbers_of(*whats: str) -> Callable[[Any], Any]:
         return lambda spring: tuple(numbers[f"{spring.name}.{what}"] for what in whats)
 
     eigenvalues = tuple(
@@ -385,8 +385,8 @@ def assembled(
         **springs_of(
             at.system.elastic,
             _number,
-            said("length", "force"),
-            said("deflection.radians", "deflection.degrees", "moment"),
+            numbers_of("length", "force"),
+            numbers_of("deflection.radians", "deflection.degrees", "moment"),
         ),
     )
 

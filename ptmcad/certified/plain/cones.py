@@ -20,8 +20,15 @@ from typing import Any, NamedTuple
 from ptmcad.certified.plain.divisors import over
 from ptmcad.certified.plain.harmonics import TrigonometricPolynomial, Unknown
 from ptmcad.certified.plain.problem import SpringCone
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.graph import Formula, Graph, direction, inverse_length, length, meet
+from ptmcad.formulas.graph import (
+    Formula,
+    Graph,
+    direction,
+    expression_formula,
+    inverse_length,
+    length,
+    meet,
+)
 from ptmcad.text.expressions import Expression
 
 Vector = tuple[Formula, Formula]

@@ -20,8 +20,7 @@ from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.plain.symmetricfolds import NEAR, SymmetricFold, folds
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.certified.refinement import CriticalCurve
-from ptmcad.formulas.graph import Formula, Graph
-from ptmcad.model.determinants import determinant
+from ptmcad.formulas.graph import Formula, Graph, determinant
 from ptmcad.model.involutions import Involution
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice

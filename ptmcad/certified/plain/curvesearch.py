@@ -23,13 +23,13 @@ from ptmcad.certified.plain.problem import FIRST, Condition, Problem, Range
 from ptmcad.certified.plain.springchart import SpringChart
 from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.intervals import program, run
+from ptmcad.formulas.intervalarithmetic import program, run
 from ptmcad.formulas.tape import record
 from ptmcad.question.slice import Slice
 
 
 class Pruning(NamedTuple):
-    """What discards boxes beside a curve's equations.
+    """The formulas that discard boxes, in addition to a curve's equations.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class CurveSearch:
 
         Parameters
         ----------
-        ranges : of the coordinates, which are the problem's unknowns where nothing is said; where
+        ranges : of the coordinates, the problem's unknowns by default; where
             there is one more than these have, it is the direction of a short spring.
         """
         ranges = self.ranges if ranges is None else ranges

@@ -24,8 +24,7 @@ from ptmcad.certified.plain.cones import ConeFormulas, ConeShape, Pair, shape
 from ptmcad.certified.plain.divisors import common_factor, divided, largest_factor, over
 from ptmcad.certified.plain.harmonics import TrigonometricPolynomial, Unknown
 from ptmcad.certified.plain.problem import Problem, Push, SpringCone
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.graph import Formula
+from ptmcad.formulas.graph import Formula, expression_formula
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 

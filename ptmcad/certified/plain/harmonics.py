@@ -18,8 +18,7 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.graph import Formula, Graph, direction
+from ptmcad.formulas.graph import Formula, Graph, direction, expression_formula
 from ptmcad.text.expressions import Expression, constant
 
 Vector = tuple["TrigonometricPolynomial", "TrigonometricPolynomial"]
@@ -214,10 +213,15 @@ class Harmonics:
         return self._term(self.parameters.get(name, _NOTHING), _NOTHING)
 
     def cos(self, angle: str) -> TrigonometricPolynomial:
-        return self._term(constant(1), _NOTHING, angle=angle)
+        return self._term(constant(1), _NOTHING, angle=self._known(angle))
 
     def sin(self, angle: str) -> TrigonometricPolynomial:
-        return self._term(_NOTHING, constant(1), angle=angle)
+        return self._term(_NOTHING, constant(1), angle=self._known(angle))
+
+    def _known(self, angle: str) -> str:
+        if angle in self.reals or angle not in self.unknowns:
+            raise ExpressionError(f"{angle} is not an unknown angle")
+        return angle
 
     def _term(
         self, a: Expression, b: Expression, angle: str = "", power: str = ""

@@ -21,9 +21,8 @@ from typing import NamedTuple
 from ptmcad.certified.plain.harmonics import Angle, Multi, TrigonometricPolynomial, Unknown
 from ptmcad.certified.plain.mirrors import MirrorFrame, image_of
 from ptmcad.certified.plain.problem import FIRST, Range
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.graph import Formula, Graph, inverse_length, length
-from ptmcad.formulas.values import substituted
+from ptmcad.formulas.evaluation import substituted
+from ptmcad.formulas.graph import Formula, Graph, expression_formula, inverse_length, length
 from ptmcad.text.expressions import Expression, constant
 
 QUARTER = (0.0, 1.5708)

@@ -21,17 +21,16 @@ from ptmcad.certified.branchandprune import Boxes
 from ptmcad.certified.equationsystem import EquationSystem, system
 from ptmcad.certified.peaks import peaks, values_at
 from ptmcad.certified.plain.geometry import geometry
-from ptmcad.certified.plain.halfangles import in_description
 from ptmcad.certified.plain.problem import MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
-from ptmcad.certified.plain.straight import branches
+from ptmcad.certified.plain.straight import branches, in_description
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.certified.plain.zeros import PRECISIONS, PointCount, Zeros, ZeroSearch, boxed
 from ptmcad.errors import DegenerateSliceError
-from ptmcad.formulas.balls import ball, run_arb
+from ptmcad.formulas.ballarithmetic import ball, run_arb
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.intervals import Indices, program, run
+from ptmcad.formulas.intervalarithmetic import Indices, program, run
 from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import ptm
 from ptmcad.model.criterion import by_hessian
@@ -254,7 +253,7 @@ class PlainCounter:
         return ""
 
     def _index_in_floats(self, narrow: Boxes) -> int | None:
-        """The number of negative eigenvalues all over a box; None where doubles do not tell."""
+        """The number of negative eigenvalues all over a box; None where doubles do not decide it."""
         size, variables = len(self.problem.unknowns), len(narrow) // 2
         low, high = np.empty((2, len(self.hessian)))
         run(

@@ -20,13 +20,12 @@ from itertools import combinations
 from ptmcad.certified.plain.harmonics import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.certified.plain.parallel import shares
 from ptmcad.errors import ConfigError, DegenerateSliceError
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.graph import Formula, Graph, length
+from ptmcad.formulas.graph import Formula, Graph, expression_formula, length
+from ptmcad.model.builtin import title_of
 from ptmcad.model.closed import conditions_of
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.model.evaluate import evaluate
 from ptmcad.model.fourbars import closed_by, flat_everywhere
-from ptmcad.model.mechanisms import title_of
 from ptmcad.question.counts import Count, Margin
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, constant
@@ -119,7 +118,7 @@ class Problem:
     further : all are positive where the predicate holds that a count is by; empty where it is by
         none.
     covering : of each of the description's unknowns its whole multiples of these, where these are
-        others (`ptmcad.certified.plain.halfangles`).
+        others (`ptmcad.certified.plain.straight`).
     """
 
     unknowns: tuple[str, ...]

@@ -27,9 +27,7 @@ from ptmcad.certified.plain.cones import ConeFormulas, Matrix
 from ptmcad.certified.plain.geometry import FactoredProblem, Turn
 from ptmcad.certified.plain.harmonics import Unknown
 from ptmcad.certified.plain.problem import FIRST
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.graph import Formula, Graph, length
-from ptmcad.model.determinants import determinant
+from ptmcad.formulas.graph import Formula, Graph, determinant, expression_formula, length
 
 
 class Turned(NamedTuple):

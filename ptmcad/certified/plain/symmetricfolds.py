@@ -36,8 +36,7 @@ from ptmcad.certified.plain.opening import (
 )
 from ptmcad.certified.plain.problem import Range
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
-from ptmcad.formulas.graph import Formula
-from ptmcad.model.determinants import determinant
+from ptmcad.formulas.graph import Formula, determinant
 
 NEAR = Fraction(1, 1024)
 """The distance from their images below which configurations are searched about the fixed points."""

@@ -19,9 +19,8 @@ from ptmcad.certified.plain.harmonics import Multi, TrigonometricPolynomial
 from ptmcad.certified.plain.problem import FIRST, TURN, Problem, Range
 from ptmcad.certified.plain.springchart import chart
 from ptmcad.errors import ConfigError
-from ptmcad.formulas.axisfunctions import expression_formula
-from ptmcad.formulas.graph import Formula, Graph, Operation, length
-from ptmcad.formulas.intervals import Floats, program, run
+from ptmcad.formulas.graph import Formula, Graph, Operation, expression_formula, length
+from ptmcad.formulas.intervalarithmetic import Floats, program, run
 from ptmcad.formulas.tape import Tape, enclosing_floats, record
 from ptmcad.question.slice import Axis
 
@@ -32,8 +31,8 @@ MAX_BOXES = 1000
 MAX_BOXES_HELD = 5_000
 """The same for lengths that springs hold together."""
 AXES_HELD = 1 / 64
-"""Of the widths along the axes in the choice what is halved then: what holds lengths is mostly free
-of the axes.
+"""Weight of the widths along the axes in the choice of the variable to halve then: mostly the axes
+are not in what holds lengths.
 """
 MIN_SHARE = 1e-12
 """Of a range, or of a number's size, below which it is not halved again."""

@@ -20,12 +20,12 @@ from flint import ctx
 
 from ptmcad.answer.counts import Counted, MorseIndex
 from ptmcad.answer.regionmap import Solution
-from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb
+from ptmcad.certified.arb_isolation import Box, isolate_arb
 from ptmcad.certified.branchandprune import Boxes, SearchResult, isolate
 from ptmcad.certified.equationsystem import Arguments, EquationSystem
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, Range
 from ptmcad.certified.uniqueness import FULL_TURN, distinct
-from ptmcad.formulas.balls import ball, lower, upper
+from ptmcad.formulas.ballarithmetic import ball, lower, upper
 from ptmcad.formulas.tape import enclosing_floats
 
 MANY_BOXES = 6_000_000
@@ -126,13 +126,13 @@ class ZeroSearch:
         self, x: Fraction, y: Fraction, system: EquationSystem, found: SearchResult
     ) -> SearchResult:
         """The same with the zeros, if any, in the boxes that floating point left open, where more
-        digits tell them.
+        digits decide them.
         """
         for precision, budget in zip(PRECISIONS, ARB_BUDGETS, strict=True):
             with ctx.workprec(precision):
                 start = [self.box(x, y, box) for box in found.small]
             zeros = isolate_arb(system, self.equations, start, precision, budget)
-            boxes = [_in_floats(zero, found.small[0]) for zero in zeros or ()]
+            boxes = [_in_floats(*zero, found.small[0]) for zero in zeros or ()]
             if zeros is not None and None not in boxes:
                 more = np.array(boxes, np.float64).reshape(len(boxes), 2, found.small.shape[1])
                 return found._replace(
@@ -151,18 +151,18 @@ class ZeroSearch:
         return (ball(x, x), ball(y, y), *(ball(low, high) for low, high in ends))
 
 
-def _in_floats(zero: Isolated, around: Boxes) -> tuple[list[float], list[float]] | None:
+def _in_floats(unique: Box, narrow: Box, around: Boxes) -> tuple[list[float], list[float]] | None:
     """Its boxes, the wide one rounded inward and the narrow one outward; None where these meet."""
     wide = low, high = [list(map(float, some)) for some in np.split(around, 2)]
     least, most = list(low), list(high)
     for k in range(FIRST, len(low)):
         low[k], high[k] = (
-            enclosing_floats(lower(zero.unique[k]))[1],
-            enclosing_floats(upper(zero.unique[k]))[0],
+            enclosing_floats(lower(unique[k]))[1],
+            enclosing_floats(upper(unique[k]))[0],
         )
         least[k], most[k] = (
-            enclosing_floats(lower(zero.narrow[k]))[0],
-            enclosing_floats(upper(zero.narrow[k]))[1],
+            enclosing_floats(lower(narrow[k]))[0],
+            enclosing_floats(upper(narrow[k]))[1],
         )
         if not low[k] < least[k] <= most[k] < high[k]:
             return None

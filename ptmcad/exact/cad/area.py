@@ -44,7 +44,7 @@ _HOPELESS_RATIO = 2**8
 about the exact ones.
 """
 _MIN_ORDER = 6
-"""Of series, besides the tolerance's digits."""
+"""Of series, in addition to the tolerance's digits."""
 _LONG_FIBRE, _FIBRE_PER_ORDER = 16, 3
 """Of higher degrees in v fibres and local coefficients cost more than series, so longer ones on
 fewer panels pay.
@@ -318,7 +318,7 @@ def _rough(
     the integrals of its walls are, which cancel but for that; both prove nothing."""
     total, sizes = [fmpq(0)] * parts.number, [fmpq(0)] * parts.number
     for (low, high), over, row in zip(spans, borders, parts.regions, strict=True):
-        walls = _told_apart([b.over((low + high) / 2, effort) for b in over], parts.height)
+        walls = _separated([b.over((low + high) / 2, effort) for b in over], parts.height)
         bottom = parts.fibre[0]
         for border, wall in zip(over, walls, strict=True):
             total[border.below] += (wall.high - bottom) * (high - low)
@@ -330,7 +330,7 @@ def _rough(
     return parts.whole(total), parts.whole(sizes)
 
 
-def _told_apart(roots: Sequence[RealRoot], height: fmpq) -> list[RealRoot]:
+def _separated(roots: Sequence[RealRoot], height: fmpq) -> list[RealRoot]:
     """Roots of a fibre known well enough to tell about how far they are from each other."""
     width = height / 2**_ROUGH_BITS
     near = [refine(r, width) for r in roots]

@@ -43,7 +43,7 @@ from ptmcad.exact.cad.projection import (
 )
 
 _BITS = (128, 512)
-"""Of the critical abscissa, until all discs are told apart; with more of them the other way is the
+"""Of the critical abscissa, until all discs are separate; with more of them the other way is the
 shorter one.
 """
 

@@ -56,20 +56,37 @@ class Separator(NamedTuple):
 
 
 class StackGap(NamedTuple):
-    """Heights between two separators (None at the window's edge) which branches enter, and why no
-    other separator fits.
+    """Heights between two separators, or a separator and the window's edge, or both edges.
 
     Attributes
     ----------
+    below, above : the separators; None at the window's edge.
     left, right : the lowest and the highest level, in either stack, of the cells that reach into
         the gap.
+    reason : why branches run into at most one point of the gap; None when that is not known.
     """
 
-    left: tuple[int, int]
-    right: tuple[int, int]
+    bottom: fmpq
+    top: fmpq
     below: Separator | None
     above: Separator | None
-    reason: Reason
+    left: tuple[int, int]
+    right: tuple[int, int]
+    reason: Reason | None = None
+
+    @property
+    def branches(self) -> int:
+        """The number of half-branches that enter."""
+        return self.left[1] - self.left[0] + self.right[1] - self.right[0]
+
+    @property
+    def edges(self) -> list[fmpq]:
+        """The window's edges among the ends."""
+        return [
+            height
+            for height, end in ((self.bottom, self.below), (self.top, self.above))
+            if end is None
+        ]
 
 
 class Crossing(NamedTuple):
@@ -105,14 +122,17 @@ def cross(
             [refine(root, resolution) for _, root in roots_over(curves, u, fibre)] for u in bracket
         ]
         found = _separators(curves, bracket, sides, fibre, extra)
-        gaps = _open_gaps(found, len(sides[0]), len(sides[1]), fibre)
+        gaps = [
+            gap._replace(reason=_reason(gap, curves, end, points))
+            for gap in _open_gaps(found, len(sides[0]), len(sides[1]), fibre)
+        ]
         # without any separator nothing is proved, even if no branch runs up to the line
-        unresolved = [g for g in gaps if not found or _reason(g, curves, end, points) is None]
+        unresolved = [gap for gap in gaps if not found or gap.reason is None]
         if not unresolved:
             unique = {(p.left, p.right): p for p in reversed(found)}
-            closed = (_gap(g, curves, end, points) for g in gaps if g.branches)
             return Crossing(
-                tuple(sorted(unique.values(), key=lambda p: (p.left, p.right))), tuple(closed)
+                tuple(sorted(unique.values(), key=lambda p: (p.left, p.right))),
+                tuple(gap for gap in gaps if gap.branches),
             )
         attempt += 1
         step = 2 * step
@@ -170,43 +190,18 @@ def _separators(
     return result
 
 
-class _OpenGap(NamedTuple):
-    """Heights between two separators, or a separator and the window's edge, or both edges."""
-
-    bottom: fmpq
-    top: fmpq
-    below: Separator | None
-    above: Separator | None
-    left: tuple[int, int]
-    right: tuple[int, int]
-
-    @property
-    def branches(self) -> int:
-        """The number of half-branches that enter."""
-        return self.left[1] - self.left[0] + self.right[1] - self.right[0]
-
-    @property
-    def edges(self) -> list[fmpq]:
-        """The window's edges among the ends."""
-        return [
-            height
-            for height, end in ((self.bottom, self.below), (self.top, self.above))
-            if end is None
-        ]
-
-
 def _open_gaps(
     found: Sequence[Separator], count_left: int, count_right: int, fibre: Interval
-) -> list[_OpenGap]:
+) -> list[StackGap]:
     """The gaps between consecutive separators, from below, the window's edges included."""
     ends: list[tuple[fmpq, int, int, Separator | None]] = [(fibre[0], 0, 0, None)]
     ends += [(p.height, p.left, p.right, p) for p in found]
     ends.append((fibre[1], count_left, count_right, None))
-    return [_OpenGap(a[0], b[0], a[3], b[3], (a[1], b[1]), (a[2], b[2])) for a, b in pairwise(ends)]
+    return [StackGap(a[0], b[0], a[3], b[3], (a[1], b[1]), (a[2], b[2])) for a, b in pairwise(ends)]
 
 
 def _reason(
-    gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd, points: PointsOver | None
+    gap: StackGap, curves: Sequence[FibredCurve], end: BaseEnd, points: PointsOver | None
 ) -> Reason | None:
     """Why branches run into at most one point of the gap; None when that is not known.
 
@@ -229,14 +224,6 @@ def _reason(
     return Reason.POINT
 
 
-def _gap(
-    gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd, points: PointsOver | None
-) -> StackGap:
-    reason = _reason(gap, curves, end, points)
-    assert reason is not None
-    return StackGap(gap.left, gap.right, gap.below, gap.above, reason)
-
-
 def _meets(curves: Sequence[FibredCurve], end: BaseEnd, edge: fmpq) -> bool:
     """Whether a curve passes through the point of the window's edge over the critical abscissa."""
     assert end.root is not None
@@ -244,7 +231,7 @@ def _meets(curves: Sequence[FibredCurve], end: BaseEnd, edge: fmpq) -> bool:
 
 
 def _between_points(
-    points: PointsOver, gap: _OpenGap, curves: Sequence[FibredCurve], end: BaseEnd
+    points: PointsOver, gap: StackGap, curves: Sequence[FibredCurve], end: BaseEnd
 ) -> list[fmpq]:
     """Heights between all possible points in the gap."""
     met = [edge for edge in gap.edges if _meets(curves, end, edge)]

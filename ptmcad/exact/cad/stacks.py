@@ -73,34 +73,29 @@ def roots_over(
     return tuple(result)
 
 
-class Avoided(NamedTuple):
-    """Curves, and lines by their polynomials in u, that are no walls but on which no sample may
-    lie.
-    """
-
-    curves: Sequence[FibredCurve] = ()
-    lines: Sequence[UnivariatePolynomial] = ()
-
-
-NOTHING_AVOIDED = Avoided()
-
-
 def lift(
     curves: Sequence[FibredCurve],
     abscissae: Sequence[RealRoot],
     base: Interval,
     fibre: Interval,
-    avoided: Avoided = NOTHING_AVOIDED,
+    avoided: Sequence[FibredCurve] = (),
+    lines: Sequence[UnivariatePolynomial] = (),
 ) -> tuple[StackData, ...]:
-    """The stacks over the open intervals between consecutive critical abscissae."""
+    """The stacks over the open intervals between consecutive critical abscissae.
+
+    Parameters
+    ----------
+    avoided, lines : curves, and lines by their polynomials in u, that are no walls but on which no
+        sample may lie.
+    """
     ends = [BaseEnd(base[0], None, None)]
     ends += [BaseEnd(r.middle, r, k) for k, r in enumerate(abscissae)]
     ends.append(BaseEnd(base[1], None, None))
     stacks = []
     for left, right in pairwise(ends):
-        sample = _simplest_off(left.high, right.low, avoided.lines)
+        sample = _simplest_off(left.high, right.low, lines)
         roots = roots_over(curves, sample, fibre)
-        heights = heights_between(roots, fibre, [c.fibre(sample) for c in avoided.curves])
+        heights = heights_between(roots, fibre, [c.fibre(sample) for c in avoided])
         stacks.append(StackData(left, right, sample, tuple(w for w, _ in roots), heights))
     return tuple(stacks)
 

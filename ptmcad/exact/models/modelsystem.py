@@ -13,9 +13,8 @@ from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricR
 from ptmcad.answer.regionmap import System
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models.system import ParametricSystem, from_equations
-from ptmcad.exact.models.turns import with_turns
+from ptmcad.formulas.evaluation import values
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.values import values
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
 from ptmcad.model.evaluate import ByNames, evaluate
@@ -39,7 +38,7 @@ def system_from(model: Model) -> ParametricSystem:
     known, ring = compiled(model), ring_of(model)
     elements = partial(elements_of, model)
     potential = known.potential(relaxed=())
-    system = from_equations(
+    return from_equations(
         ring,
         elements(known.equations),
         potential=None if potential is None else next(iter(elements([potential]))),
@@ -49,7 +48,6 @@ def system_from(model: Model) -> ParametricSystem:
         nonnegative=tuple(name for name in model.nonnegative if name in ring.parameters),
         criterion=known.criterion,
     )
-    return with_turns(system)
 
 
 def system_counted(model: Model, count: Count) -> ParametricSystem:
@@ -71,7 +69,7 @@ def system_counted(model: Model, count: Count) -> ParametricSystem:
     margins = tuple(
         ring.reduce(evaluate(margin.value, ring)) for margin in predicate.margins(mechanism)
     )
-    return with_turns(system._replace(stability=margins, turns=None))
+    return system._replace(stability=margins)
 
 
 def system_text(system: ParametricSystem) -> System:

@@ -61,11 +61,9 @@ class ParametricSystem(NamedTuple):
     criterion : what is known of solutions.
     inequalities : a solution counts where all of them are positive.
     stability : where there is no potential a solution is stable where all of these are positive; of
-        a potential what is asked of a stable solution besides, where a count is by a predicate.
+        a potential the additional conditions of a predicate by which solutions are counted.
     positive : parameters that must be positive (rod lengths and stiffnesses).
     nonnegative : parameters that must not be negative (the base length).
-    turns : the equations in other angles, `ptmcad.exact.models.turns.Turns`, where these are
-        simpler.
     """
 
     ring: TrigonometricRing
@@ -79,20 +77,11 @@ class ParametricSystem(NamedTuple):
     stability: tuple[TrigonometricPolynomial, ...] = ()
     positive: tuple[str, ...] = ()
     nonnegative: tuple[str, ...] = ()
-    turns: Any = None
 
     @property
     def dimension(self) -> int:
         """The number of unknowns."""
         return len(self.ring.unknowns)
-
-    @property
-    def simplest(self) -> ParametricSystem:
-        """In the angles in which it is simplest; the determinant of the Jacobian is the same but
-        for its sign.
-        """
-        simplest: ParametricSystem = self if self.turns is None else self.turns.system
-        return simplest
 
     @property
     def is_on_torus(self) -> bool:
@@ -151,8 +140,8 @@ class SystemOnAxes(NamedTuple):
 
     @property
     def equations(self) -> SliceSystem:
-        """In the angles in which they are simplest."""
-        return on_slice(self.system.simplest, self.parameters)
+        """With polynomial coefficients."""
+        return on_slice(self.system, self.parameters)
 
     @property
     def limits(self) -> list[Coefficient]:

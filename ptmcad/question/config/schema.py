@@ -11,10 +11,10 @@ from typing import Any
 
 from ptmcad.errors import Faults, Place
 from ptmcad.model import ptm
-from ptmcad.model.mechanisms import MEANINGS
+from ptmcad.model.builtin import MEANINGS
+from ptmcad.model.mechanismrecord import mechanism_codec
 from ptmcad.model.reading import DEFINITIONS, MAX_NAME, VALUE, Context
-from ptmcad.model.record import mechanism_codec
-from ptmcad.model.systems import system_codec
+from ptmcad.model.systemrecord import system_codec
 from ptmcad.question.config.designkey import DESIGN
 from ptmcad.question.config.problemrecord import record_codec
 from ptmcad.question.config.starters import mechanism_names

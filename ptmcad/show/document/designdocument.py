@@ -33,13 +33,13 @@ from ptmcad.text.codec import (
     choice,
     converted,
     derived,
-    document_text,
     listed,
     named,
     optional,
     record,
     record_of,
 )
+from ptmcad.text.documents import document_text
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.node import Node, opened
 from ptmcad.version import __version__

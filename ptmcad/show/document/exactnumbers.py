@@ -18,7 +18,6 @@ from ptmcad.text.codec import (
     RATIONAL,
     Codec,
     Key,
-    Schema,
     converted,
     derived,
     either,
@@ -28,6 +27,7 @@ from ptmcad.text.codec import (
     record,
     record_of,
 )
+from ptmcad.text.documents import Schema
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
 MAX_TEXT = 10_000

@@ -26,13 +26,13 @@ from ptmcad.text.codec import (
     Codec,
     Key,
     converted,
-    document_text,
     line,
     listed,
     named,
     record,
     record_of,
 )
+from ptmcad.text.documents import document_text
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.node import Node, opened
 

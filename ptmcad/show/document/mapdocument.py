@@ -51,12 +51,12 @@ from ptmcad.text.codec import (
     Key,
     choice,
     converted,
-    document_text,
     listed,
     named,
     record_of,
     unless_default,
 )
+from ptmcad.text.documents import document_text
 from ptmcad.text.node import Node, opened
 from ptmcad.text.numerals import decimal
 from ptmcad.text.plane import PlanePolynomial

@@ -18,11 +18,11 @@ from ptmcad.text.codec import (
     TEXT,
     Codec,
     derived,
-    document_text,
     listed,
     named,
     record_of,
 )
+from ptmcad.text.documents import document_text
 from ptmcad.text.plane import PlanePolynomial
 
 FORMAT = "ptmcad-variety/1"

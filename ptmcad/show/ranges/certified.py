@@ -14,9 +14,8 @@ from ptmcad.answer.widths import Attainment, CertifiedRange, CertifiedRow, Certi
 from ptmcad.show.columns import aligned
 from ptmcad.show.ranges.numbers import known
 from ptmcad.show.ranges.table import interval_rows, nowhere, width_rows, working_text
-from ptmcad.text.bounds import rounded
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import shortest_text
+from ptmcad.text.numerals import rounded, shortest_text
 
 
 def table(found: CertifiedIntervals, digits: int) -> str:

@@ -28,8 +28,7 @@ from ptmcad.show.render.slivers import Arrow, arrows_of, seen_thin_walls
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, count_text
-from ptmcad.text.bounds import percent, share_text
-from ptmcad.text.numerals import Numbers, shortest_text
+from ptmcad.text.numerals import Numbers, percent, share_text, shortest_text
 
 SIDE = 2.7
 """Inches of a map in 9 points, in a picture that grows with what it shows."""

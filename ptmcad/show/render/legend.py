@@ -22,7 +22,7 @@ from ptmcad.show.render.inches import stroke, text_width, write
 from ptmcad.show.render.labels import Position
 from ptmcad.show.style import MIN_FONT, PictureStyle
 from ptmcad.show.table import area_by_count, area_text, areas_are_known, count_text
-from ptmcad.text.bounds import percent
+from ptmcad.text.numerals import percent
 
 LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
 """Inches between lines, width of a swatch, characters in a line."""

@@ -19,18 +19,18 @@ from flint import acb, arb, ctx
 
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution, System
 from ptmcad.errors import ConfigError, PoleError
-from ptmcad.formulas.values import evaluated
+from ptmcad.formulas.evaluation import evaluated
 from ptmcad.model import Mechanism, Model
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.question.slice import merged
 from ptmcad.text.balls import ball_of, ball_over, enclosure_of, exact
-from ptmcad.text.bounds import nearest_multiple
 from ptmcad.text.expressions import values_at
 from ptmcad.text.numerals import (
     Numbers,
     fraction_of,
     integer_text,
     magnitude,
+    nearest_multiple,
     shortest_text,
     text_of,
 )

@@ -12,7 +12,7 @@ from math import isfinite
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.formulas.script import MAX_CONSTANT, Instruction, script
+from ptmcad.formulas.instructions import MAX_CONSTANT, Instruction, script
 from ptmcad.model.compile import CompiledSystem, compiled
 from ptmcad.model.criterion import critical_point
 from ptmcad.question.slice import Slice, relaxed_springs

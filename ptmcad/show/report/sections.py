@@ -22,8 +22,7 @@ from ptmcad.show.report.mapsvg import MapPictures, counts_text, hatch_id
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, stability_in_words
 from ptmcad.show.units import area_unit, unit, with_unit
-from ptmcad.text.bounds import certified_digits, percent
-from ptmcad.text.numerals import decimal, integer_text, text_of
+from ptmcad.text.numerals import certified_digits, decimal, integer_text, percent, text_of
 
 _STATUS = {
     Status.EXACT: "Exact: every point of the window off the boundary curves is in a region, and the counts are proved.",

@@ -29,7 +29,7 @@ from ptmcad.cover import connectivity
 from ptmcad.cover.subdivision import COVERED, FREE, repeated
 from ptmcad.errors import LimitReached
 from ptmcad.exact.cad.polyline import WallPolyline, chains, critical_shares
-from ptmcad.exact.decomposition import Link, merge
+from ptmcad.exact.decomposition import merge
 from ptmcad.text.numerals import decimal
 
 Floats = NDArray[np.float64]
@@ -151,7 +151,7 @@ def truth(
     """What separates regions when each cell shows a number; `ends` are those of the stacks' parts
     of the base.
     """
-    region_of = merge(shown, [Link(a.first, a.second, a.component) for a in result.adjacencies])
+    region_of = merge(shown, [(a.first, a.second, a.component) for a in result.adjacencies])
     counts = dict(zip(region_of, shown, strict=True))
     stacks = []
     for stack, of_stack, (left, right) in zip(result.stacks, lines, pairwise(ends), strict=True):

@@ -27,6 +27,7 @@ from ptmcad.studies.bench.harness import FORMAT, Row, measurement
 from ptmcad.studies.bench.study import RIVALS
 from ptmcad.text import codec
 from ptmcad.text.codec import POSITIVE, SECONDS, Codec, line, listed, named, optional, record
+from ptmcad.text.documents import document_schema
 from ptmcad.text.node import Node, opened
 from ptmcad.text.textfile import read_as
 
@@ -116,7 +117,7 @@ def study_of(text: str) -> Row:
 
 def study_schema() -> dict[str, Any]:
     """The schema of a study's JSON, without prose."""
-    return codec.document_schema(FORMAT, _STUDY.schema)
+    return document_schema(FORMAT, _STUDY.schema)
 
 
 def _positive(node: Node) -> float:

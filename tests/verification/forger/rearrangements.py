@@ -7,6 +7,8 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
+from support.counting import system_of
+
 from forger.consistency import (
     NO_AREAS,
     Alteration,
@@ -18,7 +20,6 @@ from forger.consistency import (
 )
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.exact.mapassembly import _solutions
-from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import on_axes
 from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Count, Point

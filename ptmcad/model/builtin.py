@@ -10,7 +10,7 @@ from typing import Any
 
 from ptmcad.errors import ConfigError
 from ptmcad.model.description import Mechanism, Model
-from ptmcad.model.record import described
+from ptmcad.model.mechanismrecord import described
 
 RECORD = {
     "name": "ptm",

@@ -35,7 +35,7 @@ from ptmcad.model.reading import (
     new_name,
     two,
 )
-from ptmcad.model.sizes import check_sizes
+from ptmcad.model.termbounds import check_sizes
 from ptmcad.model.trees import ONE, ZERO, angle_name
 from ptmcad.model.work import split_moments
 from ptmcad.text.codec import Codec, Key, choice, converted, listed, named, part, reading, record

@@ -42,28 +42,31 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from ptmcad.formulas.graph import Formula
-from ptmcad.model.determinants import cofactors, determinant, gradient
+from ptmcad.formulas.graph import Formula, cofactors, determinant, gradient
 
 Row = tuple[Formula, ...]
 
 
-class LoopConditions(NamedTuple):
-    """What holds in closed loops.
+class EquilibriumConditions(NamedTuple):
+    """What holds at equilibria of closed loops, or of angles that follow others.
 
     Attributes
     ----------
     equations : one for each unknown.
     stability : positive at stable solutions.
-    tangent : T, where one degree of freedom is left; else empty.
+    tangent : T, where one degree of freedom of closed loops is left; else empty.
+    inequalities : positive at all solutions.
     """
 
     equations: Row
     stability: Row
     tangent: Row = ()
+    inequalities: Row = ()
 
 
-def conditions(closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row) -> LoopConditions:
+def conditions(
+    closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row
+) -> EquilibriumConditions:
     """What holds at equilibria.
 
     Parameters
@@ -78,14 +81,14 @@ def conditions(closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row
     rows = [gradient(g, unknowns) for g in closing]
     tangent = cofactors(rows)
     slope = dot(tangent, forces)
-    return LoopConditions(
+    return EquilibriumConditions(
         (*closing, slope), (determinant([*rows, gradient(slope, unknowns)]),), tangent
     )
 
 
 def _stationary(
     closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row
-) -> LoopConditions:
+) -> EquilibriumConditions:
     """The multipliers' equations and the conditions c_1, ..., c_f for stability."""
     halves = tuple(g / 2 for g in closing)
     rows = [gradient(g, unknowns) for g in halves]
@@ -96,7 +99,7 @@ def _stationary(
     zero = (closing[0].graph.constant(0),) * len(closing)
     matrix = [(*gradient(p, unknowns), *column) for p, column in zip(pulls, columns, strict=True)]
     matrix += [(*row, *zero) for row in rows]
-    return LoopConditions((*pulls, *halves), tuple(_definite(matrix, len(closing))))
+    return EquilibriumConditions((*pulls, *halves), tuple(_definite(matrix, len(closing))))
 
 
 def _definite(matrix: Sequence[Row], bars: int) -> Iterator[Formula]:

@@ -1,7 +1,7 @@
 """A tape run on a box in Arb's ball arithmetic, at any precision; it shares no code with the
 compiled evaluator.
 
-Guarantee: as for `ptmcad.formulas.intervals.run`: value k encloses the k-th node's values at every
+Guarantee: as for `ptmcad.formulas.intervalarithmetic.run`: value k encloses the k-th node's values at every
 point of the box; where a node is a `meet`, at every point at which its two operands are equal. A
 ball that is not finite says nothing.
 

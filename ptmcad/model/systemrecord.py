@@ -13,7 +13,7 @@ from ptmcad.errors import ConfigError, Faults, Place
 from ptmcad.model.description import System
 from ptmcad.model.evaluate import value_at
 from ptmcad.model.reading import VALUE, Context, new_name, parsed
-from ptmcad.model.sizes import check_sizes
+from ptmcad.model.termbounds import check_sizes
 from ptmcad.model.trees import PI
 from ptmcad.text.codec import Codec, listed, part, reading, record
 from ptmcad.text.entry import from_python
@@ -47,7 +47,7 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
     codec = system_codec(context)
     found = codec.read(Node.of(from_python(record, Place()), faults))
     system = System(**{**found, "parameters": context.parameters}, source=record)
-    # a key that nobody knows has been told, and may be meant for one of these
+    # an unknown key has been reported, and may be meant for one of these
     misspelt = (
         not {"equations", "potential"} & record.keys()
         and not record.keys() <= codec.schema["properties"].keys()

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.formulas.compiled import ONE, ZERO, compiled
+from ptmcad.formulas.compilation import ONE, ZERO, compiled
 from ptmcad.formulas.graph import Operation
 from ptmcad.formulas.rounding import (
     direction,
