@@ -24,7 +24,7 @@ help:
 	@echo "make check      ruff, its formatter, what may import what, and mypy in strict mode, on the tests less so"
 	@echo "make bench      error, run time and memory on every slice in configs/, into docs/benchmarks/: ten minutes"
 	@echo "make ablation   what each saving is worth, into docs/benchmarks/: nine minutes"
-	@echo "make systems    twelve systems beside msolve, Singular, QEPCAD and gcad, into out/systems/: a quarter of an hour"
+	@echo "make systems    twelve systems compared with msolve, Singular, QEPCAD and gcad, into out/systems/: a quarter of an hour"
 	@echo "make scaling    how time and memory grow, into docs/benchmarks/: three minutes"
 	@echo "make stress     stiff and extreme cases against double precision, into docs/benchmarks/: some minutes"
 	@echo "make docs       the manual, as out/docs/html/index.html, and the pictures of fig. 4, into docs/img/"

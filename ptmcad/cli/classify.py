@@ -210,7 +210,7 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
     if not certified:
         from ptmcad.ask.checking import foretold
 
-        click.echo("\n".join(f"foretold: {text}" for text in foretold(slice)))
+        click.echo("\n".join(f"predicted: {text}" for text in foretold(slice)))
     later = () if certified else tuple(name for name in exactplan.LATER if name not in off)
     if later:
         click.echo(f"to be decided on the way: {', '.join(later)}")
