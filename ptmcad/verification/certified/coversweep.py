@@ -229,7 +229,9 @@ class _Strips:
         for one, two in _touching(old, new):
             # what a frame that goes on across the line meets there, it meets along its upright
             # sides in one strip
-            if _ends(one, self._frames, line, 3) and _ends(two, self._frames, line, 2):
+            if not self._frames or (
+                _ends(one, self._frames, line, 3) and _ends(two, self._frames, line, 2)
+            ):
                 self._meet(
                     self._parts(one, 1, 1, (one.left, one.right)),
                     self._parts(two, 1, 0, (two.left, two.right)),

@@ -28,7 +28,7 @@ from ptmcad.verification.certified.krawczyk import Spent, zeros
 from ptmcad.verification.certified.narrow import is_wide, narrowed, precisions, tested
 from ptmcad.verification.inertia import inertia
 from ptmcad.verification.kinds import kind_of
-from ptmcad.verification.normalform.boxes import MIN_HALF_WIDTH, Unproved, Zero, is_same
+from ptmcad.verification.normalform.boxes import MIN_HALF_WIDTH, Floats, Unproved, Zero, is_same
 from ptmcad.verification.normalform.lattice import Range, SliceLattice
 from ptmcad.verification.normalform.waves import Form, Sides, form_of, sides
 from ptmcad.verification.report import Violation
@@ -366,10 +366,19 @@ def _zero_in(
                     return None
                 signs = inertia(found.jacobian) if form.is_gradient else ""
                 if signs is not None and all(c > 0 for c in _ahead(field, found.within)):
-                    # nothing is said of what is around the box
-                    return Zero(*found.in_floats(), (0.0,) * form.size, signs)
+                    center, radii = found.in_floats()
+                    return _apart(field, Zero(center, radii, _room(solution, center), signs))
                 found = narrowed(function, found)
     raise Unproved("not decided")
+
+
+def _room(solution: Solution, center: Floats) -> Floats:
+    """How far around a point the solution in a stored box is alone, as it is in one twice as wide
+    (`tested`).
+    """
+    wide = 2 * ball_of(solution.radius)
+    room = (wide - abs(x - ball_of(c)) for x, c in zip(center, solution.center, strict=True))
+    return tuple(max(0.0, float(r.lower()) * (1 - 2.0**-40)) for r in room)
 
 
 def _check_box(form: Form, solution: Solution, k: int) -> None:

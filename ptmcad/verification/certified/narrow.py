@@ -73,7 +73,10 @@ def precisions(solution: Solution) -> list[int]:
 
 
 def tested(function: Function, solution: Solution) -> Judgement | None:
-    """What one test shows of a stored box at the precision that is set; None where nothing."""
+    """What one test shows of a stored box at the precision that is set; None where nothing.
+
+    A solution that it has is the only one in a box that is twice as wide, too.
+    """
     given, radius = [ball_of(c) for c in solution.center], ball_of(solution.radius)
     middle = [x.mid() for x in given]
     lost = max((x.rad() for x in given), key=float)
