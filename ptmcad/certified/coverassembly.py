@@ -3,7 +3,7 @@
 Guarantee: every cell's counts are proved at its sample, and hold in the whole cell because no curve
 enters it. A component of the cover's complement gets no cell when its counts were not decided, or
 when it is a pocket: so small that it may be an artefact of the boxes, with the same counts as a
-larger component beside it. Its area is then undetermined.
+larger component next to it. Its area is then undetermined.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ MAX_COUNTED = 500
 """Components whose counts are computed; smaller ones are undetermined."""
 POCKET_SHARE = Fraction(1, 4000)
 """Share of the window, or a tenth of the cover's if that is less: smaller components with the
-counts of a larger one beside them are taken for artefacts. So a region that is there in truth
+counts of a larger one next to them are taken for artefacts. So a region that is there in truth
 appears as the cover shrinks."""
 
 

@@ -93,7 +93,7 @@ def system(
     ----------
     equations : differentiable formulas, without a `meet` that may be empty; the two cheapest first.
     unknowns : numbers of the variables to search; for a curve the two axes come first.
-    vanishing : formulas that vanish at every solution, beside the equations: cheap ones without a
+    vanishing : formulas that vanish at every solution, in addition to the equations: cheap ones without a
         `meet`, then others.
     nonnegative : formulas that are at least zero at every solution looked for.
     jacobian : the equations' derivatives by the unknowns, where there are better formulas than
@@ -140,7 +140,7 @@ def quotients(vanishing: Iterable[Formula], axes: Iterable[int]) -> tuple[Quotie
     Parameters
     ----------
     vanishing : formulas without a `meet` that may be empty.
-    axes : unknowns that the configuration tells, as it tells loads, stiffnesses and free lengths.
+    axes : unknowns that follow from the configuration, as loads, stiffnesses and free lengths do.
         To solve for an axis that springs' directions depend on is sound, and no use: the direction
         of a short one may be anything.
     """

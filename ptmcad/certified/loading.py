@@ -53,7 +53,7 @@ def load(progress: Progress | None = None, options: Options | None = None) -> fl
     ----------
     progress : called as progress(STAGE, done, total) with numbers of functions, as long as some
         have to be compiled.
-    options : of what is wanted; all that there is is made ready where nothing is said.
+    options : they say which functions are needed; without them all are made ready.
 
     Returns
     -------

@@ -118,7 +118,7 @@ class Pace:
         self._asked = self.clock()
 
     def looked(self, seconds: float) -> None:
-        """It took so many seconds to see whether a map on the way is worth while: that is not done
+        """It took so many seconds to see whether a map on the way is worthwhile: that is not done
         all the time.
         """
         self.spent += seconds

@@ -15,8 +15,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ptmcad.question.slice import Slice
-
 
 @dataclass(frozen=True, slots=True)
 class Peaks:
@@ -93,14 +91,3 @@ def _sign(a: Fraction, b: Fraction, square: Fraction) -> int:
         return first or second
     difference = a**2 - b**2 * square
     return first * ((difference > 0) - (difference < 0))
-
-
-def values_at(slice: Slice, x: Fraction, y: Fraction) -> dict[str, Fraction]:
-    """All variables of the slice's description at a point; free lengths that the slice does not
-    have are zero.
-    """
-    given = slice.parameters
-    return {
-        name: given[name].evaluate(x, y) if name in given else Fraction(0)
-        for name in slice.model.variables
-    }

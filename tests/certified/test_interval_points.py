@@ -14,13 +14,13 @@ from support.dense_search import dense_search
 from support.examples import examples
 
 import ptmcad
-from ptmcad.certified.peaks import peaks, values_at
+from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.pointcounts import BranchCounter, plain_counter
 from ptmcad.certified.plain.zeros import PointCount
 from ptmcad.formulas.ballarithmetic import ball, run_arb
 from ptmcad.model import ptm
 from ptmcad.question.slice import Axis, Count, Slice
-from ptmcad.text.expressions import axis
+from ptmcad.text.expressions import axis, values_at
 
 UNIT = {"L1": Q(1), "k1": Q(1), "k2": Q(1), "k3": Q(1), "F3x": Q(0), "F4x": Q(0)}
 
@@ -89,7 +89,9 @@ def compare_with_dense_search(seed: int, points: int) -> None:
     for _ in range(points):
         counts, x, y = random_case(generator)
         found, admissible = counts.at(x, y, Count.INDEX), counts.at(x, y, Count.ADMISSIBLE)
-        values = values_at(counts.branches[0].slice, x, y)
+        slice = counts.branches[0].slice
+        absent = dict.fromkeys(slice.model.variables, Q(0))
+        values = absent | values_at(slice.parameters, x, y)
         assert found.decided and admissible.decided, values
         for grid in (
             40,

@@ -19,7 +19,7 @@ from ptmcad.answer.counts import counts_of_signs, euler_sum
 from ptmcad.certified.arb_isolation import refined
 from ptmcad.certified.branchandprune import Boxes
 from ptmcad.certified.equationsystem import EquationSystem, system
-from ptmcad.certified.peaks import peaks, values_at
+from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.plain.spectrum import inertia
@@ -36,6 +36,7 @@ from ptmcad.model import ptm
 from ptmcad.model.criterion import by_hessian
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import values_at
 from ptmcad.text.numerals import text_of
 
 WITNESSES = tuple(
@@ -148,7 +149,8 @@ class PlainCounter:
             )
         cones = 0 if smooth else None
         if self.slice.model == ptm() and self.problem.has_springs:
-            there = peaks(values_at(self.slice, x, y))
+            absent = dict.fromkeys(self.slice.model.variables, Fraction(0))
+            there = peaks(absent | values_at(self.slice.parameters, x, y))
             cones = there.count
             if there.regular and index[0] - index[1] + index[2] + cones:
                 raise ArithmeticError(
