@@ -27,10 +27,10 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
 from ptmcad.show.render.axes import Dress, symbol
+from ptmcad.show.render.chartgrid import Panel, PanelGrid
 from ptmcad.show.render.colours import Fill, fills_by_count, paint_of
 from ptmcad.show.render.legend import Entry, Type, draw_legend, head_of
 from ptmcad.show.render.outline import shapes
-from ptmcad.show.render.panels import Panel, PanelGrid
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.stage import Pixels, Stage
 from ptmcad.show.style import DEFAULT, PictureStyle

@@ -40,6 +40,7 @@ from ptmcad.show.render.slivers import (
     Sliver,
     Zoom,
     arrows,
+    counts_of,
     draw_arrows,
     ranked,
     seen_thin_walls,
@@ -116,8 +117,10 @@ class _Seen:
         inset stands.
         """
         ranked = self.ranked
-        names = [_name_of(self.whole.result, sliver, None) for sliver in ranked]
-        kept = [a.sliver for a in arrows(self.whole, ranked, names, sides, size) if a.clear]
+        result = self.whole.result
+        named = [(sliver, _name_of(result, sliver, None)) for sliver in ranked]
+        placed = arrows(self.whole, named, counts_of(result), sides, size)
+        kept = [arrow.sliver for arrow in placed if arrow.clear]
         if len(kept) == len(ranked):
             return self
         views = tuple(
@@ -285,7 +288,8 @@ class MapDrawing(NamedTuple):
         for zoom, box in zip(seen.views, layout.insets, strict=False):
             _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
         sides, size = (layout.chart[2] * 72, layout.chart[3] * 72), layout.texts.arrow
-        led = arrows(seen.whole, marked, names, sides, size, skip=not layout.insets)
+        named = list(zip(marked, names, strict=True))
+        led = arrows(seen.whole, named, counts_of(result), sides, size, not layout.insets)
         draw_arrows(axes, led, paint.scale)
         draw_overlay(axes, seen.whole.view, self.overlay, paint.scale, layout.texts.arrow)
         return axes
