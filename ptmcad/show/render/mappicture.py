@@ -235,7 +235,7 @@ class MapDrawing(NamedTuple):
                 # what no inset shows is named by a label that an arrow leads to it, if that has
                 # room
                 sides = (72 * layout.chart[2], 72 * layout.chart[3])
-                bare = seen.with_room(sides, layout.texts.arrow)
+                bare = seen.with_room(sides, layout.arrow_size)
                 if bare is not seen:
                     seen, tries = bare, 1
                     continue
@@ -265,7 +265,7 @@ class MapDrawing(NamedTuple):
         """Everything in its place; the map's axes."""
         result, paint = self.result, paint_of(self.style, self.result)
         on_map = replace(paint, thin_walls=seen.thin_lines)
-        write_lines(figure, layout.title_at, layout.title, layout.texts.title, layout.title_line)
+        write_lines(figure, layout.title_at, layout.title, layout.title_size, layout.title_line)
         axes = axes_at(figure, layout.chart, "map")
         paint_map(axes, seen.whole, "", on_map)
         if self.samples:
@@ -287,11 +287,11 @@ class MapDrawing(NamedTuple):
         rest = iter(names)
         for zoom, box in zip(seen.views, layout.insets, strict=False):
             _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
-        sides, size = (layout.chart[2] * 72, layout.chart[3] * 72), layout.texts.arrow
+        sides, size = (layout.chart[2] * 72, layout.chart[3] * 72), layout.arrow_size
         named = list(zip(marked, names, strict=True))
         led = arrows(seen.whole, named, counts_of(result), sides, size, not layout.insets)
         draw_arrows(axes, led, paint.scale)
-        draw_overlay(axes, seen.whole.view, self.overlay, paint.scale, layout.texts.arrow)
+        draw_overlay(axes, seen.whole.view, self.overlay, paint.scale, layout.arrow_size)
         return axes
 
 
@@ -359,7 +359,7 @@ def _inset(
         title = _zoomed(names[0], region_area(result, number) if areas_are_known(result) else "")
     else:
         title = textwrap.shorten(", ".join(names), _ZOOMED_COLUMNS, placeholder=" …") + "\nzoomed"
-    axes.set_title(title, fontsize=layout.texts.inset, loc="left", pad=3)
+    axes.set_title(title, fontsize=layout.inset_size, loc="left", pad=3)
 
 
 def _zoomed(name: str, area: str) -> str:
