@@ -15,8 +15,8 @@ import ptmcad
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
+from ptmcad.show.render.chartgrid import multiples_figure
 from ptmcad.show.render.outline import shapes
-from ptmcad.show.render.panels import multiples_figure
 from ptmcad.show.render.printing import content, save
 from ptmcad.show.render.solid import MAX_FLOORS, solid_figure
 from ptmcad.show.render.surfacepicture import MAX_SIDE, camera_of, halved

@@ -13,7 +13,7 @@ _FUNCTIONS = {
     "film": ("SweepFilm", "gif_bytes", "save_film", "save_pictures"),
     "landscape": ("draw_landscape",),
     "mechanism": ("draw_mechanism",),
-    "panels": ("multiples_figure",),
+    "chartgrid": ("multiples_figure",),
     "paths": ("draw_paths",),
     "pixelmap": ("field_png", "grid_png"),
     "plotting": ("draw_with_poses", "plot"),

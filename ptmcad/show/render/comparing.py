@@ -16,13 +16,13 @@ from ptmcad.answer.comparison import Bounds, Change, Comparison
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, symbol
+from ptmcad.show.render.chartgrid import LINE, Panel, PanelGrid
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, Paint, paint_of, undetermined_fill
 from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang, rewrapped
 from ptmcad.show.render.inches import few, wrapped
 from ptmcad.show.render.legend import Entry, Type, entries, hidden_entries
 from ptmcad.show.render.mappicture import whole_title
 from ptmcad.show.render.outline import shapes
-from ptmcad.show.render.panels import LINE, Panel, PanelGrid
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.slivers import Arrow, arrows_of, seen_thin_walls
 from ptmcad.show.render.view import Shapes

@@ -22,12 +22,12 @@ from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, scale_of, with_symbols
+from ptmcad.show.render.chartgrid import HeadAndFoot
 from ptmcad.show.render.colours import INK, RIM_INK, STRONG, Fill, undetermined_fill
 from ptmcad.show.render.fieldlines import branch_edges, contour_lines
 from ptmcad.show.render.fitting import MIN_SIDE, beside, dressed
 from ptmcad.show.render.inches import Box
 from ptmcad.show.render.legend import Entry, Type, line_mark
-from ptmcad.show.render.panels import HeadAndFoot
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.view import Floats, View
 from ptmcad.show.style import DEFAULT, MIN_FONT, PictureStyle, Size

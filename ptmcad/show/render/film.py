@@ -15,7 +15,7 @@ from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
 from subprocess import DEVNULL, PIPE
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -27,10 +27,10 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
 from ptmcad.show.render.axes import Dress, symbol
+from ptmcad.show.render.chartgrid import Panel, PanelGrid
 from ptmcad.show.render.colours import Fill, fills_by_count, paint_of
 from ptmcad.show.render.legend import Entry, Type, draw_legend, head_of
 from ptmcad.show.render.outline import shapes
-from ptmcad.show.render.panels import Panel, PanelGrid
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.stage import Pixels, Stage
 from ptmcad.show.style import DEFAULT, PictureStyle
@@ -42,15 +42,6 @@ REST = 0.8
 """Seconds for which the first and the last picture stand."""
 COLOURS, SAMPLES = 128, 6
 """Of a GIF, chosen from so many of its pictures."""
-
-
-class Pictures(Protocol):
-    """Pictures of one size, each made when it is asked for; to be used within `printing.settings`."""
-
-    def __len__(self) -> int: ...
-
-    def frame(self, number: int) -> Pixels:
-        """The picture with this number."""
 
 
 def save_film(motion: Motion, path: Path, style: PictureStyle, fps: int, dpi: int) -> None:
@@ -66,7 +57,9 @@ def save_film(motion: Motion, path: Path, style: PictureStyle, fps: int, dpi: in
     save_pictures(lambda: Stage(motion, style, dpi), path, style, fps)
 
 
-def save_pictures(make: Callable[[], Pictures], path: Path, style: PictureStyle, fps: int) -> None:
+def save_pictures(
+    make: Callable[[], Stage | SweepFilm], path: Path, style: PictureStyle, fps: int
+) -> None:
     """Write pictures one after the other as a file, whose suffix gives the format.
 
     Parameters
@@ -98,7 +91,7 @@ def gif_bytes(motion: Motion, style: PictureStyle, fps: int, dpi: int) -> bytes:
         return _gif(Stage(motion, style, dpi), fps)
 
 
-def _gif(pictures: Pictures, fps: int) -> bytes:
+def _gif(pictures: Stage | SweepFilm, fps: int) -> bytes:
     """The content of an animated GIF, in the same colours throughout, so that nothing flickers."""
     number = len(pictures)
     chosen = sorted({round(k * (number - 1) / (SAMPLES - 1)) for k in range(SAMPLES)})
@@ -122,7 +115,7 @@ def _gif(pictures: Pictures, fps: int) -> bytes:
     return data.getvalue()
 
 
-def _write_mp4(pictures: Pictures, path: Path, fps: int) -> None:
+def _write_mp4(pictures: Stage | SweepFilm, path: Path, fps: int) -> None:
     """Give ffmpeg one picture after the other."""
     program, rest = require_ffmpeg(), round(REST * fps)
     with tempfile.TemporaryFile() as said:

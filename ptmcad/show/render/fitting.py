@@ -24,7 +24,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import Dress, dress
 from ptmcad.show.render.inches import ALLOWANCE, Box, few, wrapped
 from ptmcad.show.render.labels import Position
-from ptmcad.show.render.layout import Layout, Texts
+from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.legend import Entry, Type
 from ptmcad.show.render.view import Same, View
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
@@ -130,10 +130,12 @@ class _PageLayout:
         return Type.of(self.style, self.font)
 
     @property
-    def texts(self) -> Texts:
-        return Texts(
-            title=1.1 * self.font, inset=_points(0.83 * self.font), arrow=_points(0.89 * self.font)
-        )
+    def title_size(self) -> float:
+        return 1.1 * self.font
+
+    @property
+    def inset_size(self) -> float:
+        return _points(0.83 * self.font)
 
     def dressed(self, width: float, height: float, small: bool = False) -> Dress:
         """Sizes at axes of these sides, with as many numbers as there is room for."""
@@ -141,11 +143,11 @@ class _PageLayout:
 
     def title(self) -> list[str]:
         title = self.parts.title
-        return few(wrapped(title, self.size[0] - 2 * self.rim, self.texts.title), MAX_TITLE_LINES)
+        return few(wrapped(title, self.size[0] - 2 * self.rim, self.title_size), MAX_TITLE_LINES)
 
     @property
     def title_line(self) -> float:
-        return 1.35 * self.texts.title / 72
+        return 1.35 * self.title_size / 72
 
     @property
     def top(self) -> float:
@@ -165,7 +167,8 @@ class _PageLayout:
             size=self.size, chart=chart, title=self.title(),
             title_at=(self.rim, self.size[1] - self.rim - self.title_line / 2), title_line=self.title_line,
             legend=legend, insets=insets, type=self.type, axes=self.dressed(chart[2], chart[3]),
-            inset_axes=self.dressed(inset[2], inset[3], small=True), texts=self.texts,
+            inset_axes=self.dressed(inset[2], inset[3], small=True), title_size=self.title_size,
+            inset_size=self.inset_size, arrow_size=_points(0.89 * self.font),
         )  # fmt: skip
 
 
@@ -330,7 +333,7 @@ def _stacked(page: _PageLayout, place: tuple[float, float, float], insets: int) 
 
 def _inset_head(page: _PageLayout) -> float:
     """Inches of the two lines over an inset."""
-    return 3.0 * page.texts.inset / 72
+    return 3.0 * page.inset_size / 72
 
 
 def _inset_overhang(page: _PageLayout) -> Box:

@@ -29,15 +29,6 @@ the map goes below.
 
 
 @dataclass(frozen=True, slots=True)
-class Texts:
-    """Sizes in points of what is neither in the legend nor at the axes."""
-
-    title: float = 11
-    inset: float = 7.5
-    arrow: float = 8
-
-
-@dataclass(frozen=True, slots=True)
 class Layout:
     """A page's parts.
 
@@ -49,7 +40,8 @@ class Layout:
     title_at, title_line : the left end of the first line's middle, and the distance of lines.
     legend : parts of it, each with its upper left corner.
     insets : the places of views of slivers, as many as are shown.
-    type, axes, inset_axes, texts : sizes of all text.
+    type, axes, inset_axes : sizes of text in the legend and at the axes.
+    title_size, inset_size, arrow_size : sizes in points of other text.
     shortened : whether the legend has no areas because they have no room.
     """
 
@@ -63,7 +55,9 @@ class Layout:
     type: Type = field(default_factory=Type)
     axes: Dress = field(default_factory=Dress)
     inset_axes: Dress = SMALL
-    texts: Texts = field(default_factory=Texts)
+    title_size: float = 11
+    inset_size: float = 7.5
+    arrow_size: float = 8
     shortened: bool = False
 
 

@@ -40,6 +40,7 @@ from ptmcad.show.render.slivers import (
     Sliver,
     Zoom,
     arrows,
+    counts_of,
     draw_arrows,
     ranked,
     seen_thin_walls,
@@ -116,8 +117,10 @@ class _Seen:
         inset stands.
         """
         ranked = self.ranked
-        names = [_name_of(self.whole.result, sliver, None) for sliver in ranked]
-        kept = [a.sliver for a in arrows(self.whole, ranked, names, sides, size) if a.clear]
+        result = self.whole.result
+        named = [(sliver, _name_of(result, sliver, None)) for sliver in ranked]
+        placed = arrows(self.whole, named, counts_of(result), sides, size)
+        kept = [arrow.sliver for arrow in placed if arrow.clear]
         if len(kept) == len(ranked):
             return self
         views = tuple(
@@ -232,7 +235,7 @@ class MapDrawing(NamedTuple):
                 # what no inset shows is named by a label that an arrow leads to it, if that has
                 # room
                 sides = (72 * layout.chart[2], 72 * layout.chart[3])
-                bare = seen.with_room(sides, layout.texts.arrow)
+                bare = seen.with_room(sides, layout.arrow_size)
                 if bare is not seen:
                     seen, tries = bare, 1
                     continue
@@ -262,7 +265,7 @@ class MapDrawing(NamedTuple):
         """Everything in its place; the map's axes."""
         result, paint = self.result, paint_of(self.style, self.result)
         on_map = replace(paint, thin_walls=seen.thin_lines)
-        write_lines(figure, layout.title_at, layout.title, layout.texts.title, layout.title_line)
+        write_lines(figure, layout.title_at, layout.title, layout.title_size, layout.title_line)
         axes = axes_at(figure, layout.chart, "map")
         paint_map(axes, seen.whole, "", on_map)
         if self.samples:
@@ -284,10 +287,11 @@ class MapDrawing(NamedTuple):
         rest = iter(names)
         for zoom, box in zip(seen.views, layout.insets, strict=False):
             _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
-        sides, size = (layout.chart[2] * 72, layout.chart[3] * 72), layout.texts.arrow
-        led = arrows(seen.whole, marked, names, sides, size, skip=not layout.insets)
+        sides, size = (layout.chart[2] * 72, layout.chart[3] * 72), layout.arrow_size
+        named = list(zip(marked, names, strict=True))
+        led = arrows(seen.whole, named, counts_of(result), sides, size, not layout.insets)
         draw_arrows(axes, led, paint.scale)
-        draw_overlay(axes, seen.whole.view, self.overlay, paint.scale, layout.texts.arrow)
+        draw_overlay(axes, seen.whole.view, self.overlay, paint.scale, layout.arrow_size)
         return axes
 
 
@@ -355,7 +359,7 @@ def _inset(
         title = _zoomed(names[0], region_area(result, number) if areas_are_known(result) else "")
     else:
         title = textwrap.shorten(", ".join(names), _ZOOMED_COLUMNS, placeholder=" …") + "\nzoomed"
-    axes.set_title(title, fontsize=layout.texts.inset, loc="left", pad=3)
+    axes.set_title(title, fontsize=layout.inset_size, loc="left", pad=3)
 
 
 def _zoomed(name: str, area: str) -> str:

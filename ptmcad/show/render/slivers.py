@@ -318,12 +318,11 @@ def ranked(whole: Shapes, slivers: Sequence[Sliver], thin: Sequence[int]) -> lis
 
 def arrows(
     whole: Shapes,
-    slivers: Sequence[Sliver],
-    names: Sequence[str],
+    named: Sequence[tuple[Sliver, str]],
+    said: Sequence[str],
     sides: Size,
     size: float,
     skip: bool = True,
-    said: Sequence[str] | None = None,
 ) -> list[Arrow]:
     """Arrows with these names to slivers.
 
@@ -331,15 +330,15 @@ def arrows(
 
     Parameters
     ----------
+    named : slivers and what their labels say.
+    said : what is said of each region of the map: the label of one best stands where the same is
+        true.
     sides : width and height of the picture, in points.
     size : of the texts, in points.
     skip : whether labels that are not clear are not to be drawn.
-    said : what is said of each region of the map, if not its count: the label of one best stands
-        where the same is true.
     """
-    said = counts_of(whole.result) if said is None else said
-    image = whole.raster(96, 96) if slivers else np.zeros((1, 1), dtype=np.int64)
-    tips = [whole.view.approximate_position(sliver.at) for sliver in slivers]
+    image = whole.raster(96, 96) if named else np.zeros((1, 1), dtype=np.int64)
+    tips = [whole.view.approximate_position(sliver.at) for sliver, _ in named]
     points = [(x * sides[0], y * sides[1]) for x, y in tips]
     scale = min(*sides, _SIDE) / _SIDE
 
@@ -354,7 +353,7 @@ def arrows(
         return of
 
     labels = []
-    for sliver, name, tip in zip(slivers, names, points, strict=True):
+    for (sliver, name), tip in zip(named, points, strict=True):
         homes = {n for n, text in enumerate(said) if text == said[sliver.region]}
         half = (36 * text_width(name, size) + 0.25 * size + 1, 0.85 * size + 1)
         labels.append(Label(name, tip, half, cost=cost(tip, homes)))
@@ -363,7 +362,7 @@ def arrows(
     placed = place(labels, (), around_tips, bounds, [scale * d for d in _DISTANCES], skip)
     return [
         Arrow(sliver, one.label.text, tip, (one.center[0] / sides[0], one.center[1] / sides[1]), size, one.clear)
-        for sliver, tip, one in zip(slivers, tips, placed, strict=True)
+        for (sliver, _), tip, one in zip(named, tips, placed, strict=True)
     ]  # fmt: skip
 
 
@@ -389,9 +388,9 @@ def arrows_of(
     said = names if names is not None else counts_of(whole.result)
     thin = [n for n in thin_regions(whole, round(min(sides) * min(dpi, resolved))) if said[n]]
     slivers = ranked(whole, [Sliver(n, inside(whole, n)) for n in thin], thin)
-    labels = [said[sliver.region] for sliver in slivers]
+    named = [(sliver, said[sliver.region]) for sliver in slivers]
     points = (72 * sides[0], 72 * sides[1])
-    found = [a for a in arrows(whole, slivers, labels, points, size, said=said) if a.clear]
+    found = [arrow for arrow in arrows(whole, named, said, points, size) if arrow.clear]
     return found, len(thin) - len(found)
 
 

@@ -19,11 +19,11 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
+from ptmcad.show.render.chartgrid import HeadAndFoot, family_entries, in_words, title_of, value_text
 from ptmcad.show.render.colours import INK, STRONG, THIN, Paint, paint_of
 from ptmcad.show.render.inches import Box, text_width
 from ptmcad.show.render.legend import Entry, Type
 from ptmcad.show.render.outline import shapes
-from ptmcad.show.render.panels import HeadAndFoot, family_entries, in_words, title_of, value_text
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.surfacepicture import BOX, add_sheets, sheet_colours, sheet_entries
 from ptmcad.show.style import MIN_FONT, PictureStyle

@@ -166,12 +166,10 @@ def _solutions(
     kinds = [model.criterion.kind_of_signs(solution.signs) for solution in cell.solutions]
     order = {"stable": 0, "degenerate": len(model.unknowns) + 1}
 
-    def rank(k: int) -> tuple[int, Any]:
-        energy = energies[k]
-        return (
-            order.get(kinds[k], cell.solutions[k].signs.count("-")),
-            0 if energy is None else energy.mid().fmpq(),
-        )
+    def rank(k: int) -> tuple[int, float]:
+        energy = energies[k]  # those of one energy stay in their order
+        level = 0.0 if energy is None else _drawn(energy)
+        return order.get(kinds[k], cell.solutions[k].signs.count("-")), level
 
     found = []
     for k in sorted(range(len(boxes)), key=rank):
