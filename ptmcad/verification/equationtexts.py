@@ -13,7 +13,7 @@ from flint import fmpq_mpoly
 from ptmcad.answer.regionmap import System
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Derivation, coordinates_of, derivation_of, parameters_of
-from ptmcad.verification.parameters import on_slice
+from ptmcad.verification.parameterclaims import on_slice
 from ptmcad.verification.polynomialtexts import Texts
 from ptmcad.verification.report import Unchecked, Violation, drawn
 

@@ -36,7 +36,12 @@ from ptmcad.model import Model
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.coordinates import CoordinateRing
 from ptmcad.verification.derivation import Derivation, derivation_at
-from ptmcad.verification.inertia import bases, determinant, leading_minors, negative_eigenvalues
+from ptmcad.verification.principalminors import (
+    bases,
+    determinant,
+    leading_minors,
+    negative_eigenvalues,
+)
 
 Monomial = tuple[int, ...]
 """Exponents of the variables, last to first."""

@@ -53,12 +53,12 @@ from ptmcad.verification.certified.narrow import narrowed, precisions, tested
 from ptmcad.verification.certified.points import check_cell, check_listed, counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.coordinates import ball_at
 from ptmcad.verification.derivation import Derivation, parameters_of
 from ptmcad.verification.fibrealgebra import FibreAlgebra
-from ptmcad.verification.inertia import inertia
 from ptmcad.verification.kinds import kind_of, meaning_of
+from ptmcad.verification.principalminors import inertia
 from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
-from ptmcad.verification.terms import ball_at
 
 _NARROWINGS = 4
 """Images of a box that a solution is proved to be in, until signs on it are certain."""

@@ -26,7 +26,7 @@ from ptmcad.model import Mechanism
 from ptmcad.options import Options
 from ptmcad.verification import verify
 from ptmcad.verification.certified.waves import form_of
-from ptmcad.verification.terms import monomials
+from ptmcad.verification.coordinates import monomials
 
 Springs = list[dict[str, Any]]
 TOGETHER: Springs = [

@@ -22,8 +22,8 @@ from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.certified.narrow import NARROW, judged
 from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.coordinates import ball, evaluated
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.terms import ball, evaluated
 
 pytest.importorskip("numba")
 

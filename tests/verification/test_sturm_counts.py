@@ -13,8 +13,8 @@ from support.examples import examples
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import sturm
-from ptmcad.verification.branches import WallBranch
 from ptmcad.verification.claims import PlaneCurve
+from ptmcad.verification.wallintegrals import WallBranch
 
 
 @st.composite

@@ -44,9 +44,9 @@ from ptmcad.verification.certified.solving import zeros
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.inertia import inertia, is_no_minimum
+from ptmcad.verification.coordinates import power
+from ptmcad.verification.principalminors import inertia, is_no_minimum
 from ptmcad.verification.report import Violation
-from ptmcad.verification.terms import power
 
 pytest.importorskip("numba")
 

@@ -16,9 +16,9 @@ from support.few import few
 
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import sturm
-from ptmcad.verification.branches import PanelEffort, PanelPart, WallBranch, integrals_over
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.sturm import numbered_root
+from ptmcad.verification.wallintegrals import PanelEffort, PanelPart, WallBranch, integrals_over
 
 HEIGHTS = (fmpq(-3), fmpq(3))
 

@@ -20,7 +20,7 @@ from ptmcad.verification.certified.structure import (
 )
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.equationtexts import check_potential
-from ptmcad.verification.parameters import check_text
+from ptmcad.verification.parameterclaims import check_text
 from ptmcad.verification.report import Check, CheckProgress, VerifyReport, Violation, checked, drawn
 
 BOXES = 16

@@ -19,7 +19,7 @@ from ptmcad.verification.certified.formulas import Formulas
 from ptmcad.verification.certified.kinks import Sides
 from ptmcad.verification.certified.lines import SpringLine
 from ptmcad.verification.certified.waves import Form, Key, SpringCone, Waves, by
-from ptmcad.verification.terms import monomials
+from ptmcad.verification.coordinates import monomials
 
 Pair = tuple[int, int]
 

@@ -43,7 +43,7 @@ from ptmcad.verification.certified.formulas import (
 )
 from ptmcad.verification.certified.kinks import Sides
 from ptmcad.verification.certified.waves import Form
-from ptmcad.verification.terms import ball, power, square
+from ptmcad.verification.coordinates import ball, power, square
 
 Matrix = list[list[arb]]
 _ZERO, _ANY = arb(0), arb(0, 1)

@@ -17,7 +17,7 @@ from flint import arb, arb_mat
 
 from ptmcad.verification.certified.boxes import Box, Floats, Zero
 from ptmcad.verification.certified.field import BallEquations, BallJet, Matrix
-from ptmcad.verification.inertia import inertia
+from ptmcad.verification.principalminors import inertia
 
 _SHRINKINGS = (
     1,

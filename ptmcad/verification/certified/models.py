@@ -30,10 +30,10 @@ from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
 from ptmcad.verification.certified.waves import Form
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.inertia import inertia
+from ptmcad.verification.coordinates import evaluated
 from ptmcad.verification.kinds import kind_of
+from ptmcad.verification.principalminors import inertia
 from ptmcad.verification.report import Violation
-from ptmcad.verification.terms import evaluated
 
 PRECISIONS = ((53, MIN_HALF_WIDTH), (128, 2.0**-80))
 """Bits, and the share of all configurations below which boxes are not halved: a spring may be as

@@ -16,11 +16,11 @@ from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.coordinates import ball, evaluated, monomials
 from ptmcad.verification.derivation import derivation_of
-from ptmcad.verification.parameters import auxiliary, written
+from ptmcad.verification.parameterclaims import auxiliary, written
 from ptmcad.verification.planecurves import PLANE, polynomial
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.terms import ball, evaluated, monomials
 from ptmcad.verification.windowsigns import Sign, Window, has_no_pole, is_in_domain
 
 

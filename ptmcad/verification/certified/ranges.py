@@ -28,7 +28,7 @@ from ptmcad.verification.certified.boxes import Unproved
 from ptmcad.verification.certified.field import size
 from ptmcad.verification.certified.held import bounds_of
 from ptmcad.verification.certified.waves import Form, Key, Waves
-from ptmcad.verification.terms import ball, power
+from ptmcad.verification.coordinates import ball, power
 
 HALF_TURN = 101 / 32
 """A little more than pi, so that a range of this half width around 0 has the whole circle."""

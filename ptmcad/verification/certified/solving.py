@@ -31,7 +31,7 @@ from ptmcad.verification.certified.boxes import (
 )
 from ptmcad.verification.certified.field import BallEquations, BallJet
 from ptmcad.verification.certified.krawczyk import image_of, newton, proved
-from ptmcad.verification.inertia import is_no_minimum
+from ptmcad.verification.principalminors import is_no_minimum
 
 _NEAR = 4.0
 """Balances are looked at where a spring may be shorter than so many times what it changes by in the

@@ -26,9 +26,9 @@ from ptmcad.verification.certified.parameters import values_over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import Waves, form_of
+from ptmcad.verification.coordinates import evaluated
 from ptmcad.verification.exclusion.tapes import IntervalTape, tape_of
 from ptmcad.verification.kinds import kind_of
-from ptmcad.verification.terms import evaluated
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its

@@ -37,24 +37,24 @@ from ptmcad.text.expressions import axis, constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification.adjacency import (
+from ptmcad.verification.adjacencies import (
     check_adjacencies,
     check_no_adjacency_missing,
     check_non_adjacencies,
 )
-from ptmcad.verification.areas import check_areas
-from ptmcad.verification.branches import PanelEffort, _along
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.disks import BallsTooWide, _series
 from ptmcad.verification.equationtexts import check_system
 from ptmcad.verification.fibrealgebra import FibreAlgebra
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
-from ptmcad.verification.parameters import check_boundary, check_text
-from ptmcad.verification.plan import check_plan
+from ptmcad.verification.norms import check_irreducible, check_norm
+from ptmcad.verification.parameterclaims import check_boundary, check_text
+from ptmcad.verification.planclaims import check_plan
 from ptmcad.verification.projections import check_critical_values, check_stacks
+from ptmcad.verification.regionareas import check_areas
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.solutions import check_counts, check_solutions
-from ptmcad.verification.variety import check_irreducible, check_norm
+from ptmcad.verification.wallintegrals import PanelEffort, _along
 from ptmcad.verification.windowsigns import check_left_out
 
 Change = Callable[[RegionMap], RegionMap]

@@ -1,7 +1,7 @@
 """Checks of the areas: another enclosure of each region's area, which has to lie within the stored
 bounds.
 
-Each wall between two regions is integrated over panels by `ptmcad.verification.branches`, which are
+Each wall between two regions is integrated over panels by `ptmcad.verification.wallintegrals`, which are
 halved towards critical values, where branches are not analytic; narrow strips around critical
 values that are not rational count as error.
 
@@ -23,10 +23,10 @@ from ptmcad.answer.regionmap import CriticalValue, Region
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text
-from ptmcad.verification.branches import PanelEffort, PanelPart, WallBranch, integrals_over
 from ptmcad.verification.claims import Claims, bracket
 from ptmcad.verification.disks import BallsTooWide
 from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.wallintegrals import PanelEffort, PanelPart, WallBranch, integrals_over
 
 NARROWEST = 10**60
 """Of bounds that are relatively narrower than the inverse of this, it is tried whether they are off

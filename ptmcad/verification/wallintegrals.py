@@ -338,9 +338,7 @@ def _from_point(
     if root is None:
         return None
     try:
-        found = disk(
-            divided, whole, root, effort.degrees[0]
-        )
+        found = disk(divided, whole, root, effort.degrees[0])
     except BallsTooWide:
         return None  # halved panels may do with what precision there is
     # the branch is that of the disk over the nearest place, and so over all others
