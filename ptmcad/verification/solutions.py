@@ -55,7 +55,7 @@ from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import ball_at
 from ptmcad.verification.derivation import Derivation, parameters_of
-from ptmcad.verification.fibrealgebra import FibreAlgebra
+from ptmcad.verification.fibrealgebra import SolutionAlgebra
 from ptmcad.verification.kinds import kind_of, meaning_of
 from ptmcad.verification.principalminors import inertia
 from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
@@ -244,7 +244,7 @@ def check_counts(claims: Claims) -> str:
     return f"{len(claims.result.cells)} samples"
 
 
-def _euler_sum(fibre: FibreAlgebra, counts: Counts) -> int:
+def _euler_sum(fibre: SolutionAlgebra, counts: Counts) -> int:
     """The sum of the signs of the Jacobian's determinant, which is zero on a torus (Poincare and
     Hopf).
     """

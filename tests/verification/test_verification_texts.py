@@ -1,4 +1,4 @@
-"""Texts in a result, checked: the parameters as they were written, and the potential of a certified
+"""PolynomialTexts in a result, checked: the parameters as they were written, and the potential of a certified
 map.
 """
 
