@@ -49,7 +49,7 @@ def lost(text: str) -> list[str]:
 
 @pytest.mark.parametrize(
     ("text", "there"),
-    [("`exact/cad/area.py`", True), ("`certified/points`", True), ("`exact/cad/surface.py`", False),
+    [("`exact/cad/area.py`", True), ("`certified/covering`", True), ("`exact/cad/surface.py`", False),
      ("`ptmcad.model.closedloops`", True), ("`ptmcad.model.closures`", False),
      ("`ptmcad.answer.regionmap.RegionMap.cells`", True)],
 )  # fmt: skip
