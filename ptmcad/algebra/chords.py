@@ -28,7 +28,7 @@ from flint import (
     fmpz_poly,
 )
 
-from ptmcad.algebra.branches import avoids_zero, local_coefficients
+from ptmcad.algebra.curve_branches import avoids_zero, local_coefficients
 from ptmcad.algebra.polynomials import Coefficient, coefficients_in
 from ptmcad.algebra.real_roots import RealRoot, refine, squarefree_part
 from ptmcad.algebra.resultants import resultant

@@ -19,12 +19,17 @@ from typing import NamedTuple
 
 from flint import arb, arb_poly, ctx, fmpq
 
-from ptmcad.algebra.fibre import Divisor, UnivariateRepresentation, WorkLimit, vanishing_divisor
-from ptmcad.algebra.inertia import negative_eigenvalues
-from ptmcad.algebra.isolation import root_bound
+from ptmcad.algebra.ball_inertia import negative_eigenvalues
+from ptmcad.algebra.descartes import root_bound
+from ptmcad.algebra.fibre_algebra import (
+    Divisor,
+    UnivariateRepresentation,
+    WorkLimit,
+    vanishing_divisor,
+)
 from ptmcad.algebra.polynomials import Values
 from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate, newton_ball
-from ptmcad.algebra.trigonometric import RationalPolynomial
+from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.answer.counts import Counts, counts_of_signs, euler_sum
 from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_point

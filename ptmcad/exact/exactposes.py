@@ -15,7 +15,7 @@ from itertools import pairwise
 
 from flint import fmpq
 
-from ptmcad.algebra.fibre import WorkLimit
+from ptmcad.algebra.fibre_algebra import WorkLimit
 from ptmcad.algebra.fibre_points import FibrePoints, RealPoint, points
 from ptmcad.algebra.polynomials import Values
 from ptmcad.answer.poses import Pose, Poses

@@ -16,9 +16,9 @@ from fractions import Fraction
 
 from flint import fmpq
 
-from ptmcad.algebra.fibre import quotient
+from ptmcad.algebra.fibre_algebra import quotient
 from ptmcad.algebra.polynomials import Values
-from ptmcad.algebra.trigonometric import TrigonometricPolynomial
+from ptmcad.algebra.trigonometric_ring import TrigonometricPolynomial
 from ptmcad.errors import (
     DegenerateSliceError,
     HypothesisError,

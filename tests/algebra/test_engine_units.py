@@ -20,10 +20,10 @@ from support.signatures import signature
 
 from ptmcad import load
 from ptmcad.algebra.bernstein import nowhere_zero
-from ptmcad.algebra.determinants import determinant
-from ptmcad.algebra.fibre import WorkLimit, fibre, quotient
-from ptmcad.algebra.fibre import evaluate as multiplication
+from ptmcad.algebra.fibre_algebra import WorkLimit, fibre, quotient
+from ptmcad.algebra.fibre_algebra import evaluate as multiplication
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
+from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
     PLANE,
     coefficients_in,
@@ -32,7 +32,7 @@ from ptmcad.algebra.polynomials import (
     irreducible_factors,
     to_plane,
 )
-from ptmcad.algebra.quotient import (
+from ptmcad.algebra.quotient_algebra import (
     LINE,
     multiplication_denominator,
     norm,
@@ -55,9 +55,9 @@ from ptmcad.answer.regionmap import Kind
 from ptmcad.errors import LimitReached, PtmcadWarning
 from ptmcad.exact.cad.criticalpoints import _discriminant
 from ptmcad.exact.cad.projection import curve
+from ptmcad.exact.discriminant_variety import algebra_of
 from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
 from ptmcad.exact.stages import problem_of
-from ptmcad.exact.variety import algebra_of
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 X, Y = PLANE.gens()
@@ -538,8 +538,8 @@ def test_discriminants_of_least_degree_have_the_roots_of_the_whole_ones(p: fmpz_
 
 
 def test_a_basis_that_grows_is_announced(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ptmcad.algebra.fibre.MANY", 1)
-    monkeypatch.setattr("ptmcad.algebra.fibre.SMALL", WorkLimit(0, 0, 0, 0))
+    monkeypatch.setattr("ptmcad.algebra.fibre_algebra.MANY", 1)
+    monkeypatch.setattr("ptmcad.algebra.fibre_algebra.SMALL", WorkLimit(0, 0, 0, 0))
     corners = ({(2, 0): fmpq(1), (0, 0): fmpq(-1)}, {(0, 2): fmpq(1), (0, 0): fmpq(-1)})
     with pytest.warns(PtmcadWarning, match="may take very long"):
         assert quotient(corners, 2) == fibre(corners, 2)

@@ -1,6 +1,6 @@
 """The discriminant variety over all designs, as the covers need it.
 
-Guarantee: that of `surfaces` and `variety`: off the polynomials' zeros all counts are constant, but
+Guarantee: that of `familyprojection` and `discriminant_variety`: off the polynomials' zeros all counts are constant, but
 for sets that do not cut the space.
 """
 
@@ -17,11 +17,11 @@ from ptmcad.algebra.polynomials import Coefficient, from_plane
 from ptmcad.algebra.real_roots import Interval
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.exact.design.cover import Space
+from ptmcad.exact.discriminant_variety import discriminant_variety
 from ptmcad.exact.family import family_variety
 from ptmcad.exact.familyprojection import surfaces_of
 from ptmcad.exact.models.system import SystemOnAxes
 from ptmcad.exact.stages import SliceProblem, count_at
-from ptmcad.exact.variety import discriminant_variety
 from ptmcad.text.numerals import equalities
 
 

@@ -28,7 +28,7 @@ from flint import (
 
 from ptmcad.algebra.groebner import grevlex_key, shifted
 from ptmcad.algebra.polynomials import Monomial, integral
-from ptmcad.algebra.quotient import border_of, divided, standard_monomials
+from ptmcad.algebra.quotient_algebra import border_of, divided, standard_monomials
 from ptmcad.errors import LimitReached, PtmcadWarning
 
 RationalPolynomial = Mapping[Monomial, fmpq]
