@@ -58,7 +58,7 @@ _HOMES = {
     "design": "ask.designs",
     "family": "ask.families",
     "FamilyMap": "answer.family",
-    "slice_variety": "exact.slicevariety",
+    "slice_variety": "exact.eliminationsystem",
     "Pose": "answer.poses",
     "Poses": "answer.poses",
     "solve": "ask.solving",
