@@ -41,12 +41,10 @@ class FibrePoints:
     Attributes
     ----------
     real : by the value of the separating form, which increases.
-    form : the separating form's coefficients, one for each unknown, not negative.
     distinct, total : numbers of complex points, once each and with multiplicity.
     """
 
     real: tuple[RealPoint, ...]
-    form: tuple[int, ...]
     distinct: int
     total: int
 
@@ -81,7 +79,7 @@ def points(algebra: FibreAlgebra, bound: int | None = 1) -> FibrePoints:
         found.append(
             RealPoint(field, tuple(FieldElement(field, r) for r in residues), multiplicity)
         )
-    return FibrePoints(tuple(found), form, int(radical.degree()), algebra.dimension)
+    return FibrePoints(tuple(found), int(radical.degree()), algebra.dimension)
 
 
 def value_at(point: RealPoint, p: RationalPolynomial) -> FieldElement:

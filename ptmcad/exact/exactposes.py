@@ -123,7 +123,7 @@ def _solutions(
         When the quotient algebra is more work than `most`.
     """
     for point in point_systems(system, values, most):
-        found = FibrePoints((), (), 0, 0)
+        found = FibrePoints((), 0, 0)
         if point.algebra.dimension:
             found = points(point.algebra, 1 if point.is_bounded else None)
         if found.distinct == found.total:
