@@ -11,7 +11,7 @@ Guarantee: exact.
 
 The order is graded reverse lexicographic with the last unknown first, FLINT's own Buchberger
 algorithm runs at the point itself, and counts come from signatures of trace forms: another
-elimination than the one over Q(x, y) in `ptmcad.exact.variety` and another count than the root
+elimination than the one over Q(x, y) in `ptmcad.exact.discriminant_variety` and another count than the root
 isolation in `ptmcad.exact.counting`.
 
 The number of negative eigenvalues of a Hessian is that of the changes of sign in the sequence of
