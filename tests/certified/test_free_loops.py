@@ -22,11 +22,11 @@ from support.loop_search import Energy, Numbers, counts_along
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.fields.field import field_of, request_of
+from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.ask.lines.rangerows import enclosed_widths
 from ptmcad.certified import engine
 from ptmcad.certified.curve import CriticalCurve
 from ptmcad.certified.engine import certified_map
-from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import curves as plain_curves
 from ptmcad.certified.plain.points import plain_counter
 from ptmcad.certified.plain.problem import problem_of

@@ -16,8 +16,8 @@ from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
+from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.certified.engine import certified_map
-from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import rational
 from ptmcad.certified.plain.bounds import ranges
 from ptmcad.certified.plain.curves import curves

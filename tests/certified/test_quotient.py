@@ -19,8 +19,8 @@ from ptmcad.text.balls import ball_of
 pytest.importorskip("numba")
 
 import ptmcad
+from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.certified import line
-from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain.bounds import ranges
 from ptmcad.certified.plain.chart import chart
 from ptmcad.certified.plain.curves import curves

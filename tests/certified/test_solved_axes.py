@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 pytest.importorskip("numba")
 
 from ptmcad.certified.contraction import contract, workspace
-from ptmcad.certified.line import on_line
+from ptmcad.certified.enclosedline import on_line
 from ptmcad.certified.plain.chart import SpringChart, chart
 from ptmcad.certified.plain.curves import curves
 from ptmcad.certified.plain.geometry import geometry

@@ -17,7 +17,7 @@ import pytest
 
 from ptmcad.algebra import definite
 from ptmcad.algebra.polynomials import from_terms
-from ptmcad.certified.intervals import certified_intervals
+from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError, GeometryError, PtmcadError
 from ptmcad.exact.engine import exact_map

@@ -26,7 +26,7 @@ from ptmcad.errors import (
 from ptmcad.exact.design.areas import AreaBounder
 from ptmcad.exact.design.problem import Axes, space_of_family, space_of_slice
 from ptmcad.exact.design.search import Bounder, Goal, Lengths, Outcome, Place, Point, search
-from ptmcad.exact.ranges.strips import strips
+from ptmcad.exact.ranges.rangestrips import strips
 from ptmcad.exact.ranges.width import lines_of, widest
 from ptmcad.exact.stages import problem_of
 from ptmcad.question.config.designed import Aim, Design

@@ -14,7 +14,7 @@ from flint import fmpq
 from ptmcad.algebra.bernstein import on_lines
 from ptmcad.algebra.real_roots import Interval, disjoint, inside, isolate, refine, squarefree_part
 from ptmcad.exact.design.cover import Space
-from ptmcad.exact.ranges.line import runs
+from ptmcad.exact.ranges.exactline import runs
 from ptmcad.text.flint_numbers import simplest_between
 
 _WIDTH = fmpq(1, 2**80)

@@ -6,7 +6,6 @@ from importlib import import_module
 from typing import Any
 
 _FUNCTIONS = {
-    "branches": ("draw_branches", "draw_paths_and_branches"),
     "comparing": ("comparison_figure", "difference_words", "traced"),
     "design": ("figure_of_design",),
     "field": ("description", "field_figure"),
@@ -14,12 +13,12 @@ _FUNCTIONS = {
     "fonts": ("check_families",),
     "landscape": ("draw_landscape",),
     "multiples": ("multiples_figure",),
-    "paths": ("draw_paths",),
+    "pathpicture": ("draw_branches", "draw_paths", "draw_paths_and_branches"),
     "pixelmap": ("field_png", "grid_png"),
     "plotting": ("draw_with_poses", "plot"),
     "poses": ("draw_poses",),
     "printing": ("content", "save"),
-    "ranges": ("draw_range", "draw_widths"),
+    "rangepicture": ("draw_range", "draw_widths"),
     "regionmap": ("draw",),
     "solid": ("solid_figure",),
     "sweepfilm": ("SweepFilm",),
