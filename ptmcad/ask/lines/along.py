@@ -12,7 +12,6 @@ from typing import Any
 
 from ptmcad.answer.intervals import CertifiedIntervals, CountIntervals
 from ptmcad.process.memory import loading
-from ptmcad.question.domain import proved
 from ptmcad.question.line import has_free_lengths, on_line, varying_axis
 from ptmcad.question.slice import Axis, Slice
 
@@ -55,6 +54,7 @@ def certified_intervals(
     """
     with loading("the certified engine"):
         from ptmcad.certified.enclosedline import intervals_and_changes
+        from ptmcad.question.domain import proved
     varying, other, value = varying_axis(slice, along, at)
     axes = slice.axes[varying], Axis(other, value, value)
     line = proved(replace(slice, axes=axes, parameters=on_line(slice, varying, value)))
