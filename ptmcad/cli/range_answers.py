@@ -101,7 +101,7 @@ def _answers(
     enclosed = is_enclosed(slice, request)
     found: Any
     if request.over and not enclosed:
-        from ptmcad.exact.ranges.strips import refuse_free_lengths
+        from ptmcad.exact.ranges.rangestrips import refuse_free_lengths
 
         # before the line is asked for, whose refusal would not say what to leave out
         refuse_free_lengths(slice)

@@ -25,7 +25,7 @@ from ptmcad.cover import union_area
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.exact.exactmap import exact_map
-from ptmcad.exact.ranges.strips import strips
+from ptmcad.exact.ranges.rangestrips import strips
 from ptmcad.question.slice import Count, Slice
 
 SCHEMA = json.loads(

@@ -17,7 +17,7 @@ from support.dense_search import dense_search, derivatives
 from ptmcad import Poses, solve
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
-from ptmcad.certified.intervals import certified_intervals
+from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.cli.range import command
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, slice_from_options

@@ -15,7 +15,7 @@ from support.dense_search import dense_search
 pytest.importorskip("numba")
 
 from ptmcad.answer.intervals import CertifiedIntervals
-from ptmcad.certified.intervals import certified_intervals
+from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.question.config import slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Count

@@ -15,7 +15,7 @@ import yaml
 import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.checking import check
-from ptmcad.certified.intervals import certified_intervals
+from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.errors import DegenerateSliceError, LimitReached

@@ -21,10 +21,10 @@ from support.loop_search import Energy, Numbers, counts_along
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.ask.lines.rangerows import enclosed_widths
 from ptmcad.certified import engine
 from ptmcad.certified.engine import certified_map
-from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import criticalcurves as plain_curves
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of

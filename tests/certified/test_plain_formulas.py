@@ -16,9 +16,9 @@ from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
+from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.certified.branchandprune import search_curve
 from ptmcad.certified.engine import certified_map
-from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain import rational
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.harmonics import Harmonics

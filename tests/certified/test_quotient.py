@@ -19,8 +19,8 @@ from ptmcad.text.balls import ball_of
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.certified import line
-from ptmcad.certified.intervals import certified_intervals
+from ptmcad.ask.lines.along import certified_intervals
+from ptmcad.certified import enclosedline
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.mirrors import MirrorFrame, frames, halving, mirrors
@@ -337,12 +337,12 @@ def test_what_is_undecided_along_a_line_is_not_looked_at_closely_again(
         calls.append(0)
         return search(*arguments)
 
-    monkeypatch.setattr(line, "isolate", counted)
+    monkeypatch.setattr(enclosedline, "isolate", counted)
     found = certified_intervals(slice, "W", {"c": "40"}, 10)
     few, changes = len(calls), line._changes
     assert not found.changes[0].proved and found.changes[0].at.high < Fraction(1, 1000)
     assert [interval.index for interval in found.intervals] == [(1, 1, 0), (1, 0, 0)]
-    monkeypatch.setattr(line, "_changes", lambda *arguments: changes(*arguments[:-1], ()))
+    monkeypatch.setattr(enclosedline, "_changes", lambda *arguments: changes(*arguments[:-1], ()))
     calls.clear()
     alone = certified_intervals(slice, "W", {"c": "40"}, 10)
     assert few < len(calls)

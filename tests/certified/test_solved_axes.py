@@ -14,8 +14,8 @@ pytest.importorskip("numba")
 
 from ptmcad.certified.branchandprune import search_curve
 from ptmcad.certified.contraction import contract, workspace
+from ptmcad.certified.enclosedline import on_line
 from ptmcad.certified.equationsystem import EquationSystem, quotients, system
-from ptmcad.certified.line import on_line
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.cli import run
-from ptmcad.show.render.ranges import spread
+from ptmcad.show.render.rangepicture import spread
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG4 = str(ROOT / "configs" / "fig4.yaml")

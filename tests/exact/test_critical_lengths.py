@@ -15,7 +15,7 @@ import sympy
 from support.programs import needs_msolve
 
 from ptmcad.algebra import msolve
-from ptmcad.certified.intervals import certified_intervals
+from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.question.config import slice_from_options
 from ptmcad.studies.paper.critical import UNKNOWNS, critical_free_lengths, critical_system
 from ptmcad.studies.paper.squaring import Design, signed_solutions

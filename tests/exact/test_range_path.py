@@ -24,7 +24,7 @@ from ptmcad.ask.lines.linesystem import line_system
 from ptmcad.ask.lines.mirror import Mirror, mirror_of
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models.system import on_slice
-from ptmcad.exact.ranges.line import system_on
+from ptmcad.exact.ranges.exactline import system_on
 from ptmcad.formulas.continuation import (
     BITS,
     BranchEquations,

@@ -20,8 +20,8 @@ from ptmcad.answer.widths import Maximum, Place
 from ptmcad.ask.lines.rangerows import operation_widths
 from ptmcad.exact.cad.projection import curve
 from ptmcad.exact.cad.stacks import BaseEnd
-from ptmcad.exact.ranges.line import intervals
-from ptmcad.exact.ranges.strips import RangeEnd, RangeStrip, strips
+from ptmcad.exact.ranges.exactline import intervals
+from ptmcad.exact.ranges.rangestrips import RangeEnd, RangeStrip, strips
 from ptmcad.exact.ranges.width import largest
 from ptmcad.question.config import slice_from_options
 from ptmcad.show.ranges.linetable import width_table

@@ -23,7 +23,7 @@ from ptmcad.algebra.algebraic_numbers import compare, refined
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.intervals import CountIntervals, Event, lower, upper
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError
-from ptmcad.exact.ranges.line import intervals
+from ptmcad.exact.ranges.exactline import intervals
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.ranges.endtext import end_text, width_text
 from ptmcad.show.ranges.linetable import table

@@ -296,7 +296,7 @@ INTERRUPTED = {
         ("map", "configs/fig4.yaml", "--value", "barrier", "--pose", "stable:2"),
     ),
     "range": (
-        "ptmcad.exact.ranges.line intervals",
+        "ptmcad.exact.ranges.exactline intervals",
         ("range", "configs/fig4.yaml", "--along", "rho", "--over", "L2", "--format", "json"),
     ),
     "animate": (

@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from ptmcad.certified.intervals import certified_intervals
+from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError, GeometryError, PtmcadError
 from ptmcad.exact.exactmap import exact_map

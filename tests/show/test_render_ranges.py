@@ -8,7 +8,7 @@ import numpy as np
 from support.maps import CONFIGS
 
 import ptmcad
-from ptmcad.show.render.ranges import draw_widths
+from ptmcad.show.render.rangepicture import draw_widths
 
 
 def test_nothing_is_drawn_between_the_rows() -> None:

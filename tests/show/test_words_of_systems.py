@@ -13,7 +13,7 @@ import ptmcad
 from ptmcad.answer.poses import Poses
 from ptmcad.ask.lines.rangerows import operation_widths
 from ptmcad.ask.solving import poses_at
-from ptmcad.exact.ranges.line import intervals
+from ptmcad.exact.ranges.exactline import intervals
 from ptmcad.question.config import point_from_mapping
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.linetable import table, width_table

@@ -1,16 +1,19 @@
 """The intervals of constant count along a line of a slice, by the engine that the line needs.
 
-Guarantee: that of `ptmcad.exact.ranges.line`, or with free lengths that of `ptmcad.certified.line`.
+Guarantee: that of `ptmcad.exact.ranges.exactline`, or with free lengths that of
+`ptmcad.certified.enclosedline`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from ptmcad.answer.intervals import CertifiedIntervals, CountIntervals
-from ptmcad.question.line import has_free_lengths
-from ptmcad.question.slice import Slice
+from ptmcad.process.memory import loading
+from ptmcad.question.line import has_free_lengths, on_line, varying_axis
+from ptmcad.question.slice import Axis, Slice
 
 
 def intervals_along(
@@ -21,12 +24,39 @@ def intervals_along(
     Raises
     ------
     ConfigError, HypothesisError
-        As `ptmcad.intervals` and `ptmcad.certified.intervals.certified_intervals`.
+        As `ptmcad.intervals` and `certified_intervals`.
     """
     if has_free_lengths(slice, along, at):
-        from ptmcad.certified.intervals import certified_intervals
-
         return certified_intervals(slice, along, at, digits)
-    from ptmcad.exact.ranges.line import intervals
+    from ptmcad.exact.ranges.exactline import intervals
 
     return intervals(slice, along, at)
+
+
+def certified_intervals(
+    slice: Slice, along: str, at: Mapping[str, Any], digits: int
+) -> CertifiedIntervals:
+    """The intervals of constant count on a line of a slice whose springs have free lengths.
+
+    Parameters
+    ----------
+    along : the axis that varies, over its window.
+    at : the other axis with its value: text, int or Fraction.
+    digits : significant digits to which critical values are enclosed.
+
+    Raises
+    ------
+    ConfigError When ``along`` is no axis, or ``at`` does not name exactly the other one with an
+        exact number.
+    GeometryError When a parameter is not on the whole line what the proofs ask for, or that could
+        not be proved. The line need not lie in the slice's window, so nothing that is known of the
+        window is used.
+    """
+    with loading("the certified engine"):
+        from ptmcad.certified.enclosedline import intervals_and_changes
+        from ptmcad.question.domain import proved
+    varying, other, value = varying_axis(slice, along, at)
+    axes = slice.axes[varying], Axis(other, value, value)
+    line = proved(replace(slice, axes=axes, parameters=on_line(slice, varying, value)))
+    intervals, changes = intervals_and_changes(line, 64 + 4 * digits)
+    return CertifiedIntervals(slice.axes[varying], {other: value}, intervals, changes)

@@ -129,13 +129,13 @@ class CriticalPlace(NamedTuple):
 
 
 def _exact_values(_: Slice, line: Line) -> tuple[CriticalPlace, ...]:
-    from ptmcad.exact.ranges.line import critical_values
+    from ptmcad.exact.ranges.exactline import critical_values
 
     return tuple(CriticalPlace(number) for number, _ in critical_values(line))
 
 
 def _enclosed_values(slice: Slice, line: Line) -> tuple[CriticalPlace, ...]:
-    from ptmcad.certified.intervals import certified_intervals
+    from ptmcad.ask.lines.along import certified_intervals
 
     changes = certified_intervals(slice, line.along.name, line.at, DIGITS).changes
     return tuple(CriticalPlace(change.at, change.proved) for change in changes)

@@ -25,7 +25,7 @@ from ptmcad.answer.poses import Pose
 from ptmcad.ask.lines.linesystem import LineSystem, coordinates_of
 from ptmcad.ask.lines.mirror import Mirror, mirror_of
 from ptmcad.exact.models.system import on_slice
-from ptmcad.exact.ranges.line import system_on
+from ptmcad.exact.ranges.exactline import system_on
 from ptmcad.formulas.continuation import BITS, Reached, Vector, at_value, bridge
 from ptmcad.model.involutions import involutions
 from ptmcad.text.balls import ball_of, ball_over

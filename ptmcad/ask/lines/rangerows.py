@@ -44,8 +44,8 @@ def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWid
     HypothesisError
         When the slice is degenerate or leaves the domain of the geometry.
     """
-    from ptmcad.exact.ranges.line import intervals
-    from ptmcad.exact.ranges.strips import strips
+    from ptmcad.exact.ranges.exactline import intervals
+    from ptmcad.exact.ranges.rangestrips import strips
     from ptmcad.exact.ranges.width import widest
 
     axis, over = _axes(slice, along, rows)
@@ -70,7 +70,7 @@ def enclosed_widths(
     digits : to which ends are enclosed.
     progress : called as progress("rows", done, rows).
     """
-    from ptmcad.certified.intervals import certified_intervals
+    from ptmcad.ask.lines.along import certified_intervals
 
     axis, over = _axes(slice, along, rows)
     found: list[tuple[Fraction, tuple[CertifiedInterval, ...], str]] = []

@@ -50,7 +50,7 @@ from ptmcad.exact.discriminant_variety import algebra_of
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.models.system import ALONG, SliceSystem, lifted, on_slice, saturated, with_root
 from ptmcad.exact.point_system import DegeneratePoint, point_system
-from ptmcad.exact.ranges.line import END_WIDTH, intervals, runs
+from ptmcad.exact.ranges.exactline import END_WIDTH, intervals, runs
 from ptmcad.exact.statics import is_positive
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice

@@ -43,8 +43,7 @@ from ptmcad.answer.intervals import End, Span
 from ptmcad.answer.widths import Maximum, Place
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.anyline import LineRanges, ranges_on
-from ptmcad.exact.ranges.limits import limit, narrowing_length
-from ptmcad.exact.ranges.strips import (
+from ptmcad.exact.ranges.rangestrips import (
     RangeStrip,
     RangeStrips,
     at_abscissa,
@@ -53,6 +52,7 @@ from ptmcad.exact.ranges.strips import (
     constant_width,
     end_interval,
 )
+from ptmcad.exact.ranges.striplimits import limit, narrowing_length
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import interval_of, to_fraction

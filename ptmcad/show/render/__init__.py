@@ -6,7 +6,6 @@ from importlib import import_module
 from typing import Any
 
 _FUNCTIONS = {
-    "branches": ("draw_branches", "draw_paths_and_branches"),
     "comparing": ("comparison_figure", "difference_words", "traced"),
     "designpicture": ("figure_of_design",),
     "fieldpicture": ("description", "field_figure"),
@@ -14,12 +13,12 @@ _FUNCTIONS = {
     "landscape": ("draw_landscape",),
     "mechanism": ("draw_mechanism",),
     "chartgrid": ("multiples_figure",),
-    "paths": ("draw_paths",),
+    "pathpicture": ("draw_branches", "draw_paths", "draw_paths_and_branches"),
     "pixelmap": ("field_png", "grid_png"),
     "plotting": ("draw_with_poses", "plot"),
     "posepicture": ("draw_poses",),
     "printing": ("check_families", "content", "save"),
-    "ranges": ("draw_range", "draw_widths"),
+    "rangepicture": ("draw_range", "draw_widths"),
     "mappicture": ("draw",),
     "solid": ("solid_figure",),
 }

@@ -26,7 +26,7 @@ from ptmcad.answer.regionmap import Component, Merge, RegionMap, Solution, Statu
 from ptmcad.answer.widths import OperationWidths
 from ptmcad.ask.classification import classify
 from ptmcad.ask.lines.rangerows import operation_widths
-from ptmcad.exact.ranges.line import intervals
+from ptmcad.exact.ranges.exactline import intervals
 from ptmcad.question.config import load
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice

@@ -37,7 +37,7 @@ from ptmcad.exact.discriminant_variety import discriminant_variety
 from ptmcad.exact.familyprojection import surfaces_of
 from ptmcad.exact.familyvariety import family_variety
 from ptmcad.exact.models.system import SystemOnAxes
-from ptmcad.exact.ranges.line import runs
+from ptmcad.exact.ranges.exactline import runs
 from ptmcad.exact.stages import SliceProblem, count_at
 from ptmcad.text.flint_numbers import simplest_between
 from ptmcad.text.numerals import equalities

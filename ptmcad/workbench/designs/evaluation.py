@@ -94,7 +94,7 @@ def evaluator(design: Design, common: Common | None = None, space: Space | None 
 
 def _range_of(design: Design) -> Evaluate:
     from ptmcad.exact.ranges.anyline import ranges_on
-    from ptmcad.exact.ranges.line import intervals
+    from ptmcad.exact.ranges.exactline import intervals
 
     first = design.over[0].name
 

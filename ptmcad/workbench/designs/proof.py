@@ -23,7 +23,7 @@ from ptmcad.errors import (
     HypothesisError,
     InfiniteSolutionsError,
 )
-from ptmcad.exact.ranges.strips import strips
+from ptmcad.exact.ranges.rangestrips import strips
 from ptmcad.exact.ranges.width import lines_of, widest
 from ptmcad.exact.stages import problem_of
 from ptmcad.question.config.designed import Aim, Design

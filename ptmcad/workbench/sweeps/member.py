@@ -170,7 +170,7 @@ def bounds(low: Fraction, high: Fraction) -> Bounds:
 
 def _widest(slice: Slice, along: str) -> Widest:
     """The widest operation range, or why that is not known."""
-    from ptmcad.exact.ranges.strips import strips
+    from ptmcad.exact.ranges.rangestrips import strips
     from ptmcad.exact.ranges.width import widest
 
     try:

@@ -21,7 +21,7 @@ from ptmcad.answer.counts import operation_number
 from ptmcad.exact.cad.crossings import Crossing, cross
 from ptmcad.exact.cad.projection import FibredCurve, by_component
 from ptmcad.exact.cad.stacks import BaseEnd, StackData
-from ptmcad.exact.ranges.line import runs
+from ptmcad.exact.ranges.exactline import runs
 from ptmcad.exact.stages import counts_of, decomposition_of, problem_of
 from ptmcad.question.slice import Slice, without_free_lengths
 from ptmcad.text.flint_numbers import simplest_between

@@ -17,7 +17,13 @@ from ptmcad.algebra.resultants import resultant
 from ptmcad.algebra.slopes import tangent_resultant
 from ptmcad.answer.intervals import End
 from ptmcad.exact.cad.stacks import BaseEnd
-from ptmcad.exact.ranges.strips import RangeEnd, RangeStrip, at_abscissa, bound_over, end_interval
+from ptmcad.exact.ranges.rangestrips import (
+    RangeEnd,
+    RangeStrip,
+    at_abscissa,
+    bound_over,
+    end_interval,
+)
 from ptmcad.text.flint_numbers import simplest_between, to_fraction
 
 
