@@ -11,7 +11,13 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 
-from ptmcad.algebra.fibre import FibreAlgebra, RationalPolynomial, WorkLimit, bezout_bound, fibre
+from ptmcad.algebra.fibre_algebra import (
+    FibreAlgebra,
+    RationalPolynomial,
+    WorkLimit,
+    bezout_bound,
+    fibre,
+)
 from ptmcad.errors import LimitReached, PtmcadWarning
 
 MANY = 128

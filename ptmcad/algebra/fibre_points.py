@@ -15,12 +15,12 @@ from dataclasses import dataclass
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from ptmcad.algebra.fibre import (
+from ptmcad.algebra.descartes import root_bound
+from ptmcad.algebra.fibre_algebra import (
     FibreAlgebra,
     RationalPolynomial,
     univariate_representation,
 )
-from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.number_field import Expression, FieldElement, Modulus, RealField, polynomial_at
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 
@@ -41,12 +41,10 @@ class FibrePoints:
     Attributes
     ----------
     real : by the value of the separating form, which increases.
-    form : the separating form's coefficients, one for each unknown, not negative.
     distinct, total : numbers of complex points, once each and with multiplicity.
     """
 
     real: tuple[RealPoint, ...]
-    form: tuple[int, ...]
     distinct: int
     total: int
 
@@ -81,7 +79,7 @@ def points(algebra: FibreAlgebra, bound: int | None = 1) -> FibrePoints:
         found.append(
             RealPoint(field, tuple(FieldElement(field, r) for r in residues), multiplicity)
         )
-    return FibrePoints(tuple(found), form, int(radical.degree()), algebra.dimension)
+    return FibrePoints(tuple(found), int(radical.degree()), algebra.dimension)
 
 
 def value_at(point: RealPoint, p: RationalPolynomial) -> FieldElement:

@@ -4,7 +4,7 @@ Guarantee: the result is the reduced Groebner basis (up to scaling each element)
 the field Q(x, y): every S-polynomial was reduced to zero or dropped by one of Buchberger's two
 criteria.
 
-Not guaranteed: that it specialises to a Groebner basis at a given point; `variety` does not need
+Not guaranteed: that it specialises to a Groebner basis at a given point; `discriminant_variety` does not need
 that. Where the coefficients are in Z[x, y, z] it does so at any z for which `specialised` finds a
 basis.
 

@@ -8,7 +8,7 @@ Beside a critical abscissa c a branch is a power series in s, u = c + X s^q (Pui
 polygon shows q and the first exponents: again and again v is replaced by a constant plus s^e w, and
 the equation divided by the power of s that all its terms then have, until the branch is the only
 one through its point over s = 0. There w(s) is analytic, and its series proves a tube as anywhere
-else (`branches.tube_around`), now with the singular point at its middle instead of at its end.
+else (`curve_branches.tube_around`), now with the singular point at its middle instead of at its end.
 Taylor series in u would need panels that get narrower and narrower towards c.
 
 Nothing of this has to be known exactly. The point is known in balls, so what ought to vanish is
@@ -23,7 +23,13 @@ from typing import NamedTuple
 
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
-from ptmcad.algebra.branches import SeriesTube, TooFewBits, local_coefficients, shifted, tube_around
+from ptmcad.algebra.curve_branches import (
+    SeriesTube,
+    TooFewBits,
+    local_coefficients,
+    shifted,
+    tube_around,
+)
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.text.flint_numbers import simplest_between
 

@@ -1,6 +1,6 @@
 """Real roots of integer polynomials: isolated, refined, compared, with rational points between.
 
-Guarantee: exact. Isolation (`isolation`) finds every root in the open interval; isolating intervals
+Guarantee: exact. Isolation (`descartes`) finds every root in the open interval; isolating intervals
 have rational ends, are disjoint and contain one root each, an interval of length zero being the
 root itself.
 """
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from flint import arb, arb_poly, ctx, fmpq, fmpz, fmpz_poly
 
-from ptmcad.algebra.isolation import descartes_bound, isolating_intervals, on_unit_interval
+from ptmcad.algebra.descartes import descartes_bound, isolating_intervals, on_unit_interval
 
 _LONG_BITS = 1000
 """Bits of coefficients from which on values are not computed exactly where a ball will do."""

@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from ptmcad.algebra.branches import shifted
+from ptmcad.algebra.curve_branches import shifted
 from ptmcad.algebra.polynomials import Restrictions
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, sign_at
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from flint import arb, arb_poly, ctx, fmpq, fmpz_mpoly, fmpz_poly
 
-from ptmcad.algebra.branches import local_coefficients
+from ptmcad.algebra.curve_branches import local_coefficients
 from ptmcad.algebra.polynomials import Coefficient, coefficients_in
 from ptmcad.algebra.real_roots import RealRoot, refine, squarefree_part
 from ptmcad.algebra.resultants import resultant

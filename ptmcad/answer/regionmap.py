@@ -41,7 +41,7 @@ class Status(Enum):
 
 
 class Kind(Enum):
-    """Why a curve belongs to the variety: see `ptmcad.exact.variety`. An AUXILIARY one does not: no
+    """Why a curve belongs to the variety: see `ptmcad.exact.discriminant_variety`. An AUXILIARY one does not: no
     count changes across it.
 
     AUXILIARY curves are there only when a saving that leaves them out was switched off

@@ -19,8 +19,8 @@ import numpy as np
 from ptmcad.answer.boundaries import Boundary
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.location import component_cells
+from ptmcad.cover.complement import outlines
 from ptmcad.cover.connectivity import shown
-from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.polyline import WallPolyline, chains, critical_shares

@@ -16,7 +16,7 @@ from time import process_time
 from flint import fmpq
 
 from ptmcad.algebra.bases import plan_text
-from ptmcad.algebra.fibre import WorkLimit
+from ptmcad.algebra.fibre_algebra import WorkLimit
 from ptmcad.ask.classification import check_flat_loops, check_taken, flat_loops
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.forecast import (

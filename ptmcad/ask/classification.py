@@ -33,7 +33,7 @@ from ptmcad.question.slice import Slice, count_fault, without_free_lengths
 from ptmcad.text.parsing import share_for
 
 if TYPE_CHECKING:
-    from ptmcad.exact.variety import Known
+    from ptmcad.exact.discriminant_variety import Known
 
 
 def classify(

@@ -25,7 +25,7 @@ from ptmcad.process.memory import loading
 from ptmcad.question.counts import Count
 
 if TYPE_CHECKING:
-    from ptmcad.algebra.fibre import WorkLimit
+    from ptmcad.algebra.fibre_algebra import WorkLimit
 
 FEW = 3
 """Unknowns of which a basis is computed whatever it takes: there are seldom more than 64 solutions.
@@ -46,7 +46,7 @@ def work_for(model: Model) -> WorkLimit | None:
     It takes critical points of a function of angles alone; with free lengths nothing else is asked
     anyway.
     """
-    from ptmcad.algebra.fibre import WorkLimit
+    from ptmcad.algebra.fibre_algebra import WorkLimit
 
     if model.criterion.order <= FEW or model.reals or compiled(model).inequalities:
         return None

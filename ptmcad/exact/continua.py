@@ -15,7 +15,7 @@ from itertools import product
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import Coefficient, Values, common_factor, evaluate, multiplicity
-from ptmcad.algebra.trigonometric import TrigonometricPolynomial
+from ptmcad.algebra.trigonometric_ring import TrigonometricPolynomial
 from ptmcad.answer.regionmap import Continuum
 from ptmcad.exact.models.system import (
     ParametricSystem,

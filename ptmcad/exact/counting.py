@@ -17,14 +17,20 @@ from collections.abc import Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from flint import arb, arb_poly, ctx, fmpq
+from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.fibre import Divisor, UnivariateRepresentation, WorkLimit, vanishing_divisor
-from ptmcad.algebra.inertia import negative_eigenvalues
-from ptmcad.algebra.isolation import root_bound
+from ptmcad.algebra.ball_inertia import negative_eigenvalues
+from ptmcad.algebra.descartes import root_bound
+from ptmcad.algebra.fibre_algebra import (
+    Divisor,
+    UnivariateRepresentation,
+    WorkLimit,
+    unknowns_in_balls,
+    vanishing_divisor,
+)
 from ptmcad.algebra.polynomials import Values
-from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate, newton_ball
-from ptmcad.algebra.trigonometric import RationalPolynomial
+from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate
+from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.answer.counts import Counts, counts_of_signs, euler_sum
 from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_point
@@ -121,21 +127,17 @@ def _enclosed(
     """
     found: list[Equilibrium] = []
     with ctx.workprec(bits):
-        minimal = representation.minimal
-        value, derivative = arb_poly(minimal), arb_poly(minimal.derivative())
-        slope = arb_poly(representation.slope)
-        numerators = [arb_poly(p) for p in representation.coordinates[: system.ring.width]]
+        unknowns_at = unknowns_in_balls(representation)
         conditions = tuple(map(_in_balls, point.conditions))
         size = system.criterion.order
         hessian = [
             (i, j, _in_balls(point.jacobian[i][j])) for i in range(size) for j in range(i, size)
         ]
         for root in roots:
-            at = newton_ball(value, derivative, root)
-            below = slope(at)
-            if below.contains(0):
+            at = unknowns_at(root)
+            if at is None:
                 return None
-            unknowns = [p(at) / below for p in numerators]
+            unknowns = at[: system.ring.width]
             signs = _condition_signs(conditions, root, unknowns, zeros)
             if signs is None:
                 return None

@@ -21,13 +21,13 @@ from typing import NamedTuple
 
 from flint import fmpq, nmod_mat
 
-from ptmcad.algebra.determinants import laplace
-from ptmcad.algebra.fibre import FibreAlgebra, WorkLimit
+from ptmcad.algebra.fibre_algebra import FibreAlgebra, WorkLimit
 from ptmcad.algebra.groebner import powers_of
+from ptmcad.algebra.plane_determinants import laplace
 from ptmcad.algebra.polynomials import Monomial
 from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, restricted, weighted
 from ptmcad.algebra.resultants import Check, nothing, primes
-from ptmcad.algebra.trigonometric import RationalPolynomial
+from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.errors import LimitReached
 from ptmcad.exact.decomposition import Sample
 from ptmcad.exact.models.system import SystemOnAxes

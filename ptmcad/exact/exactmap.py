@@ -23,6 +23,7 @@ from ptmcad.exact.decomposition import (
     projection_of,
     stacks_of,
 )
+from ptmcad.exact.discriminant_variety import Known
 from ptmcad.exact.mapassembly import PartialMap, assemble
 from ptmcad.exact.regionareas import areas_of
 from ptmcad.exact.stages import (
@@ -33,7 +34,6 @@ from ptmcad.exact.stages import (
     problem_of,
     variety_of,
 )
-from ptmcad.exact.variety import Known
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice, without_free_lengths

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 from flint import fmpq
 
-from ptmcad.algebra.fibre import WorkLimit
+from ptmcad.algebra.fibre_algebra import WorkLimit
 from ptmcad.algebra.fibre_points import FibrePoints, RealPoint, points
 from ptmcad.algebra.polynomials import Values
 from ptmcad.answer.poses import Pose, Poses
@@ -131,7 +131,7 @@ def _solutions(
         When the quotient algebra is more work than `most`.
     """
     for point in point_systems(system, values, most):
-        found = FibrePoints((), (), 0, 0)
+        found = FibrePoints((), 0, 0)
         if point.algebra.dimension:
             found = points(point.algebra, 1 if point.is_bounded else None)
         if found.distinct == found.total:

@@ -5,7 +5,7 @@ Guarantee: between neighbouring values of a complete list the members' maps are 
 continuous motion that keeps the window's sides: cells, counts, what is adjacent, and in which order
 regions lie along the sides.
 
-Why. What `variety` says of curves holds over Q(x, y, z) word for word. Surfaces at infinity are taken
+Why. What `discriminant_variety` says of curves holds over Q(x, y, z) word for word. Surfaces at infinity are taken
 by what they divide, the denominators of the multiplication matrices, unless solutions are proved to
 stay regular near almost all of their points: the exceptional points form curves, which do not cut a
 part of space in two.
@@ -38,7 +38,7 @@ from ptmcad.algebra.polynomials import (
     coefficients_in,
     irreducible_factors,
 )
-from ptmcad.algebra.quotient import multiples, multiplication_denominator, quotient_algebra
+from ptmcad.algebra.quotient_algebra import multiples, multiplication_denominator, quotient_algebra
 from ptmcad.algebra.real_roots import Interval, RealRoot
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.space import (
@@ -51,9 +51,9 @@ from ptmcad.algebra.space import (
     rows_in,
 )
 from ptmcad.exact.cad.projection import curve, deflation, predicted_cost, project
+from ptmcad.exact.discriminant_variety import harmless, settles, sign_changes
 from ptmcad.exact.familyvariety import FamilyVariety
 from ptmcad.exact.models.system import SystemOnAxes
-from ptmcad.exact.variety import harmless, settles, sign_changes
 
 MAX_WORK = 5 * 10**10
 """Of all discriminants and resultants in three variables together, by `space.predicted_work`; a

@@ -1,7 +1,7 @@
 """The discriminant variety of a family of slices, over Q(x, y, z): what its members have in common,
 computed once.
 
-Guarantee: what `FamilyVariety.at` gives for a member is what `variety.nondegenerate` computes for
+Guarantee: what `FamilyVariety.at` gives for a member is what `discriminant_variety.nondegenerate` computes for
 it alone, up to constant factors; where the computation over Q(x, y, z) does not specialise, it
 gives None.
 
@@ -38,9 +38,9 @@ from ptmcad.algebra.polynomials import (
     irreducible_factors,
     ratio,
 )
-from ptmcad.algebra.quotient import multiples, norm, quotient_algebra
+from ptmcad.algebra.quotient_algebra import multiples, norm, quotient_algebra
+from ptmcad.exact.discriminant_variety import Nondegenerate, basis_of, nondegenerate
 from ptmcad.exact.models.system import SliceSystem, SystemOnAxes
-from ptmcad.exact.variety import Nondegenerate, basis_of, nondegenerate
 
 
 class FamilyVariety(NamedTuple):

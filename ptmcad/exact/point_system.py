@@ -14,7 +14,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.bases import quotient
-from ptmcad.algebra.fibre import (
+from ptmcad.algebra.fibre_algebra import (
     FibreAlgebra,
     UnivariateRepresentation,
     WorkLimit,
@@ -24,7 +24,7 @@ from ptmcad.algebra.fibre import (
     univariate_representation,
 )
 from ptmcad.algebra.polynomials import Values
-from ptmcad.algebra.trigonometric import RationalPolynomial
+from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.answer.words import with_article
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.models.system import ParametricSystem, at_point, polynomial_at

@@ -45,8 +45,8 @@ from ptmcad.exact.decomposition import (
     members,
     neighbours_of,
 )
+from ptmcad.exact.discriminant_variety import Known
 from ptmcad.exact.stages import SliceProblem, counts_by_component, decomposition_of, problem_of
-from ptmcad.exact.variety import Known
 from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice, without_free_lengths
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction

@@ -31,10 +31,10 @@ from ptmcad.exact.decomposition import (
     seen_from,
     unreported,
 )
+from ptmcad.exact.discriminant_variety import Known, check_hypotheses, discriminant_variety
 from ptmcad.exact.models import ParametricSystem, system_counted
 from ptmcad.exact.models.system import SystemOnAxes, on_axes
 from ptmcad.exact.point_system import DegeneratePoint
-from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
 from ptmcad.model.involutions import Involution, involutions
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice

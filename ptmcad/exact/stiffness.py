@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 from flint import acb_mat, arb, fmpq
 
-from ptmcad.algebra.determinants import laplace
 from ptmcad.algebra.number_field import FieldElement, rational_roots
+from ptmcad.algebra.plane_determinants import laplace
 from ptmcad.text.balls import ball_of, enclosed
 from ptmcad.text.enclosure import Enclosure
 

@@ -18,7 +18,7 @@ from flint import fmpq
 
 from ptmcad.algebra.bases import quotient
 from ptmcad.algebra.polynomials import Values
-from ptmcad.algebra.trigonometric import TrigonometricPolynomial
+from ptmcad.algebra.trigonometric_ring import TrigonometricPolynomial
 from ptmcad.errors import (
     DegenerateSliceError,
     HypothesisError,

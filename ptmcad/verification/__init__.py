@@ -10,13 +10,13 @@ An order of reading, for what an exact map claims:
    all of them.
 2. `coordinates`, `derivation`, `constraints`, `kinds`: the polynomials that follow from a
    description, derived once for both halves. `claims`: a stored map seen with them.
-3. `polynomialtexts`, `equationtexts`, `parameters`: the stored texts say the same.
-4. `fibrealgebra`, `inertia`: the solutions over a point, counted by signatures; `solutions`: the
-   stored counts and boxes. `variety`: the stored curves are all of those where counts change.
-5. `planecurves`, `sturm`, `projections`, `adjacency`, `merging`: the decomposition of the plane.
-   `windowsigns`, `plan`: what was left out.
-6. `disks`, `branches`, `areas`: enclosures of the areas.
-7. `parameterlines`, `ranges`, `designs`, `arrangements`: lines, designs and families.
+3. `polynomialtexts`, `equationtexts`, `parameterclaims`: the stored texts say the same.
+4. `fibrealgebra`, `principalminors`: the solutions over a point, counted by signatures; `solutions`: the
+   stored counts and boxes. `norms`: the stored curves are all of those where counts change.
+5. `planecurves`, `sturm`, `projections`, `adjacencies`, `merging`: the decomposition of the plane.
+   `windowsigns`, `planclaims`: what was left out.
+6. `disks`, `wallintegrals`, `regionareas`: enclosures of the areas.
+7. `parameterlines`, `rangeclaims`, `designclaims`, `arrangements`: lines, designs and families.
 
 Certified maps: `certified.checks` lists their checks; `certified.waves`, `equations` and `field`
 derive and enclose, `solving` finds all solutions at a point, `sampling` looks at random boxes, and
@@ -27,8 +27,8 @@ from __future__ import annotations
 
 from ptmcad.verification.arrangements import verify_changes, verify_surfaces
 from ptmcad.verification.checks import verify
-from ptmcad.verification.designs import verify_design
-from ptmcad.verification.ranges import verify_range
+from ptmcad.verification.designclaims import verify_design
+from ptmcad.verification.rangeclaims import verify_range
 from ptmcad.verification.report import Check, VerifyReport, check_anew
 from ptmcad.verification.solutions import verify_poses
 

@@ -10,24 +10,24 @@ from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import A_MAP, expect
 from ptmcad.options import Progress
-from ptmcad.verification.adjacency import (
+from ptmcad.verification.adjacencies import (
     check_adjacencies,
     check_no_adjacency_missing,
     check_non_adjacencies,
 )
-from ptmcad.verification.areas import check_areas
+from ptmcad.verification.areaclaims import check_areas
 from ptmcad.verification.certified.certificate import verify_certified
 from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.designs import verify_design
+from ptmcad.verification.designclaims import verify_design
 from ptmcad.verification.equationtexts import check_system
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
-from ptmcad.verification.parameters import check_boundary, check_text
-from ptmcad.verification.plan import check_plan, refuse_ablation
+from ptmcad.verification.norms import check_conditions, check_irreducible, check_norm
+from ptmcad.verification.parameterclaims import check_boundary, check_text
+from ptmcad.verification.planclaims import check_plan, refuse_ablation
 from ptmcad.verification.projections import check_critical_values, check_stacks
 from ptmcad.verification.report import Check, CheckProgress, VerifyReport, checked, drawn
 from ptmcad.verification.solutions import check_counts, check_solutions, verify_poses
-from ptmcad.verification.variety import check_conditions, check_irreducible, check_norm
 from ptmcad.verification.windowsigns import check_left_out
 
 NOT_CHECKED = (
@@ -89,7 +89,7 @@ def verify(
     Guarantee
     ---------
     When the report is ``ok``, every claim in its table holds; the variety's completeness up to an
-    error probability below 1e-10 (`ptmcad.verification.variety`). Of a partial result, what it has
+    error probability below 1e-10 (`ptmcad.verification.norms`). Of a partial result, what it has
     is checked.
 
     Not guaranteed

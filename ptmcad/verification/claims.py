@@ -24,7 +24,7 @@ from ptmcad.verification.derivation import (
     derivation_at,
     derivation_of,
 )
-from ptmcad.verification.fibrealgebra import FibreAlgebra, NotFinite, fibre_over
+from ptmcad.verification.fibrealgebra import NotFinite, SolutionAlgebra, fibre_over
 from ptmcad.verification.kinds import SignMeaning, kind_of, meaning_of
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import ends_of, numbered_root, roots_between, roots_within
@@ -94,7 +94,7 @@ class Claims:
     result: RegionMap
 
     @cached_property
-    def _fibres(self) -> dict[tuple[Fraction, Fraction], FibreAlgebra]:
+    def _fibres(self) -> dict[tuple[Fraction, Fraction], SolutionAlgebra]:
         return {}
 
     @property
@@ -159,7 +159,7 @@ class Claims:
         one, two = self.result.slice.axis_names
         return f"{one}={text_of(x)}, {two}={text_of(y)}"
 
-    def fibre_at(self, x: Fraction, y: Fraction) -> FibreAlgebra:
+    def fibre_at(self, x: Fraction, y: Fraction) -> SolutionAlgebra:
         """The solutions over a point.
 
         Raises

@@ -23,7 +23,7 @@ from typing import NamedTuple
 from flint import fmpq, fmpq_mpoly
 
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
-from ptmcad.verification.inertia import determinant, total
+from ptmcad.verification.principalminors import determinant, total
 
 Polynomials = tuple[fmpq_mpoly, ...]
 

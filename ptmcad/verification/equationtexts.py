@@ -13,8 +13,8 @@ from flint import fmpq_mpoly
 from ptmcad.answer.regionmap import System
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Derivation, coordinates_of, derivation_of, parameters_of
-from ptmcad.verification.parameters import on_slice
-from ptmcad.verification.polynomialtexts import Texts
+from ptmcad.verification.parameterclaims import on_slice
+from ptmcad.verification.polynomialtexts import PolynomialTexts
 from ptmcad.verification.report import Unchecked, Violation, drawn
 
 
@@ -33,7 +33,7 @@ def check_system(claims: Claims, seed: str = "") -> str:
         if text != relation:
             raise Violation(f"relation {k} is {relation}, not {text[:60]}")
     names = dict(zip((*unknowns, *ring.names[len(unknowns) :]), ring.names, strict=True))
-    texts = Texts(true, names, seed or drawn(None))
+    texts = PolynomialTexts(true, names, seed or drawn(None))
     reasons = []
     if true.potential is not None:
         reasons.append(texts.compare_potential(system.potential, true.moments, varying=True))
@@ -72,7 +72,7 @@ def check_potential(claims: Claims, seed: str = "", *, closed: bool = False) -> 
         raise Violation(f"there are {len(true.equations)} equations and no potential")
     names = {*true.ring.names[true.coordinates :], *unknowns}
     has_work = stated and true.moved and not true.apart
-    texts = Texts(
+    texts = PolynomialTexts(
         true,
         {name: name for name in names if has_work or name not in true.ring.angles},
         seed or drawn(None),

@@ -11,7 +11,7 @@ Guarantee: exact.
 
 The order is graded reverse lexicographic with the last unknown first, FLINT's own Buchberger
 algorithm runs at the point itself, and counts come from signatures of trace forms: another
-elimination than the one over Q(x, y) in `ptmcad.exact.variety` and another count than the root
+elimination than the one over Q(x, y) in `ptmcad.exact.discriminant_variety` and another count than the root
 isolation in `ptmcad.exact.counting`.
 
 The number of negative eigenvalues of a Hessian is that of the changes of sign in the sequence of
@@ -36,7 +36,12 @@ from ptmcad.model import Model
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.coordinates import CoordinateRing
 from ptmcad.verification.derivation import Derivation, derivation_at
-from ptmcad.verification.inertia import bases, determinant, leading_minors, negative_eigenvalues
+from ptmcad.verification.principalminors import (
+    bases,
+    determinant,
+    leading_minors,
+    negative_eigenvalues,
+)
 
 Monomial = tuple[int, ...]
 """Exponents of the variables, last to first."""
@@ -133,7 +138,7 @@ def _times(tail: Monomial, m: Monomial, lead: Monomial) -> Monomial:
 
 
 @dataclass(frozen=True)
-class FibreAlgebra:
+class SolutionAlgebra:
     """The algebra Q[coordinates of the unknowns]/(equations) at one point.
 
     Attributes
@@ -367,12 +372,12 @@ class FibreAlgebra:
         return traces
 
 
-def fibre(model: Model, values: Mapping[str, Fraction]) -> FibreAlgebra:
+def fibre(model: Model, values: Mapping[str, Fraction]) -> SolutionAlgebra:
     """The fibre over rational values of the parameters, as `fibre_over` has it."""
     return fibre_over(derivation_at(model, values))
 
 
-def fibre_over(point: Derivation) -> FibreAlgebra:
+def fibre_over(point: Derivation) -> SolutionAlgebra:
     """The algebra of the solutions at rational values of the parameters.
 
     Where some solution is degenerate, or an inequality's polynomial vanishes at one, it is that of
@@ -384,14 +389,16 @@ def fibre_over(point: Derivation) -> FibreAlgebra:
         When there are infinitely many complex solutions.
     """
     if not point.inequalities:
-        return FibreAlgebra(*algebra(point.generators(), point.coordinates), point)
+        return SolutionAlgebra(*algebra(point.generators(), point.coordinates), point)
     try:
-        found = FibreAlgebra(*algebra(point.generators(), point.coordinates), point)
+        found = SolutionAlgebra(*algebra(point.generators(), point.coordinates), point)
         if found.norm() != 0 and all(found.matrix(p).det() != 0 for p in point.inequalities):
             return found
     except NotFinite:
         pass
-    return FibreAlgebra(*algebra(_saturated(point), point.coordinates + 1), point, saturated=True)
+    return SolutionAlgebra(
+        *algebra(_saturated(point), point.coordinates + 1), point, saturated=True
+    )
 
 
 def _saturated(point: Derivation) -> list[fmpq_mpoly]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import defaultdict, deque
 from itertools import pairwise
 
-from ptmcad.answer.regionmap import Cell, Merge, Status
+from ptmcad.answer.regionmap import Cell, Merge, RegionMap, Status
 from ptmcad.text.numerals import approximate_text
 from ptmcad.verification.certified.counted import check_region
 from ptmcad.verification.claims import Claims
@@ -56,6 +56,12 @@ def check_shape(claims: Claims) -> str:
         raise Violation(
             f"{len(r.critical_values)} critical values do not part {len(r.stacks)} stacks"
         )
+    _check_references(r)
+    return f"{len(r.stacks)} stacks, {len(r.cells)} cells, {len(r.adjacencies)} adjacencies, {len(r.regions)} regions"
+
+
+def _check_references(r: RegionMap) -> None:
+    """Stacks, cells, walls, adjacencies and regions refer to what exists, in order."""
     number = 0
     for s, stack in enumerate(r.stacks):
         ends = (s - 1 if s else None, s if s < len(r.stacks) - 1 else None)
@@ -91,7 +97,6 @@ def check_shape(claims: Claims) -> str:
     for n, cell in enumerate(r.cells):
         if not _is_index(cell.region, len(r.regions)):
             raise Violation(f"cell {n} is in region {cell.region}, which is not there")
-    return f"{len(r.stacks)} stacks, {len(r.cells)} cells, {len(r.adjacencies)} adjacencies, {len(r.regions)} regions"
 
 
 def _check_count(claims: Claims) -> None:

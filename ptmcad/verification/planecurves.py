@@ -1,9 +1,5 @@
-"""Polynomials over Q in the two axes, and their irreducible factors.
-
-Guarantee: exact.
-
-Discriminants and resultants with respect to v of polynomials in Z[u, v], from their values at
-integers u.
+"""Polynomials over Q in the two axes: their irreducible factors, and discriminants and resultants with
+respect to v of those in Z[u, v], from their values at integers u.
 
 Guarantee: exact. With a weight w >= 0 for v, a Sylvester determinant of polynomials of weighted
 degrees a, b and of degrees n, m in v has degree at most a m + b n - w n m in u: v = u^w z scales

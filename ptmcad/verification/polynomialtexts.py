@@ -1,4 +1,4 @@
-"""Texts of polynomials in a result, compared with what follows from the description: at a random
+"""PolynomialTexts of polynomials in a result, compared with what follows from the description: at a random
 point modulo a random prime.
 
 At a point each parameter and each real unknown is a random residue, and the cosine and the sine of
@@ -120,7 +120,7 @@ class ResiduePoint(TreeValues[fmpz_mod]):
         return self.residues(found.p) / self.residues(found.q)
 
 
-class Texts:
+class PolynomialTexts:
     """The texts of one result, and the points at which they are compared with polynomials.
 
     Parameters

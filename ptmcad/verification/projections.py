@@ -221,10 +221,6 @@ coefficients.
 """
 
 
-class _Undecided(ArithmeticError):
-    """Balls are too large, or several roots are multiple."""
-
-
 @dataclass(frozen=True)
 class Heights:
     """The points over one critical value."""
@@ -239,13 +235,10 @@ class Heights:
         if low >= high or not self.curves:
             return 0
         for bits in _BITS:
-            try:
-                with ctx.workprec(bits):
-                    return (
-                        self._changes(low, bits) - self._changes(high, bits) - self._is_point(high)
-                    )
-            except _Undecided:
-                continue
+            with ctx.workprec(bits):
+                below, above = self._changes(low, bits), self._changes(high, bits)
+            if below is not None and above is not None:
+                return below - above - self._is_point(high)
         return self._candidates_between(low, high)
 
     def _candidates_between(self, low: fmpq, high: fmpq) -> int:
@@ -274,34 +267,24 @@ class Heights:
     def _is_point(self, v: fmpq) -> bool:
         return any(is_root(c.along(v), self.value) for c in self.curves)
 
-    def _changes(self, v: fmpq, bits: int) -> int:
-        """Changes of sign in the Sturm sequence at a height.
-
-        Raises
-        ------
-        _Undecided
-        """
-        values = [q(arb(v)) for q in self._sequence(bits)]
-        if self._is_point(v):
-            # at a simple root the first term alone is zero; at a multiple one all are
-            values = values[1:]
+    def _changes(self, v: fmpq, bits: int) -> int | None:
+        """Changes of sign in the Sturm sequence at a height; None where the precision is too low."""
+        if bits not in self._sequences:
+            self._sequences[bits] = self._sequence(bits)
+        sequence = self._sequences[bits]
+        if sequence is None:
+            return None
+        # at a simple root the first term alone is zero; at a multiple one all are
+        values = [q(arb(v)) for q in sequence[int(self._is_point(v)) :]]
         if any(x.contains(0) for x in values):
-            raise _Undecided
+            return None
         return sum((x > 0) != (y > 0) for x, y in pairwise(values))
 
     @cached_property
     def _sequences(self) -> dict[int, list[arb_poly] | None]:
         return {}
 
-    def _sequence(self, bits: int) -> list[arb_poly]:
-        if bits not in self._sequences:
-            self._sequences[bits] = self._made(bits)
-        found = self._sequences[bits]
-        if found is None:
-            raise _Undecided
-        return found
-
-    def _made(self, bits: int) -> list[arb_poly] | None:
+    def _sequence(self, bits: int) -> list[arb_poly] | None:
         """The Sturm sequence, without its last term where that is zero; None where the precision is
         too low.
         """

@@ -52,13 +52,13 @@ from ptmcad.verification.certified.cellsamples import check_cell, check_listed
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.narrow import narrowed, precisions, tested
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.coordinates import ball_at
 from ptmcad.verification.derivation import Derivation, parameters_of
-from ptmcad.verification.fibrealgebra import FibreAlgebra
-from ptmcad.verification.inertia import inertia
+from ptmcad.verification.fibrealgebra import SolutionAlgebra
 from ptmcad.verification.kinds import kind_of, meaning_of
 from ptmcad.verification.normalform.boxes import Unproved
+from ptmcad.verification.principalminors import inertia
 from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
-from ptmcad.verification.terms import ball_at
 
 _NARROWINGS = 4
 """Images of a box that a solution is proved to be in, until signs on it are certain."""
@@ -244,7 +244,7 @@ def check_counts(claims: Claims) -> str:
     return f"{len(claims.result.cells)} samples"
 
 
-def _euler_sum(fibre: FibreAlgebra, counts: Counts) -> int:
+def _euler_sum(fibre: SolutionAlgebra, counts: Counts) -> int:
     """The sum of the signs of the Jacobian's determinant, which is zero on a torus (Poincare and
     Hopf).
     """

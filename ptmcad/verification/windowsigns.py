@@ -3,7 +3,7 @@ are positive there.
 
 Guarantee: exact; `Sign.PROVED` and `Sign.WRONG` are theorems. `Sign.UNCHECKED` is answered where a
 function of both axes has a degree over `MAX_DEGREE`, or may be zero at an isolated point. That no
-real count feels a component is checked in `ptmcad.verification.variety`.
+real count feels a component is checked in `ptmcad.verification.norms`.
 
 Signs of coefficients on boxes settle most components; others are settled by Sturm counts over a
 point in each interval that the curve's discriminant and edge values leave, and over its roots, where

@@ -16,11 +16,11 @@ from support.programs import needs_msolve
 import ptmcad
 from ptmcad.algebra import bases, msolve
 from ptmcad.algebra.bases import quotient
-from ptmcad.algebra.fibre import RationalPolynomial, WorkLimit, fibre
+from ptmcad.algebra.fibre_algebra import RationalPolynomial, WorkLimit, fibre
 from ptmcad.algebra.membership import lies_in_ideal
 from ptmcad.algebra.msolve import MsolveError, parsed_basis
 from ptmcad.algebra.proved import quotient_by_msolve
-from ptmcad.algebra.quotient import standard_monomials
+from ptmcad.algebra.quotient_algebra import standard_monomials
 from ptmcad.errors import LimitReached, PtmcadWarning
 
 ONE = fmpq(1)

@@ -15,8 +15,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
-from ptmcad.algebra import determinants
-from ptmcad.algebra.determinants import least_assignment
+from ptmcad.algebra import plane_determinants
+from ptmcad.algebra.plane_determinants import least_assignment
 from ptmcad.algebra.polynomials import PLANE
 
 X, Y = PLANE.gens()
@@ -72,8 +72,8 @@ def test_assignments_of_many_rows_are_those_of_scipy() -> None:
 @settings(max_examples=examples(60))
 def test_determinants_are_those_by_permutations(matrix: Matrix) -> None:
     expected = by_permutations(matrix)
-    assert determinants.characteristic(matrix) == [expected]
-    assert determinants._bareiss([list(row) for row in matrix], math.inf) == expected
+    assert plane_determinants.characteristic(matrix) == [expected]
+    assert plane_determinants._bareiss([list(row) for row in matrix], math.inf) == expected
 
 
 def test_long_eliminations_are_given_up_for_values(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -86,10 +86,10 @@ def test_long_eliminations_are_given_up_for_values(monkeypatch: pytest.MonkeyPat
         ]
         for i in range(size)
     ]
-    expected = determinants._bareiss([list(row) for row in few], math.inf)
-    assert determinants._bareiss([list(row) for row in few], 1000) is None
-    monkeypatch.setattr(determinants, "SHARE", 0)
-    assert determinants._primitive_determinant(few) == expected
+    expected = plane_determinants._bareiss([list(row) for row in few], math.inf)
+    assert plane_determinants._bareiss([list(row) for row in few], 1000) is None
+    monkeypatch.setattr(plane_determinants, "SHARE", 0)
+    assert plane_determinants._primitive_determinant(few) == expected
     values = fmpz_mat([[int(p(3, 5)) for p in row] for row in few])
     assert expected is not None
     assert expected(3, 5) == values.det()
@@ -97,17 +97,17 @@ def test_long_eliminations_are_given_up_for_values(monkeypatch: pytest.MonkeyPat
 
 def test_sparse_determinants_take_an_elimination(monkeypatch: pytest.MonkeyPatch) -> None:
     """ring-of-three: 28 rows of about one term each took 11 s by values, and take 0.06 s."""
-    monkeypatch.setattr(determinants, "characteristic", None)
+    monkeypatch.setattr(plane_determinants, "characteristic", None)
     size = 28
     terms = {0: X**3 + 2, 1: Y**2 - X}
     sparse = [[terms.get(j - i, PLANE.constant(0)) for j in range(size)] for i in range(size - 1)]
     sparse.append([X + j * Y for j in range(size)])
     values = fmpz_mat([[int(p(3, 5)) for p in row] for row in sparse])
-    assert determinants._primitive_determinant(sparse)(3, 5) == values.det()
+    assert plane_determinants._primitive_determinant(sparse)(3, 5) == values.det()
 
 
 def test_a_matrix_without_rank_has_determinant_zero() -> None:
     rows = [[X + i * Y + j for j in range(4)] for i in range(3)]
-    assert determinants.characteristic(
+    assert plane_determinants.characteristic(
         [*rows, [a + b for a, b in zip(rows[0], rows[1], strict=True)]]
     )[0].is_zero()

@@ -20,10 +20,10 @@ from support.signatures import signature
 
 from ptmcad import load
 from ptmcad.algebra.bernstein import nowhere_zero
-from ptmcad.algebra.determinants import determinant
-from ptmcad.algebra.fibre import evaluate as multiplication
-from ptmcad.algebra.fibre import fibre
+from ptmcad.algebra.fibre_algebra import evaluate as multiplication
+from ptmcad.algebra.fibre_algebra import fibre
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
+from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
     PLANE,
     coefficients_in,
@@ -32,7 +32,7 @@ from ptmcad.algebra.polynomials import (
     irreducible_factors,
     to_plane,
 )
-from ptmcad.algebra.quotient import (
+from ptmcad.algebra.quotient_algebra import (
     LINE,
     multiplication_denominator,
     norm,
@@ -54,9 +54,9 @@ from ptmcad.algebra.resultants import discriminant, interpolate, nothing, result
 from ptmcad.answer.regionmap import Kind
 from ptmcad.exact.cad.criticalpoints import _discriminant
 from ptmcad.exact.cad.projection import curve
+from ptmcad.exact.discriminant_variety import algebra_of
 from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
 from ptmcad.exact.stages import problem_of
-from ptmcad.exact.variety import algebra_of
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 X, Y = PLANE.gens()

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
-from ptmcad.algebra import isolation
+from ptmcad.algebra import descartes
 from ptmcad.algebra.real_roots import RealRoot, isolate, newton_ball, sign_at
 
 
@@ -37,7 +37,7 @@ def test_bernstein_coefficients_part_the_roots_that_shifts_part(
     low, high = map(fmpq, ends)
     polynomials = [_squarefree(source) for _ in range(60)]
     found = [isolate(p, low, high) for p in polynomials]
-    monkeypatch.setattr(isolation, "_MAX_SHORT_DEGREE", -1)
+    monkeypatch.setattr(descartes, "_MAX_SHORT_DEGREE", -1)
     for p, roots in zip(polynomials, found, strict=True):
         other = isolate(p, low, high)
         assert len(roots) == len(other)

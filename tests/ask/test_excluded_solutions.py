@@ -13,7 +13,7 @@ from flint import fmpq
 from support.signatures import signature
 
 import ptmcad
-from ptmcad.algebra.fibre import evaluate, hermite_matrix
+from ptmcad.algebra.fibre_algebra import evaluate, hermite_matrix
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.checking import check
 from ptmcad.errors import ConfigError, NothingToCountError

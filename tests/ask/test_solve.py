@@ -21,7 +21,7 @@ from support.newton import DIGITS, Found, equilibria, improved
 from support.oracle import count
 
 from ptmcad import Enclosure, Pose, Poses, slice_from_mapping, solve
-from ptmcad.algebra.fibre import fibre
+from ptmcad.algebra.fibre_algebra import fibre
 from ptmcad.algebra.fibre_points import points
 from ptmcad.answer.regionmap import Status
 from ptmcad.errors import ConfigError

@@ -81,7 +81,7 @@ WRONG: tuple[Any, ...] = (None, True, -1, "x", [], {"a": 1})
 
 ASKING = """
 from ptmcad.algebra import bases
-from ptmcad.algebra.fibre import WorkLimit
+from ptmcad.algebra.fibre_algebra import WorkLimit
 bases.MANY, bases.SMALL = 1, WorkLimit(0, 0, 0, 0)
 from ptmcad.__main__ import main
 main()

@@ -25,8 +25,8 @@ from ptmcad.certified.plain.problem import problem_of
 from ptmcad.model import Mechanism
 from ptmcad.options import Options
 from ptmcad.verification import verify
+from ptmcad.verification.coordinates import monomials
 from ptmcad.verification.normalform.waves import form_of
-from ptmcad.verification.terms import monomials
 
 Springs = list[dict[str, Any]]
 TOGETHER: Springs = [

@@ -14,7 +14,7 @@ import pytest
 
 from ptmcad import cli
 from ptmcad.algebra import bases
-from ptmcad.algebra.fibre import WorkLimit
+from ptmcad.algebra.fibre_algebra import WorkLimit
 
 SQUARE = """
 system:

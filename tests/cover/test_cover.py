@@ -18,9 +18,8 @@ from numpy.typing import NDArray
 from support.examples import examples
 
 from ptmcad.cover import components, from_boxes, union_area
-from ptmcad.cover.complement import area_bounds, samples, simplest_between
+from ptmcad.cover.complement import area_bounds, outlines, samples, simplest_between
 from ptmcad.cover.lattice import combined, gathered
-from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
 
 UNIT = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))

@@ -19,9 +19,9 @@ from support.examples import examples
 from support.work import work_of
 
 import ptmcad
-from ptmcad.algebra import isolation
+from ptmcad.algebra import descartes
 from ptmcad.algebra.arcs import arc_integral
-from ptmcad.algebra.fibre import FibreAlgebra, univariate_representation
+from ptmcad.algebra.fibre_algebra import FibreAlgebra, univariate_representation
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine
 from ptmcad.algebra.resultants import balanced, discriminant, resultant
 from ptmcad.answer.regionmap import Status
@@ -84,13 +84,13 @@ def test_pairs_that_are_real_or_not_are_told_apart(e: int, f: int, real: bool, n
 def tests_made(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The degree of the polynomial in each test by Descartes' rule."""
     made: list[int] = []
-    bound = isolation.descartes_bound
+    bound = descartes.descartes_bound
 
     def counted(q: fmpz_poly, degree: int) -> int:
         made.append(degree)
         return bound(q, degree)
 
-    monkeypatch.setattr(isolation, "descartes_bound", counted)
+    monkeypatch.setattr(descartes, "descartes_bound", counted)
     return made
 
 

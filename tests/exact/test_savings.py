@@ -32,7 +32,7 @@ from ptmcad.algebra.polynomials import (
     from_expression,
     irreducible_factors,
 )
-from ptmcad.algebra.quotient import (
+from ptmcad.algebra.quotient_algebra import (
     QuotientAlgebra,
     bounded_away_from_zero,
     multiples,

@@ -9,15 +9,15 @@ from flint import nmod_poly
 
 import ptmcad
 from ptmcad.algebra.groebner import shifted
-from ptmcad.algebra.quotient import multiplication_denominator, quotient_algebra
+from ptmcad.algebra.quotient_algebra import multiplication_denominator, quotient_algebra
 from ptmcad.algebra.ratios import Numerator, degree, numerator
 from ptmcad.algebra.resultants import primes
 from ptmcad.answer.regionmap import Kind
 from ptmcad.exact import curvesizes as module
 from ptmcad.exact.curvesizes import CurveSizes, sizes, survey
+from ptmcad.exact.discriminant_variety import basis_of
 from ptmcad.exact.models.system import on_slice
 from ptmcad.exact.stages import problem_of, variety_of
-from ptmcad.exact.variety import basis_of
 from ptmcad.question.config import load
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"

@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 from support.examples import examples
 
 from ptmcad.algebra import puiseux
-from ptmcad.algebra.branches import TooFewBits
+from ptmcad.algebra.curve_branches import TooFewBits
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.puiseux import puiseux_integral
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part

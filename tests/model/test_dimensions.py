@@ -16,14 +16,14 @@ from support.counting import system_of
 from support.signatures import count_by_isolation, count_by_signature
 
 from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
-from ptmcad.algebra.trigonometric import TrigonometricRing
+from ptmcad.algebra.trigonometric_ring import TrigonometricRing
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Kind
+from ptmcad.exact.discriminant_variety import discriminant_variety
 from ptmcad.exact.exactposes import exact_poses
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.models.system import SystemOnAxes, from_equations
 from ptmcad.exact.point_system import solutions_at
-from ptmcad.exact.variety import discriminant_variety
 from ptmcad.model import described
 from ptmcad.model.criterion import by_hessian
 

@@ -37,9 +37,9 @@ from ptmcad.show.render.sketch import (
     MIN_TURNS,
     PIN,
     SPIRAL,
+    Scene,
     arrow_lengths,
     frame_of,
-    sketch,
 )
 from ptmcad.text.enclosure import Enclosure
 
@@ -160,7 +160,7 @@ def labels_are_clear(found: Poses) -> None:
         return
     frame, arrows = frame_of(found.equilibria), arrow_lengths(found)
     for pose in found.equilibria:
-        seen = sketch(found.model, pose, frame, arrows)
+        seen = Scene(found.model, frame, arrows).of(pose)
         strokes = [Stroke(a, b, w / 2) for (a, b), w in zip(seen.bars, BAR_WIDTHS, strict=True)]
         strokes += [s for line in seen.coils.values() for s in polyline(line, 0.4)]
         strokes += [Stroke(start, end, 2.0) for _, start, end in seen.arrows]
@@ -183,7 +183,7 @@ def test_a_springs_teeth_stand_across_it_at_any_length_and_slope(name: str) -> N
     found = poses(name)
     frame = frame_of(found.equilibria)
     for pose in found.equilibria:
-        seen = sketch(found.model, pose, frame, {})
+        seen = Scene(found.model, frame, {}).of(pose)
         for spring, line in zip(pose.springs, seen.coils.values(), strict=True):
             assert (line[0], line[-1]) == (seen.nodes[spring.start], seen.nodes[spring.end])
             teeth = len(line) - 4
@@ -204,7 +204,7 @@ def test_springs_on_bars_are_drawn_aside() -> None:
     flat = [p for p in found.equilibria if p.flat]
     assert len(flat) == 4
     for pose in flat:
-        seen = sketch(found.model, pose, frame, {})
+        seen = Scene(found.model, frame, {}).of(pose)
         middles = [
             np.mean(line[1:-1], axis=0)[1] - seen.nodes["A1"][1] for line in seen.coils.values()
         ]
@@ -502,7 +502,7 @@ def test_torsion_springs_are_spirals_at_their_joints_in_every_pose() -> None:
 def test_labels_keep_clear_of_torsion_springs() -> None:
     scene, shown = frame_of(jaw().equilibria), jaw().in_order
     for pose in shown:
-        seen = sketch(jaw().model, pose, scene, arrow_lengths(jaw()))  # type: ignore[arg-type]
+        seen = Scene(jaw().model, scene, arrow_lengths(jaw())).of(pose)  # type: ignore[arg-type]
         turns = [stroke for line in seen.coils.values() for stroke in polyline(line, 0.5)]
         assert not any(crosses(stroke, placed.box) for placed in seen.labels for stroke in turns)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ptmcad.algebra.polynomials import Coefficient, Ratio, add_ratios, lcm, ratio
-from ptmcad.algebra.quotient import QuotientAlgebra, _times_unknown
+from ptmcad.algebra.quotient_algebra import QuotientAlgebra, _times_unknown
 
 
 def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:

@@ -12,9 +12,9 @@ from math import comb
 
 from flint import fmpq, fmpq_mat
 
-from ptmcad.algebra.fibre import FibreAlgebra, evaluate
+from ptmcad.algebra.fibre_algebra import FibreAlgebra, evaluate
 from ptmcad.algebra.real_roots import sign
-from ptmcad.algebra.trigonometric import RationalPolynomial
+from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.answer.counts import Counts, counts_of_signs
 from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models.system import ParametricSystem

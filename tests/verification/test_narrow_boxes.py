@@ -23,8 +23,8 @@ from ptmcad.verification.certified import narrow
 from ptmcad.verification.certified.cellsamples import check_points
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.narrow import NARROW, Function, Judgement, precisions
+from ptmcad.verification.coordinates import ball, evaluated
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.terms import ball, evaluated
 
 pytest.importorskip("numba")
 

@@ -13,8 +13,8 @@ from support.examples import examples
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import sturm
-from ptmcad.verification.branches import WallBranch
 from ptmcad.verification.claims import PlaneCurve
+from ptmcad.verification.wallintegrals import WallSeries
 
 
 @st.composite
@@ -69,7 +69,7 @@ def test_a_branch_is_found_by_its_number(root: int) -> None:
     plane = PlanePolynomial.of(
         (i, j, int(c)) for j, c in enumerate(p.coeffs()) for i in (0, 1) if c
     )
-    branch = WallBranch.of(PlaneCurve.of(0, plane, 0), root)
+    branch = WallSeries.of(PlaneCurve.of(0, plane, 0), root)
     with ctx.workprec(100):
         height = branch.height(fmpq(1, 3), fmpq(-2), fmpq(4))  # the first middle is a root
         assert height is not None

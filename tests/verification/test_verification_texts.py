@@ -1,4 +1,4 @@
-"""Texts in a result, checked: the parameters as they were written, and the potential of a certified
+"""PolynomialTexts in a result, checked: the parameters as they were written, and the potential of a certified
 map.
 """
 
@@ -23,7 +23,7 @@ from ptmcad.show.report.reproduction import reproduction
 from ptmcad.text.expressions import axis, constant
 from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.equationtexts import check_potential
-from ptmcad.verification.parameters import check_text
+from ptmcad.verification.parameterclaims import check_text
 from ptmcad.verification.report import Unchecked, Violation
 
 WINDOW = {"rho": ["1/5", "2"], "L2": ["1/5", "2"]}

@@ -18,11 +18,11 @@ import ptmcad
 from ptmcad.answer.regionmap import HARMLESS, Component, Kind, RegionMap
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification import variety
+from ptmcad.verification import norms
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.norms import check_norm
 from ptmcad.verification.planecurves import polynomial
 from ptmcad.verification.report import Violation
-from ptmcad.verification.variety import check_norm
 
 Shipped = Callable[..., RegionMap]
 
@@ -151,7 +151,7 @@ def test_exponents_are_those_of_the_construction(name: str, shipped: Shipped) ->
 
 def test_points_on_components_are_drawn_again(shipped: Shipped) -> None:
     """Of the first point and all others with its abscissa nothing can be decided."""
-    for bits in (variety.BITS, variety.FAR_BITS):
+    for bits in (norms.BITS, norms.FAR_BITS):
         x = Random(f"{bits} 0").getrandbits(bits) - 2 ** (bits - 1)
         components = (Component(PlanePolynomial.of(((1, 0, 1), (0, 0, -x))), Kind.CRITICAL),)
         claims = KnownClaims(replace(shipped("fig2"), components=components), [1], Fraction(3))
@@ -270,19 +270,19 @@ class Shortened:
         return KnownFibre(norm, self.result.complex_solutions, [], [])
 
 
-def points(claims: object, seed: int) -> Iterator[variety.FibrePoint]:
-    return variety.random_points(claims, str(seed), variety.BITS)  # type: ignore[arg-type]
+def points(claims: object, seed: int) -> Iterator[norms.FibrePoint]:
+    return norms.random_points(claims, str(seed), norms.BITS)  # type: ignore[arg-type]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [path.stem for path in EXACT])
 def test_no_seed_rejects_a_shipped_map(name: str, shipped: Shipped) -> None:
     claims = Claims(shipped(name))
-    _, exponents = variety.check_identity(claims, points(claims, 0))
+    _, exponents = norms.check_identity(claims, points(claims, 0))
     polynomials = [polynomial(c.polynomial.terms) for c in claims.result.components]
     short = Shortened(claims.result, exponents, polynomials)
     for seed in range(SEEDS):
-        assert variety.check_identity(short, points(short, seed))[1] == exponents  # type: ignore[arg-type]
+        assert norms.check_identity(short, points(short, seed))[1] == exponents  # type: ignore[arg-type]
     for seed in range(SEEDS, SEEDS + WHOLE):
         assert check_norm(claims, str(seed)).endswith(f"multiplicities {exponents}")
 

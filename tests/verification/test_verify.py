@@ -20,11 +20,11 @@ from support.shipped_records import EXACT
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.question.slice import Point
-from ptmcad.verification import areas
-from ptmcad.verification.areas import check_areas
-from ptmcad.verification.branches import integrals_over
+from ptmcad.verification import areaclaims
+from ptmcad.verification.areaclaims import check_areas
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
+from ptmcad.verification.wallintegrals import integrals_over
 
 CONFIGS = [path.stem for path in EXACT]
 LARGE = ("stiffness", "unequal-springs", "fig5-caption", "horizontal")
@@ -177,7 +177,7 @@ def test_areas_in_large_windows_are_told(
         tried.append(given)
         return integrals_over(*given)
 
-    monkeypatch.setattr(areas, "integrals_over", counted)
+    monkeypatch.setattr(areaclaims, "integrals_over", counted)
     check_areas(Claims(true))
     assert len(tried) < 600 * sum(len(stack.walls) for stack in true.stacks)
     small = min(range(len(true.regions)), key=lambda n: true.regions[n].area[0])

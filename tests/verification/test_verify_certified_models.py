@@ -37,12 +37,12 @@ from ptmcad.verification.certified.ballequations import BallEquations
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.krawczyk import zeros
 from ptmcad.verification.certified.narrow import Function, Judgement
-from ptmcad.verification.inertia import inertia
+from ptmcad.verification.coordinates import power
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.normalform.unknownbounds import half_widths
 from ptmcad.verification.normalform.waves import form_of
+from ptmcad.verification.principalminors import inertia
 from ptmcad.verification.report import Violation
-from ptmcad.verification.terms import power
 
 pytest.importorskip("numba")
 

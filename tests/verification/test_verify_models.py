@@ -22,9 +22,9 @@ from ptmcad.model import described
 from ptmcad.question.slice import Count
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.norms import check_norm
 from ptmcad.verification.report import Violation
 from ptmcad.verification.solutions import check_counts, check_solutions
-from ptmcad.verification.variety import check_norm
 
 AB = {"a": [-2, 2], "b": [-2, 2]}
 

@@ -16,9 +16,9 @@ from support.few import few
 
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import sturm
-from ptmcad.verification.branches import PanelEffort, PanelPart, WallBranch, integrals_over
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.sturm import numbered_root
+from ptmcad.verification.wallintegrals import IntegralEffort, PanelPart, WallSeries, integrals_over
 
 HEIGHTS = (fmpq(-3), fmpq(3))
 
@@ -60,13 +60,13 @@ PANELS = [
 
 def parts(name: str, sign: int, ends: tuple[fmpq, fmpq]) -> list[PanelPart]:
     plane = PlanePolynomial.of(CURVES[name][0])
-    branch = WallBranch.of(
+    branch = WallSeries.of(
         PlaneCurve.of(0, plane, 0), 1 if sign > 0 and name.startswith(("v^2", "100 v^2")) else 0
     )
     return integrals_over(
         branch,
         *ends,
-        PanelEffort(arb(2) ** -60, fmpq(1, 10**12), HEIGHTS, (2, 10), ends),
+        IntegralEffort(arb(2) ** -60, fmpq(1, 10**12), HEIGHTS, (2, 10), ends),
     )
 
 
@@ -108,19 +108,19 @@ def test_heights_are_the_roots_that_were_asked_for(share: fmpq) -> None:
         roots = [(arb(value)).sqrt() for value in (share, share + 1, fmpq(2))]
         expected = [-root for root in reversed(roots)] + roots
         for number, root in enumerate(expected):
-            height = WallBranch.of(curve, number).height(share, fmpq(-3), fmpq(3))
+            height = WallSeries.of(curve, number).height(share, fmpq(-3), fmpq(3))
             assert height is not None
             assert height.overlaps(root)
             assert height.rad() < 2**-60
-        assert WallBranch.of(curve, 6).height(share, fmpq(-3), fmpq(3)) is None
+        assert WallSeries.of(curve, 6).height(share, fmpq(-3), fmpq(3)) is None
         # from a height between them only those above it are counted
-        above = WallBranch.of(curve, 0).height(share, fmpq(0), fmpq(3))
+        above = WallSeries.of(curve, 0).height(share, fmpq(0), fmpq(3))
         assert above is not None
         assert above.overlaps(roots[0])
 
 
 Terms = list[tuple[int, int, int]]
-EFFORT = PanelEffort(arb(2) ** -30, fmpq(1, 10**12), HEIGHTS, (2, 10), HEIGHTS)
+EFFORT = IntegralEffort(arb(2) ** -30, fmpq(1, 10**12), HEIGHTS, (2, 10), HEIGHTS)
 NEAR, FAR = fmpq(1, 10**9), fmpq(1, 2)
 POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
     "turning point: v^2 = u": ([(0, 2, 1), (1, 0, -1)], 1, lambda u: u * u.sqrt() * 2 / 3),
@@ -159,8 +159,8 @@ POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
 }
 
 
-def branch_of(terms: Terms, root: int) -> WallBranch:
-    return WallBranch.of(PlaneCurve.of(0, PlanePolynomial.of(terms), 0), root)
+def branch_of(terms: Terms, root: int) -> WallSeries:
+    return WallSeries.of(PlaneCurve.of(0, PlanePolynomial.of(terms), 0), root)
 
 
 @pytest.mark.parametrize("name", POINTS)
@@ -245,7 +245,7 @@ def part_beside(
     error.
     """
     near = at + ROOM * (1 if far > at else -1)
-    effort = PanelEffort(arb(2) ** -40, fmpq(1, 10**15), heights, (2,), (at + error, at + error))
+    effort = IntegralEffort(arb(2) ** -40, fmpq(1, 10**15), heights, (2,), (at + error, at + error))
     run = -2 if far > at else 2
     return integrals_over(branch_of(terms, root), min(near, far), max(near, far), effort, run)
 

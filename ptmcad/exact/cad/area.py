@@ -18,7 +18,7 @@ from typing import NamedTuple, TypeVar
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.branches import TooFewBits
+from ptmcad.algebra.curve_branches import TooFewBits
 from ptmcad.algebra.polynomials import RationalPolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 from ptmcad.algebra.resultants import Check, nothing

@@ -26,7 +26,7 @@ from fractions import Fraction
 from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.algebraic_numbers import root_of
-from ptmcad.algebra.branches import local_coefficients
+from ptmcad.algebra.curve_branches import local_coefficients
 from ptmcad.algebra.real_roots import Interval, RealRoot, halve, isolate, order, refine, sign_at
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.slopes import slope_over

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache, partial
 
-from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
+from ptmcad.algebra.trigonometric_ring import TrigonometricPolynomial, TrigonometricRing
 from ptmcad.answer.regionmap import System
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models.system import ParametricSystem, from_equations

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.determinants import laplace
+from ptmcad.algebra.plane_determinants import laplace
 from ptmcad.algebra.polynomials import (
     PLANE,
     Coefficient,
@@ -31,7 +31,7 @@ from ptmcad.algebra.polynomials import (
     point_values,
     ratio,
 )
-from ptmcad.algebra.trigonometric import (
+from ptmcad.algebra.trigonometric_ring import (
     RationalPolynomial,
     TrigonometricPolynomial,
     TrigonometricRing,

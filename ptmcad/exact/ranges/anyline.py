@@ -23,8 +23,8 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.algebraic_numbers import algebraic_number, in_order
-from ptmcad.algebra.determinants import determinant
 from ptmcad.algebra.fibre_points import RealPoint, points, value_at
+from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
     ONE,
     PLANE,
@@ -35,7 +35,7 @@ from ptmcad.algebra.polynomials import (
     coefficients_in,
     from_expression,
 )
-from ptmcad.algebra.quotient import (
+from ptmcad.algebra.quotient_algebra import (
     QuotientAlgebra,
     matrix_of,
     multiples,
@@ -43,15 +43,15 @@ from ptmcad.algebra.quotient import (
     trace_form,
 )
 from ptmcad.algebra.real_roots import gaps, isolate
-from ptmcad.algebra.trigonometric import RationalPolynomial
+from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError
+from ptmcad.exact.discriminant_variety import algebra_of
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.models.system import ALONG, SliceSystem, lifted, on_slice, saturated, with_root
 from ptmcad.exact.point_system import DegeneratePoint, point_system
 from ptmcad.exact.ranges.line import END_WIDTH, intervals, runs
 from ptmcad.exact.statics import is_positive
-from ptmcad.exact.variety import algebra_of
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber

@@ -27,10 +27,10 @@ from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
 from ptmcad.answer.regionmap import Component
 from ptmcad.answer.words import noun
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
+from ptmcad.exact.discriminant_variety import discriminant_variety
 from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import SystemOnAxes, on_axes
 from ptmcad.exact.stages import count_at
-from ptmcad.exact.variety import discriminant_variety
 from ptmcad.exact.witness import points, with_folds
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Axis, Slice

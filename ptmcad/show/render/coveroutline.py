@@ -21,9 +21,8 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover import components
-from ptmcad.cover.complement import Components
+from ptmcad.cover.complement import Components, outlines
 from ptmcad.cover.connectivity import shown as with_steps
-from ptmcad.cover.outlines import outlines
 from ptmcad.cover.subdivision import FREE
 from ptmcad.show.render.polylines import simplified_polygons
 from ptmcad.show.render.view import CellShape, Floats, Same, View, WallShape

@@ -175,14 +175,8 @@ class Scene:
 
     def of(self, pose: Pose) -> Sketch:
         """One of them."""
-        return sketch(self.mechanism, pose, self.frame, self.arrows)
-
-
-def sketch(
-    mechanism: Mechanism, pose: Pose, frame: PanelFrame, arrows: Mapping[str, float]
-) -> Sketch:
-    """A pose in a frame, with arrows of these lengths."""
-    return sketched(mechanism, frame.nodes(pose), (frame.width, frame.height), arrows)
+        sides = (self.frame.width, self.frame.height)
+        return sketched(self.mechanism, self.frame.nodes(pose), sides, self.arrows)
 
 
 def sketched(

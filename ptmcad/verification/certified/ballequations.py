@@ -24,6 +24,7 @@ from types import MappingProxyType
 from flint import arb
 
 from ptmcad.text.balls import ball_of
+from ptmcad.verification.coordinates import ball, power, square
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.normalform.modelequations import Equations
 from ptmcad.verification.normalform.operations import (
@@ -42,7 +43,6 @@ from ptmcad.verification.normalform.operations import (
     Formulas,
 )
 from ptmcad.verification.normalform.waves import Form, Sides
-from ptmcad.verification.terms import ball, power, square
 
 Matrix = list[list[arb]]
 _ZERO, _ANY = arb(0), arb(0, 1)

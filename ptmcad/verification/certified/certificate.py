@@ -19,7 +19,7 @@ from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.equationtexts import check_potential
 from ptmcad.verification.normalform.waves import form_of
-from ptmcad.verification.parameters import check_text
+from ptmcad.verification.parameterclaims import check_text
 from ptmcad.verification.report import Check, CheckProgress, VerifyReport, Violation, checked, drawn
 
 BOXES = 16

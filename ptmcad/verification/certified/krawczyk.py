@@ -20,7 +20,6 @@ from operator import lt
 from flint import arb, arb_mat
 
 from ptmcad.verification.certified.ballequations import BallEquations, BallJet, Matrix
-from ptmcad.verification.inertia import inertia
 from ptmcad.verification.normalform.boxes import (
     MIN_HALF_WIDTH,
     Box,
@@ -32,6 +31,7 @@ from ptmcad.verification.normalform.boxes import (
     inside,
     within,
 )
+from ptmcad.verification.principalminors import inertia
 
 _SHRINKINGS = (
     1,

@@ -26,13 +26,13 @@ from ptmcad.verification.certified.ballequations import BallEquations, Matrix
 from ptmcad.verification.certified.counted import CellCounts, CountedPoint
 from ptmcad.verification.certified.krawczyk import Spent, zeros
 from ptmcad.verification.certified.narrow import is_wide, narrowed, precisions, tested
-from ptmcad.verification.inertia import inertia
+from ptmcad.verification.coordinates import evaluated
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.normalform.boxes import MIN_HALF_WIDTH, Floats, Unproved, Zero, is_same
 from ptmcad.verification.normalform.lattice import Range, SliceLattice
 from ptmcad.verification.normalform.waves import Form, Sides, form_of, sides
+from ptmcad.verification.principalminors import inertia
 from ptmcad.verification.report import Violation
-from ptmcad.verification.terms import evaluated
 
 if TYPE_CHECKING:
     from ptmcad.verification.exclusion.places import Isolation, SolutionPlaces

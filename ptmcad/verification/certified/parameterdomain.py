@@ -14,11 +14,11 @@ from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.coordinates import evaluated, monomials
 from ptmcad.verification.derivation import derivation_of
 from ptmcad.verification.normalform.waves import form_of
-from ptmcad.verification.parameters import auxiliary, written
+from ptmcad.verification.parameterclaims import auxiliary, written
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.terms import evaluated, monomials
 from ptmcad.verification.windowsigns import Sign, Window, has_no_pole, is_in_domain
 
 

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ptmcad.errors import ExpressionError
+from ptmcad.verification.coordinates import evaluated
 from ptmcad.verification.exclusion.forms import IntervalTape, tape_of
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.normalform.boxes import Floats
@@ -26,7 +27,6 @@ from ptmcad.verification.normalform.modelequations import Equations, Pair, bases
 from ptmcad.verification.normalform.operations import Formulas
 from ptmcad.verification.normalform.unknownbounds import half_widths
 from ptmcad.verification.normalform.waves import Waves, form_of, sides
-from ptmcad.verification.terms import evaluated
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its

@@ -13,9 +13,9 @@ from flint import arb
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import Expression
+from ptmcad.verification.coordinates import ball
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.planecurves import PLANE, polynomial
-from ptmcad.verification.terms import ball
 
 Range = tuple[Fraction, Fraction]
 """An interval of one axis, in steps."""

@@ -15,10 +15,10 @@ from typing import NamedTuple
 from flint import fmpq_mpoly
 
 from ptmcad.text.flint_numbers import to_fraction
+from ptmcad.verification.coordinates import monomials
 from ptmcad.verification.normalform.operations import Formulas
 from ptmcad.verification.normalform.springlines import SpringLine
 from ptmcad.verification.normalform.waves import Form, Key, Sides, SpringCone, Waves, by
-from ptmcad.verification.terms import monomials
 
 Pair = tuple[int, int]
 

@@ -17,7 +17,7 @@ from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.verification.terms import evaluated
+from ptmcad.verification.coordinates import evaluated
 from ptmcad.verification.windowsigns import Sign, Window, has_no_pole, is_in_domain
 
 Vanishes = Callable[[fmpq_mpoly], bool]

@@ -24,10 +24,10 @@ from typing import NamedTuple
 
 from flint import arb
 
+from ptmcad.verification.coordinates import ball, power
 from ptmcad.verification.normalform.boxes import Unproved, size
 from ptmcad.verification.normalform.held import bounds_of
 from ptmcad.verification.normalform.waves import Form, Key, Waves
-from ptmcad.verification.terms import ball, power
 
 HALF_TURN = 101 / 32
 """A little more than pi, so that a range of this half width around 0 has the whole circle."""

@@ -33,12 +33,12 @@ from ptmcad.algebra.bernstein import Table, halves, on_lines, over, sign, table_
 from ptmcad.algebra.polynomials import Coefficient, from_plane
 from ptmcad.algebra.real_roots import Interval, disjoint, inside, isolate, refine, squarefree_part
 from ptmcad.errors import DegenerateSliceError
+from ptmcad.exact.discriminant_variety import discriminant_variety
 from ptmcad.exact.familyprojection import surfaces_of
 from ptmcad.exact.familyvariety import family_variety
 from ptmcad.exact.models.system import SystemOnAxes
 from ptmcad.exact.ranges.line import runs
 from ptmcad.exact.stages import SliceProblem, count_at
-from ptmcad.exact.variety import discriminant_variety
 from ptmcad.text.flint_numbers import simplest_between
 from ptmcad.text.numerals import equalities
 

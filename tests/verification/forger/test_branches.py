@@ -37,24 +37,24 @@ from ptmcad.text.expressions import axis, constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification.adjacency import (
+from ptmcad.verification.adjacencies import (
     check_adjacencies,
     check_no_adjacency_missing,
     check_non_adjacencies,
 )
-from ptmcad.verification.areas import check_areas
-from ptmcad.verification.branches import PanelEffort, _along
+from ptmcad.verification.areaclaims import check_areas
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.disks import BallsTooWide, _series
 from ptmcad.verification.equationtexts import check_system
-from ptmcad.verification.fibrealgebra import FibreAlgebra
+from ptmcad.verification.fibrealgebra import SolutionAlgebra
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
-from ptmcad.verification.parameters import check_boundary, check_text
-from ptmcad.verification.plan import check_plan
+from ptmcad.verification.norms import check_irreducible, check_norm
+from ptmcad.verification.parameterclaims import check_boundary, check_text
+from ptmcad.verification.planclaims import check_plan
 from ptmcad.verification.projections import check_critical_values, check_stacks
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.solutions import check_counts, check_solutions
-from ptmcad.verification.variety import check_irreducible, check_norm
+from ptmcad.verification.wallintegrals import IntegralEffort, _along
 from ptmcad.verification.windowsigns import check_left_out
 
 Change = Callable[[RegionMap], RegionMap]
@@ -481,12 +481,12 @@ def test_a_point_at_a_pole() -> None:
 def test_counts_without_a_zero_euler_sum_are_a_fault_of_the_check(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(FibreAlgebra, "counts", lambda self: Counts(3, 2, (2, 1, 0)))
+    monkeypatch.setattr(SolutionAlgebra, "counts", lambda self: Counts(3, 2, (2, 1, 0)))
     rejected(check_counts, the("fig3"), "the Euler sum of")
 
 
 def test_a_degenerate_sample(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(FibreAlgebra, "counts", lambda self: None)
+    monkeypatch.setattr(SolutionAlgebra, "counts", lambda self: None)
     rejected(check_counts, the("fig3"), "an equilibrium is degenerate at")
 
 
@@ -497,7 +497,7 @@ def test_branches_that_are_not_told_apart_ask_for_more_precision() -> None:
     distance = arb(2) ** -20
     rows = [arb_poly([1 - distance * distance, 0, -1]), arb_poly([-2]), arb_poly([1])]
     blurred = [rows[0] + arb(0, 2.0**-40), *rows[1:]]
-    effort = PanelEffort(
+    effort = IntegralEffort(
         arb(2) ** -20, fmpq(1, 2**20), (fmpq(0), fmpq(2)), (2,), (fmpq(0), fmpq(1))
     )
     with ctx.workprec(64):

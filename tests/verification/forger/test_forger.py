@@ -105,7 +105,7 @@ def test_areas_are_not_tried_over_walls_that_are_not_there(
     def endless(*_: object) -> None:
         raise AssertionError("integrated a wall that is not in the window")
 
-    monkeypatch.setattr("ptmcad.verification.areas.integrals_over", endless)
+    monkeypatch.setattr("ptmcad.verification.areaclaims.integrals_over", endless)
     r = shipped("fig2")
     axis = r.slice.axes[1 - r.base]
     width = axis.high - axis.low

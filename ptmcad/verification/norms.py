@@ -41,7 +41,7 @@ from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import coordinates_of
-from ptmcad.verification.fibrealgebra import FibreAlgebra
+from ptmcad.verification.fibrealgebra import SolutionAlgebra
 from ptmcad.verification.planecurves import factors, polynomial
 from ptmcad.verification.report import Violation
 
@@ -88,7 +88,7 @@ class FibrePoint:
     y: Fraction
     values: tuple[int, ...]
     form: tuple[int, ...]
-    fibre: FibreAlgebra
+    fibre: SolutionAlgebra
 
     def norm(self) -> Fraction:
         """The product of det H over the solutions."""

@@ -31,8 +31,8 @@ from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import parameters_of
 from ptmcad.verification.normalform.boxes import Unproved
+from ptmcad.verification.parameterclaims import check_text
 from ptmcad.verification.parameterlines import NotKnown, ParameterLine, SliceLines, check_maxima
-from ptmcad.verification.parameters import check_text
 from ptmcad.verification.report import (
     Check,
     CheckProgress,

@@ -1,7 +1,7 @@
 """Checks of the areas: another enclosure of each region's area, which has to lie within the stored
 bounds.
 
-Each wall between two regions is integrated over panels by `ptmcad.verification.branches`, which are
+Each wall between two regions is integrated over panels by `ptmcad.verification.wallintegrals`, which are
 halved towards critical values, where branches are not analytic; narrow strips around critical
 values that are not rational count as error.
 
@@ -23,10 +23,10 @@ from ptmcad.answer.regionmap import CriticalValue, Region
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import approximate_text
-from ptmcad.verification.branches import PanelEffort, PanelPart, WallBranch, integrals_over
 from ptmcad.verification.claims import Claims, bracket
 from ptmcad.verification.disks import BallsTooWide
 from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.wallintegrals import IntegralEffort, PanelPart, WallSeries, integrals_over
 
 NARROWEST = 10**60
 """Of bounds that are relatively narrower than the inverse of this, it is tried whether they are off
@@ -41,10 +41,10 @@ ATTEMPTS = 7
 class _WallPanel(NamedTuple):
     """A part of a wall from region ``below`` to region ``above``, and the error that it may have."""
 
-    branch: WallBranch
+    branch: WallSeries
     below: int
     above: int
-    effort: PanelEffort
+    effort: IntegralEffort
     part: PanelPart
 
 
@@ -111,7 +111,7 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
     bounds = [(ball_of(r.area[0]), ball_of(r.area[1])) for r in result.regions]
     number = max(1, sum(len(s.walls) for s in result.stacks))
     shares = [ball_of(_width(r)).mid() * margin / number for r in result.regions]
-    effort = PanelEffort(min(shares), width / 2 ** (bits // 3), (low, high), (2,), (start, stop))
+    effort = IntegralEffort(min(shares), width / 2 ** (bits // 3), (low, high), (2,), (start, stop))
     whole = [arb(0) for _ in result.regions]
     panels: list[_WallPanel] = []
     for s, stack in enumerate(result.stacks):
@@ -165,14 +165,14 @@ def _middle(value: CriticalValue, width: fmpq) -> fmpq:
     return (low + high) / 2
 
 
-def _borders(claims: Claims, s: int) -> Iterator[tuple[int, int, WallBranch]]:
+def _borders(claims: Claims, s: int) -> Iterator[tuple[int, int, WallSeries]]:
     """The walls of a stack between different regions, with the region below and that above."""
     stack = claims.result.stacks[s]
     curves = {c.number: c for c in claims.curves}
     for level, wall in enumerate(stack.walls):
         below, above = (claims.result.cells[stack.cells[level + k]].region for k in (0, 1))
         if below != above:
-            yield below, above, WallBranch.of(curves[wall.component], wall.root)
+            yield below, above, WallSeries.of(curves[wall.component], wall.root)
 
 
 def _between(region: Region) -> str:
@@ -180,7 +180,7 @@ def _between(region: Region) -> str:
 
 
 def _halved(
-    panels: Sequence[_WallPanel], regions: set[int], effort: PanelEffort
+    panels: Sequence[_WallPanel], regions: set[int], effort: IntegralEffort
 ) -> list[_WallPanel] | None:
     """The panels of the given regions, the worst ones halved or tried for the first time; None when
     too narrow.

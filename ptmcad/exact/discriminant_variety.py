@@ -29,8 +29,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ptmcad.algebra.bernstein import nowhere_zero
-from ptmcad.algebra.determinants import determinant
 from ptmcad.algebra.groebner import GroebnerBasis, MonomialOrder, groebner_basis
+from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
     Coefficient,
     Ratio,
@@ -38,7 +38,7 @@ from ptmcad.algebra.polynomials import (
     irreducible_factors,
     to_plane,
 )
-from ptmcad.algebra.quotient import (
+from ptmcad.algebra.quotient_algebra import (
     QuotientAlgebra,
     Vector,
     bounded_away_from_zero,

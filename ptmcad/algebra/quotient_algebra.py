@@ -16,8 +16,8 @@ from functools import lru_cache
 from operator import add
 from typing import NamedTuple
 
-from ptmcad.algebra.determinants import characteristic, determinant, least_assignment
 from ptmcad.algebra.groebner import GroebnerBasis, divides, shifted
+from ptmcad.algebra.plane_determinants import characteristic, determinant, least_assignment
 from ptmcad.algebra.polynomials import (
     Coefficient,
     Monomial,

@@ -4,7 +4,7 @@ slice.
 Guarantee: BOUNDARY components are exactly the irreducible factors of the parameters' denominators,
 of lengths and stiffnesses that vary, of what is common to all coefficients of an equation, and, as
 far as they are not critical, of the norms of conditions (these up to the probability of
-`ptmcad.verification.variety`).
+`ptmcad.verification.norms`).
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from ptmcad.text.plane import PlanePolynomial
 from ptmcad.text.syntax import names_in
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Derivation, derivation_of
+from ptmcad.verification.norms import BITS, check_identity, condition_exponents, random_points
 from ptmcad.verification.planecurves import PLANE, factors, polynomial
 from ptmcad.verification.report import Violation
-from ptmcad.verification.variety import BITS, check_identity, condition_exponents, random_points
 
 
 def auxiliary(model: Model) -> tuple[str, ...]:

@@ -31,7 +31,7 @@ from ptmcad.verification.sturm import numbered_root
 
 
 @dataclass(frozen=True)
-class WallBranch:
+class WallSeries:
     """A wall: the curve, the number of its root, and the curve's coefficients in Z[u] for balls."""
 
     curve: PlaneCurve
@@ -39,7 +39,7 @@ class WallBranch:
     value: list[arb_poly]
 
     @classmethod
-    def of(cls, curve: PlaneCurve, root: int) -> WallBranch:
+    def of(cls, curve: PlaneCurve, root: int) -> WallSeries:
         return cls(curve, root, [arb_poly(c) for c in curve.in_v])
 
     def height(self, u: fmpq, low: fmpq, high: fmpq) -> arb | None:
@@ -48,7 +48,7 @@ class WallBranch:
 
 
 @dataclass(frozen=True)
-class PanelEffort:
+class IntegralEffort:
     """What one attempt spends.
 
     Attributes
@@ -88,7 +88,7 @@ class PanelPart(NamedTuple):
 
 
 def integrals_over(
-    branch: WallBranch, left: fmpq, right: fmpq, effort: PanelEffort, run: int = 0
+    branch: WallSeries, left: fmpq, right: fmpq, effort: IntegralEffort, run: int = 0
 ) -> list[PanelPart]:
     """The integral of the branch over a panel, in parts: the best enclosures at hand.
 
@@ -122,7 +122,7 @@ def integrals_over(
 
 
 def _more_precisely(
-    branch: WallBranch, middle: fmpq, half: fmpq, height: arb, effort: PanelEffort
+    branch: WallSeries, middle: fmpq, half: fmpq, height: arb, effort: IntegralEffort
 ) -> tuple[arb, fmpq] | None:
     """`_by_series` at the working precision, or at more, which few panels ask for.
 
@@ -142,7 +142,7 @@ def _more_precisely(
     raise BallsTooWide
 
 
-def _known_by_edges(left: fmpq, right: fmpq, effort: PanelEffort, tried: bool) -> PanelPart:
+def _known_by_edges(left: fmpq, right: fmpq, effort: IntegralEffort, tried: bool) -> PanelPart:
     """A part of which nothing is known but that it lies in the window."""
     low, high = effort.heights
     return PanelPart(left, right, arb(0).union(arb(high - low)) * (right - left), tried)
@@ -155,7 +155,7 @@ none.
 
 
 def _by_series(
-    branch: WallBranch, middle: fmpq, half: fmpq, height: arb, effort: PanelEffort
+    branch: WallSeries, middle: fmpq, half: fmpq, height: arb, effort: IntegralEffort
 ) -> tuple[arb, fmpq] | None:
     """The integral of the branch over a panel's middle part, by its power series, and half that
     part's width.
@@ -178,7 +178,7 @@ def _by_series(
 
 
 def _along(
-    rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: PanelEffort
+    rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: IntegralEffort
 ) -> tuple[arb, fmpq] | None:
     """As `_by_series`, of the polynomial with these coefficients of the powers of v."""
     found = disk(rows, half, height, degree)
@@ -219,7 +219,7 @@ _NEAREST = 2**40
 
 
 def _beside(
-    branch: WallBranch, at: fmpq, ends: tuple[fmpq, fmpq], effort: PanelEffort
+    branch: WallSeries, at: fmpq, ends: tuple[fmpq, fmpq], effort: IntegralEffort
 ) -> list[PanelPart] | None:
     """The parts of a panel beside a critical value at which the branch meets another one; None
     where it is not proved.
@@ -301,7 +301,7 @@ def _meeting_place(over: arb_poly, multiplicity: int, height: arb, away: fmpq) -
     return v if abs(over(v)) * _SPREAD < abs(derivatives[-1](v)) * reach else None
 
 
-def _between(one: fmpq, other: fmpq, effort: PanelEffort, run: int = 0) -> list[PanelPart]:
+def _between(one: fmpq, other: fmpq, effort: IntegralEffort, run: int = 0) -> list[PanelPart]:
     """What is left between two places, if anything is."""
     if one == other:
         return []
@@ -314,7 +314,7 @@ def _from_point(
     near: fmpq,
     far: fmpq,
     height: arb,
-    effort: PanelEffort,
+    effort: IntegralEffort,
 ) -> tuple[arb, fmpq] | None:
     """The integral of the height over distances from `near` on, and up to where; None when no disk
     is proved.

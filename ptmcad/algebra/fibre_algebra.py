@@ -10,11 +10,13 @@ representation, AAECC 9 (1999).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from flint import (
     Ordering,
+    arb,
+    arb_poly,
     fmpq,
     fmpq_mat,
     fmpq_poly,
@@ -28,7 +30,8 @@ from flint import (
 from ptmcad.algebra.groebner import grevlex_key, shifted
 from ptmcad.algebra.membership import Rules
 from ptmcad.algebra.polynomials import Monomial, integral
-from ptmcad.algebra.quotient import border_of, divided, standard_monomials
+from ptmcad.algebra.quotient_algebra import border_of, divided, standard_monomials
+from ptmcad.algebra.real_roots import RealRoot, newton_ball
 from ptmcad.errors import LimitReached
 
 RationalPolynomial = Mapping[Monomial, fmpq]
@@ -308,6 +311,25 @@ def _basis_traces(algebra: FibreAlgebra) -> tuple[fmpz_mat, fmpz]:
         traces.append(sum(products[monomial].entries()[:: size + 1], fmpq(0)))
     row, denominator = fmpq_mat(1, size, traces).numer_denom()
     return row, denominator
+
+
+def unknowns_in_balls(
+    representation: UnivariateRepresentation,
+) -> Callable[[RealRoot], list[arb] | None]:
+    """The unknowns at the real roots of ``minimal``, in balls of the precision at which this is made;
+    None where they are too wide.
+    """
+    minimal = representation.minimal
+    value, derivative = arb_poly(minimal), arb_poly(minimal.derivative())
+    slope = arb_poly(representation.slope)
+    numerators = [arb_poly(p) for p in representation.coordinates]
+
+    def at(root: RealRoot) -> list[arb] | None:
+        ball = newton_ball(value, derivative, root)
+        below = slope(ball)
+        return None if below.contains(0) else [p(ball) / below for p in numerators]
+
+    return at
 
 
 def hermite_matrix(algebra: FibreAlgebra, weight: fmpq_mat) -> fmpq_mat:

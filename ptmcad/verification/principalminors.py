@@ -19,7 +19,7 @@ from typing import Any
 
 from flint import arb
 
-from ptmcad.verification.terms import square
+from ptmcad.verification.coordinates import square
 
 Rows = Sequence[Sequence[Any]]
 
