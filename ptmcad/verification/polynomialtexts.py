@@ -35,13 +35,13 @@ from ptmcad.verification.coordinates import TreeValues, circle_names, multiples
 from ptmcad.verification.derivation import Derivation, SpringVector
 from ptmcad.verification.report import Violation
 
-LARGEST_TEXT = 1_000_000
+MAX_TEXT = 1_000_000
 """Letters beyond which a text is not compared."""
-LARGEST_SIZE = 2**32
+MAX_SIZE = 2**32
 """Of the degree and of the bits of numbers, beyond which a text is not compared."""
-MOST_LENGTHS = 10
+MAX_LENGTHS = 10
 """Different lengths of springs beyond which not all choices of signs are tried."""
-_LARGEST_ANGLE = 10_000
+_MAX_ANGLE = 10_000
 """Bits of the argument of a cosine or a sine, and its multiples of angles."""
 
 
@@ -68,9 +68,9 @@ def _size(tree: Tree) -> int:
         case Negative(operand) | Call("sqrt", operand):
             return _size(operand)
         case Call(_, argument):
-            if _size(argument) > _LARGEST_ANGLE or _times(argument) > _LARGEST_ANGLE:
+            if _size(argument) > _MAX_ANGLE or _times(argument) > _MAX_ANGLE:
                 raise TooLarge("has too large a multiple of an angle")
-            return _LARGEST_ANGLE
+            return _MAX_ANGLE
         case Chain(first, steps):
             return _size(first) + sum(_size(step.operand) for step in steps)
         case Power(base, Number(value)):
@@ -144,7 +144,7 @@ class PolynomialTexts:
             if square not in self.squares:
                 self.squares.append(square)
         self.source = random.Random(f"texts {seed}")
-        bits = 2 * LARGEST_SIZE.bit_length() + 2 * len(self.squares) + 32
+        bits = 2 * MAX_SIZE.bit_length() + 2 * len(self.squares) + 32
         self.prime = self.source.getrandbits(bits) | 1 << bits | 3
         while not fmpz(self.prime).is_prime():
             self.prime += 4  # 3 modulo 4, so that roots are powers, and -1 is no square
@@ -201,13 +201,13 @@ class PolynomialTexts:
         Violation
             When it is no formula, or one with a fault.
         """
-        if len(text) > LARGEST_TEXT:
-            return f"the stored {what} is longer than {LARGEST_TEXT} letters"
+        if len(text) > MAX_TEXT:
+            return f"the stored {what} is longer than {MAX_TEXT} letters"
         try:
             if _UNUSUAL.search(text):
                 raise Violation("cannot be read: there is a sign + or ** that no result has")
-            tree = parse(text, (*FUNCTIONS, "sqrt"), LARGEST_TEXT)
-            if _size(tree) > LARGEST_SIZE:
+            tree = parse(text, (*FUNCTIONS, "sqrt"), MAX_TEXT)
+            if _size(tree) > MAX_SIZE:
                 raise TooLarge("has too high a degree or too long numbers")
             found = fault(tree)
         except TooLarge as reason:
@@ -276,8 +276,8 @@ class PolynomialTexts:
         ------
         TooLarge
         """
-        if len(self.squares) > MOST_LENGTHS:
-            raise TooLarge(f"has more than {MOST_LENGTHS} different lengths of springs")
+        if len(self.squares) > MAX_LENGTHS:
+            raise TooLarge(f"has more than {MAX_LENGTHS} different lengths of springs")
         while True:
             values = {name: self._random() for name in self.ring.names[self.true.coordinates :]}
             values |= self._unknowns(at_zero)
