@@ -331,7 +331,7 @@ def test_what_is_undecided_along_a_line_is_not_looked_at_closely_again(
         "axes": {"W": [0, 20], "c": [10, 80]},
         "count": "stable",
     }
-    slice, calls, search = slice_from_mapping(record), list[int](), line.isolate
+    slice, calls, search = slice_from_mapping(record), list[int](), enclosedline.isolate
 
     def counted(*arguments: Any) -> Any:
         calls.append(0)
@@ -339,7 +339,7 @@ def test_what_is_undecided_along_a_line_is_not_looked_at_closely_again(
 
     monkeypatch.setattr(enclosedline, "isolate", counted)
     found = certified_intervals(slice, "W", {"c": "40"}, 10)
-    few, changes = len(calls), line._changes
+    few, changes = len(calls), enclosedline._changes
     assert not found.changes[0].proved and found.changes[0].at.high < Fraction(1, 1000)
     assert [interval.index for interval in found.intervals] == [(1, 1, 0), (1, 0, 0)]
     monkeypatch.setattr(enclosedline, "_changes", lambda *arguments: changes(*arguments[:-1], ()))
