@@ -6,7 +6,7 @@ for.
 
 On a panel that holds no critical value a wall is the graph of a function with two derivatives. If
 its second derivative is at most K in modulus there, a panel of width w has the graph within K
-w^2 / 8 of the chord between its ends; `algebra.slopes.slope_over` encloses the derivative. Where
+w^2 / 8 of the chord between its ends; `algebra.chords.slope_over` encloses the derivative. Where
 that proves nothing, near singular points and where walls run close together, a wall that no root of
 p(., v) lets pass two heights v stays between them. Panels on which the distance is not proved, or
 too large, are halved.
@@ -20,9 +20,9 @@ from fractions import Fraction
 from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.branches import local_coefficients
+from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.algebra.slopes import slope_over
 from ptmcad.exact.cad.curves import FibredCurve
 from ptmcad.text.balls import exact
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
