@@ -1,22 +1,17 @@
-"""The slopes of a plane curve's branches: where they have a given direction, and enclosures over a
-short interval.
+"""Where the branches of a plane curve have a given direction: the proof that one is monotone, or
+steeper than a line.
 
-Guarantee: no point of the curve off the real roots of `tangent_resultant` has the direction;
-enclosures by `slope_over` contain the slopes for every abscissa, and None means not proved.
+Guarantee: exact. No point of the curve off the real roots of `tangent_resultant` has the direction.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from flint import fmpz_mpoly, fmpz_poly
 
-from flint import arb, arb_poly, ctx, fmpq, fmpz_mpoly, fmpz_poly
-
-from ptmcad.algebra.curve_branches import local_coefficients
 from ptmcad.algebra.polynomials import Coefficient, coefficients_in
-from ptmcad.algebra.real_roots import RealRoot, refine, squarefree_part
+from ptmcad.algebra.real_roots import squarefree_part
 from ptmcad.algebra.resultants import resultant
 
-_BITS = 256
 Direction = tuple[int, int]
 """(dx, dy), not both zero: (1, 0) is horizontal, where the curve folds over the y-axis."""
 
@@ -41,64 +36,3 @@ def tangent_resultant(p: Coefficient, direction: Direction) -> fmpz_poly:
     if not eliminated:
         raise ArithmeticError("the curve contains a line of the direction, or a multiple component")
     return squarefree_part(eliminated)
-
-
-def slope_over(
-    in_v: Sequence[fmpz_poly], at_middle: RealRoot, middle: fmpq, radius: fmpq
-) -> tuple[arb, arb] | None:
-    """Enclosures of a branch's first and second derivative for every u in [middle - radius,
-    middle + radius].
-
-    Parameters
-    ----------
-    at_middle : the branch's value at the middle, isolated among the roots of p(middle, v).
-
-    Notes
-    -----
-    With p(m + r h, v0 + w) = sum b_i(h) w^i let |p_v| >= D > 0 and |p(., v0)| <= e where |h| <= 1,
-    |w| <= R, with e <= D R. Then for each h there is exactly one root |w| <= R, it lies within e/D,
-    and at h = 0 it is the branch.
-    """
-    with ctx.workprec(_BITS):
-        root = refine(at_middle, radius / 2**40)
-        local = local_coefficients(in_v, middle, radius, root.low)
-        norms = [sum((abs(c) for c in b.coeffs()), arb(0)) for b in local]
-        spread = norms[1] - abs(local[1][0])
-        reach = arb(root.high - root.low)
-        for _ in range(60):
-            bend, power = arb(0), reach
-            for i in range(2, len(local)):
-                bend, power = bend + i * norms[i] * power, power * reach
-            least = (abs(local[1][0]) - spread - bend).lower()
-            if not least > 0:
-                return None
-            near = (norms[0] / least).upper()
-            if near <= reach and arb(root.high - root.low) <= reach:
-                break
-            reach = (2 * near + arb(root.high - root.low)).upper()
-        else:
-            return None
-        w = near * arb(0, 1)
-        unit = arb(0, 1)
-        scale = 1 / arb(radius)
-        by_h = [b.derivative() for b in local]
-        by_hh = [b.derivative() for b in by_h]
-
-        def value(rows: Sequence[arb_poly]) -> arb:
-            total = arb(0)
-            for b in reversed(rows):
-                total = total * w + b(unit)
-            return total
-
-        def by_w(rows: Sequence[arb_poly]) -> list[arb_poly]:
-            return [b * i for i, b in enumerate(rows)][1:]
-
-        p_v, p_u = value(by_w(local)), value(by_h) * scale
-        first = -p_u / p_v
-        p_vv, p_uv, p_uu = (
-            value(by_w(by_w(local))),
-            value(by_w(by_h)) * scale,
-            value(by_hh) * scale * scale,
-        )
-        second = -(p_vv * first * first + 2 * p_uv * first + p_uu) / p_v
-        return (first, second) if first.is_finite() and second.is_finite() else None

@@ -109,7 +109,7 @@ def _answers(
         from ptmcad.ask.lines.along import intervals_along
 
         found = intervals_along(slice, along, at, digits)
-        yield found, linetable.table(found, digits), "", partial(render.draw_range, slice, found)
+        yield found, linetable.table(found, digits), "", partial(_drawn, "draw_range", slice, found)
     if request.over:
         from ptmcad.ask.lines.rangerows import enclosed_widths, operation_widths
 
@@ -119,7 +119,7 @@ def _answers(
             else:
                 found = operation_widths(slice, along, request.rows)
         text = linetable.width_table(found, digits)
-        yield found, text, "-over", partial(render.draw_widths, slice, found)
+        yield found, text, "-over", partial(_drawn, "draw_widths", slice, found)
 
     @cache
     def line() -> SolutionsOnLine:
@@ -141,7 +141,12 @@ def _answers(
         with ProgressBar() as progress:
             found = branch_diagram(slice, along, at, request.quantities, progress, line())
         text = pathtable.branch_table(found)
-        yield found, text, "-branches", partial(render.draw_branches, slice, found)
+        yield found, text, "-branches", partial(_drawn, "draw_branches", slice, found)
+
+
+def _drawn(function: str, slice: Slice, found: Any) -> Any:
+    """A picture by a function of `render`, which loads matplotlib when it is named."""
+    return getattr(render, function)(slice, found)
 
 
 def is_enclosed(slice: Slice, request: RangeRequest) -> bool:

@@ -6,7 +6,7 @@ for. Over the whole open interval of its stack it stays within `WallPolyline.dis
 
 On a panel that holds no critical value a wall is the graph of a function with two derivatives. If
 its second derivative is at most K in modulus there, a panel of width w has the graph within K
-w^2 / 8 of the chord between its ends; `algebra.slopes.slope_over` encloses the derivative. Where
+w^2 / 8 of the chord between its ends; `algebra.chords.slope_over` encloses the derivative. Where
 that proves nothing, near singular points and where walls run close together, a wall that no root of
 p(., v) lets pass two heights v stays between them. Panels on which the distance is not proved, or
 too large, are halved.
@@ -26,10 +26,10 @@ from fractions import Fraction
 from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.algebraic_numbers import root_of
+from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.curve_branches import local_coefficients
 from ptmcad.algebra.real_roots import Interval, RealRoot, halve, isolate, order, refine, sign_at
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.algebra.slopes import slope_over
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.exact.cad.projection import FibredCurve, by_component, curves_of
 from ptmcad.text.balls import exact

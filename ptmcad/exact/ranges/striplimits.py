@@ -1,16 +1,19 @@
 """The limits of an operation range at an end of a strip, and a neighbourhood in which it is
 narrower than there.
 
-Guarantee: `limit` is the branch's limit, and over `narrowing_length` the range's two ends draw
-nearer to one another, seen from a line of some slope, all the way from the limits. None means that
-this was not proved.
+Guarantee: `limit` is the branch's limit, and over `chord_length` the range stays between two
+parallel chords from its limits; over `narrowing_length` its two ends draw nearer to one another,
+seen from a line of some slope, all the way from the limits. None means that this was not proved.
 """
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from flint import fmpq
 
-from ptmcad.algebra.algebraic_numbers import fibre_roots, refined
+from ptmcad.algebra.algebraic_numbers import fibre_roots, refined, root_of
+from ptmcad.algebra.chords import side_of_chord
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, isolate, refine, sign
 from ptmcad.algebra.resultants import resultant
@@ -24,7 +27,13 @@ from ptmcad.exact.ranges.rangestrips import (
     bound_over,
     end_interval,
 )
-from ptmcad.text.flint_numbers import simplest_between, to_fraction
+from ptmcad.text.enclosure import AlgebraicNumber
+from ptmcad.text.flint_numbers import interval_of, simplest_between, to_fraction
+
+
+def ends_of(end: End) -> Interval:
+    """An interval that holds a limit: of length zero when it is rational."""
+    return interval_of(AlgebraicNumber.of(end))
 
 
 def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End | None:
@@ -74,10 +83,9 @@ def narrowing_length(strip: RangeStrip, end: BaseEnd, width: fmpq) -> fmpq | Non
             for b in strip.branches
         )
         if low != high:
-            third = (high - low) / 3
             steps = run - run / 2**bits
             slopes.append(
-                simplest_between(*sorted(((low + third) / steps, (high - third) / steps)))
+                simplest_between(*sorted(((2 * low - high) / steps, (2 * high - low) / steps)))
             )
     for slope in slopes:
         (short, lower), (long, upper) = (
@@ -125,3 +133,53 @@ def _growth(branch: RangeEnd, strip: RangeStrip, over: Interval, slope: fmpq) ->
     near, far = (at_abscissa(branch, u, strip.fibre, abs(over[1] - over[0]) / 2**200) for u in over)
     difference = -slope * (over[1] - over[0])
     return difference + far.low - near.high, difference + far.high - near.low
+
+
+def chord_length(
+    strip: RangeStrip, end: fmpq, direction: int, limits: tuple[End, End]
+) -> fmpq | None:
+    """A length within which the range keeps between parallel chords from its limits at an end; None
+    if not proved.
+    """
+    length = abs(strip.sample - end)
+    branches, starts = (strip.low, strip.high), [ends_of(e) for e in limits]
+    for _ in range(40):
+        run = direction * length
+        tips = [at_abscissa(b, end + run, strip.fibre, length / 2**40) for b in branches]
+        rises = [
+            ((tip.low + tip.high) / 2 - (start[0] + start[1]) / 2) / run
+            for tip, start in zip(tips, starts, strict=True)
+        ]
+        # the lower end rises more than the upper one where the range gets narrower
+        if (rises[0] - rises[1]) * direction > 0:
+            third = (rises[0] - rises[1]) / 3
+            slope = simplest_between(*sorted((rises[1] + third, rises[0] - third)))
+            if all(
+                _keeps_to(side, branch, strip.fibre, (end, limit), slope, run)
+                for side, branch, limit in zip((1, -1), branches, limits, strict=True)
+            ):
+                return length
+        length = length / 4
+    return None
+
+
+def _keeps_to(
+    side: int, branch: RangeEnd, fibre: Interval, start: tuple[fmpq, End], slope: fmpq, run: fmpq
+) -> bool:
+    """Whether a branch is proved to stay above (side 1) or below (side -1) a chord.
+
+    It starts at a branch's limit at the end of a strip, and goes as far as ``run``, which is
+    negative towards the left.
+    """
+    end, limit = start
+    low, high = (value + slope * run for value in ends_of(limit))
+    tip = at_abscissa(branch, end + run, fibre, abs(run) / 2**60)
+    if not (tip.low > high if side > 0 else tip.high < low):
+        return False
+    if branch.curve is None:
+        return (
+            True  # the edge is level and, as the tip shows, the chord leaves it to the right side
+        )
+    if isinstance(limit, Fraction):
+        return False
+    return side_of_chord(branch.curve.in_v, end, root_of(limit), slope, run)

@@ -19,8 +19,10 @@ Each strip (see `strips`) is cut into closed pieces, and each piece is settled i
   at an end of it.
 * Concave: the second derivative is negative, the first one changes its sign: one maximum, enclosed
   by bisection.
-* Narrowing: from an end of the strip on, the range's ends draw nearer to one another, seen from a
-  line of some slope. This also settles cusps, where derivatives are infinite.
+* Chord: at a rational end y0 of the strip the limits a, b of the range are algebraic numbers. If
+  for some s the lower end stays above a + s (y - y0), and the upper one below b + s (y - y0), the
+  width stays under b - a. This also settles cusps, where derivatives are infinite.
+* Narrowing: from an end of the strip on, the range's ends draw nearer to one another.
 
 A piece that becomes too small remains, with the bounds that it has: then the place is only
 enclosed.
@@ -37,8 +39,8 @@ from typing import NamedTuple
 from flint import arb, fmpq
 
 from ptmcad.algebra.algebraic_numbers import algebraic_number, compare
+from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.real_roots import Interval
-from ptmcad.algebra.slopes import slope_over
 from ptmcad.answer.intervals import End, Span
 from ptmcad.answer.widths import Maximum, Place
 from ptmcad.exact.cad.stacks import BaseEnd
@@ -52,7 +54,7 @@ from ptmcad.exact.ranges.rangestrips import (
     constant_width,
     end_interval,
 )
-from ptmcad.exact.ranges.striplimits import limit, narrowing_length
+from ptmcad.exact.ranges.striplimits import chord_length, limit, narrowing_length
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import interval_of, to_fraction
@@ -220,7 +222,11 @@ class _WidthSearch:
             self.known = max(self.known, width[0])
             if width[1] < self.known:
                 continue
-            length = narrowing_length(strip, end, _END_WIDTH)
+            length = None
+            if at[0] == at[1]:
+                length = chord_length(strip, at[0], 1 if end is strip.left else -1, limits)
+            if length is None:
+                length = narrowing_length(strip, end, _END_WIDTH)
             if length is None:
                 continue
             self.add_at(end, width, limits, self.attains(end, width, limits))
