@@ -24,7 +24,7 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from itertools import product
+from itertools import count, product
 
 from flint import fmpq, fmpq_mpoly, fmpz, fmpz_mod, fmpz_mod_ctx
 
@@ -45,6 +45,8 @@ _MAX_ANGLE = 10_000
 """Bits of the argument of a cosine or a sine, and its multiples of angles."""
 
 
+_DRAWS = 32
+"""Points that are drawn modulo one prime, for each choice of signs."""
 _UNUSUAL = re.compile(r"(?:^|[-+*/^(]) *\+|\*\*")
 """Signs that records may have."""
 
@@ -145,12 +147,16 @@ class PolynomialTexts:
             if square not in self.squares:
                 self.squares.append(square)
         self.source = random.Random(f"texts {seed}")
+        self._point: ResiduePoint | None = None
+        self._choose_prime()
+
+    def _choose_prime(self) -> None:
         bits = 2 * MAX_SIZE.bit_length() + 2 * len(self.squares) + 32
         self.prime = self.source.getrandbits(bits) | 1 << bits | 3
         while not fmpz(self.prime).is_prime():
             self.prime += 4  # 3 modulo 4, so that roots are powers, and -1 is no square
         self.residues = fmpz_mod_ctx(self.prime**2)
-        self._point: ResiduePoint | None = None
+        self._point = None
 
     def compare(self, what: str, text: str, true: fmpq_mpoly) -> str:
         """Why a text was not compared with a polynomial; empty when they are equal.
@@ -279,7 +285,9 @@ class PolynomialTexts:
         """
         if len(self.squares) > MAX_LENGTHS:
             raise TooLarge(f"has more than {MAX_LENGTHS} different lengths of springs")
-        while True:
+        for tried in count(1):
+            if tried % (_DRAWS << len(self.squares)) == 0:
+                self._choose_prime()  # modulo which 2 x^2 may have a root
             values = {name: self._random() for name in self.ring.names[self.true.coordinates :]}
             values |= self._unknowns(at_zero)
             point = ResiduePoint(self.residues, values, self.names)
@@ -292,6 +300,7 @@ class PolynomialTexts:
                 roots.append(root)
             else:
                 return self._rooted(point, roots)
+        raise AssertionError("modulo some primes all squared lengths have roots")
 
     def _rooted(self, point: ResiduePoint, near: Sequence[fmpz_mod]) -> ResiduePoint:
         """With the roots that are those near by modulo the prime, by one step of Newton's."""
