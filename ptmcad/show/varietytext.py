@@ -226,7 +226,7 @@ FORMATS: Mapping[str, Callable[[SliceVariety], str]] = {
 }
 
 
-def variety_text(variety: SliceVariety, format: str) -> str:
+def variety_text(variety: SliceVariety, format: str = "text") -> str:
     """The variety in one of `FORMATS`, with a line feed at the end.
 
     Raises

@@ -181,7 +181,7 @@ def try_points(data: bytes) -> str:
         file.flush()
         result = first_result()
         for row in islice(rows_of(Path(file.name), result), 50):
-            result.locate(**row.values)
+            result.locate(**row[1])
     return "located"
 
 

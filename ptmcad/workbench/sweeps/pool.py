@@ -179,7 +179,7 @@ CONNECT_SECONDS = 15
 _LOOK_SECONDS = 2.0
 """Between two looks at the scheduler: whether it is there, and how many threads its workers have.
 """
-_AHEAD = 2
+_TASKS_EACH = 2
 """Tasks for each thread: one that is computed and one that waits at the worker."""
 _TASK_SECONDS, _MAX_TOGETHER = 4.0, 64
 """What members that are put together take, and how many they are at most."""
@@ -224,7 +224,7 @@ class Cluster:
                 self._threads = sum(self.client.nthreads().values())
             except (OSError, TimeoutError) as error:
                 raise self._gone() from error
-        return len(self._under_way) < _AHEAD * max(self._threads, 1)
+        return len(self._under_way) < _TASKS_EACH * max(self._threads, 1)
 
     @property
     def busy(self) -> bool:
