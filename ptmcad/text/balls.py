@@ -6,10 +6,9 @@ for.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from fractions import Fraction
 
-from flint import arb, ctx
+from flint import arb
 
 from ptmcad.text.enclosure import Enclosure, settled
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -107,20 +106,6 @@ def ball_over(low: Fraction, high: Fraction) -> arb:
 def enclosure_of(ball: arb) -> Enclosure:
     """All of the ball, with exact ends."""
     return Enclosure(exact(ball.lower()), exact(ball.upper()))
-
-
-def rational_bounds(
-    function: Callable[[arb], arb], value: Fraction, bits: int = 128
-) -> tuple[Fraction, Fraction]:
-    """Bounds of a function's value at a rational number.
-
-    Parameters
-    ----------
-    bits : of the precision with which it is computed, beyond that of any box that is stored.
-    """
-    with ctx.workprec(bits):
-        found = enclosure_of(function(ball_of(value)))
-    return found.low, found.high
 
 
 def exact(ball: arb) -> Fraction:
