@@ -127,7 +127,7 @@ def branch_integral(
 
     Raises
     ------
-    PrecisionTooLow
+    TooFewBits
         When cancellation leaves too few bits.
     """
     root = refine(at_middle, min((fibre[1] - fibre[0]) / 2 ** (ctx.prec // 3), wanted))
@@ -174,7 +174,7 @@ def tube_around(
 
     Raises
     ------
-    PrecisionTooLow
+    TooFewBits
         When cancellation leaves too few bits.
     """
     if local[1][0].rel_accuracy_bits() < DERIVATIVE_BITS:
@@ -372,7 +372,7 @@ def _inverse(p: arb_poly, order: int) -> arb_poly:
 
     Raises
     ------
-    PrecisionTooLow
+    TooFewBits
         When the constant coefficient is not known to differ from zero.
     """
     length = order + 1

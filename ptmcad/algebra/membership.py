@@ -2,7 +2,7 @@
 equations, with proof.
 
 Guarantee: True is a proof, which needs that the equations vanish in the quotient that the basis
-describes (`fibre` checks it). It does not rest on how the basis was found. False means that the
+describes (`fibre_algebra` checks it). It does not rest on how the basis was found. False means that the
 search was given up.
 
 The proof is in docs/method.md, "Bases by msolve". In short: S is a space of polynomials that are

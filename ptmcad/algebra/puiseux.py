@@ -105,7 +105,7 @@ def puiseux_integral(
 
     Raises
     ------
-    PrecisionTooLow
+    TooFewBits
         When too few bits are left to say whether there is one.
     """
     chart = _straightened(in_v, beside, branch)

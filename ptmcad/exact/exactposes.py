@@ -1,5 +1,5 @@
-"""All equilibria at a rational point: from the quotient algebra to poses, in an order that does not
-depend on rounding.
+"""All equilibria at a rational point: from the quotient algebra to poses, in the order of their
+energies.
 
 Guarantee: all real equilibria are there, each once, with its multiplicity; when none is degenerate,
 minima - saddles + maxima is zero. Energies that agree in all digits asked for count as equal, in the

@@ -317,7 +317,7 @@ def _zero_between(terms: tuple[Term, ...], low: Corner, high: Corner) -> Witness
     """A zero on the segment between a point where a polynomial is at most zero and one where it is
     at least that.
     """
-    middle = low
+    middle, ends = low, tuple(zip(low, high, strict=True))
     for _ in range(_HALVINGS):
         middle = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2)
         value = polynomial_value(terms, *middle)
@@ -325,7 +325,8 @@ def _zero_between(terms: tuple[Term, ...], low: Corner, high: Corner) -> Witness
             return Witness(middle, value)
         low, high = (middle, high) if value < 0 else (low, middle)
     near = (middle[0].limit_denominator(_SIMPLE), middle[1].limit_denominator(_SIMPLE))
-    if polynomial_value(terms, *near) == 0:
+    is_between = all(min(pair) <= x <= max(pair) for x, pair in zip(near, ends, strict=True))
+    if is_between and polynomial_value(terms, *near) == 0:
         return Witness(near, Fraction(0))
     return Witness(middle, Fraction(0), max(abs(a - b) for a, b in zip(low, high, strict=True)))
 

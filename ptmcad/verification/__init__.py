@@ -15,12 +15,13 @@ An order of reading, for what an exact map claims:
    stored counts and boxes. `norms`: the stored curves are all of those where counts change.
 5. `planecurves`, `sturm`, `projections`, `adjacencies`, `merging`: the decomposition of the plane.
    `windowsigns`, `planclaims`: what was left out.
-6. `disks`, `wallintegrals`, `regionareas`: enclosures of the areas.
+6. `disks`, `wallintegrals`, `areaclaims`: enclosures of the areas.
 7. `parameterlines`, `rangeclaims`, `designclaims`, `arrangements`: lines, designs and families.
 
-Certified maps: `certified.checks` lists their checks; `certified.waves`, `equations` and `field`
-derive and enclose, `solving` finds all solutions at a point, `sampling` looks at random boxes, and
-the package `exclusion` at the whole free area.
+Certified maps: `certified.certificate` lists their checks. `normalform.waves` and `modelequations`
+derive, `certified.ballequations` encloses, `exclusion.places` and `certified.krawczyk` find all
+solutions at a point, `certified.sampling` looks at random boxes, and `certified.freearea` at the
+whole free area.
 """
 
 from __future__ import annotations

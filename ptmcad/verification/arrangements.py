@@ -130,9 +130,9 @@ def _checked(found: Changes, members: _Members, source: random.Random) -> str:
     for part, ends in enumerate(_parts(found)):
         for _ in range(RANDOM):
             low, high = (ends[0] + (ends[1] - ends[0]) * n for n in _place(source))
-            drawn = low if low == high else simplest_fraction(low, high)
+            member = low if low == high else simplest_fraction(low, high)
             try:
-                members.expect(drawn, part, "between changes")
+                members.expect(member, part, "between changes")
             except HypothesisError:  # none of the kinds of members of which anything is said
                 skipped += 1
     number = RANDOM * len(found.between) - skipped

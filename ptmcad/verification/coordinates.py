@@ -69,7 +69,7 @@ class TreeValues(Generic[R]):
                     total = _OPERATORS[step.operator](total, self.value(step.operand))
                 return total
             case Power(base, exponent):
-                power: R = self.value(base) ** int(_number(multiples(exponent)))
+                power: R = self.value(base) ** _whole(exponent)
                 return power
             case Call("sqrt", argument):
                 return self.root(self.value(argument), tree)
@@ -193,7 +193,7 @@ def multiples(tree: Tree) -> dict[str, Fraction]:
                 total = _joined(total, step.operator, multiples(step.operand))
             return total
         case Power(base, exponent):
-            return {"": _number(multiples(base)) ** int(_number(multiples(exponent)))}
+            return {"": _number(multiples(base)) ** _whole(exponent)}
         case Call():
             raise NotImplementedError("the checker knows no angle that is a cosine or sine")
 
@@ -216,6 +216,14 @@ def _number(multiples: dict[str, Fraction]) -> Fraction:
     if multiples.keys() != {""}:
         raise NotImplementedError("the checker knows no products of angles")
     return multiples[""]
+
+
+def _whole(exponent: Tree) -> int:
+    """A whole exponent: a root would be another function, with values that are not compared."""
+    number = _number(multiples(exponent))
+    if number.denominator != 1:
+        raise NotImplementedError(f"the checker knows whole exponents only, not {number}")
+    return int(number)
 
 
 _ZERO, _ONE = arb(0), arb(1)

@@ -9,7 +9,7 @@ energy with one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -188,24 +188,6 @@ class Derivation:
         """The springs whose free lengths can be taken off the equations; with others none has one."""
         is_taken_off = self.from_energy or leave_one_way(self.unknowns, self.closing)
         return self.springs if is_taken_off else ()
-
-    def stretched(
-        self, ring: CoordinateRing, length: Callable[[fmpq_mpoly], fmpq_mpoly]
-    ) -> fmpq_mpoly:
-        """The energy in a larger ring, of springs with their free lengths.
-
-        Parameters
-        ----------
-        length : by its square.
-        """
-        assert self.energy is not None
-        energy = ring.taken(self.energy, self.ring)
-        for spring in self.springs:
-            pull, collapsed, square = (
-                ring.taken(p, self.ring) for p in (spring.pull, spring.collapsed, spring.squared)
-            )
-            energy += collapsed - pull * length(square)
-        return energy
 
     @property
     def decisive(self) -> range:

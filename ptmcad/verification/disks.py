@@ -88,7 +88,7 @@ def disk(rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int) -> Disk |
 
     Raises
     ------
-    PrecisionTooLow
+    BallsTooWide
     """
     center, length = root.mid(), degree + 1
     rows = recentered(rows, center)
@@ -211,7 +211,7 @@ def _series(d: Sequence[arb_poly], start: arb_series, order: int) -> list[arb]:
 
     Raises
     ------
-    PrecisionTooLow
+    BallsTooWide
     """
     lengths = [order]
     while lengths[-1] > 1:

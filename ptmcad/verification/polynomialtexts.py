@@ -1,4 +1,4 @@
-"""PolynomialTexts of polynomials in a result, compared with what follows from the description: at a random
+"""Texts of polynomials in a result, compared with what follows from the description: at a random
 point modulo a random prime.
 
 At a point each parameter and each real unknown is a random residue, and the cosine and the sine of
@@ -24,7 +24,7 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from itertools import count, product
+from itertools import product
 
 from flint import fmpq, fmpq_mpoly, fmpz, fmpz_mod, fmpz_mod_ctx
 
@@ -45,6 +45,8 @@ _MAX_ANGLE = 10_000
 """Bits of the argument of a cosine or a sine, and its multiples of angles."""
 
 
+_PRIMES = 64
+"""Primes that are tried: modulo one in two, and never modulo others, does 2 x^2 have roots."""
 _DRAWS = 32
 """Points that are drawn modulo one prime, for each choice of signs."""
 _UNUSUAL = re.compile(r"(?:^|[-+*/^(]) *\+|\*\*")
@@ -74,10 +76,13 @@ def _size(tree: Tree) -> int:
                 raise TooLarge("has too large a multiple of an angle")
             return _MAX_ANGLE
         case Chain(first, steps):
+            for step in steps:
+                if step.operator == "/" and multiples(step.operand).keys() != {""}:
+                    raise NotImplementedError("it divides by what is no number")
             return _size(first) + sum(_size(step.operand) for step in steps)
-        case Power(base, Number(value)):
+        case Power(base, Number(value)) if value.denominator == 1 and value >= 0:
             return _size(base) * int(value)
-    raise NotImplementedError("it has an exponent that is no number")
+    raise NotImplementedError("it has an exponent that is no whole number")
 
 
 def _times(argument: Tree) -> Fraction:
@@ -104,10 +109,15 @@ class ResiduePoint(TreeValues[fmpz_mod]):
         return self.residues(value.numerator) / self.residues(value.denominator)
 
     def named(self, name: str) -> fmpz_mod:
+        if name not in self.names:
+            raise Violation(f"names {name!r}, which is nothing there")
         return self.values[self.names[name]]
 
     def circle_of(self, angle: str) -> tuple[fmpz_mod, fmpz_mod]:
-        cosine, sine = (self.values[name] for name in circle_names(angle))
+        names = circle_names(angle)
+        if not self.values.keys() >= {*names}:
+            raise Violation(f"names {names[0]!r}, which is nothing there")
+        cosine, sine = (self.values[name] for name in names)
         return cosine, sine
 
     def root(self, square: fmpz_mod, tree: Tree) -> fmpz_mod:
@@ -221,8 +231,6 @@ class PolynomialTexts:
             return f"the stored {what} {reason}"
         except ExpressionError as error:
             raise Violation(f"the stored {what} cannot be read: {error}") from None
-        except KeyError as name:
-            raise Violation(f"the stored {what} names {name}, which is nothing there") from None
         except (NotImplementedError, ZeroDivisionError) as reason:
             raise Violation(f"the stored {what} has a part that is no formula: {reason}") from None
         except Violation as violation:
@@ -285,7 +293,7 @@ class PolynomialTexts:
         """
         if len(self.squares) > MAX_LENGTHS:
             raise TooLarge(f"has more than {MAX_LENGTHS} different lengths of springs")
-        for tried in count(1):
+        for tried in range(1, _PRIMES * (_DRAWS << len(self.squares))):
             if tried % (_DRAWS << len(self.squares)) == 0:
                 self._choose_prime()  # modulo which 2 x^2 may have a root
             values = {name: self._random() for name in self.ring.names[self.true.coordinates :]}
@@ -300,7 +308,7 @@ class PolynomialTexts:
                 roots.append(root)
             else:
                 return self._rooted(point, roots)
-        raise AssertionError("modulo some primes all squared lengths have roots")
+        raise TooLarge("has lengths without roots modulo all primes that were tried")
 
     def _rooted(self, point: ResiduePoint, near: Sequence[fmpz_mod]) -> ResiduePoint:
         """With the roots that are those near by modulo the prime, by one step of Newton's."""

@@ -19,7 +19,7 @@ is decided in integers. Either way the sequence is known to its end, and its cha
 the different real roots (Sturm; for the multiple root all terms are divided by their last one).
 
 Otherwise, where several roots are multiple, roots are counted of the polynomials in v among whose
-roots all points are (`structure.points_over`), but for those that balls show to be on no curve;
+roots all points are (`points_over`), but for those that balls show to be on no curve;
 this takes long for values of high degree.
 """
 

@@ -22,7 +22,7 @@ Checks of the poses at a point: none is missing or stored twice, in each box is 
 index and stability.
 
 They are those of a map's cell (`ptmcad.verification.solutions`, and with free lengths
-`certified.points`): a window of two axes on which nothing depends has the point as its sample.
+`certified.cellsamples`): a window of two axes on which nothing depends has the point as its sample.
 
 Guarantee: that of these checks. Where a pose is degenerate, the number of different ones alone is
 checked.

@@ -99,7 +99,7 @@ def integrals_over(
 
     Raises
     ------
-    PrecisionTooLow
+    BallsTooWide
     """
     if run and abs(run) <= 2:
         meeting = _beside(
@@ -128,7 +128,7 @@ def _more_precisely(
 
     Raises
     ------
-    PrecisionTooLow
+    BallsTooWide
     """
     bits = ctx.prec
     for times in (1, 2, 4):
@@ -164,7 +164,7 @@ def _by_series(
 
     Raises
     ------
-    PrecisionTooLow
+    BallsTooWide
     """
     best: tuple[arb, fmpq] | None = None
     shifted = [c(arb_poly([middle, 1])) for c in branch.value]
@@ -334,7 +334,8 @@ def _from_point(
     there = (height - slope * near) / sigma**j
     root = _simple_root(arb_poly([row[0] for row in divided]), there.mid())
     with ctx.workprec(_FEW_BITS):
-        whole = arb(far).root(k).mid().fmpq()
+        # at most the root, so that no disk reaches beyond `far`
+        whole = arb(far).root(k).lower().fmpq()
     if root is None:
         return None
     try:

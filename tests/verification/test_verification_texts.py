@@ -1,4 +1,4 @@
-"""PolynomialTexts in a result, checked: the parameters as they were written, and the potential of a certified
+"""Texts in a result, checked: the parameters as they were written, and the potential of a certified
 map.
 """
 
@@ -268,8 +268,13 @@ FALSE = [
     ("sin\\(th1\\)", "sin(rho)", "names 'cos\\(rho\\)'"),
     ("cos\\(th1\\)", "th1", "names 'th1'"),
     ("^", "exit() + ", "cannot be read: "),
-    ("$", " + 1/rho", "differs from the mechanism"),
-    ("$", " + 1/(rho - rho)", "a part that is no formula"),
+    ("$", " + 1/rho", "it divides by what is no number"),
+    ("$", "*L1/L1", "it divides by what is no number"),
+    ("$", "*L1^0.5", "an exponent that is no whole number"),
+    ("$", "*2^0.3", "an exponent that is no whole number"),
+    ("$", "*L1^(0-1)", "an exponent that is no"),
+    ("$", " + 0*cos(2^0.5*th1)", "no whole number"),
+    ("$", " + 1/(rho - rho)", "it divides by what is no number"),
     ("$", " + 0*foo", "names 'foo'"),
     ("$", " + 0*9^9^9^9", "a part that is no formula"),
     ("$", " + 0.5", "differs from the mechanism"),

@@ -260,7 +260,7 @@ def _smooth(border: Border, over: Interval, effort: PanelEffort, allowed: fmpq) 
 
     Raises
     ------
-    PrecisionTooLow
+    TooFewBits
         When a higher precision may help and arcs do not.
     """
     in_v = border.curve.in_v

@@ -51,7 +51,6 @@ from ptmcad.text.syntax import did_you_mean
 
 __all__ = [
     "MAX_DEGREE",
-    "Design",
     "Family",
     "Kind",
     "Parameter",

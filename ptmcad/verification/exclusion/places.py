@@ -54,7 +54,7 @@ class SolutionPlaces:
 
     def __call__(self, u: Range, v: Range) -> list[Isolation]:
         """Over a rectangle of the window, for each choice of sides of springs on one line each, in
-        the order of `kinks.sides`.
+        the order of `normalform.waves.sides`.
 
         Raises
         ------

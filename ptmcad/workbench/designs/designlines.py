@@ -1,7 +1,7 @@
 """The discriminant variety over all designs, as the covers need it, and the longest interval with the
 wanted count on the line of one design.
 
-Guarantee: that of `surfaces` and `variety`: off the polynomials' zeros all counts are constant, but
+Guarantee: that of `familyprojection` and `discriminant_variety`: off the polynomials' zeros all counts are constant, but
 for sets that do not cut the space. An interval is exact, for designs off a set without interior:
 the ends are roots of the polynomials at the design, and the count is that of samples between all of
 them.

@@ -17,7 +17,7 @@ from typing import Any
 Point = tuple[Fraction, ...]
 Evaluate = Callable[[Point], Fraction | None]
 GRID = 2**12
-"""Steps between the bounds on which the global search looks; `climbed` halves them further."""
+"""Steps between the bounds on which the global search looks; `_climb` halves them further."""
 FINEST = 2**20
 _CORNERS = 4
 """Parameters up to which all corners of the bounds are looked at."""

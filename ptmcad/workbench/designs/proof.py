@@ -1,7 +1,7 @@
 """What no design exceeds: by exact critical values over one parameter, or by branch and bound over
 one or two.
 
-Guarantee: that of `exact.ranges.width` and `workbench.designs.branchandbound`.
+Guarantee: that of `exact.ranges.width` and `workbench.designs.designbounds`.
 """
 
 from __future__ import annotations
