@@ -177,12 +177,12 @@ class CertifiedWidths:
     ``working`` is the number of stable solutions that there are in a range at least.
     """
 
-    name: str
     along: Axis
     over: Axis
     rows: tuple[CertifiedRow, ...]
-    model: Model
     working: int
+    name: str = ""
+    model: Model = None  # type: ignore[assignment]  # what is read has it in its slice
 
     @property
     def widest(self) -> tuple[CertifiedRow, CertifiedRange] | None:

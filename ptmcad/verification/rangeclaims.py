@@ -254,13 +254,15 @@ def _check_enclosed(asked: _Asked) -> str:
                 unknown += 1
                 continue
             said = (entry["total"], entry["stable"], entry["index"] and tuple(entry["index"]))
-            number, unknown = (
-                (number, unknown + 1) if said == (None, None, None) else (number + 1, unknown)
-            )
-            if any(
-                a not in (None, b)
+            pairs = [
+                (a, b)
                 for a, b in zip(said, (there.total, there.stable, there.index), strict=True)
-            ):
+                if a is not None
+            ]
+            # what is not known here, as stable solutions of loops are not, contradicts nothing
+            is_known = bool(pairs) and all(b is not None for _, b in pairs)
+            number, unknown = number + is_known, unknown + (not is_known)
+            if any(b not in (None, a) for a, b in pairs):
                 raise Violation(
                     f"(total, stable, index) {said} are said to be at {shortest_text(at)}; there are {there}"
                 )

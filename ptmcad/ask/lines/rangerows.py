@@ -88,7 +88,7 @@ def enclosed_widths(
         CertifiedRow(value, _ranges(row, working), any(i.working is None for i in row), remark)
         for value, row, remark in found
     )
-    return CertifiedWidths(slice.name, axis, over, table, slice.model, working)
+    return CertifiedWidths(axis, over, table, working, slice.name, slice.model)
 
 
 def _axes(slice: Slice, along: str, rows: int) -> tuple[Axis, Axis]:
