@@ -37,8 +37,9 @@ def discriminant_variety(question: Question) -> SliceVariety:
     """The curves in Z[x, y] off which numbers of solutions are locally constant.
 
     >>> found = discriminant_variety({
-    ...     "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}, "axes": {"a":
-    [-2, 2], "b": [-2, 2]}, ... })
+    ...     "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
+    ...     "axes": {"a": [-2, 2], "b": [-2, 2]},
+    ... })
     >>> [component.polynomial.text(("a", "b")) for component in found.components]
     ['4*a^3 - 27*b^2']
 
