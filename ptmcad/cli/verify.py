@@ -165,11 +165,10 @@ def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]
         )
     if kind == "design":
         design = read_other(path, BestDesign.from_json, "ptmcad-design/1")
-        versions = json.loads(path.read_text(encoding="utf-8")).get("versions")
-        yield "", partial(_verified_design, design, versions, how["seed"])
+        yield "", partial(_verified_design, design, _versions_in(path), how["seed"])
     elif kind == "poses":
         poses = read_other(path, Poses.from_json, "ptmcad-poses/1")
-        yield "", partial(_verified_poses, poses)
+        yield "", partial(_verified_poses, poses, _versions_in(path))
     elif kind == "range":
         found = read_other(path, _range_in, "ptmcad-range/1")
         yield "", partial(_verified_range, path, found)
@@ -295,7 +294,12 @@ def _verified_design(
     return VerifyReport((*report.checks, replace(compared, name="all of the extremes")))
 
 
-def _verified_poses(stored: Poses, progress: Progress) -> VerifyReport:
+def _versions_in(path: Path) -> Any:
+    """Of what wrote a document that can be read; None where it does not say."""
+    return json.loads(path.read_text(encoding="utf-8")).get("versions")
+
+
+def _verified_poses(stored: Poses, versions: Any, progress: Progress) -> VerifyReport:
     """The poses at a point, and all that is said of each."""
     from ptmcad.ask.solving import poses_at
     from ptmcad.verification import VerifyReport, check_anew, verify_poses
@@ -304,9 +308,8 @@ def _verified_poses(stored: Poses, progress: Progress) -> VerifyReport:
     if not report.ok:
         return report
     anew = replace(poses_at(stored.model, stored.parameters, stored.digits), units=stored.units)
-    return VerifyReport(
-        (*report.checks, check_anew(json.loads(stored.to_json()), json.loads(anew.to_json())))
-    )
+    written = json.loads(stored.to_json()) | {"versions": versions}
+    return VerifyReport((*report.checks, check_anew(written, json.loads(anew.to_json()))))
 
 
 def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> VerifyReport:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from ptmcad.cli import run
+from ptmcad.version import __version__
 
 EARLIER = Path(__file__).resolve().parents[1] / "data" / "written-by-0.1.0"
 MAPS = ["cubic", "family/cubics-c1_3", "truss"]
@@ -45,6 +48,25 @@ def test_an_earlier_map_answers_at_a_point(name: str, capsys: pytest.CaptureFixt
 def test_an_earlier_map_is_drawn(name: str, command: str, tmp_path: Path) -> None:
     assert run([command, str(EARLIER / f"{name}.json"), "--out", str(tmp_path)]) == 0
     assert any(path.stat().st_size for path in tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("versions", "status"), [(None, 0), ({"ptmcad": __version__}, 1)])
+def test_what_another_version_left_undecided_is_not_false(
+    versions: Any, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    point = "rho=1,L2=1,l0=1/2"  # where a pose is degenerate
+    assert run(["solve", "--at", point, "--format", "json", "--out", str(tmp_path)]) == 3
+    document = json.loads((path := tmp_path / "poses.json").read_text("utf-8"))
+    assert document["versions"] == {"ptmcad": __version__}
+    document |= {"undecided": document["undecided"] + 1, "versions": versions}
+    path.write_text(
+        json.dumps({key: value for key, value in document.items() if value is not None}), "utf-8"
+    )
+    capsys.readouterr()
+    assert run(["verify", str(path)]) == status
+    printed = capsys.readouterr().out
+    assert ("another version made it" in printed) is (versions is None)
+    assert ("FALSE" in printed) is (versions is not None)
 
 
 def test_an_earlier_sweep_is_verified(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -170,7 +170,7 @@ def test_poses_validate_and_are_read_back_equal(point: dict[str, Any]) -> None:
     assert tuple(poses.parameters) == ptm().without_free_lengths
 
 
-FREE_KEYS = {"parameters", "nodes"}
+FREE_KEYS = {"parameters", "nodes", "versions"}
 
 
 def test_schema_and_reader_agree_on_the_keys() -> None:
@@ -178,6 +178,10 @@ def test_schema_and_reader_agree_on_the_keys() -> None:
     found = list(changed_keys(text, FREE_KEYS))
     assert len(found) > 80
     for c in found:
+        if c.dropped and c.key == "versions":  # documents of 0.1.0 have none
+            VALIDATOR.validate(c.data)
+            assert Poses.from_json(json.dumps(c.data)) == Poses.from_json(text)
+            continue
         assert not VALIDATOR.is_valid(c.data), c[:3]
         with pytest.raises(ValueError, match=r"lacks|unknown|format"):
             Poses.from_json(json.dumps(c.data))

@@ -23,9 +23,8 @@ from ptmcad.show.document.exactnumbers import (
     itself,
     with_decimal,
 )
-from ptmcad.show.document.slicedocument import model_from, stored_model
+from ptmcad.show.document.slicedocument import VERSIONS, model_from, stored_model
 from ptmcad.text.codec import (
-    TEXT,
     WHOLE,
     Codec,
     Key,
@@ -34,7 +33,6 @@ from ptmcad.text.codec import (
     converted,
     derived,
     listed,
-    named,
     optional,
     record,
     record_of,
@@ -42,12 +40,10 @@ from ptmcad.text.codec import (
 from ptmcad.text.documents import document_text
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.node import Node, opened
-from ptmcad.version import __version__
 
 FORMAT = "ptmcad-design/1"
 MAX_DOCUMENT = 60_000_000
 DIGITS = 10
-VERSIONS = Key(named(TEXT), lambda _: {"ptmcad": __version__}, made=False)
 
 
 def write_design(found: BestDesign) -> str:

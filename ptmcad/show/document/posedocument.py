@@ -17,7 +17,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.question.counts import POSE_COLUMNS
 from ptmcad.question.slice import check_names
 from ptmcad.show.document.exactnumbers import merged
-from ptmcad.show.document.slicedocument import MODEL, UNITS
+from ptmcad.show.document.slicedocument import MODEL, UNITS, VERSIONS
 from ptmcad.text.codec import (
     COUNT,
     NATURAL,
@@ -114,6 +114,8 @@ def poses_codec(digits: int) -> Codec[Poses]:
         remark=line(MAX_REMARK),
         parameters=named(exact, _name),
         units=UNITS,
+        # those of 0.1.0 do not say who wrote them
+        versions=VERSIONS._replace(default=None, always=True),
         **unless_default(Poses, "undecided"),
     )
 

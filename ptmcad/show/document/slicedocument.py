@@ -33,11 +33,14 @@ from ptmcad.text.node import Node
 from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.text.syntax import NAME
+from ptmcad.version import __version__
 
 MAX_DEGREE = 400
 MAX_NAME = 100
 MAX_TITLE = 300
 UNITS = Key(named(line(MAX_UNIT)), default={})
+VERSIONS = Key(named(TEXT), lambda _: {"ptmcad": __version__}, made=False)
+"""That of the program that writes: what is read holds whichever wrote it."""
 
 
 def stored_model(model: Model) -> Any:

@@ -27,8 +27,9 @@ from ptmcad.answer.intervals import (
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.widths import Attainment, CertifiedWidths, OperationWidths, WidthRow
 from ptmcad.question.slice import Axis
-from ptmcad.show.document.designdocument import VERSIONS, maximum
+from ptmcad.show.document.designdocument import maximum
 from ptmcad.show.document.exactnumbers import INDEX, with_decimal
+from ptmcad.show.document.slicedocument import VERSIONS
 from ptmcad.show.ranges.endtext import end_text, known, narrowly_known, settled, width_text
 from ptmcad.text.codec import (
     COUNT,
