@@ -13,7 +13,7 @@ An order of reading, for what an exact map claims:
 3. `polynomialtexts`, `equationtexts`, `parameterclaims`: the stored texts say the same.
 4. `fibrealgebra`, `principalminors`: the solutions over a point, counted by signatures; `solutions`: the
    stored counts and boxes. `norms`: the stored curves are all of those where counts change.
-5. `planecurves`, `sturm`, `projections`, `adjacencies`, `merging`: the decomposition of the plane.
+5. `planecurves`, `rootcounts`, `projections`, `adjacencies`, `merging`: the decomposition of the plane.
    `windowsigns`, `planclaims`: what was left out.
 6. `disks`, `wallintegrals`, `areaclaims`: enclosures of the areas.
 7. `parameterlines`, `rangeclaims`, `designclaims`, `arrangements`: lines, designs and families.

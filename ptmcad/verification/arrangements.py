@@ -42,7 +42,7 @@ from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.planecurves import factors, polynomial
 from ptmcad.verification.report import Check, Unchecked, Violation, drawn
-from ptmcad.verification.sturm import roots_within
+from ptmcad.verification.rootcounts import roots_within
 
 NEAR = Fraction(1, 10**6)
 """Of the range: how far from a change at most, on both sides, members are classified."""

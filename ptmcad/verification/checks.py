@@ -16,7 +16,6 @@ from ptmcad.verification.adjacencies import (
     check_non_adjacencies,
 )
 from ptmcad.verification.areaclaims import check_areas
-from ptmcad.verification.certified.certificate import verify_certified
 from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.designclaims import verify_design
@@ -47,13 +46,13 @@ checked.
 """
 
 _SINCE_VARIETY: tuple[CheckOf, ...] = (
-    ("critical values", "discriminants, resultants, Sturm", check_critical_values),
-    ("walls and samples", "Sturm counts between samples", check_stacks),
+    ("critical values", "discriminants, resultants, roots", check_critical_values),
+    ("walls and samples", "root counts between samples", check_stacks),
     ("counts", "signatures of trace forms", check_counts),
     ("solutions", "interval Newton in each box", check_solutions),
-    ("adjacencies", "Sturm counts on segments", check_adjacencies),
+    ("adjacencies", "root counts on segments", check_adjacencies),
     ("no adjacency missing", "parity, resultants, Sturm", check_no_adjacency_missing),
-    ("non-adjacencies", "segments, parity, Sturm", check_non_adjacencies),
+    ("non-adjacencies", "segments, parity, root counts", check_non_adjacencies),
     ("merges", "comparison of counts", check_merges),
     ("regions", "breadth-first search", check_regions),
     ("areas", "power series, Cauchy's bound", check_areas),
@@ -103,6 +102,8 @@ def verify(
     expect(result, RegionMap, "result", A_MAP)
     refuse_ablation(result)
     if result.cover is not None or result.status is Status.CERTIFIED:
+        from ptmcad.verification.certified.certificate import verify_certified  # loads numpy
+
         return verify_certified(result, seed, boxes, effort, progress)
     steps = checks_of(seed)
     missing: set[str] = set()
@@ -125,13 +126,13 @@ def checks_of(number: int | None) -> tuple[CheckOf, ...]:
     return (
         ("shape", "cross references", check_shape),
         ("parameters as written", "expressions compared", check_text),
-        ("signs of parameters", "Sturm counts, elimination", check_domain),
+        ("signs of parameters", "root counts, elimination", check_domain),
         ("equations", "residues at a random point", partial(check_system, seed=seed)),
         ("irreducible components", "factorization", check_irreducible),
         ("variety complete", "norm of det H at random points", partial(check_norm, seed=seed)),
         ("conditions", "norms at random points", partial(check_conditions, seed=seed)),
         ("boundary components", "factors of the parameters", partial(check_boundary, seed=seed)),
-        ("left out", "Sturm counts, resultants", check_left_out),
+        ("left out", "root counts, resultants", check_left_out),
         ("plan", "built once more", check_plan),
         *_SINCE_VARIETY,
     )

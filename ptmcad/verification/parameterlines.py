@@ -45,8 +45,8 @@ from ptmcad.text.flint_numbers import from_fraction, simplest_fraction, to_fract
 from ptmcad.text.numerals import shortest_text
 from ptmcad.verification.fibrealgebra import NotFinite, fibre
 from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.rootcounts import isolating_intervals, squarefree
 from ptmcad.verification.solutions import not_positive
-from ptmcad.verification.sturm import isolating_intervals, squarefree
 
 FRESH = 3
 BITS = (256, 1024, 4096)

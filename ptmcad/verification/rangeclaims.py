@@ -41,8 +41,8 @@ from ptmcad.verification.report import (
     Violation,
     checked,
 )
+from ptmcad.verification.rootcounts import roots_within
 from ptmcad.verification.solutions import map_of
-from ptmcad.verification.sturm import roots_within
 
 _NEAR = 2**7
 """Counts of enclosed intervals are looked at so small shares of them beside both ends."""
@@ -74,7 +74,7 @@ def verify_range(
     claims = Claims(map_of(slice, ()))
     steps = [
         ("parameters as written", "expressions compared", lambda _: check_text(claims)),
-        ("signs of parameters", "Sturm counts, elimination", lambda _: check_domain(claims)),
+        ("signs of parameters", "root counts, elimination", lambda _: check_domain(claims)),
     ]
     steps += [
         (name, method, check)

@@ -27,7 +27,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.disks import BallsTooWide, Disk, disk, recentered, shifted
-from ptmcad.verification.sturm import numbered_root
+from ptmcad.verification.rootcounts import numbered_root
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ Guarantee: exact; `Sign.PROVED` and `Sign.WRONG` are theorems. `Sign.UNCHECKED` 
 function of both axes has a degree over `MAX_DEGREE`, or may be zero at an isolated point. That no
 real count feels a component is checked in `ptmcad.verification.norms`.
 
-Signs of coefficients on boxes settle most components; others are settled by Sturm counts over a
+Signs of coefficients on boxes settle most components; others are settled by root counts over a
 point in each interval that the curve's discriminant and edge values leave, and over its roots, where
 isolated points would be. A function changes sign in the open window where one of its irreducible
 factors of odd multiplicity does. Nothing is shared with what the engines ask
@@ -25,7 +25,7 @@ from ptmcad.verification.claims import Claims, PlaneCurve, short
 from ptmcad.verification.planecurves import factored, polynomial
 from ptmcad.verification.projections import Heights, projection_of_one
 from ptmcad.verification.report import Violation
-from ptmcad.verification.sturm import isolating_intervals, roots_between, separated_points
+from ptmcad.verification.rootcounts import isolating_intervals, roots_between, separated_points
 
 HALVINGS = 4
 """Times that the window's sides are halved before a curve may be used although it has no point in

@@ -32,7 +32,7 @@ from ptmcad.question.config import slice_from_mapping
 from ptmcad.studies.stress.campaign import answer
 from ptmcad.studies.stress.case import Question, chosen
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
-from ptmcad.verification.sturm import roots_between
+from ptmcad.verification.rootcounts import roots_between
 
 
 def polynomial(roots: list[Fraction]) -> fmpz_poly:

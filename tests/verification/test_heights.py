@@ -23,7 +23,7 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.projections import Heights
-from ptmcad.verification.sturm import roots_between
+from ptmcad.verification.rootcounts import roots_between
 
 SQRT2 = fmpz_poly([-2, 0, 1])
 LOW, HIGH = fmpq(-7, 2), fmpq(10, 3)

@@ -48,7 +48,7 @@ def verify_certified(
     steps: tuple[tuple[str, str, Callable[[CertifiedClaims], str]], ...] = (
         ("form", "comparison", check_form),
         ("parameters as written", "expressions compared", check_text),
-        ("signs of parameters", "Sturm counts, elimination", check_domain),
+        ("signs of parameters", "root counts, elimination", check_domain),
         (
             "equations",
             "residues at a random point",

@@ -2,7 +2,7 @@
 
 Guarantee: bounds of areas hold, and parts of sides that are said to be open are so. Tubes are
 polynomials in powers here, which are put together from the controls' differences; that they are in
-order and pass the sides of their frames once is proved by Sturm sequences, where the engine looks
+order and pass the sides of their frames once is proved by counting roots, where the engine looks
 at the controls.
 """
 
@@ -19,7 +19,7 @@ from flint import arb, arb_poly, fmpq, fmpq_poly
 from ptmcad.cover.rectangles import Patch
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.verification.report import Violation
-from ptmcad.verification.sturm import roots_between
+from ptmcad.verification.rootcounts import roots_between
 
 ONE = fmpq(1)
 _FINER = 2**20

@@ -155,7 +155,7 @@ def _look_at(
             return GONE
         before[:] = box
         number = _eliminated(system, forms, nv, rows, solved_for)
-        gained = _narrowed(system, number, box, before, rows, solved_for)
+        gained = _narrowed(system, number, box, before, rows)
         if gained < 0:
             return GONE
         if gained > _WORTHWHILE:
@@ -234,7 +234,7 @@ def _eliminated(system: Any, forms: Any, nv: int, rows: Any, solved_for: Any) ->
 
 
 @compiled
-def _narrowed(system: Any, number: int, box: Any, before: Any, rows: Any, solved_for: Any) -> float:
+def _narrowed(system: Any, number: int, box: Any, before: Any, rows: Any) -> float:
     """The largest share to which a row has made a side smaller; -1 where nothing is left."""
     nv, zeros = box.shape[0], len(system.zero)
     low, high = np.full(nv, -1.0), np.full(nv, 1.0)

@@ -1,4 +1,4 @@
-"""The verification's Sturm sequences in balls, and the roots that they number."""
+"""The verification's counts of real roots, and the roots that they number."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from support.examples import examples
 
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification import sturm
+from ptmcad.verification import rootcounts
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.wallintegrals import WallSeries
 
@@ -30,23 +30,24 @@ def with_roots(draw: st.DrawFn) -> tuple[fmpz_poly, list[Fraction]]:
 
 @given(with_roots(), st.fractions(-4, 4, max_denominator=4), st.fractions(-4, 4, max_denominator=4))
 @settings(max_examples=examples(60))
-def test_sequences_in_balls_count_roots(
+def test_roots_are_counted(
     found: tuple[fmpz_poly, list[Fraction]], low: Fraction, high: Fraction
 ) -> None:
     p, roots = found
     assume(low < high)
     ends = from_fraction(low), from_fraction(high)
     coefficients = tuple(int(c) for c in p.coeffs())
-    assert sturm.roots_above(coefficients, ends[0]) == sum(low < r for r in set(roots))
-    assert sturm._balls_above(p, coefficients, ends[0]) == sum(low < r for r in set(roots))
-    assert sturm.roots_between(p, *ends) == sum(low < r < high for r in set(roots))
+    assert rootcounts.roots_above(coefficients, ends[0]) == sum(low < r for r in set(roots))
+    assert rootcounts.roots_between(p, *ends) == sum(low < r < high for r in set(roots))
 
 
-def test_a_sequence_with_a_gap_is_left_to_others() -> None:
-    p = fmpz_poly([-2, *[0] * 10, 1])  # u^11 - 2: the third polynomial is a constant
-    coefficients = tuple(int(c) for c in p.coeffs())
-    assert all(sturm._ball_chain(coefficients, bits) is None for bits in (96, 960))
-    assert sturm.roots_between(p + 1, fmpq(-2), fmpq(2)) == 1
+@pytest.mark.parametrize("power", [2, 3])
+def test_polynomials_in_a_power_of_the_variable(power: int) -> None:
+    p = fmpz_poly([-2, 1]) * fmpz_poly([3, 1]) * fmpz_poly([-5, 7])
+    raised = p.inflate(power)
+    expected = {2: (2, 2), 3: (2, 1)}[power]
+    assert rootcounts.roots_between(raised, fmpq(0), fmpq(2)) == expected[0]
+    assert rootcounts.roots_between(raised, fmpq(-2), fmpq(0)) == expected[1]
 
 
 def test_close_roots_ask_for_more_precision() -> None:
@@ -56,8 +57,8 @@ def test_close_roots_ask_for_more_precision() -> None:
         * fmpz_poly([1, 0, 1])
         * fmpz_poly([2, 1, 1])
     )
-    assert sturm.roots_between(p, fmpq(0), fmpq(1)) == 2
-    assert sturm.roots_between(p, fmpq(1, 10**40 + 1), fmpq(1)) == 1
+    assert rootcounts.roots_between(p, fmpq(0), fmpq(1)) == 2
+    assert rootcounts.roots_between(p, fmpq(1, 10**40 + 1), fmpq(1)) == 1
 
 
 @pytest.mark.parametrize("root", range(5))
