@@ -10,15 +10,14 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from ptmcad.answer.intervals import CertifiedIntervals, CountIntervals
+from ptmcad.answer.counts import operation_number
+from ptmcad.answer.intervals import CountIntervals
 from ptmcad.process.memory import loading
 from ptmcad.question.line import has_free_lengths, on_line, varying_axis
 from ptmcad.question.slice import Axis, Slice
 
 
-def intervals_along(
-    slice: Slice, along: str, at: Mapping[str, Any], digits: int
-) -> CountIntervals | CertifiedIntervals:
+def intervals_along(slice: Slice, along: str, at: Mapping[str, Any], digits: int) -> CountIntervals:
     """The intervals on a line, exact, or with free lengths enclosed to so many digits.
 
     Raises
@@ -35,7 +34,7 @@ def intervals_along(
 
 def certified_intervals(
     slice: Slice, along: str, at: Mapping[str, Any], digits: int
-) -> CertifiedIntervals:
+) -> CountIntervals:
     """The intervals of constant count on a line of a slice whose springs have free lengths.
 
     Parameters
@@ -56,7 +55,19 @@ def certified_intervals(
         from ptmcad.certified.enclosedline import intervals_and_changes
         from ptmcad.question.domain import proved
     varying, other, value = varying_axis(slice, along, at)
+    parameters = on_line(slice, varying, value)
     axes = slice.axes[varying], Axis(other, value, value)
-    line = proved(replace(slice, axes=axes, parameters=on_line(slice, varying, value)))
-    intervals, changes = intervals_and_changes(line, 64 + 4 * digits)
-    return CertifiedIntervals(slice.axes[varying], {other: value}, intervals, changes)
+    line = proved(replace(slice, axes=axes, parameters=parameters))
+    found, changes = intervals_and_changes(line, 64 + 4 * digits)
+    working = operation_number(slice.model, (i.counts for i in found if i.counts is not None))
+    return CountIntervals(
+        slice.name,
+        slice.model,
+        slice.axes[varying],
+        {other: value},
+        parameters,
+        found,
+        changes,
+        working,
+        enclosed=True,
+    )

@@ -157,7 +157,7 @@ class _WidthSearch:
         """Adopt what is counted on a line."""
         certain, possible = (max(spans, key=_width, default=None) for spans in line.ranges)
         if certain is not None:
-            self.add_at(line.end, _width(certain), (certain.low, certain.high), True)
+            self.add_at(line.end, _width(certain), certain.exact, True)
             self.known = max(self.known, _width(certain)[0])
         if possible is not None and possible != certain:
             self.add_at(line.end, (fmpq(0), _width(possible)[1]), None, None)
@@ -408,14 +408,14 @@ def _limits(strip: RangeStrip, end: BaseEnd) -> Ends | None:
 
 def _width(span: Span) -> Interval:
     known = Span(
-        *(AlgebraicNumber.of(e).refined(to_fraction(_END_WIDTH)) for e in (span.low, span.high))
+        *(AlgebraicNumber.of(e).refined(to_fraction(_END_WIDTH)) for e in span.exact)
     ).width
     return interval_of(known)
 
 
 def _within(ends: Ends, span: Span) -> bool:
     """Whether limits are within a range, ends included."""
-    low, high, first, last = map(AlgebraicNumber.of, (*ends, span.low, span.high))
+    low, high, first, last = map(AlgebraicNumber.of, (*ends, *span.exact))
     return compare(first, low) <= 0 <= compare(last, high)
 
 
