@@ -23,8 +23,7 @@ from math import isqrt
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from ptmcad.algebra.curve_branches import shifted
-from ptmcad.algebra.polynomials import Restrictions
+from ptmcad.algebra.polynomials import Restrictions, shifted
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, sign_at
 
 Coefficients = Sequence[fmpz_poly]

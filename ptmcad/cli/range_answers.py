@@ -100,9 +100,9 @@ def _answers(
     along, at, digits = request.along, request.at, request.digits
     found: Any
     if at:
-        from ptmcad.ask.lines.along import intervals_along
+        from ptmcad.ask.lines.along import intervals
 
-        found = intervals_along(slice, along, at, digits)
+        found = intervals(slice, along, at, digits=digits)
         yield found, linetable.table(found, digits), "", partial(_drawn, "draw_range", slice, found)
     if request.over:
         from ptmcad.ask.lines.rangerows import operation_widths

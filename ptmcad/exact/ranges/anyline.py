@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from typing import NamedTuple
 
 from flint import fmpq
 
@@ -45,16 +46,18 @@ from ptmcad.algebra.real_roots import gaps, isolate
 from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError
+from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.discriminant_variety import algebra_of
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.models.system import ALONG, SliceSystem, lifted, on_slice, saturated, with_root
 from ptmcad.exact.point_system import DegeneratePoint, point_system
 from ptmcad.exact.ranges.exactline import END_WIDTH, intervals, runs
+from ptmcad.exact.ranges.rangestrips import RangeStrips
 from ptmcad.exact.statics import is_positive
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between
+from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, to_fraction
 
 MAX_DIMENSION = 40
 """Complex solutions, with multiplicity and at all conjugate values, up to which they are told
@@ -118,6 +121,38 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
         for gap in gaps(numbers, (axis.low, axis.high))
     ]
     return _spans(ends, [h is True for h in here]), _spans(ends, [h is not False for h in here])
+
+
+class SpecialLine(NamedTuple):
+    """A value of the other axis, an end of strips, and what is counted on the line there."""
+
+    end: BaseEnd
+    ranges: LineRanges
+
+    @property
+    def value(self) -> End:
+        return number_at(self.end)
+
+    @property
+    def most(self) -> Fraction:
+        """An upper bound of the widths on it."""
+        return max((span.width.high for span in self.ranges[1]), default=Fraction(0))
+
+
+def lines_of(slice: Slice, along: str, found: RangeStrips) -> list[SpecialLine]:
+    """The lines at the special values of the other axis."""
+    return [
+        SpecialLine(end, ranges_on(slice, along, number_at(end), found.working))
+        for end in found.special
+    ]
+
+
+def number_at(end: BaseEnd) -> End:
+    """Where an end of strips is."""
+    if end.root is None:
+        return to_fraction(end.value)
+    number = algebraic_number(end.root)
+    return number if number.exact is None else number.exact
 
 
 def _finite(equations: SliceSystem) -> tuple[SliceSystem, QuotientAlgebra] | None:
