@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from ptmcad.answer.sweep import Sweep
     from ptmcad.ask.changes import changes
     from ptmcad.ask.classification import classify
+    from ptmcad.ask.lines.along import intervals
     from ptmcad.ask.lines.follower import pose_paths
     from ptmcad.ask.lines.rangerows import operation_widths
     from ptmcad.ask.solving import solve
     from ptmcad.ask.stepwise import counts_at, discriminant_variety, open_cad
     from ptmcad.exact.eliminationsystem import slice_variety
-    from ptmcad.exact.ranges.exactline import intervals
     from ptmcad.question.config import load, slice_from_mapping, slice_from_options
     from ptmcad.question.config import make_mechanism as Mechanism
     from ptmcad.question.config import make_system as System
@@ -66,7 +66,7 @@ _HOMES = {
     "solve": "ask.solving",
     "Sweep": "answer.sweep",
     "sweep": "workbench.sweeps.run",
-    "intervals": "exact.ranges.exactline",
+    "intervals": "ask.lines.along",
     "operation_widths": "ask.lines.rangerows",
     "pose_paths": "ask.lines.follower",
     "RegionMap": "answer.regionmap",

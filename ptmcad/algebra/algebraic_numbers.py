@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Protocol
 
 from flint import fmpq
 
@@ -29,20 +28,7 @@ def algebraic_number(root: RealRoot) -> AlgebraicNumber:
     return AlgebraicNumber(coefficients, to_fraction(root.low), to_fraction(root.high))
 
 
-class IsolatedRoot(Protocol):
-    """A root of a polynomial, between two numbers."""
-
-    @property
-    def polynomial(self) -> tuple[int, ...]: ...
-
-    @property
-    def low(self) -> Fraction: ...
-
-    @property
-    def high(self) -> Fraction: ...
-
-
-def root_of(number: IsolatedRoot) -> RealRoot:
+def root_of(number: AlgebraicNumber) -> RealRoot:
     """The engine's form of a number."""
     return RealRoot(UnivariatePolynomial(list(number.polynomial)), *interval_of(number))
 

@@ -17,8 +17,8 @@ from collections.abc import Sequence
 
 from flint import Ordering, arb, arb_poly, ctx, fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
 
-from ptmcad.algebra.curve_branches import avoids_zero, local_coefficients
-from ptmcad.algebra.real_roots import RealRoot, refine
+from ptmcad.algebra.curve_branches import local_coefficients
+from ptmcad.algebra.real_roots import RealRoot, avoids, refine
 
 _TWO: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("v", "t"), Ordering.degrevlex)
 _DEPTH = 12
@@ -65,7 +65,7 @@ def side_of_chord(
 
 
 def _no_zero(p: arb_poly, low: fmpq, high: fmpq, depth: int) -> bool:
-    if avoids_zero(p, low, high):
+    if avoids(p, low, high):
         return True
     if depth == 0:
         return False

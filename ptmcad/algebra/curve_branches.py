@@ -1,7 +1,7 @@
 """Branches of a plane curve: proved enclosures of their integrals.
 
 Guarantee: an enclosure that is returned contains the branch that was asked for, or its integral;
-None means not proved. `avoids` answers True only with proof.
+None means not proved.
 
 On a panel [m - r, m + r] a branch v = y(u) of p(u, v) = 0 is approximated by a polynomial z(h),
 u = m + r h, from the branch's Taylor series. Let q = s p with a polynomial s(h) close to 1/p_v(u,
@@ -21,10 +21,11 @@ polynomial's coefficients, those beyond h^k add up to at most M(R) / R^(k + 1), 
 from collections.abc import Sequence
 from itertools import pairwise
 from math import log, perm
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
 
+from ptmcad.algebra.polynomials import shifted
 from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 
 DERIVATIVE_BITS = 24
@@ -305,23 +306,6 @@ def _length(
     return length, beyond
 
 
-def avoids(p: fmpz_poly, low: fmpq, high: fmpq) -> bool:
-    """Whether p is proved to have no zero in [low, high]: its value in the middle outweighs the
-    rest of its Taylor sum.
-
-    False may mean undecided.
-    """
-    return avoids_zero(arb_poly(p), low, high)
-
-
-def avoids_zero(p: arb_poly, low: fmpq, high: fmpq) -> bool:
-    """The same for a polynomial whose coefficients are known in balls."""
-    radius = arb((high - low) / 2)
-    local = p(arb_poly([arb((low + high) / 2), radius]))
-    value = local[0]
-    return bool(_norm(local - value) < abs(value))
-
-
 def local_coefficients(
     in_v: Sequence[fmpz_poly],
     middle: fmpq | arb,
@@ -334,16 +318,6 @@ def local_coefficients(
     """
     line = arb_poly([arb(middle), arb(radius)])
     return shifted([arb_poly(c)(line) for c in in_v], arb(origin), number)
-
-
-def shifted(rows: Sequence[Any], by: Any, number: int | None = None) -> list[Any]:
-    """The coefficients of p(by + w) by w, from those of p(w): all, or so many first ones."""
-    found = list(rows)
-    number = len(found) if number is None else number
-    for start in range(min(len(found) - 1, number)):
-        for i in range(len(found) - 2, start - 1, -1):
-            found[i] = found[i] + found[i + 1] * by
-    return found[:number]
 
 
 def _series(local: Sequence[arb_poly], order: int) -> arb_poly:

@@ -34,23 +34,10 @@ class RealPoint:
     multiplicity: int
 
 
-@dataclass(frozen=True, slots=True)
-class FibrePoints:
-    """The points of a fibre.
+def points(algebra: FibreAlgebra, bound: int | None = 1) -> tuple[list[RealPoint], int]:
+    """The real points of a fibre, and the number of different complex ones.
 
-    Attributes
-    ----------
-    real : by the value of the separating form, which increases.
-    distinct, total : numbers of complex points, once each and with multiplicity.
-    """
-
-    real: tuple[RealPoint, ...]
-    distinct: int
-    total: int
-
-
-def points(algebra: FibreAlgebra, bound: int | None = 1) -> FibrePoints:
-    """The points of a fibre.
+    The real ones stand in the order of a form that separates all of them.
 
     Parameters
     ----------
@@ -79,7 +66,7 @@ def points(algebra: FibreAlgebra, bound: int | None = 1) -> FibrePoints:
         found.append(
             RealPoint(field, tuple(FieldElement(field, r) for r in residues), multiplicity)
         )
-    return FibrePoints(tuple(found), int(radical.degree()), algebra.dimension)
+    return found, int(radical.degree())
 
 
 def value_at(point: RealPoint, p: RationalPolynomial) -> FieldElement:

@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import reduce
+from typing import Any
 
 from flint import (
     Ordering,
@@ -227,6 +228,16 @@ def point_values(parameters: Ratios, at: Sequence[fmpq]) -> dict[str, fmpq]:
         name: evaluate(above, *at) / evaluate(below, *at)
         for name, (above, below) in parameters.items()
     }
+
+
+def shifted(rows: Sequence[Any], by: Any, number: int | None = None) -> list[Any]:
+    """The coefficients of p(by + w) by w, from those of p(w): all, or so many first ones."""
+    found = list(rows)
+    number = len(found) if number is None else number
+    for start in range(min(len(found) - 1, number)):
+        for i in range(len(found) - 2, start - 1, -1):
+            found[i] = found[i] + found[i + 1] * by
+    return found[:number]
 
 
 class Restrictions:

@@ -27,9 +27,9 @@ from ptmcad.algebra.curve_branches import (
     SeriesTube,
     TooFewBits,
     local_coefficients,
-    shifted,
     tube_around,
 )
+from ptmcad.algebra.polynomials import shifted
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.text.flint_numbers import simplest_between
 

@@ -216,6 +216,19 @@ def has_root_between(p: fmpz_poly, low: fmpq, high: fmpq) -> bool:
     return bound > 0 and bool(isolate(squarefree_part(p), low, high))
 
 
+def avoids(p: fmpz_poly | arb_poly, low: fmpq, high: fmpq) -> bool:
+    """Whether p is proved to have no zero in [low, high]: its value in the middle outweighs the
+    rest of its Taylor sum.
+
+    False may mean undecided.
+    """
+    radius = arb((high - low) / 2)
+    local = arb_poly(p)(arb_poly([arb((low + high) / 2), radius]))
+    value = local[0]
+    # in Horner's scheme a ball around zero adds up the coefficients' moduli
+    return bool(abs((local - value)(arb(0, 1))).upper() < abs(value))
+
+
 def is_root_of(divisor: fmpz_poly, root: RealRoot) -> bool:
     """Whether a divisor of the root's polynomial has the root too."""
     if divisor.degree() < 1:

@@ -20,34 +20,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 from math import isqrt
-from typing import NamedTuple
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from ptmcad.algebra.curve_branches import shifted
-from ptmcad.algebra.polynomials import Restrictions
+from ptmcad.algebra.polynomials import Restrictions, shifted
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, sign_at
 
 Coefficients = Sequence[fmpz_poly]
 
 
-class Reflection(NamedTuple):
-    """A reflection along the fibres that maps a curve to itself.
-
-    Attributes
-    ----------
-    axis : m(u), of degree 1 at most, with the common denominator d.
-    squares : coefficients in Z[u] of powers of W = d^2 (v - m)^2, as `squared` says.
-    """
-
-    axis: fmpq_poly
-    squares: Restrictions
+Reflection = tuple[fmpq_poly, Restrictions]
+"""A reflection along the fibres that maps a curve to itself: the axis m(u), of degree 1 at most, with
+the common denominator d, and coefficients in Z[u] of powers of W = d^2 (v - m)^2, as `squared` says.
+"""
 
 
 def reflection_of(p: Coefficients) -> Reflection | None:
     """The reflection that maps the curve to itself; None where there is none."""
     axis = axis_of(p)
-    return None if axis is None else Reflection(axis, Restrictions(tuple(squared(p, axis))))
+    return None if axis is None else (axis, Restrictions(tuple(squared(p, axis))))
 
 
 def axis_of(p: Coefficients) -> fmpq_poly | None:

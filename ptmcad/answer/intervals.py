@@ -1,10 +1,12 @@
 """The intervals of constant count along a line of a slice, as data.
 
-Guarantee: ends are exact, or enclosures where the certified engine found them.
+Guarantee: ends are exact. Where springs have free lengths on the line they are enclosed, and what
+was not decided lies in the changes.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
@@ -22,6 +24,8 @@ from ptmcad.text.numerals import Numbers
 
 End = AlgebraicNumber | Fraction
 """A critical value, or the window's edge."""
+AnyEnd = End | Enclosure
+"""The same, or an enclosure of one."""
 
 
 class Event(Enum):
@@ -44,89 +48,111 @@ class Change:
 
     Attributes
     ----------
-    kind : the kind of the variety's component through it.
-    before, after : the numbers of solutions on the two sides.
+    before, after : the numbers of solutions on the two sides; None where they are not known.
+    kind : of an exact value, that of the variety's component through it.
     continuum : whether there are infinitely many solutions at the value; None where that is not
         known.
+    names : of an enclosed value, the curves that are met.
+    proved : whether each of these was proved to be met exactly; if not, there may be no critical
+        value.
     """
 
-    at: AlgebraicNumber
-    kind: Kind
-    before: Counts
-    after: Counts
+    at: AlgebraicNumber | Enclosure
+    before: Counts | None
+    after: Counts | None
+    kind: Kind | None = None
     continuum: Continuum | None = None
+    names: tuple[str, ...] = ()
+    proved: bool = True
 
     @property
-    def event(self) -> Event:
-        if self.before == self.after:
-            return Event.UNCHANGED
-        if (first := self._pair()) is not None:
-            return Event.UNSTABLE_PAIR if first else Event.STABLE_PAIR
-        change = abs(self.after.total - self.before.total)
-        if change == 2 and self.before.index is None:
-            return Event.PAIR
-        return {0: Event.STABILITY, 1: Event.SINGLE}.get(change, Event.SEVERAL)
-
-    def _pair(self) -> int | None:
-        """The smaller index of the two solutions that are more or less by one; None when no two
-        neighbours are.
-        """
-        if self.before.index is None or self.after.index is None:
+    def event(self) -> Event | None:
+        """None where the numbers on a side are not known."""
+        if self.before is None or self.after is None:
             return None
-        changed = {
-            k: b - a
-            for k, (a, b) in enumerate(zip(self.before.index, self.after.index, strict=True))
-            if a != b
-        }
-        first = min(changed, default=0)
-        pair = changed in ({first: 1, first + 1: 1}, {first: -1, first + 1: -1})
-        return first if pair else None
-
-    def _balanced(self) -> bool:
-        """Whether the alternating sum of the indices stays, as pairs keep it; what comes from
-        infinity need not.
-        """
-        if self.before.index is None or self.after.index is None:
-            return False
-        return euler_sum(self.before.index) == euler_sum(self.after.index)
+        return _event(self.before, self.after)
 
     @property
     def text(self) -> str:
-        """The event in words, read in the direction of growing values."""
+        """The event in words, read in the direction of growing values; the curves that are met,
+        where the value is enclosed.
+        """
+        if self.names:
+            # without how it was looked for: folds with and without a short spring may be the same
+            kinds = dict.fromkeys(name.partition(" with ")[0] for name in self.names)
+            if self.proved:
+                return " and ".join(kinds)
+            return f"undecided whether there is a {' or a '.join(kinds)}"
+        if self.before is None or self.after is None:
+            return ""
+        change = _words(self.before, self.after)
         if self.continuum is None:
-            return self._change()
+            return change
         many = "equilibria" if self.before.index is not None else "solutions"
-        change = "" if self.event is Event.UNCHANGED else f", {self._change()}"
-        return f"{self.continuum.value} {many}{change}"
+        further = "" if self.event is Event.UNCHANGED else f", {change}"
+        return f"{self.continuum.value} {many}{further}"
 
-    def _change(self) -> str:
-        event, first = self.event, self._pair()
-        if event is Event.UNCHANGED:
-            return str(event.value)
-        if event is Event.STABILITY:
-            return (
-                str(event.value)
-                if self.before.index is not None
-                else "solutions change their stability"
-            )
-        what = (
-            "several solutions" if event is Event.SEVERAL and not self._balanced() else event.value
+
+def _event(before: Counts, after: Counts) -> Event:
+    if before == after:
+        return Event.UNCHANGED
+    if (first := _pair(before, after)) is not None:
+        return Event.UNSTABLE_PAIR if first else Event.STABLE_PAIR
+    change = abs(after.total - before.total)
+    if change == 2 and before.index is None:
+        return Event.PAIR
+    return {0: Event.STABILITY, 1: Event.SINGLE}.get(change, Event.SEVERAL)
+
+
+def _pair(before: Counts, after: Counts) -> int | None:
+    """The smaller index of the two solutions that are more or less by one; None when no two
+    neighbours are.
+    """
+    if before.index is None or after.index is None:
+        return None
+    changed = {
+        k: b - a for k, (a, b) in enumerate(zip(before.index, after.index, strict=True)) if a != b
+    }
+    first = min(changed, default=0)
+    pair = changed in ({first: 1, first + 1: 1}, {first: -1, first + 1: -1})
+    return first if pair else None
+
+
+def _words(before: Counts, after: Counts) -> str:
+    event, first = _event(before, after), _pair(before, after)
+    if event is Event.UNCHANGED:
+        return str(event.value)
+    if event is Event.STABILITY:
+        return str(event.value) if before.index is not None else "solutions change their stability"
+    what = event.value
+    # pairs keep the alternating sum of the indices; what comes from infinity need not
+    if event is Event.SEVERAL and not (
+        before.index and after.index and euler_sum(before.index) == euler_sum(after.index)
+    ):
+        what = "several solutions"
+    if first is not None and before.index is not None:
+        names = [critical_point(k, len(before.index) - 1) for k in (first, first + 1)]
+        what = " and ".join(
+            f"one {'stable equilibrium' if name == 'minimum' else name}" for name in names
         )
-        if first is not None and self.before.index is not None:
-            names = [critical_point(k, len(self.before.index) - 1) for k in (first, first + 1)]
-            what = " and ".join(
-                f"one {'stable equilibrium' if name == 'minimum' else name}" for name in names
-            )
-            what = "two saddles" if names == ["saddle", "saddle"] else what
-        return f"{'gains' if self.after.total > self.before.total else 'loses'} {what}"
+        what = "two saddles" if names == ["saddle", "saddle"] else what
+    return f"{'gains' if after.total > before.total else 'loses'} {what}"
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
     """An interval of the line by its ends; a Fraction is the window's edge."""
 
-    low: End
-    high: End
+    low: AnyEnd
+    high: AnyEnd
+
+    @property
+    def exact(self) -> tuple[End, End]:
+        """Both ends, of an interval between exact ones."""
+        low, high = self.low, self.high
+        if isinstance(low, Enclosure) or isinstance(high, Enclosure):
+            raise TypeError("the interval is enclosed")
+        return low, high
 
     @property
     def width(self) -> Enclosure:
@@ -140,23 +166,32 @@ class CountInterval(Span):
 
     Attributes
     ----------
+    counts : None where nothing could be decided at ``sample``.
     sample : a rational number in it that is no critical value.
+    peaks : of an enclosed interval, configurations in which springs have no length and the energy
+        has a peak, where they are known.
     """
 
-    counts: Counts
+    counts: Counts | None
     sample: Fraction
+    peaks: int | None = None
 
     @property
-    def total(self) -> int:
-        return self.counts.total
+    def total(self) -> int | None:
+        return None if self.counts is None else self.counts.total
 
     @property
     def stable(self) -> int | None:
-        return self.counts.stable
+        return None if self.counts is None else self.counts.stable
 
     @property
     def index(self) -> MorseIndex | None:
-        return self.counts.index
+        return None if self.counts is None else self.counts.index
+
+    @property
+    def working(self) -> int | None:
+        """The number by which an operation range is found; None where nothing is decided."""
+        return None if self.counts is None else self.counts.working
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,6 +199,15 @@ class OperationSpan(Span):
     """A part of the operation range: neighbours that differ in unstable solutions only."""
 
     parts: tuple[CountInterval, ...]
+
+
+def operation_spans(
+    intervals: Iterable[CountInterval], works: Callable[[int], bool]
+) -> tuple[OperationSpan, ...]:
+    """The longest runs of intervals whose number of stable solutions is one that works."""
+    groups = groupby(intervals, lambda i: i.working is not None and works(i.working))
+    members = [list(group) for inside, group in groups if inside]
+    return tuple(OperationSpan(group[0].low, group[-1].high, tuple(group)) for group in members)
 
 
 @with_methods
@@ -183,6 +227,7 @@ class CountIntervals:
         among them.
     working : the number of stable solutions in the operation range, or of all where nothing says
         what is stable.
+    enclosed : whether ends and changes are enclosures, as springs have free lengths.
     """
 
     name: str
@@ -193,6 +238,7 @@ class CountIntervals:
     intervals: tuple[CountInterval, ...]
     changes: tuple[Change, ...]
     working: int
+    enclosed: bool = False
 
     @property
     def mechanism(self) -> str:
@@ -200,7 +246,7 @@ class CountIntervals:
         return self.model.name
 
     def __repr__(self) -> str:
-        found = ", ".join(str(i.counts.working) for i in self.intervals)
+        found = ", ".join("?" if i.working is None else str(i.working) for i in self.intervals)
         return f"<CountIntervals of {self.name} along {self.along.name}: {found} in turn>"
 
     @property
@@ -208,77 +254,26 @@ class CountIntervals:
         """Intervals without a critical value, between rational numbers, from the lower edge to the
         upper one.
         """
-        ends: list[End] = [self.along.low, *(change.at for change in self.changes), self.along.high]
-        return [(upper(a), lower(b)) for a, b in pairwise(ends)]
+        ends: list[AnyEnd] = [
+            self.along.low,
+            *(change.at for change in self.changes),
+            self.along.high,
+        ]
+        return [(upper(a), lower(b)) for a, b in pairwise(ends) if upper(a) < lower(b)]
 
     @property
     def operation(self) -> tuple[OperationSpan, ...]:
         """The operation range: where there are so many stable solutions; of the paper's mechanism
         two.
         """
-        groups = groupby(self.intervals, lambda i: i.counts.working == self.working)
-        members = [list(group) for inside, group in groups if inside]
-        return tuple(OperationSpan(group[0].low, group[-1].high, tuple(group)) for group in members)
+        return operation_spans(self.intervals, lambda number: number == self.working)
 
 
-def lower(end: End) -> Fraction:
+def lower(end: AnyEnd) -> Fraction:
     """A rational not above the end."""
     return end if isinstance(end, Fraction) else end.low
 
 
-def upper(end: End) -> Fraction:
+def upper(end: AnyEnd) -> Fraction:
     """A rational not below the end."""
     return end if isinstance(end, Fraction) else end.high
-
-
-@dataclass(frozen=True, slots=True)
-class CertifiedInterval:
-    """An open interval, its ends' enclosures (exact at the window's edge), and the counts on it.
-
-    ``total`` is None when nothing could be decided at ``sample``; ``index`` is, too, where there is
-    no potential, and ``cones``, but for the paper's mechanism. ``stable`` is None where nothing
-    says what is stable.
-    """
-
-    low: Enclosure
-    high: Enclosure
-    index: MorseIndex | None
-    cones: int | None
-    sample: Fraction
-    total: int | None
-    stable: int | None = None
-
-    @property
-    def working(self) -> int | None:
-        """The number by which an operation range is found, as that of `Counts`; None where nothing
-        is decided.
-        """
-        return self.total if self.stable is None else self.stable
-
-
-@dataclass(frozen=True, slots=True)
-class CertifiedChange:
-    """What lies between two intervals: the curves met there; ``proved`` when each was proved to be
-    met exactly.
-    """
-
-    at: Enclosure
-    names: tuple[str, ...]
-    proved: bool
-
-
-@dataclass(frozen=True, slots=True)
-class CertifiedIntervals:
-    """The answer for a line, from the window's lower edge to its upper one."""
-
-    along: Axis
-    at: Numbers
-    intervals: tuple[CertifiedInterval, ...]
-    changes: tuple[CertifiedChange, ...]
-
-    @property
-    def stretches(self) -> list[tuple[Fraction, Fraction]]:
-        """Intervals without a critical value, between rational numbers, from the lower edge to the
-        upper one.
-        """
-        return [(interval.low.high, interval.high.low) for interval in self.intervals]

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
-from typing import NamedTuple
 
 from ptmcad.answer import with_methods
 from ptmcad.model import Model
@@ -52,14 +51,6 @@ class Target:
     angles: tuple[Enclosure, ...]
     reals: tuple[Enclosure, ...] = ()
     sides: tuple[int, ...] = ()
-
-
-class Landing(NamedTuple):
-    """The pose to which a state goes at a critical value, and the energies; as in `PathEnd`."""
-
-    target: Target
-    energy: Enclosure
-    target_energy: Enclosure
 
 
 @dataclass(frozen=True, slots=True)

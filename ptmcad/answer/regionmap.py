@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from ptmcad.answer import with_methods
 from ptmcad.answer.counts import Counted, MorseIndex
 from ptmcad.question.slice import Point, Slice
+from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.plane import PlanePolynomial
 
 if TYPE_CHECKING:
@@ -132,6 +133,10 @@ class CriticalValue:
     low: Fraction
     high: Fraction
     origin: str
+
+    @property
+    def number(self) -> AlgebraicNumber:
+        return AlgebraicNumber(self.polynomial, self.low, self.high)
 
 
 @dataclass(frozen=True, slots=True)

@@ -119,19 +119,28 @@ def _listed(over: str, values: tuple[End, ...], digits: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class WidthRow:
-    """The operation ranges at one value of the other axis; ``remark`` says why there is no answer."""
+    """The operation ranges at one value of the other axis; ``undecided`` where counts of a part are
+    not known there, and ``remark`` says why there is no answer at all."""
 
     value: Fraction
     operation: tuple[OperationSpan, ...]
+    undecided: bool = False
     remark: str = ""
 
 
 @with_methods
 @dataclass(frozen=True, slots=True)
 class OperationWidths:
-    """The answer of ``--over``; ``maxima`` is empty when there is no operation range in the window,
-    and has several entries when places tie or could not be distinguished. ``working`` is the number
-    of stable solutions in a range."""
+    """The answer of ``--over``.
+
+    Attributes
+    ----------
+    maxima : where the range is widest; empty when there is none in the window, and several when
+        places tie or could not be distinguished.
+    working : the number of stable solutions in a range.
+    enclosed : whether ends are enclosures, as springs have free lengths. Then ``working`` is the
+        least number, and there are no maxima: the widest row is no proof of the widest range.
+    """
 
     name: str
     along: Axis
@@ -140,52 +149,13 @@ class OperationWidths:
     maxima: tuple[Maximum, ...]
     model: Model
     working: int
+    enclosed: bool = False
+
+    @property
+    def widest(self) -> tuple[WidthRow, OperationSpan] | None:
+        """The row with the widest range, by the middles of what encloses the widths."""
+        found = [(row, one) for row in self.rows for one in row.operation]
+        return max(found, key=lambda pair: pair[1].width.center, default=None)
 
     def __repr__(self) -> str:
         return f"<OperationWidths of {self.name} along {self.along.name} over {self.over.name}: {len(self.rows)} rows>"
-
-
-@dataclass(frozen=True, slots=True)
-class CertifiedRange:
-    """An operation range whose ends are enclosed, exact at the window's edge."""
-
-    low: Enclosure
-    high: Enclosure
-
-    @property
-    def width(self) -> Enclosure:
-        """Its length, as narrowly as the ends are enclosed."""
-        return Enclosure(self.high.low - self.low.high, self.high.high - self.low.low)
-
-
-@dataclass(frozen=True, slots=True)
-class CertifiedRow:
-    """The operation ranges at one value of the other axis; ``undecided`` when counts of a part are
-    not known there, and ``remark`` says why there is no answer at all."""
-
-    value: Fraction
-    operation: tuple[CertifiedRange, ...]
-    undecided: bool
-    remark: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class CertifiedWidths:
-    """The answer of ``--over`` with free lengths: a table, of which the widest row is no proof of
-    the widest range.
-
-    ``working`` is the number of stable solutions that there are in a range at least.
-    """
-
-    along: Axis
-    over: Axis
-    rows: tuple[CertifiedRow, ...]
-    working: int
-    name: str = ""
-    model: Model = None  # type: ignore[assignment]  # what is read has it in its slice
-
-    @property
-    def widest(self) -> tuple[CertifiedRow, CertifiedRange] | None:
-        """The row with the widest range, by the middles of what encloses the widths."""
-        found = [(row, one) for row in self.rows for one in row.operation]
-        return max(found, key=lambda pair: pair[1].width.low + pair[1].width.high, default=None)

@@ -261,7 +261,7 @@ def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction
 def stack_over(result: RegionMap, u: fmpq) -> tuple[int, bool]:
     """The stack over u; or, when u is a critical value, the stack at its left and True."""
     for number, critical in enumerate(result.critical_values):
-        side = order(u, root_of(critical))
+        side = order(u, root_of(critical.number))
         if side <= 0:
             return number, side == 0
     return len(result.critical_values), False

@@ -12,12 +12,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import chain
+from itertools import chain, pairwise
 
 import numpy as np
 from flint import ctx
 
-from ptmcad.answer.intervals import CertifiedChange, CertifiedInterval
+from ptmcad.answer.counts import Counts
+from ptmcad.answer.intervals import Change, CountInterval
 from ptmcad.certified.arb_isolation import refined
 from ptmcad.certified.branchandprune import isolate
 from ptmcad.certified.equationsystem import EquationSystem
@@ -43,7 +44,7 @@ MIN_PART = Fraction(1, 2**16)
 
 def intervals_and_changes(
     slice: Slice, bits: int
-) -> tuple[tuple[CertifiedInterval, ...], tuple[CertifiedChange, ...]]:
+) -> tuple[tuple[CountInterval, ...], tuple[Change, ...]]:
     """The counts on the line of a slice's first axis, and what lies between them; the other axis
     has one value.
 
@@ -55,46 +56,51 @@ def intervals_and_changes(
     """
     axis, value = slice.axes[0], slice.axes[1].low
     wanted = curves(slice, Count.INDEX)
-    found: list[list[CertifiedChange]] = [[] for _ in wanted]
+    met: list[list[Change]] = [[] for _ in wanted]
     # what is quick to search comes first: what it leaves undecided need not be looked at closely
     # again
     for k in sorted(range(len(wanted)), key=lambda k: len(wanted[k].system.tape)):
-        undecided = _joined([change for some in found for change in some if not change.proved])
-        found[k] = list(_changes(slice, wanted[k], bits, undecided))
+        undecided = _joined([change for some in met for change in some if not change.proved])
+        met[k] = list(_changes(slice, wanted[k], bits, undecided))
     changes = _joined(
-        [c for some in found for c in some if c.at.high > axis.low and c.at.low < axis.high]
+        [c for some in met for c in some if c.at.high > axis.low and c.at.low < axis.high]
     )
     counter = plain_counter(slice)
-    edges = (Enclosure(end, end) for end in (axis.low, axis.high))
-    low = next(edges)
-    intervals = []
-    for high in (*(change.at for change in changes), *edges):
+    first, last = (Enclosure(end, end) for end in (axis.low, axis.high))
+    ends = (first, *(change.at for change in changes), last)
+    found: list[CountInterval | None] = []
+    for low, high in pairwise(ends):
         if low.high < high.low:
             sample = _simple(low.high, high.low)
             counts = counter.at(sample, value, Count.INDEX)
-            total, stable = _numbers(slice, counts)
-            intervals.append(
-                CertifiedInterval(low, high, counts.index, counts.cones, sample, total, stable)
-            )
-        low = high
-    return tuple(intervals), changes
+            found.append(CountInterval(low, high, _numbers(slice, counts), sample, counts.cones))
+        else:
+            found.append(None)
+    counted = [None if interval is None else interval.counts for interval in found]
+    sides = zip(changes, pairwise(counted), strict=True)
+    return (
+        tuple(interval for interval in found if interval is not None),
+        tuple(replace(change, before=before, after=after) for change, (before, after) in sides),
+    )
 
 
-def _numbers(slice: Slice, counts: PointCount) -> tuple[int | None, int | None]:
-    """All equilibria and the stable ones; nothing where it is known what is stable, but not of each
-    of them.
+def _numbers(slice: Slice, counts: PointCount) -> Counts | None:
+    """Of all equilibria and of the stable ones; None where it is known what is stable, but not of
+    each of them.
     """
+    if counts.total is None:
+        return None
     criterion = slice.model.criterion
     found = [criterion.is_stable(solution.signs) for solution in counts.solutions]
     stable = criterion.number(found)
-    if counts.stable is not None or counts.total is None or stable is None:
-        return counts.total, counts.stable
-    return (None, None) if None in found else (counts.total, stable)
+    if counts.stable is not None or stable is None:
+        return Counts(counts.total, counts.stable, counts.index)
+    return None if None in found else Counts(counts.total, stable, counts.index)
 
 
 def _changes(
-    slice: Slice, curve: CriticalCurve, bits: int, undecided: Sequence[CertifiedChange]
-) -> Iterator[CertifiedChange]:
+    slice: Slice, curve: CriticalCurve, bits: int, undecided: Sequence[Change]
+) -> Iterator[Change]:
     """Where the line meets a curve; parts of it that are too hard as a whole are halved while the
     budget lasts, but for what is ``undecided`` in them."""
     system = on_line(curve.system, 0)
@@ -125,14 +131,14 @@ def _changes(
                 for change in undecided
                 if change.at.high > low and change.at.low < high
             ]
-            yield from (CertifiedChange(Enclosure(*ends), (curve.name,), False) for ends in inside)
+            yield from (_met(Enclosure(*ends), curve, False) for ends in inside)
             middle = (low + high) / 2
             edges = [low, *chain.from_iterable(inside or [(middle, middle)]), high]
             waiting += [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
             continue
         for box in left:
             open_part = Enclosure(Fraction(float(box[0])), Fraction(float(box[variables])))
-            yield CertifiedChange(open_part, (curve.name,), False)
+            yield _met(open_part, curve, False)
         # ``narrow`` was contracted with the equations alone; its number can be enclosed to any
         # precision
         for row in found.narrow:
@@ -143,7 +149,12 @@ def _changes(
                 ]
                 box = (floats[0], ball(value, value), *floats[2:])
             exact = refined(equations, box, bits)[0]
-            yield CertifiedChange(Enclosure(lower(exact), upper(exact)), (curve.name,), True)
+            yield _met(Enclosure(lower(exact), upper(exact)), curve, True)
+
+
+def _met(at: Enclosure, curve: CriticalCurve, proved: bool) -> Change:
+    """Where a curve is met; the counts on the sides are not known yet."""
+    return Change(at, None, None, names=(curve.name,), proved=proved)
 
 
 _NONE = np.empty(0, np.int64)
@@ -160,9 +171,9 @@ def on_line(system: EquationSystem, varying: int) -> EquationSystem:
     return replace(system, unknowns=system.unknowns[kept], jacobian=jacobian, solved=solved)
 
 
-def _joined(changes: Sequence[CertifiedChange]) -> tuple[CertifiedChange, ...]:
+def _joined(changes: Sequence[Change]) -> tuple[Change, ...]:
     """Changes whose enclosures touch become one."""
-    joined: list[CertifiedChange] = []
+    joined: list[Change] = []
     for change in sorted(changes, key=lambda c: (c.at.low, c.at.high)):
         if not joined or change.at.low > joined[-1].at.high:
             joined.append(change)
@@ -170,7 +181,7 @@ def _joined(changes: Sequence[CertifiedChange]) -> tuple[CertifiedChange, ...]:
         last = joined.pop()
         names = tuple(dict.fromkeys((*last.names, *change.names)))
         at = Enclosure(last.at.low, max(last.at.high, change.at.high))
-        joined.append(CertifiedChange(at, names, last.proved and change.proved))
+        joined.append(replace(last, at=at, names=names, proved=last.proved and change.proved))
     return tuple(joined)
 
 

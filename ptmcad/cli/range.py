@@ -227,14 +227,7 @@ def command(
     suffixes = [suffix for suffix in formats if suffix != "json"]
     with held(limits):
         enclosed = is_enclosed(slice, request)
-        drawn = request.quantities or request.over or request.start is not None
-        if enclosed and suffixes and not drawn:
-            raise ConfigError(
-                "with a free length there is the table and JSON, and a picture of branches (--quantity NAME), of paths "
-                "(--path VALUE) or of a band (--over NAME) only",
-                key="--format",
-            )
-        parts = _parts(request, enclosed=enclosed)
+        parts = _parts(request)
         pictures = {f"{stem}{part}.{suffix}": part for part in parts for suffix in suffixes}
         file = f"{stem}.json" if "json" in formats else ""
         names = [*pictures, *filter(None, [file])]
@@ -276,10 +269,10 @@ def _save(
     )
 
 
-def _parts(request: RangeRequest, *, enclosed: bool) -> list[str]:
+def _parts(request: RangeRequest) -> list[str]:
     """What is added to the pictures' names."""
-    line = bool(request.at) and not enclosed
-    parts = [""] * line + ["-over"] * request.over + ["-path"] * (request.start is not None)
+    parts = [""] * bool(request.at) + ["-over"] * request.over
+    parts += ["-path"] * (request.start is not None)
     return parts + ["-branches"] * bool(request.quantities)
 
 

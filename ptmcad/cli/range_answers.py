@@ -98,26 +98,17 @@ def _answers(
     from ptmcad.show.ranges import linetable, pathtable
 
     along, at, digits = request.along, request.at, request.digits
-    enclosed = is_enclosed(slice, request)
     found: Any
-    if request.over and not enclosed:
-        from ptmcad.exact.ranges.rangestrips import refuse_free_lengths
-
-        # before the line is asked for, whose refusal would not say what to leave out
-        refuse_free_lengths(slice)
     if at:
-        from ptmcad.ask.lines.along import intervals_along
+        from ptmcad.ask.lines.along import intervals
 
-        found = intervals_along(slice, along, at, digits)
+        found = intervals(slice, along, at, digits=digits)
         yield found, linetable.table(found, digits), "", partial(_drawn, "draw_range", slice, found)
     if request.over:
-        from ptmcad.ask.lines.rangerows import enclosed_widths, operation_widths
+        from ptmcad.ask.lines.rangerows import operation_widths
 
         with ProgressBar() as progress:
-            if enclosed:
-                found = enclosed_widths(slice, along, request.rows, digits, progress)
-            else:
-                found = operation_widths(slice, along, request.rows)
+            found = operation_widths(slice, along, request.rows, digits, progress)
         text = linetable.width_table(found, digits)
         yield found, text, "-over", partial(_drawn, "draw_widths", slice, found)
 
@@ -153,9 +144,9 @@ def is_enclosed(slice: Slice, request: RangeRequest) -> bool:
     """Whether the certified engine answers, as springs have free lengths."""
     from ptmcad.question.line import has_free_lengths
 
-    if not request.at:
-        return request.over and slice.has_free_lengths
-    return has_free_lengths(slice, request.along, request.at)
+    if request.over and slice.has_free_lengths:
+        return True
+    return bool(request.at) and has_free_lengths(slice, request.along, request.at)
 
 
 MAX_UNKNOWNS = 2

@@ -32,8 +32,10 @@ from ptmcad.algebra.polynomials import Values
 from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate
 from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.answer.counts import Counts, counts_of_signs, euler_sum
+from ptmcad.answer.regionmap import Solution
 from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_point
+from ptmcad.text.flint_numbers import to_fraction
 
 _FIRST_BITS = 128
 """Two machine words: nearly always enough, and in balls hardly more work than one."""
@@ -43,36 +45,19 @@ middle.
 """
 
 
-class Equilibrium(NamedTuple):
-    """A real solution: the only one within ``radius`` of ``center`` in every coordinate, and what
-    is stable about it.
-
-    Attributes
-    ----------
-    center, radius : decimals.
-    signs : of the Hessian's eigenvalues, positive ones first; without a potential, of the stability
-        conditions in their order, 0 where one is zero.
-    is_held : whether all conditions for stability are positive; of a potential the additional
-        ones of a count.
-    """
-
-    center: tuple[fmpq, ...]
-    radius: fmpq
-    signs: str
-    is_held: bool = True
-
-
 class Equilibria(NamedTuple):
     """All real solutions that count at a rational point, in disjoint boxes.
 
     Attributes
     ----------
+    solutions : in a potential's case with the signs of the Hessian's eigenvalues, else of the
+        stability conditions in their order, 0 where one is zero.
     bits : the precision at which every sign was certain and the boxes were disjoint.
     held : the number of stable ones at which all conditions for stability are positive.
     """
 
     counts: Counts
-    solutions: tuple[Equilibrium, ...]
+    solutions: tuple[Solution, ...]
     bits: int
     held: int = 0
 
@@ -102,15 +87,16 @@ def equilibria(
     )
     roots = isolate(representation.minimal, -bound, bound)
     zeros = [vanishing_divisor(point.algebra, representation, p) for p in point.conditions]
-    while (found := _enclosed(system, point, representation, roots, zeros, bits)) is None:
+    while (enclosed := _enclosed(system, point, representation, roots, zeros, bits)) is None:
         bits *= 2
+    found, held = enclosed
     counts = _counts(system, found)
     if counts.index is not None and system.is_on_torus and euler_sum(counts.index):
         raise ArithmeticError(f"the Euler sum of {counts} at {text_of_point(values)} is not zero")
-    return Equilibria(counts, found, bits, sum(e.is_held and not e.signs.strip("+") for e in found))
+    return Equilibria(counts, found, bits, held)
 
 
-def _counts(system: ParametricSystem, found: Sequence[Equilibrium]) -> Counts:
+def _counts(system: ParametricSystem, found: Sequence[Solution]) -> Counts:
     return counts_of_signs([e.signs for e in found], system.criterion)
 
 
@@ -121,11 +107,12 @@ def _enclosed(
     roots: Sequence[RealRoot],
     zeros: Sequence[Divisor | None],
     bits: int,
-) -> tuple[Equilibrium, ...] | None:
-    """The solutions at these roots that count, in disjoint boxes; None when the precision does not
-    decide all signs.
+) -> tuple[tuple[Solution, ...], int] | None:
+    """The solutions at these roots that count, in disjoint boxes, and the number of stable ones at
+    which all conditions for stability are positive; None when the precision does not decide all
+    signs.
     """
-    found: list[Equilibrium] = []
+    found, held = list[tuple[tuple[fmpq, ...], fmpq, str]](), 0
     with ctx.workprec(bits):
         unknowns_at = unknowns_in_balls(representation)
         conditions = tuple(map(_in_balls, point.conditions))
@@ -159,15 +146,19 @@ def _enclosed(
             # where all inequalities hold there is no solution that does not count
             if not all(_value(p, around) > 0 for p in conditions[:inequalities]):
                 return None
-            found.append(Equilibrium(center, radius, signs, is_held))
+            found.append((center, radius, signs))
+            held += is_held and not signs.strip("+")
     disjoint = all(
-        any(
-            abs(x - y) > _ROOM * (a.radius + b.radius)
-            for x, y in zip(a.center, b.center, strict=True)
-        )
+        any(abs(x - y) > _ROOM * (a[1] + b[1]) for x, y in zip(a[0], b[0], strict=True))
         for a, b in combinations(found, 2)
     )
-    return tuple(found) if disjoint else None
+    if not disjoint:
+        return None
+    solutions = (
+        Solution(tuple(map(to_fraction, center)), to_fraction(radius), signs)
+        for center, radius, signs in found
+    )
+    return tuple(solutions), held
 
 
 _Balls = list[tuple[arb, tuple[int, ...]]]

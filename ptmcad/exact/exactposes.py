@@ -16,7 +16,7 @@ from itertools import pairwise
 from flint import fmpq
 
 from ptmcad.algebra.fibre_algebra import WorkLimit
-from ptmcad.algebra.fibre_points import FibrePoints, RealPoint, points
+from ptmcad.algebra.fibre_points import RealPoint, points
 from ptmcad.algebra.polynomials import Values
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
@@ -53,7 +53,7 @@ def exact_poses(
     system, known = system_from(given), compiled(given)
     values = {name: from_fraction(v) for name, v in parameters.items()}
     try:
-        point, found = _solutions(system, values, most)
+        point, found, coinciding = _solutions(system, values, most)
     except DegeneratePoint:
         what = noun(given) if known.points else known.criterion.solutions
         remark = (
@@ -61,7 +61,7 @@ def exact_poses(
         )
         return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, remark)
     # where solutions are left out there is one coordinate more than those of the unknowns
-    real = [replace(p, unknowns=p.unknowns[: system.ring.width]) for p in found.real]
+    real = [replace(p, unknowns=p.unknowns[: system.ring.width]) for p in found]
     relaxed = dict.fromkeys(given.free_lengths, fmpq(0)) | values
     solutions = [
         s for s in _exact_solutions(known, point, relaxed, real) if s.all_positive(s.inequalities)
@@ -72,7 +72,7 @@ def exact_poses(
     if not degenerate and system.is_on_torus:
         _check_euler_sum(poses)
     energies = _energy_ranks(poses)
-    # of equal energies the larger value of the separating form comes first, in which ``found.real``
+    # of equal energies the larger value of the separating form comes first, in which ``found``
     # increases
     order = sorted(range(len(poses)), key=lambda k: (poses[k].stable is not True, energies[k], -k))
     return Poses(
@@ -87,7 +87,7 @@ def exact_poses(
                 *filter(
                     None,
                     [
-                        "" if degenerate else _remark(found),
+                        "" if degenerate else _remark(found, coinciding),
                         BY_MSOLVE if point.algebra.by_msolve else "",
                     ],
                 ),
@@ -108,20 +108,25 @@ def _vanishing(
             yield known.criterion.at_zero(what, len(numbers), conditions[k])
 
 
-def _remark(found: FibrePoints) -> str:
-    """What coincides where no solution that counts is degenerate."""
-    if found.distinct == found.total:
+def _remark(real: Sequence[RealPoint], coinciding: int) -> str:
+    """What coincides where no solution that counts is degenerate.
+
+    Parameters
+    ----------
+    coinciding : how many fewer different solutions there are than with multiplicity.
+    """
+    if not coinciding:
         return ""
-    if found.total - found.distinct > sum(p.multiplicity - 1 for p in found.real):
+    if coinciding > sum(p.multiplicity - 1 for p in real):
         return "two solutions that are not real coincide"
     return "two solutions that an inequality excludes coincide"
 
 
 def _solutions(
     system: ParametricSystem, values: Values, most: WorkLimit | None
-) -> tuple[PointSystem, FibrePoints]:
-    """All solutions, or those at which no inequality's polynomial is zero, where others are in the
-    way.
+) -> tuple[PointSystem, list[RealPoint], int]:
+    """All real solutions, or those at which no inequality's polynomial is zero, where others are in
+    the way; and how many fewer different complex ones there are than with multiplicity.
 
     Raises
     ------
@@ -131,12 +136,13 @@ def _solutions(
         When the quotient algebra is more work than `most`.
     """
     for point in point_systems(system, values, most):
-        found = FibrePoints((), 0, 0)
+        found, different = list[RealPoint](), 0
         if point.algebra.dimension:
-            found = points(point.algebra, 1 if point.is_bounded else None)
-        if found.distinct == found.total:
+            found, different = points(point.algebra, 1 if point.is_bounded else None)
+        coinciding = point.algebra.dimension - different
+        if not coinciding:
             break
-    return point, found
+    return point, found, coinciding
 
 
 def _exact_solutions(

@@ -23,14 +23,12 @@ from ptmcad.answer.regionmap import (
     NonAdjacency,
     Region,
     RegionMap,
-    Solution,
     Stack,
     Status,
 )
 from ptmcad.exact.cad.crossings import Crossing
 from ptmcad.exact.cad.projection import Projection
 from ptmcad.exact.cad.stacks import StackData
-from ptmcad.exact.counting import Equilibria
 from ptmcad.exact.decomposition import Variety, members, segment_of
 from ptmcad.exact.exactplan import plan_of
 from ptmcad.exact.models.modelsystem import system_text
@@ -150,7 +148,7 @@ def _cells(problem: SliceProblem, cells: Cells, samples: Sequence[Point]) -> Ite
             counts.total,
             counts.stable,
             counts.index,
-            _solutions(found),
+            found.solutions,
             further,
         )
 
@@ -175,13 +173,6 @@ def _non_adjacencies(
         ]
         first = following
     return tuple(found)
-
-
-def _solutions(found: Equilibria) -> tuple[Solution, ...]:
-    return tuple(
-        Solution(tuple(to_fraction(x) for x in s.center), to_fraction(s.radius), s.signs)
-        for s in found.solutions
-    )
 
 
 def stacks_of_cells(stacks: Sequence[StackData]) -> tuple[Stack, ...]:

@@ -11,9 +11,10 @@ far as that is looked for, where the square of its cosine is rational.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import count
 from typing import Any, NamedTuple
 
 from flint import arb, ctx, fmpq
@@ -165,29 +166,6 @@ def is_positive(element: FieldElement) -> bool:
         bits *= 2
 
 
-class _Settled:
-    """The enclosures of a pose's numbers, in their order, at one precision after the other.
-
-    What a lower precision has settled stays as it is.
-    """
-
-    def __init__(self, digits: int) -> None:
-        self._digits = digits
-        self._known: dict[int, Enclosure] = {}
-        self._asked = 0
-
-    def restart(self) -> int:
-        """Go back to the first number; how many are open."""
-        asked, self._asked = self._asked, 0
-        return asked - len(self._known)
-
-    def __call__(self, number: RealNumber) -> Enclosure:
-        place, self._asked = self._asked, self._asked + 1
-        if place not in self._known and (found := number.enclosure(self._digits)) is not None:
-            self._known[place] = found
-        return self._known.get(place, _OPEN)
-
-
 def pose_of(solution: ExactSolution, digits: int) -> tuple[Pose, int]:
     """The pose with all numbers settled to so many digits, and the bits that this took.
 
@@ -197,11 +175,19 @@ def pose_of(solution: ExactSolution, digits: int) -> tuple[Pose, int]:
         When `MAX_BITS` do not settle a number, which would be a fault of this program.
     """
     bits = 64 + 4 * digits
-    settled = _Settled(digits)
+    known: dict[int, Enclosure] = {}  # by their order in a pose; what is settled stays as it is
     while True:
+        places = count()
+
+        def settled(number: RealNumber, places: Iterator[int] = places) -> Enclosure:
+            place = next(places)
+            if place not in known and (found := number.enclosure(digits)) is not None:
+                known[place] = found
+            return known.get(place, _OPEN)
+
         with ctx.workprec(bits):
             pose = _pose(solution, settled)
-        still_open = settled.restart()
+        still_open = next(places) - len(known)
         if not still_open:
             return pose, bits
         bits *= 2
@@ -211,7 +197,7 @@ def pose_of(solution: ExactSolution, digits: int) -> tuple[Pose, int]:
             )
 
 
-def _pose(solution: ExactSolution, settled: _Settled) -> Pose:
+def _pose(solution: ExactSolution, settled: Callable[[RealNumber], Enclosure]) -> Pose:
     """The pose at the context's precision."""
     seen, stiffness = solution.quantities, solution.stiffness
     at = solution.point.field.evaluation()

@@ -17,7 +17,7 @@ from functools import partial
 from itertools import combinations
 
 from ptmcad.answer.design import BestDesign, BoundedBox
-from ptmcad.answer.intervals import End, Span, lower, upper
+from ptmcad.answer.intervals import AnyEnd, Span, lower, upper
 from ptmcad.errors import ExpressionError
 from ptmcad.options import Progress
 from ptmcad.question.slice import Axis
@@ -391,7 +391,7 @@ def _share(source: random.Random) -> Fraction:
     return Fraction(2 * source.randrange(_SHARES) + 1, 2 * _SHARES)
 
 
-def _enclosed(end: End) -> Enclosure:
+def _enclosed(end: AnyEnd) -> Enclosure:
     return Enclosure(lower(end), upper(end))
 
 

@@ -198,7 +198,7 @@ def test_the_command_draws_and_tells_them(
         "  up: rho = 1.231662423: fold: the stable pose merges with a saddle and both vanish; the mechanism"
         in out
     )
-    assert {path.name for path in tmp_path.iterdir()} == {"x.json", "x-path.svg"}
+    assert {path.name for path in tmp_path.iterdir()} == {"x.json", "x.svg", "x-path.svg"}
     data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
     assert "joined" not in data["path"]

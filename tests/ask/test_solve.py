@@ -360,15 +360,15 @@ def test_points_of_a_fibre_with_complex_and_fat_points() -> None:
     p = {(7, 0): one, (6, 0): -one, (5, 0): 2 * one, (4, 0): -2 * one, (3, 0): one, (2, 0): -one}
     curve = fibre([p, {(0, 1): one, (1, 0): -one, (0, 0): -one}], 2)  # type: ignore[list-item]
     assert curve is not None
-    found = points(curve, bound=2)
-    assert (found.distinct, found.total) == (4, 7)
-    assert [(tuple(u.rational for u in x.unknowns), x.multiplicity) for x in found.real] == [
+    real, different = points(curve, bound=2)
+    assert (different, curve.dimension) == (4, 7)
+    assert [(tuple(u.rational for u in x.unknowns), x.multiplicity) for x in real] == [
         ((0, 1), 2),
         ((1, 2), 1),
     ]
     fat = fibre([{(2, 0): one}, {(1, 1): one}, {(0, 2): one}], 2)
     assert fat is not None
-    assert [x.multiplicity for x in points(fat).real] == [3]
+    assert [x.multiplicity for x in points(fat)[0]] == [3]
 
 
 # ------------------------------------------------------------------------------------------- symmetries (theorem 5)

@@ -14,7 +14,7 @@ from support.dense_search import dense_search
 
 pytest.importorskip("numba")
 
-from ptmcad.answer.intervals import CertifiedIntervals
+from ptmcad.answer.intervals import CountIntervals
 from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.question.config import slice_from_mapping, slice_from_options
@@ -53,7 +53,7 @@ BAND: dict[str, Any] = {
 """A slider on a spring to a point beside its guide, with a bar that a second spring pulls."""
 
 
-def along(record: str, axis: str, at: dict[str, str], window: str) -> CertifiedIntervals:
+def along(record: str, axis: str, at: dict[str, str], window: str) -> CountIntervals:
     slice = slice_from_options(SHIPPED / f"{record}.yaml", ranges=[f"{axis}={window}"])
     return certified_intervals(slice, axis, at, 10)
 

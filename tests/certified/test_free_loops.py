@@ -22,7 +22,7 @@ from support.loop_search import Energy, Numbers, counts_along
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.lines.along import certified_intervals
-from ptmcad.ask.lines.rangerows import enclosed_widths
+from ptmcad.ask.lines.rangerows import operation_widths
 from ptmcad.certified import engine
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.plain import criticalcurves as plain_curves
@@ -260,7 +260,7 @@ def test_intervals_along_a_line() -> None:
     for interval in found.intervals:
         p = values_at(slice, interval.sample, Fraction(18, 5))
         assert (interval.total, interval.stable) == counts_along(p, energy_of(p))
-    widths = enclosed_widths(slice, "F", 3, 6, lambda *_: None)
+    widths = operation_widths(slice, "F", 3, 6)
     assert widths.working == 3
     with pytest.raises(ConfigError, match="not followed where springs have free lengths"):
         ptmcad.pose_paths(slice, "F", {"G": "18/5"}, "1")

@@ -10,53 +10,82 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from ptmcad.answer.intervals import CertifiedIntervals, CountIntervals
+from ptmcad.answer.counts import operation_number
+from ptmcad.answer.intervals import CountIntervals
 from ptmcad.process.memory import loading
 from ptmcad.question.line import has_free_lengths, on_line, varying_axis
 from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.enclosure import DIGITS
 
 
-def intervals_along(
-    slice: Slice, along: str, at: Mapping[str, Any], digits: int
-) -> CountIntervals | CertifiedIntervals:
-    """The intervals on a line, exact, or with free lengths enclosed to so many digits.
+def intervals(
+    slice: Slice,
+    along: str,
+    at: Mapping[str, Any],
+    working: int | None = None,
+    digits: int = DIGITS,
+) -> CountIntervals:
+    """The intervals of constant count on a line of a slice.
 
-    Raises
-    ------
-    ConfigError, HypothesisError
-        As `ptmcad.intervals` and `certified_intervals`.
-    """
-    if has_free_lengths(slice, along, at):
-        return certified_intervals(slice, along, at, digits)
-    from ptmcad.exact.ranges.exactline import intervals
-
-    return intervals(slice, along, at)
-
-
-def certified_intervals(
-    slice: Slice, along: str, at: Mapping[str, Any], digits: int
-) -> CertifiedIntervals:
-    """The intervals of constant count on a line of a slice whose springs have free lengths.
+    Their ends are exact, or with free lengths on the line enclosed.
 
     Parameters
     ----------
     along : the axis that varies, over its window.
-    at : the other axis with its value: text, int or Fraction.
-    digits : significant digits to which critical values are enclosed.
+    at : the other axis with its value: text or a number, of which a float stands for its shortest
+        decimal.
+    working : the number of stable solutions in an operation range; the greatest one on this line
+        when None, and of a mechanism at least two.
+    digits : significant digits to which ends are enclosed.
 
     Raises
     ------
     ConfigError When ``along`` is no axis, or ``at`` does not name exactly the other one with an
         exact number.
+    DegenerateSliceError When at every point of the line some equilibrium is singular.
+    InfiniteSolutionsError
+        When every point of it has infinitely many equilibria.
+    GeometryError
+        When a length or a stiffness is not positive on it.
+    """
+    if has_free_lengths(slice, along, at):
+        return certified_intervals(slice, along, at, digits, working)
+    from ptmcad.exact.ranges.exactline import intervals as exact_intervals
+
+    return exact_intervals(slice, along, at, working)
+
+
+def certified_intervals(
+    slice: Slice, along: str, at: Mapping[str, Any], digits: int, working: int | None = None
+) -> CountIntervals:
+    """The intervals on a line by the certified engine, whether springs have free lengths or not.
+
+    The line need not lie in the slice's window, so nothing that is known of the window is used.
+
+    Raises
+    ------
+    ConfigError As `intervals`.
     GeometryError When a parameter is not on the whole line what the proofs ask for, or that could
-        not be proved. The line need not lie in the slice's window, so nothing that is known of the
-        window is used.
+        not be proved.
     """
     with loading("the certified engine"):
         from ptmcad.certified.enclosedline import intervals_and_changes
         from ptmcad.question.domain import proved
     varying, other, value = varying_axis(slice, along, at)
+    parameters = on_line(slice, varying, value)
     axes = slice.axes[varying], Axis(other, value, value)
-    line = proved(replace(slice, axes=axes, parameters=on_line(slice, varying, value)))
-    intervals, changes = intervals_and_changes(line, 64 + 4 * digits)
-    return CertifiedIntervals(slice.axes[varying], {other: value}, intervals, changes)
+    line = proved(replace(slice, axes=axes, parameters=parameters))
+    found, changes = intervals_and_changes(line, 64 + 4 * digits)
+    if working is None:
+        working = operation_number(slice.model, (i.counts for i in found if i.counts is not None))
+    return CountIntervals(
+        slice.name,
+        slice.model,
+        slice.axes[varying],
+        {other: value},
+        parameters,
+        found,
+        changes,
+        working,
+        enclosed=True,
+    )

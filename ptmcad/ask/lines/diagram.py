@@ -19,7 +19,7 @@ from typing import Any
 from ptmcad.answer.branches import Branch, Branches, BranchPoint
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
-from ptmcad.ask.lines.along import intervals_along
+from ptmcad.ask.lines.along import intervals
 from ptmcad.ask.quantities import Quantity, of_pose, quantity, unit_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.model import Model
@@ -76,7 +76,7 @@ def branch_diagram(
     varying, other, value = varying_axis(slice, along, at)
     line = line or solutions_on_line(slice, along, at)
     branches: list[Branch] = []
-    stretches = intervals_along(slice, along, at, DIGITS).stretches
+    stretches = intervals(slice, along, at, digits=DIGITS).stretches
     for number, (low, high) in enumerate(stretches):
         if progress is not None:
             progress("branches: interval", number, len(stretches))

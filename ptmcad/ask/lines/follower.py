@@ -21,18 +21,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from flint import ctx
 
+from ptmcad.answer.intervals import Change
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.ask.fields.course import Course
 from ptmcad.ask.fields.descent import descent
 from ptmcad.ask.fields.equations import Floats, apart
 from ptmcad.ask.fields.track import Track
 from ptmcad.ask.lines.diagram import Sample
-from ptmcad.ask.lines.landing import CriticalValue, beside, ends_from, landing
+from ptmcad.ask.lines.landing import CriticalValue, beside, ends_from, landed
 from ptmcad.ask.lines.linesystem import DIGITS, LineSystem, line_system
 from ptmcad.ask.lines.meeting import Meeting, PlacedSolution, guess_of, what_meets
 from ptmcad.ask.quantities import open_chain
@@ -94,7 +95,7 @@ def pose_paths(
             key="--path",
         )
     line = line_of(slice, along, at, free=enclosed)
-    critical = (_enclosed_values if enclosed else _exact_values)(slice, line)
+    critical = _changes_on(slice, line, enclosed=enclosed)
     family = line_system(line)
     untold = enclosed and any(_order(c.at, begin) == 0 for c in critical)
     here = None if untold else family.solutions.at(begin)
@@ -121,24 +122,15 @@ def pose_paths(
     )
 
 
-class CriticalPlace(NamedTuple):
-    """A critical value of a line, and whether it is proved that there is one, and no other near."""
+def _changes_on(slice: Slice, line: Line, *, enclosed: bool) -> tuple[Change, ...]:
+    """The critical values of a line; nothing is counted on the sides of exact ones."""
+    if enclosed:
+        from ptmcad.ask.lines.along import certified_intervals
 
-    at: CriticalValue
-    proved: bool = True
-
-
-def _exact_values(_: Slice, line: Line) -> tuple[CriticalPlace, ...]:
+        return certified_intervals(slice, line.along.name, line.at, DIGITS).changes
     from ptmcad.exact.ranges.exactline import critical_values
 
-    return tuple(CriticalPlace(number) for number, _ in critical_values(line))
-
-
-def _enclosed_values(slice: Slice, line: Line) -> tuple[CriticalPlace, ...]:
-    from ptmcad.ask.lines.along import certified_intervals
-
-    changes = certified_intervals(slice, line.along.name, line.at, DIGITS).changes
-    return tuple(CriticalPlace(change.at, change.proved) for change in changes)
+    return tuple(Change(number, None, None) for number, _ in critical_values(line))
 
 
 def _order(number: CriticalValue, value: Fraction) -> int:
@@ -160,7 +152,7 @@ class Follower:
 
     slice: Slice
     family: LineSystem
-    critical: tuple[CriticalPlace, ...]
+    critical: tuple[Change, ...]
     start: Sample
 
     def path(self, number: int) -> PosePath:
@@ -190,7 +182,7 @@ class Follower:
         )
 
     def _one_way(
-        self, numbers: Sequence[CriticalPlace], origin: Reached, side: int
+        self, numbers: Sequence[Change], origin: Reached, side: int
     ) -> tuple[list[Reached], PathEnd]:
         """Follow a branch in one direction through all critical values that do not concern it."""
         family = self.family
@@ -238,7 +230,7 @@ class Follower:
             self._point(steps[-1] if steps else current),
         )
 
-    def _meeting(self, critical: CriticalPlace, current: Reached, after: Fraction) -> PathEnd:
+    def _meeting(self, critical: Change, current: Reached, after: Fraction) -> PathEnd:
         """Which solutions meet at a critical value that the path does not pass."""
         family = self.family
         stopped = PathEnd(Fate.UNDECIDED, critical.at, self._point(current))
@@ -255,12 +247,11 @@ class Follower:
             leaving=found.leaving,
             among=found.among,
         )
-        landed = None if goal is None else landing(family, critical.at, found, current, goal.place)
-        if landed is None:
+        end = None if goal is None else landed(family, met, found, current, goal.place)
+        if end is None:
             return met
-        fate = Fate.MERGE if 0 in found.leaving else Fate.SNAP
-        fallen = fate is Fate.SNAP and sum(s.negative == 0 for s in found.beyond) > 1
-        return replace(met, fate=fate, fallen=fallen, **landed._asdict())
+        several = sum(s.negative == 0 for s in found.beyond) > 1
+        return replace(end, fallen=end.fate is Fate.SNAP and several)
 
     def _goal(self, met: Meeting, current: Reached, after: Fraction) -> PlacedSolution | None:
         """The stable pose beyond to which the energy descends: the only one, or that of steepest

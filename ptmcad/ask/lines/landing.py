@@ -13,12 +13,13 @@ bounded on the torus.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from math import pi
 
 from flint import arb, ctx
 
-from ptmcad.answer.paths import Landing, Target
+from ptmcad.answer.paths import Fate, PathEnd, Target
 from ptmcad.ask.lines.linesystem import DIGITS, LineSystem
 from ptmcad.ask.lines.meeting import Meeting, what_meets
 from ptmcad.exact.exactposes import exact_poses
@@ -35,20 +36,22 @@ width.
 """
 
 
-def landing(
-    family: LineSystem, number: CriticalValue, met: Meeting, current: Reached, target: Reached
-) -> Landing | None:
-    """What holds at the critical value where a branch ends; None where the pose that is reached is
-    not proved.
+def landed(
+    family: LineSystem, end: PathEnd, met: Meeting, current: Reached, target: Reached
+) -> PathEnd | None:
+    """The end of a path with what holds at its critical value; None where the pose that is reached
+    is not proved.
 
     Its angles are not wrapped into one turn.
 
     Parameters
     ----------
-    number : the only critical value between ``current`` and ``target``.
+    end : at the only critical value between ``current`` and ``target``.
     met : what the branch meets there.
     target : the only stable pose beyond.
     """
+    number = end.at
+    assert not isinstance(number, Fraction)  # which is the window's edge
     potential = family.potential
     assert potential is not None  # snaps and mergers are those of a potential
 
@@ -76,7 +79,13 @@ def landing(
             number.low, number.high, tuple(ball_over(u.low, u.high) for u in unknowns)
         )
     reached = Target(unknowns[: family.angles], unknowns[family.angles :], sides)
-    return Landing(reached, energy(before), energy(before if at is None else Reached(near, at, at)))
+    return replace(
+        end,
+        fate=Fate.SNAP if at is not None else Fate.MERGE,
+        target=reached,
+        energy=energy(before),
+        target_energy=energy(before if at is None else Reached(near, at, at)),
+    )
 
 
 def ends_from(number: CriticalValue, side: int) -> tuple[Fraction, Fraction]:

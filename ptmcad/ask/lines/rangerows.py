@@ -13,45 +13,55 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from itertools import groupby
-from typing import TypeVar
 
 from ptmcad.answer.counts import operation_number
-from ptmcad.answer.intervals import CertifiedInterval
-from ptmcad.answer.widths import (
-    CertifiedRange,
-    CertifiedRow,
-    CertifiedWidths,
-    OperationWidths,
-    WidthRow,
-)
+from ptmcad.answer.intervals import CountIntervals, operation_spans
+from ptmcad.answer.widths import OperationWidths, WidthRow
 from ptmcad.ask.quantities import open_chain
 from ptmcad.errors import A_SLICE, ConfigError, HypothesisError, expect, quoted
 from ptmcad.options import Progress
 from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.enclosure import DIGITS
 
 ROWS = 41
-T = TypeVar("T")
 
 
-def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWidths:
-    """Tabulate the operation range's width over the other axis and find where it is largest.
+def operation_widths(
+    slice: Slice,
+    along: str,
+    rows: int = ROWS,
+    digits: int = DIGITS,
+    progress: Progress | None = None,
+) -> OperationWidths:
+    """Tabulate the operation range's width over the other axis.
+
+    Where no spring has a free length, all numbers are exact, and it is proved where the range is
+    widest. With free lengths ends are enclosed in each row, and nothing is proved of the values
+    between two rows.
+
+    Parameters
+    ----------
+    rows : values of the other axis, at equal distances within its window.
+    digits : to which ends are enclosed, with free lengths.
+    progress : with free lengths called as progress("rows", done, rows).
 
     Raises
     ------
     ConfigError
-        When springs have a free length.
+        When ``along`` is no axis of the slice, or ``rows`` no number of them.
     HypothesisError
         When the slice is degenerate or leaves the domain of the geometry.
     """
+    axis, over = _axes(slice, along, rows)
+    if slice.has_free_lengths:
+        return _enclosed(slice, axis, over, rows, digits, progress)
     from ptmcad.exact.ranges.exactline import intervals
     from ptmcad.exact.ranges.rangestrips import strips
     from ptmcad.exact.ranges.width import widest
 
-    axis, over = _axes(slice, along, rows)
     found = strips(slice, along)
     table = tuple(
-        WidthRow(value, () if line is None else line.operation, remark)
+        WidthRow(value, () if line is None else line.operation, remark=remark)
         for value, line, remark in _rows(
             over, rows, lambda value: intervals(slice, along, {over.name: value}, found.working)
         )
@@ -60,35 +70,37 @@ def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWid
     return OperationWidths(slice.name, axis, over, table, maxima, slice.model, found.working)
 
 
-def enclosed_widths(
-    slice: Slice, along: str, rows: int, digits: int, progress: Progress
-) -> CertifiedWidths:
-    """Tabulate the operation ranges of a slice whose springs have free lengths.
-
-    Parameters
-    ----------
-    digits : to which ends are enclosed.
-    progress : called as progress("rows", done, rows).
-    """
+def _enclosed(
+    slice: Slice, axis: Axis, over: Axis, rows: int, digits: int, progress: Progress | None
+) -> OperationWidths:
+    """The rows of a slice whose springs have free lengths."""
     from ptmcad.ask.lines.along import certified_intervals
 
-    axis, over = _axes(slice, along, rows)
-    found: list[tuple[Fraction, tuple[CertifiedInterval, ...], str]] = []
-    for value, line, remark in _rows(
-        over, rows, lambda value: certified_intervals(slice, along, {over.name: value}, digits)
+    found: list[tuple[Fraction, CountIntervals | None, str]] = []
+    for row in _rows(
+        over,
+        rows,
+        lambda value: certified_intervals(slice, axis.name, {over.name: value}, digits),
     ):
-        found.append((value, () if line is None else line.intervals, remark))
-        progress("rows", len(found), rows)
+        found.append(row)
+        if progress is not None:
+            progress("rows", len(found), rows)
+    lines = [() if line is None else line.intervals for _, line, _ in found]
     working = operation_number(slice.model, ())
     if open_chain(slice.model) is None:
         # as without free lengths: a loop is stable somewhere nearly everywhere
-        known = (i.working or 0 for _, row, _ in found for i in row)
+        known = (i.working or 0 for line in lines for i in line)
         working = max(known, default=working) or working
     table = tuple(
-        CertifiedRow(value, _ranges(row, working), any(i.working is None for i in row), remark)
-        for value, row, remark in found
+        WidthRow(
+            value,
+            operation_spans(line, lambda number: number >= working),
+            any(i.working is None for i in line),
+            remark,
+        )
+        for (value, _, remark), line in zip(found, lines, strict=True)
     )
-    return CertifiedWidths(axis, over, table, working, slice.name, slice.model)
+    return OperationWidths(slice.name, axis, over, table, (), slice.model, working, enclosed=True)
 
 
 def _axes(slice: Slice, along: str, rows: int) -> tuple[Axis, Axis]:
@@ -107,8 +119,8 @@ def _axes(slice: Slice, along: str, rows: int) -> tuple[Axis, Axis]:
 
 
 def _rows(
-    over: Axis, rows: int, line: Callable[[Fraction], T]
-) -> Iterator[tuple[Fraction, T | None, str]]:
+    over: Axis, rows: int, line: Callable[[Fraction], CountIntervals]
+) -> Iterator[tuple[Fraction, CountIntervals | None, str]]:
     """Values of an axis at equal distances, the line at each, or why it has no answer."""
     for k in range(1, rows + 1):
         value = over.at(Fraction(k, rows + 1))
@@ -116,14 +128,3 @@ def _rows(
             yield value, line(value), ""
         except HypothesisError as error:
             yield value, None, str(error)
-
-
-def _ranges(row: tuple[CertifiedInterval, ...], working: int) -> tuple[CertifiedRange, ...]:
-    """The operation ranges of a row; one goes on through a value at which only other solutions
-    meet.
-    """
-    groups = groupby(
-        row, lambda interval: interval.working is not None and interval.working >= working
-    )
-    runs = [list(group) for inside, group in groups if inside]
-    return tuple(CertifiedRange(run[0].low, run[-1].high) for run in runs)

@@ -10,8 +10,7 @@ from collections.abc import Callable
 
 from flint import fmpq
 
-from ptmcad.algebra.curve_branches import avoids
-from ptmcad.algebra.real_roots import Interval, RealRoot, refine
+from ptmcad.algebra.real_roots import Interval, RealRoot, avoids, refine
 from ptmcad.exact.cad.projection import FibredCurve
 from ptmcad.text.flint_numbers import simplest_between
 

@@ -306,7 +306,7 @@ def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:
     ValueError
         When it is not between them, as in a damaged result: halving would never part it from them.
     """
-    root = root_of(value)
+    root = root_of(value.number)
     signs = {sign_at(root.polynomial, end) for end in (root.low, root.high)}
     is_one = root.is_rational or (root.low < root.high and signs == {-1, 1})
     if not is_one or not order(before, root) < 0 < order(after, root):

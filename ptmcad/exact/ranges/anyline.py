@@ -16,7 +16,7 @@ sign at a solution at which it is not zero all along.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -46,16 +46,18 @@ from ptmcad.algebra.real_roots import gaps, isolate
 from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError
+from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.discriminant_variety import algebra_of
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.models.system import ALONG, SliceSystem, lifted, on_slice, saturated, with_root
 from ptmcad.exact.point_system import DegeneratePoint, point_system
 from ptmcad.exact.ranges.exactline import END_WIDTH, intervals, runs
+from ptmcad.exact.ranges.rangestrips import RangeStrips
 from ptmcad.exact.statics import is_positive
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between
+from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, to_fraction
 
 MAX_DIMENSION = 40
 """Complex solutions, with multiplicity and at all conjugate values, up to which they are told
@@ -112,12 +114,45 @@ def ranges_on(slice: Slice, along: str, value: End, working: int) -> LineRanges:
     if algebra.dimension > MAX_DIMENSION:
         return (), whole
     numbers = _critical(equations, algebra, axis)
-    counting = _Counting(system, algebra.dimension, equations is not given, minimal, working)
+    count_at = _counting(system, algebra.dimension, equations is not given, minimal)
     ends: list[End] = [axis.low, *numbers, axis.high]
     here = [
-        counting.between(*map(from_fraction, gap)) for gap in gaps(numbers, (axis.low, axis.high))
+        _has(working, count_at, *map(from_fraction, gap))
+        for gap in gaps(numbers, (axis.low, axis.high))
     ]
     return _spans(ends, [h is True for h in here]), _spans(ends, [h is not False for h in here])
+
+
+class SpecialLine(NamedTuple):
+    """A value of the other axis, an end of strips, and what is counted on the line there."""
+
+    end: BaseEnd
+    ranges: LineRanges
+
+    @property
+    def value(self) -> End:
+        return number_at(self.end)
+
+    @property
+    def most(self) -> Fraction:
+        """An upper bound of the widths on it."""
+        return max((span.width.high for span in self.ranges[1]), default=Fraction(0))
+
+
+def lines_of(slice: Slice, along: str, found: RangeStrips) -> list[SpecialLine]:
+    """The lines at the special values of the other axis."""
+    return [
+        SpecialLine(end, ranges_on(slice, along, number_at(end), found.working))
+        for end in found.special
+    ]
+
+
+def number_at(end: BaseEnd) -> End:
+    """Where an end of strips is."""
+    if end.root is None:
+        return to_fraction(end.value)
+    number = algebraic_number(end.root)
+    return number if number.exact is None else number.exact
 
 
 def _finite(equations: SliceSystem) -> tuple[SliceSystem, QuotientAlgebra] | None:
@@ -188,59 +223,59 @@ def _lowest(matrix: list[list[Ratio]]) -> Ratio:
     return PLANE.from_dict(terms), denominator
 
 
-class _Counting(NamedTuple):
-    """What is counted between critical values.
+_Count = Callable[[fmpq], tuple[int, int] | None]
+"""The least and the largest count that there may be at a point of the line; None at an exception."""
 
-    Attributes
+
+def _has(working: int, count_at: _Count, low: fmpq, high: fmpq) -> bool | None:
+    """Whether there is the wanted count between two neighbouring critical values; None where that
+    is open.
+    """
+    sample = low
+    for _ in range(_SAMPLES):
+        sample = simplest_between(sample, high)
+        found = count_at(sample)
+        if found is not None:
+            least, most = found
+            return (True if least == most else None) if least <= working <= most else False
+    return None
+
+
+def _counting(
+    system: ParametricSystem, dimension: int, is_saturated: bool, value: AlgebraicNumber
+) -> _Count:
+    """What counts at points of the line.
+
+    Parameters
     ----------
     dimension : the number of solutions in general, with multiplicity.
-    saturated : whether those at which an inequality's polynomial vanishes are left out.
+    is_saturated : whether those at which an inequality's polynomial vanishes are left out.
     value : of the other axis; solutions at its conjugates do not count.
     """
+    within: list[RationalPolynomial] = []
+    if value.exact is None:
+        unit, one = (*(0,) * (system.ring.width - 1), 1), (0,) * system.ring.width
+        low, high = interval_of(value)
+        within = [{unit: fmpq(1), one: -low}, {unit: fmpq(-1), one: high}]
 
-    system: ParametricSystem
-    dimension: int
-    saturated: bool
-    value: AlgebraicNumber
-    working: int
-
-    def between(self, low: fmpq, high: fmpq) -> bool | None:
-        """Whether there is the wanted count between two neighbouring critical values; None where
-        that is open.
-        """
-        sample = low
-        for _ in range(_SAMPLES):
-            sample = simplest_between(sample, high)
-            found = self.at(sample)
-            if found is not None:
-                least, most = found
-                return (True if least == most else None) if least <= self.working <= most else False
-        return None
-
-    def at(self, sample: fmpq) -> tuple[int, int] | None:
-        """The least and the largest count that there may be; None where a point is an exception on
-        its line.
-        """
+    def count_at(sample: fmpq) -> tuple[int, int] | None:
         try:
-            point = point_system(self.system, {ALONG: sample}, self.saturated)
+            point = point_system(system, {ALONG: sample}, is_saturated)
         except DegeneratePoint:
             return None
-        if point.algebra.dimension != self.dimension:
+        if point.algebra.dimension != dimension:
             return None
-        required = [*point.inequalities]
-        if self.value.exact is None:
-            unit, one = (*(0,) * (self.system.ring.width - 1), 1), (0,) * self.system.ring.width
-            low, high = interval_of(self.value)
-            required += [{unit: fmpq(1), one: -low}, {unit: fmpq(-1), one: high}]
         stable = open_ones = 0
-        for solution in points(point.algebra, None).real:
-            if all(_sign(solution, p) > 0 for p in required):
+        for solution in points(point.algebra, None)[0]:
+            if all(_sign(solution, p) > 0 for p in (*point.inequalities, *within)):
                 signs = [_sign(solution, p) for p in point.stability]
                 stable += all(s > 0 for s in signs)
                 # a flat minimum, or a flat loop; of a system the conditions are what is called
                 # stable
-                open_ones += self.system.criterion.stable_at_zero and min(signs) == 0
+                open_ones += system.criterion.stable_at_zero and min(signs) == 0
         return stable, stable + open_ones
+
+    return count_at
 
 
 def _sign(solution: RealPoint, p: RationalPolynomial) -> int:

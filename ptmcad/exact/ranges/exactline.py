@@ -73,7 +73,7 @@ def intervals(
     samples = samples_between(line.along, numbers)
     counts = [counts_at(line, sample) for sample in samples]
     changes = tuple(
-        Change(n, parts[n].kind, counts[k], counts[k + 1], parts[n].continuum)
+        Change(n, counts[k], counts[k + 1], parts[n].kind, parts[n].continuum)
         for k, n in enumerate(numbers)
     )
     return CountIntervals(

@@ -62,22 +62,6 @@ class RangeStrip:
         return self.low, self.high
 
 
-def refuse_free_lengths(slice: Slice) -> None:
-    """Refuse what strips cannot answer.
-
-    Raises
-    ------
-    ConfigError
-        When springs have a free length.
-    """
-    without_free_lengths(
-        slice.model,
-        slice.parameters,
-        "widths over a second axis (--over) are",
-        "the range along one axis is enclosed where the other has a value (--at)",
-    )
-
-
 class RangeStrips(NamedTuple):
     """The strips of a slice over one of its axes.
 
@@ -110,7 +94,12 @@ def strips(slice: Slice, along: str, working: int | None = None) -> RangeStrips:
         When the slice is degenerate or leaves the domain of the geometry.
     """
     base = 1 - slice.axis_names.index(along)
-    refuse_free_lengths(slice)
+    without_free_lengths(
+        slice.model,
+        slice.parameters,
+        "the widest operation range is",
+        "ptmcad range --over tabulates widths",
+    )
     problem = problem_of(slice)
     cut = decomposition_of(problem, base)
     counts = [found.counts for found in counts_of(problem, cut).found]

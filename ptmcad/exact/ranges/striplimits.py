@@ -1,5 +1,5 @@
-"""The limits of an operation range at an end of a strip, and a neighbourhood in which it is
-narrower than there.
+"""The limits of an operation range at an end of a strip, a neighbourhood in which it is narrower than
+there, and the derivatives of its width.
 
 Guarantee: `limit` is the branch's limit, and over `chord_length` the range stays between two
 parallel chords from its limits; over `narrowing_length` its two ends draw nearer to one another,
@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from flint import fmpq
+from flint import arb, fmpq
 
 from ptmcad.algebra.algebraic_numbers import fibre_roots, refined, root_of
-from ptmcad.algebra.chords import side_of_chord
+from ptmcad.algebra.chords import side_of_chord, slope_over
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, isolate, refine, sign
 from ptmcad.algebra.resultants import resultant
@@ -29,6 +29,9 @@ from ptmcad.exact.ranges.rangestrips import (
 )
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.flint_numbers import interval_of, simplest_between, to_fraction
+
+Ends = tuple[End, End]
+"""Of an interval of the parameter."""
 
 
 def ends_of(end: End) -> Interval:
@@ -65,6 +68,12 @@ def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End
                 return refined(roots[0], to_fraction(width))
         distance = distance / 4
     return None
+
+
+def limits(strip: RangeStrip, end: BaseEnd, width: fmpq) -> Ends | None:
+    """Those of both branches."""
+    low, high = (limit(branch, strip, end, width) for branch in strip.branches)
+    return None if low is None or high is None else (low, high)
 
 
 def narrowing_length(strip: RangeStrip, end: BaseEnd, width: fmpq) -> fmpq | None:
@@ -135,14 +144,12 @@ def _growth(branch: RangeEnd, strip: RangeStrip, over: Interval, slope: fmpq) ->
     return difference + far.low - near.high, difference + far.high - near.low
 
 
-def chord_length(
-    strip: RangeStrip, end: fmpq, direction: int, limits: tuple[End, End]
-) -> fmpq | None:
+def chord_length(strip: RangeStrip, end: fmpq, direction: int, own: Ends) -> fmpq | None:
     """A length within which the range keeps between parallel chords from its limits at an end; None
     if not proved.
     """
     length = abs(strip.sample - end)
-    branches, starts = (strip.low, strip.high), [ends_of(e) for e in limits]
+    branches, starts = (strip.low, strip.high), [ends_of(e) for e in own]
     for _ in range(40):
         run = direction * length
         tips = [at_abscissa(b, end + run, strip.fibre, length / 2**40) for b in branches]
@@ -156,7 +163,7 @@ def chord_length(
             slope = simplest_between(*sorted((rises[1] + third, rises[0] - third)))
             if all(
                 _keeps_to(side, branch, strip.fibre, (end, limit), slope, run)
-                for side, branch, limit in zip((1, -1), branches, limits, strict=True)
+                for side, branch, limit in zip((1, -1), branches, own, strict=True)
             ):
                 return length
         length = length / 4
@@ -183,3 +190,27 @@ def _keeps_to(
     if isinstance(limit, Fraction):
         return False
     return side_of_chord(branch.curve.in_v, end, root_of(limit), slope, run)
+
+
+def width_slopes(strip: RangeStrip, low: fmpq, high: fmpq) -> tuple[arb, arb] | None:
+    """Enclosures of the width's first and second derivative over a piece."""
+    middle, radius = (low + high) / 2, (high - low) / 2
+    total = (arb(0), arb(0))
+    for branch, side in ((strip.low, -1), (strip.high, 1)):
+        if branch.curve is None:
+            continue
+        at = at_abscissa(branch, middle, strip.fibre, radius / 2**40)
+        slope = slope_over(branch.curve.in_v, at, middle, radius)
+        if slope is None:
+            return None
+        total = (total[0] + side * slope[0], total[1] + side * slope[1])
+    return total
+
+
+def slope_sign(strip: RangeStrip, u: fmpq, width: fmpq) -> int | None:
+    """The sign of the width's derivative at an abscissa; None when it is too near to zero."""
+    for bits in (10, 40, 80):
+        slopes = width_slopes(strip, u - width / 2**bits, u + width / 2**bits)
+        if slopes is not None and (slopes[0] > 0 or slopes[0] < 0):
+            return 1 if slopes[0] > 0 else -1
+    return None

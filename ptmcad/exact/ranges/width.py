@@ -32,19 +32,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from heapq import heappop, heappush
 from typing import NamedTuple
 
 from flint import arb, fmpq
 
 from ptmcad.algebra.algebraic_numbers import algebraic_number, compare
-from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.real_roots import Interval
 from ptmcad.answer.intervals import End, Span
 from ptmcad.answer.widths import Maximum, Place
 from ptmcad.exact.cad.stacks import BaseEnd
-from ptmcad.exact.ranges.anyline import LineRanges, ranges_on
+from ptmcad.exact.ranges.anyline import SpecialLine, lines_of, number_at
 from ptmcad.exact.ranges.rangestrips import (
     RangeStrip,
     RangeStrips,
@@ -54,7 +52,14 @@ from ptmcad.exact.ranges.rangestrips import (
     constant_width,
     end_interval,
 )
-from ptmcad.exact.ranges.striplimits import chord_length, limit, narrowing_length
+from ptmcad.exact.ranges.striplimits import (
+    Ends,
+    chord_length,
+    limits,
+    narrowing_length,
+    slope_sign,
+    width_slopes,
+)
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import interval_of, to_fraction
@@ -63,8 +68,6 @@ _END_WIDTH = fmpq(1, 2**120)
 _MIN_PIECE = fmpq(1, 2**50)
 """Length of a piece, against the strip's, that is not cut any more."""
 _MAX_PIECES = 20_000
-Ends = tuple[End, End]
-"""Of an interval of the parameter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,30 +90,6 @@ def widest(slice: Slice, along: str, found: RangeStrips) -> tuple[Maximum, ...]:
     return largest(found.found, lines_of(slice, along, found))
 
 
-class SpecialLine(NamedTuple):
-    """A value of the other axis, an end of strips, and what is counted on the line there."""
-
-    end: BaseEnd
-    ranges: LineRanges
-
-    @property
-    def value(self) -> End:
-        return _value(self.end)
-
-    @property
-    def most(self) -> Fraction:
-        """An upper bound of the widths on it."""
-        return max((span.width.high for span in self.ranges[1]), default=Fraction(0))
-
-
-def lines_of(slice: Slice, along: str, found: RangeStrips) -> list[SpecialLine]:
-    """The lines at the special values of the other axis."""
-    return [
-        SpecialLine(end, ranges_on(slice, along, _value(end), found.working))
-        for end in found.special
-    ]
-
-
 def largest(found: Sequence[RangeStrip], lines: Sequence[SpecialLine] = ()) -> tuple[Maximum, ...]:
     """The largest width over all strips and on lines; see the module."""
     search = _WidthSearch(lines)
@@ -127,8 +106,7 @@ def largest(found: Sequence[RangeStrip], lines: Sequence[SpecialLine] = ()) -> t
     return search.answer()
 
 
-@dataclass(frozen=True, slots=True)
-class _WidthPiece:
+class _WidthPiece(NamedTuple):
     """A part [low, high] of a strip's base; ``open_left`` and ``open_right`` when it reaches an
     irrational end.
     """
@@ -157,7 +135,7 @@ class _WidthSearch:
         """Adopt what is counted on a line."""
         certain, possible = (max(spans, key=_width, default=None) for spans in line.ranges)
         if certain is not None:
-            self.add_at(line.end, _width(certain), (certain.low, certain.high), True)
+            self.add_at(line.end, _width(certain), certain.exact, True)
             self.known = max(self.known, _width(certain)[0])
         if possible is not None and possible != certain:
             self.add_at(line.end, (fmpq(0), _width(possible)[1]), None, None)
@@ -175,7 +153,7 @@ class _WidthSearch:
         """Whether on the line at an end of a strip there is a range of a width that is its limit
         there.
         """
-        ranges = self.lines.get(_value(end))
+        ranges = self.lines.get(number_at(end))
         if ranges is None:
             return True
         certain, possible = ranges
@@ -205,7 +183,7 @@ class _WidthSearch:
         (left, _), (_, right) = base_interval(strip, _END_WIDTH)
         width = self.width_at(strip, strip.sample)
         sides = {
-            _value(end): self.attains(end, width, _limits(strip, end))
+            number_at(end): self.attains(end, width, limits(strip, end, _END_WIDTH))
             for end in (strip.left, strip.right)
         }
         self.candidates.append(_Candidate(Place.PLATEAU, (left, right), width, sides=sides))
@@ -215,21 +193,21 @@ class _WidthSearch:
         left, right = base_interval(strip, _END_WIDTH)
         low, high = left[0], right[1]
         for at, end in ((left, strip.left), (right, strip.right)):
-            limits = _limits(strip, end)
-            if limits is None:
+            own = limits(strip, end, _END_WIDTH)
+            if own is None:
                 continue
-            width = _width(Span(*limits))
+            width = _width(Span(*own))
             self.known = max(self.known, width[0])
             if width[1] < self.known:
                 continue
             length = None
             if at[0] == at[1]:
-                length = chord_length(strip, at[0], 1 if end is strip.left else -1, limits)
+                length = chord_length(strip, at[0], 1 if end is strip.left else -1, own)
             if length is None:
                 length = narrowing_length(strip, end, _END_WIDTH)
             if length is None:
                 continue
-            self.add_at(end, width, limits, self.attains(end, width, limits))
+            self.add_at(end, width, own, self.attains(end, width, own))
             if end is strip.left:
                 low = at[0] + length
             else:
@@ -295,14 +273,8 @@ class _WidthSearch:
             self.width_at(piece.strip, middle)
             if not piece.open_left and not piece.open_right and self.smooth(piece):
                 continue
-            self.add(
-                _WidthPiece(piece.strip, piece.low, middle, piece.open_left, False, piece.smallest)
-            )
-            self.add(
-                _WidthPiece(
-                    piece.strip, middle, piece.high, False, piece.open_right, piece.smallest
-                )
-            )
+            self.add(piece._replace(high=middle, open_right=False))
+            self.add(piece._replace(low=middle, open_left=False))
 
     def smooth(self, piece: _WidthPiece) -> bool:
         """Whether derivatives settle the piece: monotone, or concave with one maximum, which is
@@ -317,7 +289,7 @@ class _WidthSearch:
         if not second < 0:
             return False
         low, high = piece.low, piece.high
-        left, right = (_sign_at(piece.strip, u, piece.smallest) for u in (low, high))
+        left, right = (slope_sign(piece.strip, u, piece.smallest) for u in (low, high))
         if left is None or right is None:
             return False
         if left == right:
@@ -327,7 +299,7 @@ class _WidthSearch:
         steepest = first.abs_upper()
         while high - low > piece.smallest / 2**20:
             cuts = (_cut(low, high), low + (high - low) / 3)  # one of them is not the zero itself
-            found = ((u, _sign_at(piece.strip, u, (high - low) / 2**20)) for u in cuts)
+            found = ((u, slope_sign(piece.strip, u, (high - low) / 2**20)) for u in cuts)
             middle, at = next(((u, sign) for u, sign in found if sign is not None), (low, None))
             if at is None:
                 break
@@ -343,38 +315,14 @@ class _WidthSearch:
         """
         kept = [c for c in self.candidates if c.width[1] >= self.known]
         plateaus = [c for c in kept if c.place is Place.PLATEAU]
-        rest = [c for c in kept if c.place is not Place.PLATEAU]
-        rest = [
-            c
-            for c in rest
-            if not any(_touches(c, p) and c.width[1] <= p.width[1] for p in plateaus)
-        ]
         merged: list[_Candidate] = []
-        for c in sorted([*plateaus, *rest], key=lambda c: c.at):
-            kinds = {c.place} if not merged else {merged[-1].place, c.place}
-            # beside a critical value at which the width is known the largest one may be anywhere in
-            # an enclosure
-            if (
-                merged
-                and _touches(merged[-1], c)
-                and (len(kinds) == 1 or kinds == {Place.CRITICAL, Place.ENCLOSED})
+        for c in sorted(kept, key=lambda c: (c.at, c.place is not Place.PLATEAU)):
+            if c.place is not Place.PLATEAU and any(
+                _touches(c, p) and c.width[1] <= p.width[1] for p in plateaus
             ):
-                last = merged.pop()
-                known = (last.attained, c.attained)
-                merged.append(
-                    _Candidate(
-                        c.place if len(kinds) == 1 else Place.ENCLOSED,
-                        (last.at[0], max(last.at[1], c.at[1])),
-                        (max(last.width[0], c.width[0]), max(last.width[1], c.width[1])),
-                        last.critical or c.critical,
-                        last.ends if last.attained else c.ends,
-                        None
-                        if None in known or (len(kinds) > 1 and False in known)
-                        else any(known),
-                        last.sides
-                        | {v: last.sides.get(v) or known for v, known in c.sides.items()},
-                    )
-                )
+                continue
+            if merged and _touches(merged[-1], c) and _is_one(merged[-1].place, c.place):
+                merged.append(_joined(merged.pop(), c))
             else:
                 merged.append(c)
         if len(merged) > 1:  # an enclosed width may be less than that of another place
@@ -394,29 +342,40 @@ class _WidthSearch:
         return Maximum(c.place, at, width, None, None, True, exceptions, doubtful)
 
 
-def _value(end: BaseEnd) -> End:
-    if end.root is None:
-        return to_fraction(end.value)
-    number = algebraic_number(end.root)
-    return number if number.exact is None else number.exact
-
-
-def _limits(strip: RangeStrip, end: BaseEnd) -> Ends | None:
-    low, high = (limit(branch, strip, end, _END_WIDTH) for branch in strip.branches)
-    return None if low is None or high is None else (low, high)
-
-
 def _width(span: Span) -> Interval:
     known = Span(
-        *(AlgebraicNumber.of(e).refined(to_fraction(_END_WIDTH)) for e in (span.low, span.high))
+        *(AlgebraicNumber.of(e).refined(to_fraction(_END_WIDTH)) for e in span.exact)
     ).width
     return interval_of(known)
 
 
 def _within(ends: Ends, span: Span) -> bool:
     """Whether limits are within a range, ends included."""
-    low, high, first, last = map(AlgebraicNumber.of, (*ends, span.low, span.high))
+    low, high, first, last = map(AlgebraicNumber.of, (*ends, *span.exact))
     return compare(first, low) <= 0 <= compare(last, high)
+
+
+def _is_one(first: Place, second: Place) -> bool:
+    """Whether candidates at these places that touch are one.
+
+    Beside a critical value at which the width is known the largest one may be anywhere in an
+    enclosure.
+    """
+    return first is second or {first, second} == {Place.CRITICAL, Place.ENCLOSED}
+
+
+def _joined(first: _Candidate, second: _Candidate) -> _Candidate:
+    alike = first.place is second.place
+    known = (first.attained, second.attained)
+    return _Candidate(
+        first.place if alike else Place.ENCLOSED,
+        (first.at[0], max(first.at[1], second.at[1])),
+        (max(first.width[0], second.width[0]), max(first.width[1], second.width[1])),
+        first.critical or second.critical,
+        first.ends if first.attained else second.ends,
+        None if None in known or (not alike and False in known) else any(known),
+        first.sides | {v: first.sides.get(v) or known for v, known in second.sides.items()},
+    )
 
 
 def _touches(first: _Candidate, second: _Candidate) -> bool:
@@ -428,27 +387,3 @@ def _cut(low: fmpq, high: fmpq) -> fmpq:
     width = high - low
     unit = fmpq(2) ** (int(width.p).bit_length() - int(width.q).bit_length() - 7)
     return unit * (int(((low + width * fmpq(61, 128)) / unit).floor()) | 1)
-
-
-def width_slopes(strip: RangeStrip, low: fmpq, high: fmpq) -> tuple[arb, arb] | None:
-    """Enclosures of the width's first and second derivative over a piece."""
-    middle, radius = (low + high) / 2, (high - low) / 2
-    total = (arb(0), arb(0))
-    for branch, sign in ((strip.low, -1), (strip.high, 1)):
-        if branch.curve is None:
-            continue
-        at = at_abscissa(branch, middle, strip.fibre, radius / 2**40)
-        slope = slope_over(branch.curve.in_v, at, middle, radius)
-        if slope is None:
-            return None
-        total = (total[0] + sign * slope[0], total[1] + sign * slope[1])
-    return total
-
-
-def _sign_at(strip: RangeStrip, u: fmpq, width: fmpq) -> int | None:
-    """The sign of the width's derivative at an abscissa; None when it is too near to zero."""
-    for bits in (10, 40, 80):
-        slopes = width_slopes(strip, u - width / 2**bits, u + width / 2**bits)
-        if slopes is not None and (slopes[0] > 0 or slopes[0] < 0):
-            return 1 if slopes[0] > 0 else -1
-    return None

@@ -8,13 +8,15 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ptmcad.algebra.algebraic_numbers import refined
-from ptmcad.answer.intervals import End, Span
+from ptmcad.answer.intervals import AnyEnd, Span
 from ptmcad.question.slice import Axis
-from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.numerals import Numbers, equalities, magnitude, shortest_text
 
 MAX_DIGITS = 1000
 """That may be asked for."""
+_ENCLOSED_DIGITS = 6
+"""Of a width between enclosed ends, at most."""
 NARROW = Fraction(1, 10**20)
 """A number that is so nearly known and does not settle a digit is taken for the short decimal that
 it cannot leave.
@@ -26,7 +28,7 @@ def line_head(along: Axis, at: Numbers) -> str:
     return f"{along.name} in ({shortest_text(along.low)}, {shortest_text(along.high)}) at {equalities(at, shortest_text)}"
 
 
-def end_text(end: End | Enclosure, digits: int) -> str:
+def end_text(end: AnyEnd, digits: int) -> str:
     """An end as a decimal; of one that is enclosed as many digits as are known."""
     if isinstance(end, Enclosure):
         return known(end, digits)
@@ -79,8 +81,10 @@ def width_text(interval: Span, digits: int) -> str:
     """The width of an interval as a decimal.
 
     A width that is a short decimal or lies nearer to one than 10^-1000 is shown with as many digits
-    as are certain.
+    as are certain; one between enclosed ends with as many as are known.
     """
+    if isinstance(interval.low, Enclosure) or isinstance(interval.high, Enclosure):
+        return known(interval.width, min(digits, _ENCLOSED_DIGITS))
     bits = 128
     while True:
         found = finer(interval, Fraction(1, 2**bits) * (interval.width.high or 1)).width
@@ -94,6 +98,7 @@ def width_text(interval: Span, digits: int) -> str:
 def finer(interval: Span, width: Fraction) -> Span:
     """The same interval with its ends isolated within ``width`` > 0."""
     low, high = (
-        e if isinstance(e, Fraction) else refined(e, width) for e in (interval.low, interval.high)
+        refined(e, width) if isinstance(e, AlgebraicNumber) else e
+        for e in (interval.low, interval.high)
     )
     return Span(low, high)

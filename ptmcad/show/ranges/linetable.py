@@ -6,33 +6,17 @@ counts.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from fractions import Fraction
-from typing import Any
 
 from ptmcad.answer.counts import MorseIndex
-from ptmcad.answer.intervals import (
-    CertifiedChange,
-    CertifiedIntervals,
-    CountIntervals,
-    End,
-    OperationSpan,
-    Span,
-)
-from ptmcad.answer.widths import (
-    Attainment,
-    CertifiedRange,
-    CertifiedRow,
-    CertifiedWidths,
-    Maximum,
-    OperationWidths,
-    WidthRow,
-)
+from ptmcad.answer.intervals import AnyEnd, Change, CountIntervals, Span
+from ptmcad.answer.widths import Attainment, Maximum, OperationWidths, WidthRow
 from ptmcad.answer.words import sought
 from ptmcad.model import Model
 from ptmcad.show.columns import aligned
-from ptmcad.show.ranges.endtext import end_text, known, line_head, settled, width_text
-from ptmcad.text.enclosure import Enclosure
+from ptmcad.show.ranges.endtext import end_text, line_head, settled, width_text
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.numerals import decimal, rounded, shortest_text
 from ptmcad.text.plane import PlanePolynomial
 
@@ -40,27 +24,29 @@ MAX_POLYNOMIAL = 60
 """Characters of a polynomial; of longer ones the degree is reported."""
 
 
-def table(found: CountIntervals | CertifiedIntervals, digits: int = 10) -> str:
+def table(found: CountIntervals, digits: int = 10) -> str:
     """One row for each interval, then what happens at their ends, then, of exact ones, the
     operation range.
     """
-    if isinstance(found, CertifiedIntervals):
-        return _enclosed_table(found, digits)
     name = found.along.name
-    first = found.intervals[0]
-    heads = {"total": "total"}
-    if first.stable is not None:
-        heads["stable"] = "stable"
-    if first.index is not None:
-        heads["index"] = _INDEX_HEADS.get(len(first.index), "index")
-    lines = interval_rows(
-        found, heads, lambda i: (end_text(i.low, digits), end_text(i.high, digits))
-    )
+    heads = _heads(found)
+    rows = [["from", "to", *heads.values(), "sample"]]
+    for each in found.intervals:
+        ends = (_side_text(each.low, digits, up=True), _side_text(each.high, digits))
+        counts = (_counted(column, getattr(each, column)) for column in heads)
+        rows.append([*ends, *counts, shortest_text(each.sample)])
+    lines = [line_head(found.along, found.at), "", *aligned(rows)]
     if found.changes:
-        lines.append("")
-        changes = [["at", f"as {name} increases", "root of"]]
-        changes += [[end_text(c.at, digits), c.text, formula(c.at, name)] for c in found.changes]
-        lines += aligned(changes)
+        columns = ["what is met"] if found.enclosed else [f"as {name} increases", "root of"]
+        changes = [["at", *columns], *(_change_row(c, name, digits) for c in found.changes)]
+        lines += ["", *aligned(changes)]
+    if "peaks" in heads:
+        lines += [
+            "",
+            "peaks: configurations without length of spring A3A4 in which the energy has a peak",
+        ]
+    if found.enclosed:
+        return "\n".join(lines)
     lines.append("")
     range_name = operation_name(found.model, found.working)
     if not found.operation:
@@ -69,22 +55,37 @@ def table(found: CountIntervals | CertifiedIntervals, digits: int = 10) -> str:
     return "\n".join(lines)
 
 
-def interval_rows(
-    found: CountIntervals | CertifiedIntervals,
-    heads: Mapping[str, str],
-    ends: Callable[[Any], Iterable[str]],
-) -> list[str]:
-    """A line for each interval, below what is fixed.
+def _heads(found: CountIntervals) -> dict[str, str]:
+    """The columns of counts, by the names of these; where nothing is decided, all there may be."""
 
-    Parameters
-    ----------
-    heads : of the columns of counts, by the names of these.
-    """
-    rows = [["from", "to", *heads.values(), "sample"]]
-    for each in found.intervals:
-        counts = (_counted(name, getattr(each, name)) for name in heads)
-        rows.append([*ends(each), *counts, shortest_text(each.sample)])
-    return [line_head(found.along, found.at), "", *aligned(rows)]
+    def known(count: str) -> bool:
+        return any(getattr(interval, count) is not None for interval in found.intervals)
+
+    heads = {"total": "total"}
+    if known("stable") or not known("total"):
+        heads["stable"] = "stable"
+    if known("index") or not known("total"):
+        sizes = {len(i.index) for i in found.intervals if i.index is not None}
+        heads["index"] = _INDEX_HEADS.get(min(sizes, default=0), "index")
+    if known("peaks"):
+        heads["peaks"] = "peaks"
+    return heads
+
+
+def _change_row(change: Change, name: str, digits: int) -> list[str]:
+    """Where a change is, what happens there, and of an exact one its polynomial."""
+    at = change.at
+    if isinstance(at, AlgebraicNumber):
+        return [end_text(at, digits), change.text, formula(at, name)]
+    return [place_text(at, digits), change.text]
+
+
+def place_text(at: AlgebraicNumber | Enclosure, digits: int) -> str:
+    """Where a change is: a number, or two ends where its digits are not settled."""
+    text = _side_text(at, digits)
+    if isinstance(at, AlgebraicNumber) or at.settles(digits):
+        return text
+    return f"{text} to {_side_text(at, digits, up=True)}"
 
 
 def _counted(name: str, count: int | MorseIndex | None) -> str:
@@ -120,9 +121,7 @@ def nowhere(model: Model, number: int) -> str:
 
 def _range_text(interval: Span, digits: int) -> str:
     edges = [
-        side
-        for side, end in (("lower", interval.low), ("upper", interval.high))
-        if isinstance(end, Fraction)
+        side for side, end in (("lower", interval.low), ("upper", interval.high)) if _is_edge(end)
     ]
     note = ""
     if edges:
@@ -135,57 +134,49 @@ def _range_text(interval: Span, digits: int) -> str:
     return f"{low} to {high}, width {width_text(interval, digits)}{note}"
 
 
-def formula(end: End, name: str) -> str:
-    """The polynomial of which an end is a root, or its degree when it is long."""
-    if isinstance(end, Fraction):
-        return ""
+def _is_edge(end: AnyEnd) -> bool:
+    """Whether an end is the window's edge."""
+    return isinstance(end, Fraction) or (isinstance(end, Enclosure) and end.exact is not None)
+
+
+def formula(end: AlgebraicNumber, name: str) -> str:
+    """The polynomial of which a number is a root, or its degree when it is long."""
     text = PlanePolynomial.of((k, 0, c) for k, c in enumerate(end.polynomial)).text((name, "_"))
     return (
         text if len(text) <= MAX_POLYNOMIAL else f"a polynomial of degree {end.degree}, in the JSON"
     )
 
 
-def width_rows(
-    found: OperationWidths | CertifiedWidths,
-    range_name: str,
-    note: Callable[[Any], str],
-    cells: Callable[[Any, Any], Iterable[str]],
-) -> list[str]:
-    """A line for each range of each row, and what a mark at an end means, where there is one.
-
-    Parameters
-    ----------
-    note : what is said of a row without a range.
-    cells : of a row and one of its ranges the ends and the width.
-    """
+def width_table(found: OperationWidths, digits: int = 10) -> str:
+    """The operation ranges at the tabulated values, and where they are widest."""
+    model, working = found.model, found.working
+    range_name = "operation range" if found.enclosed else operation_name(model, working)
     rows = [[found.over.name, f"{range_name} from", "to", "width"]]
     for row in found.rows:
         value = shortest_text(row.value)
-        rows += [[value, *cells(row, one)] for one in row.operation] or [[value, note(row), "", ""]]
+        cells = [[value, *_width_cells(row, one, digits)] for one in row.operation]
+        rows += cells or [[value, _without_range(row), "", ""]]
     marked = any("*" in cell for cells in rows for cell in cells)
-    return [*aligned(rows), *[f"* the edge of the window of {found.along.name}"] * marked]
-
-
-def width_table(found: OperationWidths | CertifiedWidths, digits: int = 10) -> str:
-    """The operation ranges at the tabulated values, and where they are widest."""
-    if isinstance(found, CertifiedWidths):
-        return _enclosed_width_table(found, digits)
-    range_name = operation_name(found.model, found.working)
-
-    def cells(_: WidthRow, span: OperationSpan) -> Iterator[str]:
-        for end in (span.low, span.high):
-            yield end_text(end, digits) + " *" * isinstance(end, Fraction)
-        yield width_text(span, digits)
-
-    lines = [
-        *width_rows(found, range_name, lambda row: "degenerate" if row.remark else "none", cells),
-        "",
-    ]
+    lines = [*aligned(rows), *[f"* the edge of the window of {found.along.name}"] * marked, ""]
+    if found.enclosed:
+        least = f"{range_name}: where there are at least {working_text(model, working)}"
+        return "\n".join([least, "", *lines, widest_text(found)])
     if not found.maxima:
-        lines.append(f"widest {range_name}: none, {nowhere(found.model, found.working)}")
+        lines.append(f"widest {range_name}: none, {nowhere(model, working)}")
     for m in found.maxima:
         lines.append(f"widest {range_name}: {maximum_text(m, found.over.name, digits)}")
     return "\n".join(lines)
+
+
+def _width_cells(row: WidthRow, span: Span, digits: int) -> Iterator[str]:
+    """The ends, with a mark at the window's edge, and the width."""
+    for end, up in ((span.low, True), (span.high, False)):
+        yield _side_text(end, digits, up) + " *" * _is_edge(end)
+    yield width_text(span, digits) + ", a part of the window undecided" * row.undecided
+
+
+def _without_range(row: WidthRow) -> str:
+    return "degenerate" if row.remark else "undecided" if row.undecided else "none"
 
 
 def maximum_text(found: Maximum, over: str, digits: int) -> str:
@@ -196,88 +187,23 @@ def maximum_text(found: Maximum, over: str, digits: int) -> str:
     return f"width {settled(found.width, digits) or f'from {low} to {high}'}, {found.words(over, digits)}"
 
 
-def _enclosed_table(found: CertifiedIntervals, digits: int) -> str:
-    """One row for each interval, then what lies between them."""
-    peaks = any(i.cones is not None for i in found.intervals)  # of the paper's mechanism only
-    only_totals = all(i.index is None for i in found.intervals) and any(
-        i.total is not None for i in found.intervals
-    )
-    heads = {"total": "total", "stable": "stable"}
-    if not only_totals:
-        heads["index"] = "min-saddle-max" if peaks else "index"
-    elif all(i.stable is None for i in found.intervals):
-        del heads["stable"]
-    if peaks:
-        heads["cones"] = "peaks"
-    lines = interval_rows(
-        found, heads, lambda i: (_outer_text(i.low, digits, up=True), _outer_text(i.high, digits))
-    )
-    if found.changes:
-        changes = [["at", "what is met"]]
-        for change in found.changes:
-            place = _outer_text(change.at, digits)
-            if not change.at.settles(digits):
-                place = f"{place} to {_outer_text(change.at, digits, up=True)}"
-            changes.append([place, met(change)])
-        lines += ["", *aligned(changes)]
-    if peaks:
-        lines += [
-            "",
-            "peaks: configurations without length of spring A3A4 in which the energy has a peak",
-        ]
-    return "\n".join(lines)
-
-
-def met(change: CertifiedChange) -> str:
-    """What is met, in words, without how it was looked for: folds with and without a short spring
-    may be the same.
-    """
-    kinds = dict.fromkeys(name.partition(" with ")[0] for name in change.names)
-    return (
-        " and ".join(kinds)
-        if change.proved
-        else f"undecided whether there is a {' or a '.join(kinds)}"
-    )
-
-
-def _enclosed_width_table(found: CertifiedWidths, digits: int) -> str:
-    """The operation ranges at the tabulated values, and the widest of them."""
-
-    def note(row: CertifiedRow) -> str:
-        return "degenerate" if row.remark else "undecided" if row.undecided else "none"
-
-    def cells(row: CertifiedRow, one: CertifiedRange) -> Iterator[str]:
-        for end, up in ((one.low, True), (one.high, False)):
-            yield _outer_text(end, digits, up) + " *" * (end.low == end.high)
-        yield known(one.width, min(digits, 6)) + ", a part of the window undecided" * row.undecided
-
-    ranges = f"operation range: where there are at least {working_text(found.model, found.working)}"
-    return "\n".join(
-        [
-            ranges,
-            "",
-            *width_rows(found, "operation range", note, cells),
-            "",
-            widest_text(found),
-        ]
-    )
-
-
-def widest_text(found: CertifiedWidths) -> str:
+def widest_text(found: OperationWidths) -> str:
     """The widest range of the table."""
     if found.widest is None:
         return f"widest operation range: none, {nowhere(found.model, found.working)} in these rows"
     row, one = found.widest
     at = f"{found.over.name} = {shortest_text(row.value)}"
     return (
-        f"widest of these rows: width {known(one.width, 6)} at {at}; nothing is proved of the values between them: "
+        f"widest of these rows: width {width_text(one, 6)} at {at}; nothing is proved of the values between them: "
         f"{Attainment.UNDECIDED.value}"
     )
 
 
-def _outer_text(end: Enclosure, digits: int, up: bool = False) -> str:
-    """The end rounded; where its digits are not settled, its outer side, rounded outwards."""
-    if end.settles(digits):
-        return end.text(digits)
+def _side_text(end: AnyEnd, digits: int, up: bool = False) -> str:
+    """The end rounded; of an enclosure whose digits are not settled its lower or its upper side,
+    rounded outwards.
+    """
+    if not isinstance(end, Enclosure) or end.settles(digits):
+        return end_text(end, digits)
     outer = rounded(end.high if up else end.low, Fraction(1, 10**digits), up)
     return Enclosure(outer, outer).text(digits + 20)

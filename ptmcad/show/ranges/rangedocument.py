@@ -7,25 +7,25 @@ same answer gives the same text.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from operator import attrgetter
 from typing import Any
 
 from ptmcad.answer.branches import Branches
-from ptmcad.answer.counts import Counts
+from ptmcad.answer.counts import Counts, MorseIndex
 from ptmcad.answer.intervals import (
-    CertifiedChange,
-    CertifiedInterval,
-    CertifiedIntervals,
+    AnyEnd,
     Change,
     CountInterval,
     CountIntervals,
-    End,
     Event,
+    OperationSpan,
+    Span,
 )
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
-from ptmcad.answer.widths import Attainment, CertifiedWidths, OperationWidths, WidthRow
+from ptmcad.answer.regionmap import Kind
+from ptmcad.answer.widths import Attainment, OperationWidths, WidthRow
 from ptmcad.question.slice import Axis
 from ptmcad.show.document.designdocument import maximum
 from ptmcad.show.document.exactnumbers import INDEX, with_decimal
@@ -53,6 +53,7 @@ from ptmcad.text.codec import (
     record_of,
     unless_default,
 )
+from ptmcad.text.documents import CLASS
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.version import __version__
 
@@ -66,35 +67,50 @@ _AXIS = record_of(
 )  # fmt: skip
 
 
-def _places(digits: int) -> dict[Any, Codec[Any]]:
-    """The codecs of ends of intervals, with as many digits as are asked for and known."""
-    exact = with_decimal(partial(end_text, digits=digits))
-    enclosed = record_of(
-        Enclosure, decimal=derived(partial(settled, digits=digits), optional(TEXT))
-    )
-    return {
-        Axis: _AXIS,
-        Enclosure: enclosed,
-        AlgebraicNumber: exact,
-        End: exact,
-        End | Enclosure: Codec(
-            lambda end: (enclosed if isinstance(end, Enclosure) else exact).write(end),
-            lambda node: (
-                enclosed if node.mapping().keys() == {"low", "high", "decimal"} else exact
-            ).read(node),
-            {"anyOf": [exact.schema, enclosed.schema]},
-        ),
-    }
+def _exact(digits: int) -> Codec[Any]:
+    """The codec of an exact end, with a decimal of so many digits."""
+    return with_decimal(partial(end_text, digits=digits))
 
 
-def _counted(digits: int) -> dict[Any, Codec[Any]]:
-    """The same with the intervals of constant count."""
-    places = _places(digits)
+def _enclosed(digits: int) -> Codec[Enclosure]:
+    """The codec of an enclosed end, with a decimal of as many digits as are known."""
+    return record_of(Enclosure, decimal=derived(partial(settled, digits=digits), optional(TEXT)))
+
+
+def _exact_places(digits: int) -> dict[Any, Codec[Any]]:
+    """The codecs of exact ends and of intervals between them."""
+    places = {Axis: _AXIS, AnyEnd: _exact(digits)}
     interval = record_of(
-        CountInterval, places, counts=None, total=NATURAL, stable=COUNT, index=INDEX,
+        CountInterval, places, counts=None, peaks=None, total=NATURAL, stable=COUNT, index=INDEX,
         width=derived(partial(width_text, digits=digits)),
     )  # fmt: skip
     return {**places, CountInterval: interval}
+
+
+def _enclosed_places(digits: int) -> dict[Any, Codec[Any]]:
+    """The codecs of enclosed ends, and of intervals and changes between them."""
+    places = dict.fromkeys((AnyEnd, AlgebraicNumber | Enclosure), _enclosed(digits))
+    interval = record_of(
+        CountInterval, places, _interval, counts=None, total=COUNT, stable=COUNT, index=INDEX
+    )
+    change = record_of(
+        Change, places, partial(Change, before=None, after=None),
+        before=None, after=None, kind=None, continuum=None, names=None, met=Key(field="names"),
+    )  # fmt: skip
+    return {
+        **places,
+        Axis: _AXIS,
+        CountInterval: interval.narrowed(**{CLASS: "EnclosedInterval"}),
+        Change: change,
+        OperationSpan: record_of(Span, places),
+    }
+
+
+def _interval(
+    total: int | None, stable: int | None, index: MorseIndex | None, **other: Any
+) -> CountInterval:
+    """An enclosed interval as it is read."""
+    return CountInterval(counts=None if total is None else Counts(total, stable, index), **other)
 
 
 def _counts(counts: Counts) -> list[int] | dict[str, int | None]:
@@ -115,55 +131,57 @@ _COUNTS: Codec[Any] = Codec(
 
 def line_codec(digits: int) -> Codec[CountIntervals]:
     """The codec of the intervals of a line."""
-    known = _counted(digits)
+    known = _exact_places(digits)
     known[Change] = record_of(
-        Change, {**known, Counts: _COUNTS}, **unless_default(Change, "continuum"),
+        Change,
+        {AlgebraicNumber | Enclosure: known[AnyEnd], Counts | None: _COUNTS, Kind | None: choice(Kind)},
+        **unless_default(Change, "continuum"), names=None, proved=None,
         event=derived(attrgetter("event"), choice(Event, by_name)), text=derived(attrgetter("text")),
     )  # fmt: skip
     return record_of(
-        CountIntervals, known, name=None, model=None, working=None,
+        CountIntervals, known, name=None, model=None, working=None, enclosed=None,
         parameters=Key(
             named(TEXT), lambda found: {n: e.to_text((found.along.name, "_")) for n, e in found.parameters.items()}
         ),
         operation=derived(
-            lambda found: [n for n, i in enumerate(found.intervals) if i.counts.working == found.working],
+            lambda found: [n for n, i in enumerate(found.intervals) if i.working == found.working],
             listed(NATURAL),
         ),
     )  # fmt: skip
 
 
-def enclosed_codec(digits: int) -> Codec[CertifiedIntervals]:
-    """The codec of the intervals of a line on which springs have free lengths."""
-    known = _places(digits)
-    interval = record_of(
-        CertifiedInterval, known, index=INDEX, cones=None, peaks=Key(field="cones")
-    )
-    change = record_of(CertifiedChange, known, names=None, met=Key(field="names"))
+def enclosed_codec(digits: int) -> Codec[Any]:
+    """The codec of the intervals of a line on which springs have free lengths; what is read has no
+    model.
+    """
     return record_of(
-        CertifiedIntervals, {**known, CertifiedInterval: interval, CertifiedChange: change}
-    )
+        CountIntervals, _enclosed_places(digits), dict,
+        name=None, model=None, parameters=None, working=None, enclosed=None,
+    )  # fmt: skip
 
 
 def over_codec(over: str, digits: int) -> Codec[OperationWidths]:
     """The codec of the widths over the other axis, which has this name."""
-    known = _counted(digits)
+    known = _exact_places(digits)
     parts = listed(known[CountInterval])
     row = record_of(
-        WidthRow,
-        known,
+        WidthRow, known, undecided=None,
         operation=Key(parts, lambda row: [i for span in row.operation for i in span.parts]),
-    )
+    )  # fmt: skip
     return record_of(
-        OperationWidths, {**known, WidthRow: row}, name=None, model=None,
+        OperationWidths, {**known, WidthRow: row}, name=None, model=None, enclosed=None,
         stable=Key(NATURAL, default=2, field="working", always=True),
         maxima=listed(maximum(over, digits)),
     )  # fmt: skip
 
 
-def bands_codec(digits: int) -> Codec[CertifiedWidths]:
-    """The codec of the operation ranges over the other axis with free lengths."""
+def bands_codec(digits: int) -> Codec[Any]:
+    """The codec of the operation ranges over the other axis with free lengths; what is read has no
+    model.
+    """
     return record_of(
-        CertifiedWidths, _places(digits), name=None, model=None, stable=Key(NATURAL, field="working"),
+        OperationWidths, _enclosed_places(digits), dict, name=None, model=None, maxima=None, enclosed=None,
+        stable=Key(NATURAL, field="working"),
         attainment=derived(lambda _: Attainment.UNDECIDED, _UNDECIDED, default=Attainment.UNDECIDED),
     )  # fmt: skip
 
@@ -181,8 +199,16 @@ _POINTS: Known = {
 _ENERGY: Codec[Any] = in_words(
     lambda energy: energy and settled(energy, PATH_DIGITS), optional(TEXT)
 )
+_EXACT, _ENCLOSED = _exact(PATH_DIGITS), _enclosed(PATH_DIGITS)
+_ANY_END: Codec[Any] = Codec(
+    lambda end: (_ENCLOSED if isinstance(end, Enclosure) else _EXACT).write(end),
+    lambda node: (
+        _ENCLOSED if node.mapping().keys() == {"low", "high", "decimal"} else _EXACT
+    ).read(node),
+    {"anyOf": [_EXACT.schema, _ENCLOSED.schema]},
+)
 _PATH_END = record_of(
-    PathEnd, {**_POINTS, **_places(PATH_DIGITS)}, fate=choice(Fate, by_name), text=derived(attrgetter("fate.value")),
+    PathEnd, {**_POINTS, AnyEnd: _ANY_END}, fate=choice(Fate, by_name), text=derived(attrgetter("fate.value")),
     energy=_ENERGY, target_energy=_ENERGY, **unless_default(PathEnd, "among", "fallen"),
 )  # fmt: skip
 PATHS = record_of(
@@ -201,20 +227,27 @@ BRANCHES = record_of(
 """The codec of branches of solutions."""
 
 
-_PARTS: Mapping[type, tuple[str, Callable[[Any, int], Codec[Any]]]] = {
-    CountIntervals: ("line", lambda _, digits: line_codec(digits)),
-    CertifiedIntervals: ("enclosed", lambda _, digits: enclosed_codec(digits)),
-    OperationWidths: ("over", lambda found, digits: over_codec(found.over.name, digits)),
-    CertifiedWidths: ("bands", lambda _, digits: bands_codec(digits)),
-    PosePaths: ("path", lambda _, digits: PATHS),
-    Branches: ("branches", lambda _, digits: BRANCHES),
-}
-
-
 def part(found: Any, digits: int) -> dict[str, Any]:
     """An answer as a part of a document, under its key."""
-    key, codec = _PARTS[type(found)]
-    return {key: codec(found, digits).write(found)}
+    codec: Codec[Any]
+    match found:
+        case CountIntervals():
+            key, codec = (
+                ("enclosed", enclosed_codec(digits))
+                if found.enclosed
+                else ("line", line_codec(digits))
+            )
+        case OperationWidths():
+            key, codec = (
+                ("bands", bands_codec(digits))
+                if found.enclosed
+                else ("over", over_codec(found.over.name, digits))
+            )
+        case PosePaths():
+            key, codec = "path", PATHS
+        case _:
+            key, codec = "branches", BRANCHES
+    return {key: codec.write(found)}
 
 
 def schema() -> Mapping[str, Any]:

@@ -20,14 +20,20 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from ptmcad.answer.counts import Counts, MorseIndex
-from ptmcad.answer.intervals import CountIntervals, End
-from ptmcad.answer.widths import CertifiedWidths, OperationWidths
+from ptmcad.answer.intervals import AnyEnd, CountIntervals, Event, lower, upper
+from ptmcad.answer.widths import OperationWidths
 from ptmcad.answer.words import counted, noun, several, sought
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.ranges.endtext import end_text, width_text
-from ptmcad.show.ranges.linetable import maximum_text, operation_name, widest_text, working_text
+from ptmcad.show.ranges.linetable import (
+    maximum_text,
+    operation_name,
+    place_text,
+    widest_text,
+    working_text,
+)
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
-from ptmcad.show.render.colours import INK, fill_of_counts, fill_of_index
+from ptmcad.show.render.colours import INK, UNKNOWN, Fill, fill_of_counts, fill_of_index
 from ptmcad.show.render.inches import write, write_lines
 from ptmcad.show.render.legend import Entry, Type, draw_legend
 from ptmcad.show.render.printing import settings
@@ -55,7 +61,7 @@ _COLUMNS = 100
 
 def draw_range(slice: Slice, found: CountIntervals) -> Figure:
     """A bar of the intervals, in the colours of the region maps, with its ends labelled."""
-    texts = [end_text(c.at, _DIGITS) for c in found.changes]
+    texts = [place_text(c.at, _DIGITS) for c in found.changes]
     upright = sum(len(t) + 2 for t in texts) * SIZE * 0.64 > WIDE * 72
     space = 0.95 if upright else LABELS
     legend = tuple(_bar_legend(found))
@@ -66,12 +72,13 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
         axes = axes_in(figure, (LEFT, below, WIDE, BAR))
         scale = scale_of(found.along.low, found.along.high)
         for i in found.intervals:
-            low, high = _place(i.low, found.along), _place(i.high, found.along)
-            fill = fill_of_counts(i.counts)
+            low, high = (float(found.along.share(x)) for x in (upper(i.low), lower(i.high)))
+            fill = _fill(i.counts)
             axes.add_patch(Rectangle((low, 0), high - low, 1, facecolor=fill.face, hatch=fill.hatch or None,
                                      edgecolor=INK, linewidth=0.6))  # fmt: skip
             if (high - low) * WIDE * 72 > 4 * SIZE:
-                axes.text((low + high) / 2, 0.5, str(i.counts.working), ha="center", va="center", fontsize=SIZE + 3,
+                number = "?" if i.working is None else str(i.working)
+                axes.text((low + high) / 2, 0.5, number, ha="center", va="center", fontsize=SIZE + 3,
                           bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5, "alpha": 0.85})  # fmt: skip
         for span in found.operation:
             ends = [_place(end, found.along) for end in (span.low, span.high)]
@@ -94,21 +101,21 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
 def _bar_legend(found: CountIntervals) -> list[Entry]:
     model = found.model
     entries = [Entry((sought(model),), strong=True)]
-    seen: list[Counts] = []
-    for i in found.intervals:
-        if i.counts not in seen:
-            seen.append(i.counts)
-            head = (
-                str(i.total) if i.stable is None else f"{i.stable}   of {counted(model, i.total)}"
-            )
-            entries.append(Entry((head, *_unstable(i.index)), fill_of_counts(i.counts)))
+    for counts in dict.fromkeys(i.counts for i in found.intervals):
+        if counts is None:
+            entries.append(Entry(("counts undecided",), UNKNOWN))
+            continue
+        total, stable = counts.total, counts.stable
+        head = str(total) if stable is None else f"{stable}   of {counted(model, total)}"
+        entries.append(Entry((head, *_unstable(counts.index)), fill_of_counts(counts)))
     for span in found.operation:
         what = operation_name(model, found.working)
         entries.append(Entry((what, f"(bracket), width {width_text(span, _DIGITS)}")))
-    if any(c.before == c.after for c in found.changes):
-        entries.append(
-            Entry(("a label within one colour:", f"{noun(model)} touch, counts unchanged"))
-        )
+    if not all(c.proved for c in found.changes):
+        entries.append(Entry(("a gap:", "not decided whether counts change")))
+    if any(c.event is Event.UNCHANGED and c.proved for c in found.changes):
+        touching = "" if found.enclosed else f"{noun(model)} touch, "
+        entries.append(Entry(("a label within one colour:", f"{touching}counts unchanged")))
     return entries
 
 
@@ -165,17 +172,17 @@ def spread(places: Sequence[float], half: float) -> list[float]:
 _WIDEST = "#b45f06"
 
 
-def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figure:
+def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
     """The operation ranges at the tabulated values, and their width with its largest value."""
     title = textwrap.wrap(heading_of(slice), _COLUMNS)[:3]
-    maxima = found.maxima if isinstance(found, OperationWidths) else ()
-    if isinstance(found, OperationWidths):
+    maxima = found.maxima
+    if found.enclosed:
+        lines = [widest_text(found)]
+    else:
         said = [maximum_text(m, found.over.name, _DIGITS) for m in maxima] or [
             f"there is no {operation_name(found.model, found.working)}"
         ]
         lines = [f"widest: {line}" for line in said]
-    else:
-        lines = [widest_text(found)]
     mark = "; diamond: the widest, filled where it is attained" if maxima else ""
     texts = [
         f"bars: {_where(found)}, at the tabulated values of {symbol(found.over.name)}",
@@ -222,7 +229,7 @@ def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figur
     return figure
 
 
-def _draw_bars(axes: Any, found: OperationWidths | CertifiedWidths) -> None:
+def _draw_bars(axes: Any, found: OperationWidths) -> None:
     """A bar for each operation range at its row; nothing between the rows, where nothing is
     computed.
     """
@@ -249,24 +256,35 @@ def _draw_bars(axes: Any, found: OperationWidths | CertifiedWidths) -> None:
         axes.plot(places, ends, "_", color=INK, markersize=thick, markeredgewidth=1.2, gid="ends")
 
 
-def _where(found: OperationWidths | CertifiedWidths) -> str:
+def _where(found: OperationWidths) -> str:
     """What the operation range is."""
-    if isinstance(found, CertifiedWidths):
+    if found.enclosed:
         return f"where there are at least {working_text(found.model, found.working)}"
     if found.working == found.model.nouns.usual:
         return "where two equilibria are stable"
     return f"where there {'is' if found.working == 1 else 'are'} {working_text(found.model, found.working)}"
 
 
-def _place(end: End, along: Axis) -> float:
+def _place(end: AnyEnd, along: Axis) -> float:
     """Where an end lies in the window, from 0 to 1."""
     return float(along.share(middle_of(end)))
 
 
+def _fill(counts: Counts | None) -> Fill:
+    return UNKNOWN if counts is None else fill_of_counts(counts)
+
+
+def _number(counts: Counts | None) -> str:
+    if counts is None:
+        return "undecided"
+    if counts.stable is None:
+        return f"{counts.total} in all"
+    return f"{counts.stable} stable of {counts.total}"
+
+
 def _words(found: CountIntervals) -> str:
     parts = [
-        f"{end_text(i.low, _DIGITS)} to {end_text(i.high, _DIGITS)}: "
-        + (f"{i.total} in all" if i.stable is None else f"{i.stable} stable of {i.total}")
+        f"{end_text(i.low, _DIGITS)} to {end_text(i.high, _DIGITS)}: {_number(i.counts)}"
         for i in found.intervals
     ]
     return f"Intervals of {found.along.name}: {'; '.join(parts)}."

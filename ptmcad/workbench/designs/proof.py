@@ -23,8 +23,9 @@ from ptmcad.errors import (
     HypothesisError,
     InfiniteSolutionsError,
 )
+from ptmcad.exact.ranges.anyline import lines_of
 from ptmcad.exact.ranges.rangestrips import strips
-from ptmcad.exact.ranges.width import lines_of, widest
+from ptmcad.exact.ranges.width import widest
 from ptmcad.exact.stages import problem_of
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, to_fraction
