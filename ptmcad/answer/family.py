@@ -14,7 +14,6 @@ from ptmcad.answer import with_methods
 from ptmcad.answer.changes import Changes
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.slice import Axes, Axis
-from ptmcad.text.plane import terms_text
 
 if TYPE_CHECKING:
     from typing import Any
@@ -71,11 +70,6 @@ class FamilyMap:
             return self.members[self.values.index(value)]
         except ValueError:
             raise KeyError(value) from None
-
-    def surface_texts(self) -> tuple[str, ...]:
-        """The surfaces' polynomials as text."""
-        names = (*(a.name for a in self.axes), self.free.name)
-        return tuple(terms_text(terms, names) for terms in self.surfaces)
 
     def __iter__(self) -> Iterator[tuple[Fraction, RegionMap]]:
         return iter(zip(self.values, self.members, strict=True))

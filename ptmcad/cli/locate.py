@@ -86,9 +86,20 @@ def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Ite
         row is longer than `MAX_ROW`.
     """
     names = result.slice.axis_names
-    lines = _CsvLines(path)
+    number = size = 0  # of the lines, and characters since the last row
+
+    def lines() -> Iterator[str]:
+        nonlocal number, size
+        for line in lines_of(path, MAX_ROW, "a CSV file of points"):
+            number += 1
+            size += len(line)
+            if line.strip() and size > MAX_ROW:
+                raise ConfigError(f"the row that ends here has more than {MAX_ROW} characters: is a quotation mark "
+                                  "missing?", file=str(path), line=number)  # fmt: skip
+            yield line
+
     try:
-        reader = csv.DictReader(lines, skipinitialspace=True)
+        reader = csv.DictReader(lines(), skipinitialspace=True)
         columns = [c.strip() for c in reader.fieldnames or ()]
         for name in names:
             if columns.count(name) != 1:
@@ -98,41 +109,15 @@ def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Ite
                     line=1,
                 )
         reader.fieldnames = columns
-        lines.row = 0
+        size = 0
         for row in reader:
-            lines.row = 0
+            size = 0
             point = {name: (row[name] or "").strip() for name in names}
             if "" in point.values():
                 raise ConfigError("a value is missing", file=str(path), line=reader.line_num)
             yield reader.line_num, point | {name: (row.get(name) or "").strip() for name in further}
     except csv.Error as error:
-        raise ConfigError(
-            f"is not a CSV file: {error}", file=str(path), line=lines.number
-        ) from error
-
-
-class _CsvLines:
-    """The lines of a CSV file; refuses to go on when those since ``row`` was set to 0 are too long
-    for one row.
-    """
-
-    def __init__(self, path: Path):
-        self.path = path
-        self.lines = lines_of(path, MAX_ROW, "a CSV file of points")
-        self.number = 0
-        self.row = 0
-
-    def __iter__(self) -> _CsvLines:
-        return self
-
-    def __next__(self) -> str:
-        line = next(self.lines)
-        self.number += 1
-        self.row += len(line)
-        if line.strip() and self.row > MAX_ROW:
-            raise ConfigError(f"the row that ends here has more than {MAX_ROW} characters: is a quotation mark "
-                              "missing?", file=str(self.path), line=self.number)  # fmt: skip
-        return line
+        raise ConfigError(f"is not a CSV file: {error}", file=str(path), line=number) from error
 
 
 def _table(result: RegionMap, points: Iterator[CsvRow], path: Path) -> None:

@@ -150,13 +150,6 @@ class Part(NamedTuple):
         return f"a {self.kind.noun} is {self.kind.demand}, but this is {is_what}"
 
 
-class Root(NamedTuple):
-    """The part of an energy that is no polynomial, with its sign changed: pull times a length."""
-
-    pull: Tree
-    squared: Tree
-
-
 class Element(NamedTuple):
     """What a traversal of a description needs of one of its elements.
 
@@ -164,14 +157,15 @@ class Element(NamedTuple):
     ----------
     written : its expressions.
     energies : the summands of its energy, where there is a root without the free length.
-    root : what the energy lacks with the free length, where that is not written as zero.
+    root : what the energy lacks with the free length, where that is not written as zero: a pull,
+        which is times a length, and the square of this.
     varying : what an unknown has to change.
     idle : what is wrong where none does; without ``varying`` what is wrong at sight.
     """
 
     written: tuple[Part, ...]
     energies: tuple[Tree, ...] = ()
-    root: Root | None = None
+    root: tuple[Tree, Tree] | None = None
     varying: Tree | None = None
     idle: str = ""
 
@@ -266,7 +260,7 @@ class Spring(NamedTuple):
         return Element(
             (Part("k", Kind.STIFFNESS, self.stiffness), Part("free", Kind.FREE_LENGTH, self.free)),
             (replaced(self.law.smooth, names),),
-            None if is_zero else Root(replaced(self.law.pull, names), square),
+            None if is_zero else (replaced(self.law.pull, names), square),
             square,
             f"the length of {self.start}{self.end} is constant, so that this spring does nothing: leave it out, or put "
             "an end where it moves",

@@ -15,7 +15,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from ptmcad.errors import ExpressionError
 from ptmcad.text.syntax import NOT_INTEGER
-from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret
+from ptmcad.text.tree import OPERATORS, Call, Name, Number, Power, Step, Tree, interpret
 
 MAX_EXPONENT = 64
 MAX_BITS = 13_000
@@ -178,11 +178,12 @@ class _Evaluation(Generic[E]):
         return -value if isinstance(value, Fraction) else self.ring.constant(Fraction(-1)) * value
 
     def joined(self, left: Fraction | E, step: Step, right: Fraction | E) -> Fraction | E:
-        if step.operator == "/":
-            right = _inverse(right, step)
+        operator = step.operator
+        if operator == "/":
+            operator, right = "*", _inverse(right, step)
         if isinstance(left, Fraction) and isinstance(right, Fraction):
-            return _bounded(_sum_or_product(left, step.operator, right), step.position)
-        value: E = _sum_or_product(self.lifted(left), step.operator, self.lifted(right))
+            return _bounded(OPERATORS[operator](left, right), step.position)
+        value: E = OPERATORS[operator](self.lifted(left), self.lifted(right))
         return value
 
     def power(self, base: Fraction | E, power: Power, exponent: Fraction | E) -> Fraction | E:
@@ -295,11 +296,6 @@ class _Angles:
 
     def call(self, call: Call) -> dict[str, Fraction]:
         raise ExpressionError(f"{call.function} is no angle", call.position)
-
-
-def _sum_or_product(left: Any, operator: str, right: Any) -> Any:
-    """Joined by + or -, or multiplied."""
-    return left + right if operator == "+" else left - right if operator == "-" else left * right
 
 
 def _inverse(value: object, step: Step) -> Fraction:

@@ -51,14 +51,9 @@ constant.
 """
 
 
-class _KeptPolynomial(NamedTuple):
-    """A polynomial that an involution takes to one of some polynomials, or to the negative of one
-    if it may.
-    """
-
-    polynomial: _Terms
-    images: Sequence[_Terms]
-    may_be_negated: bool = False
+_KeptPolynomial = tuple[_Terms, Sequence[_Terms], bool]
+"""A polynomial that an involution takes to one of some polynomials, or to the negative of one where
+that may be."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,10 +245,10 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_KeptPolynomial]:
         kept += [[felt], [marked(dict(moments))], lengths]
     elif lengths:
         raise ExpressionError("free lengths are in none of a closed loop's equations")
-    yield from (_KeptPolynomial(f, images) for images in kept for f in images)
+    yield from ((f, images, False) for images in kept for f in images)
     if not system.are_slopes:
         equations = [p.terms for p in values(system.equations)]
-        yield from (_KeptPolynomial(f, equations, True) for f in equations)
+        yield from ((f, equations, True) for f in equations)
 
 
 class _Change(NamedTuple):
@@ -324,11 +319,11 @@ def _kept(change: _Change, parts: Sequence[_KeptPolynomial], known: _Bits) -> li
     become.
     """
     systems = [known]
-    for n, part in enumerate(parts):
-        images = ((change.monomial(m), c) for m, c in part.polynomial.items())
-        moved = {m: (c, mask) for (m, mask), c in images}
-        own = 2 << 2 * len(change.names) + n if part.may_be_negated else 0
-        found = (_same(moved, image, own, system) for system in systems for image in part.images)
+    for n, (polynomial, images, may_be_negated) in enumerate(parts):
+        terms = ((change.monomial(m), c) for m, c in polynomial.items())
+        moved = {m: (c, mask) for (m, mask), c in terms}
+        own = 2 << 2 * len(change.names) + n if may_be_negated else 0
+        found = (_same(moved, image, own, system) for system in systems for image in images)
         systems = [system for system in found if system is not None]
         if not systems:
             break

@@ -13,7 +13,7 @@ points, and a description may show neither part. It is for drawings alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
@@ -29,6 +29,8 @@ MAX_WORK = 20_000
 """Products of terms for all the points' coordinates; larger ones have no derived joints."""
 Direction = tuple[Fraction, ...]
 """The multiples of the angles."""
+Meeting = dict[str, dict[Direction, tuple[str, ...]]]
+"""The parts that meet at each point: by their directions the points of the first."""
 
 
 class Joint(NamedTuple):
@@ -40,11 +42,6 @@ class Joint(NamedTuple):
     towards: str = ""
 
 
-class _RigidPart(NamedTuple):
-    points: tuple[str, ...]
-    direction: Direction
-
-
 @lru_cache(maxsize=8)
 def joints_of(mechanism: Mechanism) -> tuple[Joint | None, ...]:
     """The joint of each torsion spring, in their order: where it says, else where it can be
@@ -52,11 +49,11 @@ def joints_of(mechanism: Mechanism) -> tuple[Joint | None, ...]:
     """
     if not mechanism.torsion:
         return ()
-    meeting: dict[str, dict[Direction, _RigidPart]] = {}
+    meeting: Meeting = {}
     try:
-        for part in _parts(mechanism):
-            for point in part.points:
-                meeting.setdefault(point, {}).setdefault(part.direction, part)
+        for points, direction in _parts(mechanism):
+            for point in points:
+                meeting.setdefault(point, {}).setdefault(direction, points)
     except ExpressionError:  # too large to be multiplied out
         meeting = {}
     return tuple(
@@ -81,17 +78,13 @@ def _joint_at(mechanism: Mechanism, point: str) -> Joint:
     return Joint(point)
 
 
-def _derived(
-    mechanism: Mechanism,
-    meeting: Mapping[str, Mapping[Direction, _RigidPart]],
-    spring: TorsionSpring,
-) -> Joint | None:
+def _derived(mechanism: Mechanism, meeting: Meeting, spring: TorsionSpring) -> Joint | None:
     """The joint by the parts that meet at each point."""
     turned = multiples(spring.angle)
     angle = [turned.get(name, Fraction(0)) for name in _turning(mechanism)]
     if not any(angle):
         return None
-    found: dict[str, _RigidPart] = {}
+    found: dict[str, tuple[str, ...]] = {}
     for point, parts in meeting.items():
         for direction in parts:
             other = tuple(m - n for m, n in zip(direction, angle, strict=True))
@@ -101,22 +94,22 @@ def _derived(
     if len({mechanism.points[point] for point in found}) != 1:
         return None
     point, arm = next(iter(found.items()))
-    return Joint(point, next(name for name in arm.points if name != point))
+    return Joint(point, next(name for name in arm if name != point))
 
 
 def _turning(mechanism: Mechanism) -> tuple[str, ...]:
     return (*mechanism.angles, *mechanism.followers)
 
 
-def _parts(mechanism: Mechanism) -> Iterator[_RigidPart]:
+def _parts(mechanism: Mechanism) -> Iterator[tuple[tuple[str, ...], Direction]]:
     """The frame, then bars and bodies, as far as they have a direction."""
     sliding = [name for name, kind in mechanism.supports.items() if kind is not Support.PIN]
     frame = tuple(n for n in mechanism.points if n not in mechanism.moving or n in sliding)
-    yield _RigidPart(frame, tuple(Fraction(0) for _ in _turning(mechanism)))
+    yield (frame, tuple(Fraction(0) for _ in _turning(mechanism)))
     places = Points(mechanism, PolynomialRing(MAX_WORK))
     for points in (*mechanism.bars, *mechanism.bodies.values()):
         for pair in combinations(points, 2):
             turns = places.turning(*pair)
             if turns is not None and not any(turns[name] for name in mechanism.reals):
-                yield _RigidPart(points, tuple(turns[name] for name in _turning(mechanism)))
+                yield (points, tuple(turns[name] for name in _turning(mechanism)))
                 break

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model.description import Mechanism, Model
@@ -104,7 +103,7 @@ def check_unknowns(mechanism: Mechanism, faults: Faults) -> None:
 def _held(mechanism: Mechanism) -> set[str]:
     """The unknowns whose equations do not vanish identically."""
     points = Points(mechanism)
-    energy, roots, work = felt(points)
+    energy, roots, work = _felt(points)
     held = {unknown for unknown, moment in work.items() if moment.terms}
     # a root does not cancel against the rest
     lengths = [squared for _, squared in roots]
@@ -121,8 +120,8 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
         key = f"symmetries.{n}"
         with faults:
             try:
-                here, there = felt(Points(mechanism)), felt(Points(mechanism, images=images))
-                change = here.energy - there.energy
+                here, there = _felt(Points(mechanism)), _felt(Points(mechanism, images=images))
+                change = here[0] - there[0]
                 holds = here[1:] == there[1:] and not any(
                     change.derivative(u).terms for u in mechanism.unknowns
                 )
@@ -138,17 +137,12 @@ def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
                 )
 
 
-class Felt(NamedTuple):
-    """What unknowns feel: the energy's polynomial part, its roots (pull, squared length), and the
-    moments' work along each unknown. Equilibria are the same where these are, but for numbers in
-    the energy."""
-
-    energy: Polynomial
-    roots: Counter[tuple[Polynomial, Polynomial]]
-    work: dict[str, Polynomial]
+Felt = tuple[Polynomial, Counter[tuple[Polynomial, Polynomial]], dict[str, Polynomial]]
+"""The energy's polynomial part, its roots (pull, squared length), and the moments' work along each
+unknown. Equilibria are the same where these are, but for numbers in the energy."""
 
 
-def felt(points: Points) -> Felt:
+def _felt(points: Points) -> Felt:
     """What unknowns feel in a mechanism."""
     mechanism, zero = points.mechanism, points.ring.constant(Fraction(0))
     energy, roots = zero, Counter[tuple[Polynomial, Polynomial]]()
@@ -164,7 +158,7 @@ def felt(points: Points) -> Felt:
         for unknown, c in multiples(points.images.get(own, Name(own))).items():
             if unknown in work:
                 work[unknown] += points.value(value) * points.ring.constant(c)
-    return Felt(energy, roots, work)
+    return energy, roots, work
 
 
 def check_loops(mechanism: Mechanism, faults: Faults) -> None:

@@ -2,14 +2,12 @@
 the place.
 
 Guarantee: `Proved` is a theorem, and a `Witness` is exact: the function has the stated value at the
-stated point, or is zero within the stated distance of it. What is neither is `Undecided`, a value
-of its own and never taken for a proof.
+stated point. What is neither is `Undecided`, a value of its own and never taken for a proof.
 
 Bernstein coefficients on boxes bound the polynomial there, and those at its corners are its values;
 the box with the lowest bound is halved next, so that the work gathers where a dip may be. Where
-`MAX_SPLITS` and `MAX_WORK` leave a polynomial open, its irreducible factors are looked at in the
-same way, as a power changes its sign nowhere, or with its base; FLINT, which takes longer to load
-than a record to read, is loaded for this only. Thin dips, and sums that touch zero, stay undecided.
+`MAX_SPLITS` and `MAX_WORK` leave a polynomial open, it stays undecided: thin dips, and what
+touches zero where no box has a corner.
 
 References: Farouki, "The Bernstein polynomial basis: a centennial retrospective", CAGD 29 (2012),
 section 4.
@@ -33,10 +31,6 @@ from ptmcad.text.numerals import approximate_text
 MAX_SPLITS = 400
 MAX_WORK = 2_000_000
 """Additions of Bernstein coefficients; less than a second."""
-_HALVINGS = 60
-"""Of a segment, in which a zero is enclosed."""
-_SIMPLE = 10**6
-"""Denominators up to which a zero is looked for exactly."""
 MAX_SHOWN = 10**40
 """Numerators and denominators from here on are shown rounded."""
 
@@ -69,7 +63,7 @@ def decide(expression: Expression, axes: Axes, need: Need) -> Verdict:
         verdict = _decided(_times(expression.denominator, side), window, True)
         if isinstance(verdict, Witness):
             other = middle if verdict.value < 0 else None
-            return Witness(verdict.point, side * verdict.value, verdict.distance, other)
+            return Witness(verdict.point, side * verdict.value, other)
         return verdict
     verdict = _decided(_times(expression.numerator, side), window, need is Need.POSITIVE)
     if isinstance(verdict, Witness) and verdict.value:
@@ -82,11 +76,6 @@ def decide(expression: Expression, axes: Axes, need: Need) -> Verdict:
 
 def place(verdict: Witness | Undecided, axes: Axes) -> str:
     """Where it is, in words: ``at rho = 1, m = 2``, or ``near``."""
-    if isinstance(verdict, Witness) and verdict.distance:  # the digits that it is known by
-        return "near " + ", ".join(
-            f"{axis.name} = {approximate_text(value)}"
-            for axis, value in zip(axes, verdict.point, strict=True)
-        )
     if isinstance(verdict, Witness):
         return f"at {named(verdict.point, axes)}"
     return f"near {named(middle_of(verdict.boxes[0]), axes)}"
@@ -111,11 +100,7 @@ def _decided(terms: tuple[Term, ...], window: Box, strict: bool) -> Verdict:
     """Whether a polynomial is positive, or not negative, in the open window."""
     if not terms:
         return Witness(middle_of(window), Fraction(0)) if strict else PROVED
-    found = _by_halving(terms, window, strict)
-    return _by_factors(terms, window, strict, found) if isinstance(found, Undecided) else found
-
-
-# --------------------------------------------------------------------------------------------------- by halving
+    return _by_halving(terms, window, strict)
 
 
 class _Part(NamedTuple):
@@ -276,59 +261,6 @@ def _power_in_bernstein(power: int, degree: int, interval: Interval) -> list[Fra
         )
         for p in range(degree + 1)
     ]
-
-
-# --------------------------------------------------------------------------------------------------- by factors
-
-
-def _by_factors(terms: tuple[Term, ...], window: Box, strict: bool, left: Undecided) -> Verdict:
-    """The same, for what halving has left: the polynomial has one sign where each factor has."""
-    from ptmcad.algebra.polynomials import factors_with_multiplicity, from_terms
-
-    factors = factors_with_multiplicity(from_terms(terms)[0])
-    if len(factors) == 1 and factors[0][1] == 1:
-        return left
-    for factor, power in factors:
-        if power % 2 or strict:
-            own = tuple((int(i), int(j), Fraction(int(c))) for (i, j), c in factor.terms())
-            signs = [_by_halving(_times(own, side), window, strict) for side in (1, -1)]
-            if PROVED in signs:
-                continue
-            low, high = signs
-            if isinstance(low, Witness) and isinstance(high, Witness):
-                for point in (low.point, high.point):
-                    if (value := polynomial_value(terms, *point)) < 0:
-                        return Witness(point, value)
-                if strict:
-                    return _zero_between(own, low.point, high.point)
-            return left
-    (x0, x1), (y0, y1) = window
-    points = (
-        (x0 + (x1 - x0) * Fraction(i, n), y0 + (y1 - y0) * Fraction(j, n))
-        for n in count(3)
-        for i, j in product(range(1, n), repeat=2)
-    )
-    values = ((point, polynomial_value(terms, *point)) for point in points)
-    point, value = next((point, value) for point, value in values if value)
-    return PROVED if value > 0 else Witness(point, value)
-
-
-def _zero_between(terms: tuple[Term, ...], low: Corner, high: Corner) -> Witness:
-    """A zero on the segment between a point where a polynomial is at most zero and one where it is
-    at least that.
-    """
-    middle, ends = low, tuple(zip(low, high, strict=True))
-    for _ in range(_HALVINGS):
-        middle = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2)
-        value = polynomial_value(terms, *middle)
-        if value == 0:
-            return Witness(middle, value)
-        low, high = (middle, high) if value < 0 else (low, middle)
-    near = (middle[0].limit_denominator(_SIMPLE), middle[1].limit_denominator(_SIMPLE))
-    is_between = all(min(pair) <= x <= max(pair) for x, pair in zip(near, ends, strict=True))
-    if is_between and polynomial_value(terms, *near) == 0:
-        return Witness(near, Fraction(0))
-    return Witness(middle, Fraction(0), max(abs(a - b) for a, b in zip(low, high, strict=True)))
 
 
 def _around(value: Fraction) -> Interval:

@@ -35,14 +35,11 @@ class Witness(NamedTuple):
     Attributes
     ----------
     value : of the function there, or of its denominator when a pole is the matter.
-    distance : 0, or, when the value is a zero at a point with irrational coordinates, how far in
-        each coordinate the zero may be from ``point``.
     other : for a pole, a point at which the denominator has the other sign, if one was found.
     """
 
     point: Corner
     value: Fraction
-    distance: Fraction = Fraction(0)
     other: Corner | None = None
 
 

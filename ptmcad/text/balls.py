@@ -6,16 +6,22 @@ for.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
+from typing import NamedTuple
 
-from flint import arb
+from flint import arb, ctx
 
 from ptmcad.text.enclosure import Enclosure, settled
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import magnitude
+from ptmcad.text.tree import OPERATORS, Call, Name, Number, Power, Step, Tree, interpret
 
 _GUARD = 6
 """Digits of the enclosure's middle beyond those asked for, at first."""
+_BITS = 100
+_MAX_POWER = 100
+"""Larger ones are computed by logarithms."""
 
 
 def enclosed(ball: arb, digits: int) -> Enclosure | None:
@@ -117,3 +123,41 @@ def exact(ball: arb) -> Fraction:
         When the radius is not zero, or the ball not finite.
     """
     return to_fraction(ball.fmpq())
+
+
+def in_balls(tree: Tree, known: Mapping[str, arb]) -> arb:
+    """The value of an expression at the values of names; not finite where it has none."""
+    with ctx.workprec(_BITS):
+        return interpret(tree, _InBalls(known))
+
+
+class _InBalls(NamedTuple):
+    known: Mapping[str, arb]
+
+    def number(self, number: Number) -> arb:
+        return ball_of(number.value)
+
+    def name(self, name: Name) -> arb:
+        return self.known[name.name]
+
+    def call(self, call: Call) -> arb:
+        argument = interpret(call.argument, self)
+        return argument.cos() if call.function == "cos" else argument.sin()
+
+    def negative(self, value: arb) -> arb:
+        return -value
+
+    def joined(self, left: arb, step: Step, right: arb) -> arb:
+        found: arb = OPERATORS[step.operator](left, right)
+        return found
+
+    def power(self, base: arb, power: Power, exponent: arb) -> arb:
+        whole = exponent.unique_fmpz()
+        if whole is None or abs(whole) > _MAX_POWER:
+            return base**exponent
+        found = arb(1)
+        for _ in range(
+            abs(int(whole))
+        ):  # python-flint's ball ** int is not a number when the ball's middle is zero
+            found = found * base
+        return found if whole >= 0 else 1 / found

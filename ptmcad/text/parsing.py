@@ -20,27 +20,19 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import partial
 from math import comb
-from operator import add, mul, sub, truediv
 
 from ptmcad.errors import ConfigError, ExpressionError, shown
 from ptmcad.text.expressions import Expression, Expressions, constant
 from ptmcad.text.numerals import exactly
 from ptmcad.text.syntax import NOT_INTEGER, unknown_name
 from ptmcad.text.syntax import parse as tree_of
-from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret
+from ptmcad.text.tree import OPERATORS, Call, Name, Number, Power, Step, Tree, interpret
 
 MAX_EXPONENT = 64
 MAX_DEGREE = 64
 MAX_TERMS = 300
 MAX_BITS = 13_000  # under 4300 decimal digits, so that Python prints it
 MAX_WORK = 100_000
-
-_OPERATION: dict[str, Callable[[Expression, Expression], Expression]] = {
-    "+": add,
-    "-": sub,
-    "*": mul,
-    "/": truediv,
-}
 
 
 def parse(text: object, names: Expressions | None = None) -> Expression:
@@ -166,7 +158,7 @@ class _InTheAxes:
         adds_up = step.operator in "*/" or not (left.is_polynomial and right.is_polynomial)
         if (sum(degrees) if adds_up else max(degrees)) > MAX_DEGREE:
             raise ExpressionError(f"the degree exceeds {MAX_DEGREE}", step.position)
-        return self.limited(partial(_OPERATION[step.operator], left, right), step.position)
+        return self.limited(partial(OPERATORS[step.operator], left, right), step.position)
 
     def power(self, base: Expression, power: Power, exponent: Expression) -> Expression:
         if not exponent.is_constant or exponent.constant().denominator != 1:

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import NamedTuple, Protocol, TypeVar
+from operator import add, mul, sub, truediv
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 from ptmcad.text.numerals import decimal_places, pointed
 
@@ -22,6 +23,10 @@ FUNCTIONS = ("cos", "sin")
 SUM, PRODUCT, TIGHTER = 1, 2, 3
 BINDING = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT}
 """How tightly operators bind, below signs and powers."""
+OPERATORS: Mapping[str, Callable[[Any, Any], Any]] = {
+    "+": add, "-": sub, "*": mul, "/": truediv,
+}  # fmt: skip
+"""What operators do with values of Python's own, or of a library that has these."""
 
 # Named tuples: they are defined in a seventh of a dataclass's time, and every command pays for that
 # when it starts.

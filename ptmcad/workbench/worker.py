@@ -12,10 +12,11 @@ import signal
 import socket
 import subprocess
 import sys
+from collections import deque
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from time import monotonic
-from typing import Any, Protocol
+from typing import Any
 
 from ptmcad.errors import OutputError, shown
 from ptmcad.process.handover import end_with
@@ -32,16 +33,9 @@ class Cancelled(Exception):
     """The job at hand is no longer wanted."""
 
 
-class Task(Protocol):
-    """What is asked in each job; it is sent to the process."""
-
-    def answer(self, job: Any, check: Callable[[], None]) -> Any:
-        """What becomes of a job, in the process that computes it.
-
-        Parameters
-        ----------
-        check : raises `Cancelled` when the job is no longer wanted, where jobs come one by one.
-        """
+Task = Callable[[Any, Callable[[], None]], Any]
+"""What becomes of a job, in the process that computes it: a function that is sent there. Its second
+argument raises `Cancelled` when the job is no longer wanted, where jobs come one by one."""
 
 
 class Worker:
@@ -122,19 +116,21 @@ class Worker:
 
 
 def _serve(connection: Connection) -> None:
-    task, current = connection.recv(), -1
+    task, current, later = connection.recv(), -1, deque[tuple[int, Any]]()
 
     def check() -> None:
         while connection.poll():
-            if connection.recv() == (current, CANCEL):
+            message = connection.recv()
+            if message == (current, CANCEL):
                 raise Cancelled
+            later.append(message)
 
     while True:
-        current, job = connection.recv()
+        current, job = later.popleft() if later else connection.recv()
         if job == CANCEL:
             continue  # it came too late: the job is done
         try:
-            outcome = task.answer(job, check)
+            outcome = task(job, check)
         except BaseException as error:  # raised again, and ends this process
             connection.send((current, None, shown(f"{type(error).__name__}: {error}")))
             raise

@@ -18,7 +18,7 @@ from ptmcad.question.config.typed import Typed
 from ptmcad.text.entry import plain_data
 from ptmcad.text.yamltree import read_text
 from ptmcad.workbench.explore.jobs import Tasks
-from ptmcad.workbench.explore.panel import Families, SliderPanel, panel_of
+from ptmcad.workbench.explore.panel import SliderPanel, panel_of
 
 
 def panel(name: str, ranges: tuple[str, ...] = ()) -> SliderPanel:
@@ -120,12 +120,12 @@ def test_what_is_no_value_is_refused(given: dict[str, str], said: str) -> None:
 
 def test_a_family_is_computed_once_for_all_values_of_its_free_parameter() -> None:
     found = panel("families/equal-loads")
-    families = Families(found)
-    first = families.common(found.values({"F": "-3"}), Options())
-    assert families.common(found.values({"F": "-30"}), Options()) is first
-    other = families.common(found.values({"F": "-3", "k": "50"}), Options())
+    common = Tasks(found, Path()).common
+    first = common(found.values({"F": "-3"}), Options())
+    assert common(found.values({"F": "-30"}), Options()) is first
+    other = common(found.values({"F": "-3", "k": "50"}), Options())
     assert other is not first and other.variety is not None
-    assert families.common(found.values({"F": "-4"}), Options()) is first
+    assert common(found.values({"F": "-4"}), Options()) is first
 
 
 def tasks(name: str, folder: Path = Path()) -> Tasks:

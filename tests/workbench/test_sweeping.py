@@ -31,7 +31,7 @@ from ptmcad.errors import ConfigError, LimitReached, OutputError
 from ptmcad.question.config.sweeps import sweep_from
 from ptmcad.workbench.sweeps import index
 from ptmcad.workbench.sweeps import run as engine
-from ptmcad.workbench.sweeps.member import Failed, Found, Refused, Wanted, Work, compute
+from ptmcad.workbench.sweeps.member import Failed, Found, Refused, Wanted, compute, computing
 from ptmcad.workbench.sweeps.pool import Pool
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -149,7 +149,7 @@ def test_a_worker_that_dies_fails_its_member_alone() -> None:
     """The members that waited at the dead one go to another; the one that failed can be given
     again.
     """
-    pool = Pool(Work(sweep_from(CUSPS), QUICK), 1)
+    pool = Pool(computing(sweep_from(CUSPS), QUICK), 1)
     try:
         pool.submit(0)
         pool.submit(1)
@@ -168,7 +168,7 @@ def test_a_worker_that_dies_fails_its_member_alone() -> None:
 def test_an_unexpected_error_is_its_members_failure(monkeypatch: pytest.MonkeyPatch) -> None:
     """And ends its process, of which the next member knows nothing."""
     question = sweep_from(CUSPS)
-    broken = Work(question, Wanted(areas=False, engine="broken"))
+    broken = computing(question, Wanted(areas=False, engine="broken"))
     pool = Pool(broken, 1)
     try:
         pool.submit(0)
@@ -193,10 +193,10 @@ def test_a_member_that_overruns_its_time_is_a_failure(tmp_path: Path) -> None:
     same.
     """
     question = sweep_from(CUSPS)
-    assert compute(Work(question, Wanted(timeout=1e-6)), 0) == Failed(
+    assert computing(question, Wanted(timeout=1e-6))(0) == Failed(
         "the member's time limit of 1e-06 s was reached"
     )
-    pool = Pool(Work(question, Wanted(timeout=1e-3)), 1, 1e-3)
+    pool = Pool(computing(question, Wanted(timeout=1e-3)), 1, 1e-3)
     try:
         pool.submit(0)
         os.kill(pool._workers[0].process.pid, signal.SIGSTOP)
@@ -215,8 +215,8 @@ def test_failures_are_recorded_tried_again_and_stop_no_other(tmp_path: Path) -> 
 
 
 def test_other_versions_and_orders_are_told_apart(tmp_path: Path) -> None:
-    work = Work(sweep_from(CUSPS), QUICK, version="0.0")
-    assert compute(work, 0).error.endswith("and the sweep was asked with 0.0")
+    found = compute(sweep_from(CUSPS), QUICK, "0.0", 0)
+    assert isinstance(found, Failed) and found.error.endswith("the sweep was asked with 0.0")
     mapped(CUSPS, tmp_path / "u")
     for record, options in (({**CUSPS, "count": "total"}, {}), (CUSPS, {"wanted": Wanted()})):
         with pytest.raises(
@@ -360,13 +360,13 @@ def test_killed_at_ten_random_moments_it_leaves_the_same_index(tmp_path: Path) -
 def test_workers_end_with_the_process_that_has_started_them(tmp_path: Path) -> None:
     """Whatever they do: this one would sleep for minutes and not look at anything."""
     (tmp_path / "sleeper.py").write_text(
-        "import time\nfrom pathlib import Path\nclass Sleeper:\n    def answer(self, number, check):\n"
-        f"        Path({str(tmp_path / 'asleep')!r}).touch()\n        time.sleep(600)\n",
+        "import time\nfrom pathlib import Path\ndef sleep(number, check):\n"
+        f"    Path({str(tmp_path / 'asleep')!r}).touch()\n    time.sleep(600)\n",
         encoding="utf-8",
     )
     code = (
-        f"import os, signal, sys, time\nsys.path.append({str(tmp_path)!r})\nfrom sleeper import Sleeper\n"
-        "from ptmcad.workbench.sweeps.pool import Pool\npool = Pool(Sleeper(), 1)\npool.submit(0)\n"
+        f"import os, signal, sys, time\nsys.path.append({str(tmp_path)!r})\nfrom sleeper import sleep\n"
+        "from ptmcad.workbench.sweeps.pool import Pool\npool = Pool(sleep, 1)\npool.submit(0)\n"
         "print(pool._workers[0].process.pid, flush=True)\n"
         f"while not os.path.exists({str(tmp_path / 'asleep')!r}):\n    time.sleep(0.01)\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
@@ -484,7 +484,6 @@ def test_memory_does_not_grow_with_the_members(tmp_path: Path) -> None:
 import json, resource, sys
 from pathlib import Path
 from ptmcad.workbench.sweeps import run
-from ptmcad.workbench.sweeps.member import compute
 import ptmcad
 peaks = {{}}
 def progress(stage, done, total):
@@ -492,7 +491,7 @@ def progress(stage, done, total):
         pages = int(Path("/proc/self/statm").read_text().split()[1])
         peaks[done] = pages * 4096
 class Here:
-    def __init__(self, work): self.work, self.numbers = work, []
+    def __init__(self): self.numbers = []
     room = property(lambda self: len(self.numbers) < 4)
     busy = property(lambda self: bool(self.numbers))
     def submit(self, number): self.numbers.append(number)
@@ -503,8 +502,8 @@ class Here:
 values = {{"from": 1, "to": 100, "steps": 100}}
 record = {{"name": "many", "axes": {AXES!r}, "sweep": {{"k1": values, "k2": values}}}}
 from ptmcad.question.config.sweeps import sweep_from
-OUTCOME = compute(run.Work(sweep_from(record), run.Wanted(areas=False)), 0)
-run._workers = lambda work, jobs, scheduler: lambda: Here(work)
+OUTCOME = run.computing(sweep_from(record), run.Wanted(areas=False))(0)
+run._workers = lambda *asked: Here
 sweep = run.sweep(record, {str(tmp_path / "many")!r}, progress=progress)
 assert sweep.complete and len(sweep) == 10000
 print(json.dumps(peaks))

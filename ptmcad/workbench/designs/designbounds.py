@@ -1,11 +1,10 @@
 """Bounds over boxes of designs, and branch and bound by them: what no design exceeds, and how near the
 best known one comes to it.
 
-Guarantee: `Outcome.bound` is an upper bound for all designs within the bounds off a set without
-interior, for those that satisfy the conditions. It rests on the bounds of the boxes alone, not on
-the order in which they were cut. For areas the window is cut into strips; over a strip and an
-interval of designs `designlines` bounds the length of what may have the wanted count on any line of
-the strip, and so what it adds to the area.
+Guarantee: the bounds of the boxes are upper bounds for all designs in them off a set without
+interior, for those that satisfy the conditions, whatever the order in which they were cut. For
+areas the window is cut into strips; over a strip and an interval of designs `designlines` bounds the
+length of what may have the wanted count on any line of the strip, and so what it adds to the area.
 """
 
 from __future__ import annotations
@@ -29,46 +28,19 @@ Bounded = tuple[fmpq, fmpq, Any]
 box inside of it starts from."""
 
 
-class Goal(NamedTuple):
-    """When a search ends.
-
-    Attributes
-    ----------
-    tolerance : relative to the best value; of the bound over it.
-    least : the bound that is small enough where no design has a value above zero.
-    most : so many boxes.
-    """
-
-    tolerance: fmpq
-    least: fmpq
-    most: int
-
-
-class Outcome(NamedTuple):
-    """How a search ended.
-
-    Attributes
-    ----------
-    boxes : a partition of the bounds, each box with its bound; but for boxes on which the
-        conditions fail.
-    complete : whether the bound is within the tolerance of the best value.
-    """
-
-    bound: fmpq
-    boxes: tuple[tuple[Place, fmpq], ...]
-    complete: bool
-
-
 def search(
     bounder: Bounder,
     whole: Place,
     feasible: Callable[[Place], bool],
     improved: Callable[[Point | None], fmpq],
-    wanted: Goal,
-    check: Callable[[int, fmpq, fmpq], bool],
-) -> Outcome:
+    enough: Callable[[fmpq], fmpq],
+    go_on: Callable[[int, fmpq, fmpq], bool],
+) -> tuple[Sequence[tuple[Place, fmpq]], bool]:
     """Cut boxes, always the one with the largest bound, until the largest bound is near enough to
     the best value.
+
+    Returns a partition of the bounds, each box with its bound, but for boxes on which the
+    conditions fail; and whether all bounds are near enough.
 
     Parameters
     ----------
@@ -76,41 +48,32 @@ def search(
     feasible : whether some design of a box may satisfy the conditions.
     improved : gives a lower bound of the best value that is known, after a look at a design if one
         is given.
-    check : called with the number of boxes, the bound and the best value; whether to go on.
+    enough : by the best value, the bound that is near enough to it.
+    go_on : called with the number of boxes, the bound and the best value.
     """
     best = improved(None)
-    bound, _, state = bounder.over(whole, bounder.whole(), fmpq(1), _enough(best, wanted))
+    bound, _, state = bounder.over(whole, bounder.whole(), fmpq(1), enough(best))
     heap = [(-bound, 0, whole, state)]
     settled: list[tuple[Place, fmpq]] = []
     boxes = 1
-    while (
-        heap
-        and -heap[0][0] > _enough(best, wanted)
-        and boxes < wanted.most
-        and check(boxes, -heap[0][0], best)
-    ):
+    while heap and -heap[0][0] > enough(best) and go_on(boxes, -heap[0][0], best):
         negative, _, place, state = heappop(heap)
         for half in _cut(place, whole):
             if not feasible(half):
                 continue
             boxes += 1
             above, certainly, within = bounder.over(
-                half, state, max(_shares(half, whole)), _enough(best, wanted)
+                half, state, max(_shares(half, whole)), enough(best)
             )
             bound = min(above, -negative)
-            if bound > _enough(best, wanted) and bound + certainly > 2 * best:
+            if bound > enough(best) and bound + certainly > 2 * best:
                 best = improved(tuple((low + high) / 2 for low, high in half))
-            if bound > _enough(best, wanted):
+            if bound > enough(best):
                 heappush(heap, (-bound, boxes, half, within))
             else:
                 settled.append((half, bound))
     settled += [(place, -negative) for negative, _, place, _ in heap]
-    bound = max((b for _, b in settled), default=fmpq(0))
-    return Outcome(bound, tuple(settled), bound <= _enough(best, wanted))
-
-
-def _enough(best: fmpq, wanted: Goal) -> fmpq:
-    return max(best * (1 + wanted.tolerance), wanted.least if best <= 0 else fmpq(0))
+    return settled, all(bound <= enough(best) for _, bound in settled)
 
 
 def _shares(place: Place, whole: Place) -> list[fmpq]:

@@ -258,25 +258,16 @@ def root_bound(value: fmpq, power: int, up: bool) -> fmpq:
     return fmpq(found if exact or not up else found + 1, 1 << _BITS)
 
 
-class Axes(NamedTuple):
-    """Names and ranges of two or three coordinates, and which of them varies along lines."""
-
-    names: tuple[str, ...]
-    ranges: tuple[Interval, ...]
-    along: int = 0
-
-    @property
-    def order(self) -> tuple[int, ...]:
-        """The numbers of the coordinates, that along lines first."""
-        return (self.along, *(k for k in range(len(self.names)) if k != self.along))
-
-
-def space_of_family(on: SystemOnAxes, axes: Axes, working: int) -> Space | None:
+def space_of_family(
+    on: SystemOnAxes, names: Sequence[str], ranges: Sequence[Interval], along: int, working: int
+) -> Space | None:
     """The space of three coordinates; None where there is no variety that holds for all designs.
 
     Parameters
     ----------
     on : the system on the axes x, y and z.
+    names, ranges : of these.
+    along : which of them varies along lines.
 
     Raises
     ------
@@ -286,7 +277,7 @@ def space_of_family(on: SystemOnAxes, axes: Axes, working: int) -> Space | None:
     known = family_variety(on)
     if known is None:
         return None
-    return _space(on, surfaces_of(on, known, axes.ranges), axes, working)
+    return _space(on, surfaces_of(on, known, ranges), names, ranges, along, working)
 
 
 def space_of_slice(problem: SliceProblem, along: int, working: int) -> Space:
@@ -299,13 +290,21 @@ def space_of_slice(problem: SliceProblem, along: int, working: int) -> Space:
     """
     variety = discriminant_variety(problem.on, problem.window)
     found = [from_plane(c.polynomial) for c in variety.components if not c.left_out]
-    return _space(problem.on, found, Axes(problem.slice.axis_names, problem.window, along), working)
+    return _space(problem.on, found, problem.slice.axis_names, problem.window, along, working)
 
 
-def _space(on: SystemOnAxes, found: Sequence[Coefficient], axes: Axes, working: int) -> Space:
-    window = axes.ranges[axes.along]
+def _space(
+    on: SystemOnAxes,
+    found: Sequence[Coefficient],
+    names: Sequence[str],
+    ranges: Sequence[Interval],
+    along: int,
+    working: int,
+) -> Space:
+    window = ranges[along]
+    order = (along, *(k for k in range(len(names)) if k != along))
     ordered = [
-        [(_padded([int(powers[k]) for k in axes.order]), int(c)) for powers, c in p.terms()]
+        [(_padded([int(powers[k]) for k in order]), int(c)) for powers, c in p.terms()]
         for p in found
     ]
     power = (
@@ -315,10 +314,10 @@ def _space(on: SystemOnAxes, found: Sequence[Coefficient], axes: Axes, working: 
     )
 
     def count(value: fmpq, design: tuple[fmpq, fmpq]) -> int | None:
-        point = [fmpq(0)] * len(axes.names)
-        for number, coordinate in zip(axes.order, (value, *design), strict=False):
+        point = [fmpq(0)] * len(names)
+        for number, coordinate in zip(order, (value, *design), strict=False):
             point[number] = coordinate
-        where = equalities(dict(zip(axes.names, point, strict=True)))
+        where = equalities(dict(zip(names, point, strict=True)))
         try:
             return count_at(where, on, point).counts.working
         except DegenerateSliceError:

@@ -12,8 +12,6 @@ from contextlib import suppress
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import arb, ctx
-
 from ptmcad.answer.intervals import Span
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
@@ -29,19 +27,17 @@ from ptmcad.errors import (
 )
 from ptmcad.options import Options
 from ptmcad.question.config.designed import Aim, Design
-from ptmcad.text.balls import ball_of, exact
+from ptmcad.text.balls import ball_over, enclosure_of, in_balls
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import Numbers
 from ptmcad.text.syntax import did_you_mean, parse
-from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret, names_of
+from ptmcad.text.tree import Tree, names_of
 from ptmcad.workbench.designs.designlines import Space
 
 KEY = "design.maximise"
 DIGITS = 15
 AREA_TOLERANCE = Fraction(1, 10**6)
-_BITS = 100
-_MAX_POWER = 100
 
 
 class Value(NamedTuple):
@@ -276,42 +272,5 @@ def _tree(design: Design) -> Tree:
 
 def _enclosed(tree: Tree, known: Mapping[str, Enclosure]) -> Enclosure | None:
     """The value of an expression; None where it has none."""
-    with ctx.workprec(_BITS):
-        value = interpret(tree, _TreesInBalls(known))
-        return Enclosure(exact(value.lower()), exact(value.upper())) if value.is_finite() else None
-
-
-class _TreesInBalls(NamedTuple):
-    """Expressions in balls."""
-
-    known: Mapping[str, Enclosure]
-
-    def number(self, number: Number) -> arb:
-        return ball_of(number.value)
-
-    def name(self, name: Name) -> arb:
-        found = self.known[name.name]
-        return ball_of(found.low).union(ball_of(found.high))
-
-    def call(self, call: Call) -> arb:
-        argument = interpret(call.argument, self)
-        return argument.cos() if call.function == "cos" else argument.sin()
-
-    def negative(self, value: arb) -> arb:
-        return -value
-
-    def joined(self, left: arb, step: Step, right: arb) -> arb:
-        if step.operator in "+-":
-            return left + right if step.operator == "+" else left - right
-        return left * right if step.operator == "*" else left / right
-
-    def power(self, base: arb, power: Power, exponent: arb) -> arb:
-        whole = exponent.unique_fmpz()
-        if whole is None or abs(whole) > _MAX_POWER:
-            return base**exponent
-        found = arb(1)
-        for _ in range(
-            abs(int(whole))
-        ):  # python-flint's ball ** int is not a number when the ball's middle is zero
-            found = found * base
-        return found if whole >= 0 else 1 / found
+    value = in_balls(tree, {name: ball_over(e.low, e.high) for name, e in known.items()})
+    return enclosure_of(value) if value.is_finite() else None

@@ -32,14 +32,12 @@ from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_betwe
 from ptmcad.workbench.designs.designbounds import (
     AreaBounder,
     Bounder,
-    Goal,
     Lengths,
-    Outcome,
     Place,
     Point,
     search,
 )
-from ptmcad.workbench.designs.designlines import Axes, space_of_family, space_of_slice
+from ptmcad.workbench.designs.designlines import space_of_family, space_of_slice
 
 Look = Callable[[Mapping[str, Fraction]], Fraction]
 """From a design to a lower bound of the best value that is known after it was evaluated."""
@@ -131,9 +129,8 @@ def _bounder(design: Design, tolerance: fmpq) -> Bounder | None:
     axes = (*family.axes, family.free)
     ranges = tuple(interval_of(axis) for axis in axes)
     along = 1 if design.aim is Aim.AREA else 0
-    found = space_of_family(
-        in_space(family), Axes(tuple(a.name for a in axes), ranges, along), design.working
-    )
+    names = tuple(a.name for a in axes)
+    found = space_of_family(in_space(family), names, ranges, along, design.working)
     if found is None:
         return None
     return AreaBounder(found, ranges[0]) if design.aim is Aim.AREA else Lengths(found, tolerance)
@@ -169,27 +166,25 @@ def bounded(
         )
         return from_fraction(look(values))
 
-    def check(boxes: int, bound: fmpq, best: fmpq) -> bool:
-        return go_on(boxes, float(to_fraction(bound)), float(to_fraction(best)))
-
     size = prod((axis.width for axis in design.axes), start=Fraction(1))  # of the window
-    wanted = Goal(from_fraction(tolerance), from_fraction(tolerance * size), most)
+    share, least = from_fraction(tolerance), from_fraction(tolerance * size)
+
+    def enough(best: fmpq) -> fmpq:
+        return best * (1 + share) if best > 0 else max(best * (1 + share), least)
+
+    def more(boxes: int, bound: fmpq, best: fmpq) -> bool:
+        return boxes < most and go_on(boxes, float(to_fraction(bound)), float(to_fraction(best)))
+
     whole = tuple(interval_of(axis) for axis in design.over)
     try:
-        outcome = search(bounder, whole, feasible, improved, wanted, check)
+        found, complete = search(bounder, whole, feasible, improved, enough, more)
     except HypothesisError as error:
         return Proof(None, f"a bound fails: {error}")
-    return _proof(outcome)
-
-
-def _proof(outcome: Outcome) -> Proof:
     boxes = tuple(
         BoundedBox(tuple((to_fraction(a), to_fraction(b)) for a, b in place), to_fraction(bound))
-        for place, bound in outcome.boxes
+        for place, bound in found
     )
     number = f"{len(boxes)} boxes of designs" if len(boxes) != 1 else "one box of designs"
-    if outcome.complete:
-        return Proof(to_fraction(outcome.bound), f"by branch and bound, over {number}", boxes)
-    return Proof(
-        to_fraction(outcome.bound), f"by branch and bound, which was stopped at {number}", boxes
-    )
+    how = f"over {number}" if complete else f"which was stopped at {number}"
+    bound = max((box.bound for box in boxes), default=Fraction(0))
+    return Proof(bound, f"by branch and bound, {how}", boxes)

@@ -13,8 +13,8 @@ import json
 from collections import OrderedDict
 from itertools import count
 
-from ptmcad.workbench.explore.jobs import SUPERSEDED, Job, Reply, Tasks
-from ptmcad.workbench.worker import Worker
+from ptmcad.workbench.explore.jobs import SUPERSEDED, Job, Reply
+from ptmcad.workbench.worker import Task, Worker
 
 ANSWER_SECONDS = 180.0
 """After which a worker is ended: FLINT's code, and compiling the certified engine, do not look at
@@ -29,8 +29,8 @@ Key = tuple[str, str]
 class JobQueue:
     """The jobs of one worker, which is replaced when it has ended."""
 
-    def __init__(self, tasks: Tasks) -> None:
-        self.tasks = tasks
+    def __init__(self, task: Task) -> None:
+        self.task = task
         self.worker: Worker | None = None
         self.waiting: OrderedDict[Key, tuple[Job, asyncio.Future[Reply]]] = OrderedDict()
         self.current: tuple[Key, int] | None = None
@@ -80,7 +80,7 @@ class JobQueue:
         if self.worker is not None and self.worker.process.poll() is not None:
             self._end()
         if self.worker is None:
-            self.worker = Worker(self.tasks)
+            self.worker = Worker(self.task)
         return self.worker
 
     async def _answered(self, key: Key, job: Job) -> Reply:

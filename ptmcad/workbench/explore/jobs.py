@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
@@ -22,14 +23,15 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.words import stable_of
 from ptmcad.ask.classification import region_map
 from ptmcad.ask.engines import is_certified
-from ptmcad.ask.members import member_map
+from ptmcad.ask.members import Common, in_common, member_map
 from ptmcad.ask.solving import poses_at
-from ptmcad.errors import ConfigError, LimitReached, PtmcadError
+from ptmcad.errors import ConfigError, LimitReached, Place, PtmcadError
 from ptmcad.model import Model
 from ptmcad.model.work import loads_at
 from ptmcad.options import Options, Progress
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name
+from ptmcad.question.config.familyquestion import family_of
 from ptmcad.question.slice import Slice
 from ptmcad.show.posetable import kind_of
 from ptmcad.show.render.axes import symbol
@@ -49,9 +51,10 @@ from ptmcad.show.report.mapsvg import (
 )
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import area_digits, count_text
+from ptmcad.text.entry import Scalar, Sequence
 from ptmcad.text.expressions import values_at
-from ptmcad.text.numerals import Numbers, approximate_text
-from ptmcad.workbench.explore.panel import Families, SliderPanel, number_within
+from ptmcad.text.numerals import Numbers, approximate_text, text_of
+from ptmcad.workbench.explore.panel import SliderPanel, number_within
 from ptmcad.workbench.worker import Cancelled
 
 EXACT_SECONDS = 50.0
@@ -66,6 +69,12 @@ POSE_DIGITS, DIGITS = 10, 7
 COARSE = 5e-4
 """How far a chord may miss its curve while the map is dragged, as a share of the window: a third of
 a pixel.
+"""
+
+
+REMEMBERED = 4
+"""Families whose variety is kept: one is left and come back to when another parameter is dragged to
+and fro.
 """
 
 
@@ -89,7 +98,7 @@ class Tasks:
 
     def __init__(self, panel: SliderPanel, folder: Path) -> None:
         self.panel, self.folder = panel, folder
-        self.families = Families(panel)
+        self.families: OrderedDict[tuple[Fraction, ...], Common] = OrderedDict()
         self.last: RegionMap | None = None
 
     def answer(self, job: Job, check: Callable[[], None]) -> Reply:
@@ -138,7 +147,24 @@ class Tasks:
         free = self.panel.record.free
         if free is None:
             return region_map(slice, options)
-        return member_map(self.families.common(values, options), values[free[0]], options)
+        return member_map(self.common(values, options), values[free[0]], options)
+
+    def common(self, values: Numbers, options: Options) -> Common:
+        """What the members have in common of the family that the values are in; its only stated
+        member is the one at the free value.
+        """
+        others = tuple(values[slider.name] for slider in self.panel.sliders if not slider.free)
+        if others not in self.families:
+            record = self.panel.record_at(values)
+            assert record.free is not None
+            place = Place("members")
+            stated = Sequence((Scalar(text_of(values[record.free[0]]), place),), place)
+            family = family_of(record._replace(members=stated))
+            self.families[others] = in_common(family, options)
+            if len(self.families) > REMEMBERED:
+                self.families.popitem(last=False)
+        self.families.move_to_end(others)
+        return self.families[others]
 
     def _certified(self, slice: Slice, fine: bool) -> RegionMap:
         """The first certified map there is, or from where the last one of this slice was some

@@ -7,15 +7,12 @@ one that a person gets who writes them into the record. No value is rounded.
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ptmcad.ask.members import Common, in_common
 from ptmcad.errors import ConfigError, ExpressionError, Place, shown
 from ptmcad.model import Kind, Model
-from ptmcad.options import Options
 from ptmcad.question.config.binding import bound, member_name
 from ptmcad.question.config.familyquestion import family_of
 from ptmcad.question.config.problemrecord import Record
@@ -23,7 +20,7 @@ from ptmcad.question.config.resolution import slice_of, written_in
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.config.typed import ranges_of
 from ptmcad.question.slice import Slice
-from ptmcad.text.entry import Scalar, Sequence
+from ptmcad.text.entry import Scalar
 from ptmcad.text.numerals import Numbers, text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import names_in
@@ -33,10 +30,6 @@ POSITIONS = 400
 MAX_TEXT = 80
 """Characters of a number that the page may send."""
 MAX_NAME = 100
-REMEMBERED = 4
-"""Families whose variety is kept: one is left and come back to when another parameter is dragged to
-and fro.
-"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,32 +118,6 @@ class SliderPanel:
         return slice_of(
             bound(record, name, value)._replace(name=member_name(record, name, value)[:MAX_NAME])
         )
-
-
-class Families:
-    """What the members of a panel's families have in common, computed when first asked for, and
-    remembered.
-    """
-
-    def __init__(self, panel: SliderPanel) -> None:
-        self.panel = panel
-        self.known: OrderedDict[tuple[Fraction, ...], Common] = OrderedDict()
-
-    def common(self, values: Numbers, options: Options) -> Common:
-        """Of the family that the values are in; its only stated member is the one at the free
-        value.
-        """
-        others = tuple(values[slider.name] for slider in self.panel.sliders if not slider.free)
-        if others not in self.known:
-            record = self.panel.record_at(values)
-            assert record.free is not None
-            place = Place("members")
-            stated = Sequence((Scalar(text_of(values[record.free[0]]), place),), place)
-            self.known[others] = in_common(family_of(record._replace(members=stated)), options)
-            if len(self.known) > REMEMBERED:
-                self.known.popitem(last=False)
-        self.known.move_to_end(others)
-        return self.known[others]
 
 
 def panel_of(record: Record, ranges: Iterable[str] = ()) -> SliderPanel:

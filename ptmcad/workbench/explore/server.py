@@ -68,7 +68,7 @@ class Server:
 
     def __init__(self, panel: SliderPanel, folder: Path, guard: Guard) -> None:
         self.panel, self.guard = panel, guard
-        maps, points = (JobQueue(Tasks(panel, folder)) for _ in range(2))
+        maps, points = (JobQueue(Tasks(panel, folder).answer) for _ in range(2))
         self.workers = {"map": maps, "save": maps, "point": points, "record": points}
         self.asking: set[web.RequestHandler] = set()
 

@@ -8,17 +8,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from flint import arb
 
 from ptmcad.ask.fields.equations import Floats, ModelState, eigenvalues
 from ptmcad.ask.quantities import Quantity, QuantityKind, named, quantities, unit_of, unknown
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.question.slice import Slice
+from ptmcad.text.balls import in_balls
 from ptmcad.text.syntax import did_you_mean, parse
-from ptmcad.text.tree import Call, Name, Number, Power, Step, interpret, names_of
+from ptmcad.text.tree import OPERATORS, Call, Name, Number, Power, Step, Tree, interpret, names_of
 
 OPTION = "--value"
 Values = Callable[[ModelState, Floats, Mapping[str, Any]], Floats]
@@ -100,14 +103,13 @@ def _expression(text: str, slice: Slice) -> Valued:
                 raise ConfigError(
                     f"{name!r} is neither an unknown nor a parameter{hint}", key=OPTION
                 )
-        with np.errstate(all="ignore"):
-            # where no quotient of names is zero by chance
-            generic = {
-                name: np.float64(math.fmod(math.sqrt(2) * (k + 1), 1))
-                for k, name in enumerate(known)
-            }
-            anywhere = interpret(tree, _Arrays(generic))
-        if np.isinf(anywhere.value) and not anywhere.lost():
+        # where no quotient of names is zero by chance
+        generic = {
+            name: np.float64(math.fmod(math.sqrt(2) * (k + 1), 1)) for k, name in enumerate(known)
+        }
+        with np.errstate(all="ignore"), suppress(FloatingPointError):
+            interpret(tree, _Arrays(generic))
+        if not in_balls(tree, {name: arb(value) for name, value in generic.items()}).is_finite():
             raise ConfigError(f"{text[:60]!r} divides by zero", key=OPTION)
     except ExpressionError as error:
         raise ConfigError(f"{text!r}: {error.message}", key=OPTION) from error
@@ -118,31 +120,37 @@ def _expression(text: str, slice: Slice) -> Valued:
 
     def values(_state: ModelState, at: Floats, given: Mapping[str, Any]) -> Floats:
         unknowns = dict(zip(model.sorted_unknowns, at, strict=True))
-        with np.errstate(all="ignore"):
-            found = interpret(tree, _Arrays({**given, **unknowns}))
-            value = np.where(
-                np.isfinite(found.value), found.value, np.nan
-            )  # else the expression has no value there
-            return np.broadcast_to(np.where(found.lost(), np.inf, value), at.shape[1:]) + 0.0
+        return _in_doubles(tree, {**given, **unknowns}, at.shape[1:])
 
     return Valued(text.strip(), "", values)
 
 
-_TINY, _EPSILON = np.finfo(np.float64).tiny, np.finfo(np.float64).eps
+_TINY = np.finfo(np.float64).tiny
+_ENOUGH = 50
+"""Bits of a value that is taken for a double."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Doubles:
-    """Values of a part of an expression, and how far from the true ones they may be where doubles
-    did not hold a part of it, being too small or too large; rounding apart, which this error does
-    not count."""
+def _in_doubles(tree: Tree, given: Mapping[str, Any], shape: tuple[int, ...]) -> Floats:
+    """An expression's values: nan where it has none, infinite where no double is near it."""
+    try:
+        with np.errstate(over="raise", under="raise", divide="ignore", invalid="ignore"):
+            found = np.asarray(interpret(tree, _Arrays(given)), dtype=float)
+            return np.broadcast_to(np.where(np.isfinite(found), found, np.nan), shape) + 0.0
+    except FloatingPointError:  # some part of it is beyond doubles at some point
+        names = names_of(tree)
+        rows = zip(*(np.broadcast_to(given[name], shape).flat for name in names), strict=True)
+        points = rows if names else ((),) * math.prod(shape)
+        balls = (in_balls(tree, dict(zip(names, map(arb, point), strict=True))) for point in points)
+        return np.reshape([_double(ball) for ball in balls], shape)
 
-    value: Any
-    error: Any = 0.0
 
-    def lost(self) -> Any:
-        """Where the error is more than rounding."""
-        return (self.error != 0) & ~(self.error < _EPSILON * np.abs(self.value))
+def _double(ball: arb) -> float:
+    """The double near a number; nan of none, infinite where there is none near it."""
+    if not ball.is_finite():
+        return math.nan
+    size = abs(float(ball.mid()))
+    is_near = ball == 0 or (_TINY <= size < math.inf and ball.rel_accuracy_bits() >= _ENOUGH)
+    return float(ball.mid()) if is_near else math.inf
 
 
 class _Arrays:
@@ -153,58 +161,24 @@ class _Arrays:
     def __init__(self, values: Mapping[str, Any]):
         self.values = values
 
-    def number(self, number: Number) -> _Doubles:
+    def number(self, number: Number) -> Any:
         value = np.float64(number.value)
-        return _Doubles(value, _TINY if number.value and abs(value) < _TINY else 0.0)
+        if number.value and abs(value) < _TINY:
+            raise FloatingPointError("the number is nearer to zero than doubles are")
+        return value
 
-    def name(self, name: Name) -> _Doubles:
-        return _Doubles(self.values[name.name])
+    def name(self, name: Name) -> Any:
+        return self.values[name.name]
 
-    def call(self, call: Call) -> _Doubles:
-        argument = interpret(call.argument, self)
-        return _Doubles(
-            (np.cos if call.function == "cos" else np.sin)(argument.value), argument.error
-        )
+    def call(self, call: Call) -> Any:
+        return (np.cos if call.function == "cos" else np.sin)(interpret(call.argument, self))
 
-    def negative(self, one: _Doubles) -> _Doubles:
-        return _Doubles(-one.value, one.error)
+    def negative(self, value: Any) -> Any:
+        return -value
 
-    def joined(self, left: _Doubles, step: Step, right: _Doubles) -> _Doubles:
-        a, b = left.value, right.value
-        match step.operator:
-            case "+" | "-":
-                value = a + b if step.operator == "+" else a - b
-                return _Doubles(value, left.error + right.error + _overflow(value, a, b))
-            case "*":
-                value = a * b
-                error = np.abs(a) * right.error + np.abs(b) * left.error + left.error * right.error
-                return _Doubles(
-                    value, error + _overflow(value, a, b) + _underflow(value, (a != 0) & (b != 0))
-                )
-            case _:
-                value = a / b
-                error = (left.error + np.abs(value) * right.error) / (np.abs(b) - right.error)
-                known = (left.error == 0) & (right.error == 0)
-                error = np.where(known, 0.0, np.where(np.abs(b) > right.error, error, np.inf))
-                beyond = np.where(b != 0, _overflow(value, a, b), 0.0)
-                return _Doubles(value, error + beyond + _underflow(value, a != 0))
+    def joined(self, left: Any, step: Step, right: Any) -> Any:
+        return OPERATORS[step.operator](left, right)
 
-    def power(self, base: _Doubles, power: Power, exponent: _Doubles) -> _Doubles:
-        a, b = base.value, exponent.value
-        whole = not np.ndim(b) and math.isclose(float(b), round(float(b)))
-        value = a ** round(float(b)) if whole else a**b
-        known = (base.error == 0) & (exponent.error == 0)
-        slight = (base.error <= _EPSILON * np.abs(a)) & (exponent.error == 0)
-        error = np.where(known, 0.0, np.where(slight, np.abs(value * b * base.error / a), np.inf))
-        beyond = np.where(a != 0, _overflow(value, a, b), 0.0)
-        return _Doubles(value, error + beyond + _underflow(value, a != 0))
-
-
-def _overflow(value: Any, a: Any, b: Any) -> Any:
-    """Infinite where a value is and what it is made of is not."""
-    return np.where(np.isinf(value) & np.isfinite(a) & np.isfinite(b), np.inf, 0.0)
-
-
-def _underflow(value: Any, expected: Any) -> Any:
-    """The error where a value that is not zero is nearer to it than doubles are."""
-    return np.where(expected & (np.abs(value) < _TINY), _TINY, 0.0)
+    def power(self, base: Any, power: Power, exponent: Any) -> Any:
+        whole = not np.ndim(exponent) and math.isclose(float(exponent), round(float(exponent)))
+        return base ** round(float(exponent)) if whole else base**exponent

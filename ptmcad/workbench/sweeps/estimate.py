@@ -11,7 +11,7 @@ from random import Random
 
 from ptmcad.ask.checking import CheckedSlice
 from ptmcad.question.config.sweeps import Sweeping
-from ptmcad.workbench.sweeps.member import Failed, Wanted, Work, compute
+from ptmcad.workbench.sweeps.member import Failed, Wanted, computing
 from ptmcad.workbench.sweeps.run import axes_of, processors
 
 MAX_SOLUTIONS = 8
@@ -49,10 +49,10 @@ def _seconds(question: Sweeping) -> list[float]:
     """What members here and there take; a sweep's middle, and its corners, are often slices that
     are easier.
     """
-    wanted = Work(question, Wanted(along=axes_of(question)[0]))
+    compute = computing(question, Wanted(along=axes_of(question)[0]))
     taken: list[float] = []
     for number in Random(0).sample(range(len(question)), min(MEMBERS, len(question))):
-        outcome = compute(wanted, number)
+        outcome = compute(number)
         if isinstance(
             outcome, Failed
         ):  # of another version or a time limit, of which there is neither

@@ -10,6 +10,7 @@ import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from time import perf_counter
 from typing import Any
 
@@ -58,19 +59,6 @@ class Wanted:
 
 
 @dataclass(frozen=True, slots=True)
-class Work:
-    """What a process needs to compute members by their numbers."""
-
-    question: Sweeping
-    wanted: Wanted
-    version: str = __version__
-
-    def answer(self, number: int, _check: Callable[[], None]) -> Outcome:
-        """What becomes of a member."""
-        return compute(self, number)
-
-
-@dataclass(frozen=True, slots=True)
 class Found:
     """A member's result: the text of its document without timings, and what an index holds of it."""
 
@@ -102,23 +90,33 @@ member at a time.
 """
 
 
-def compute(work: Work, number: int) -> Outcome:
+def computing(question: Sweeping, wanted: Wanted) -> Callable[..., Outcome]:
+    """What computes members by their numbers, in whatever process."""
+    return partial(compute, question, wanted, __version__)
+
+
+def compute(
+    question: Sweeping, wanted: Wanted, version: str, number: int, _check: object = None
+) -> Outcome:
     """Classify a member.
 
     Errors that are no answer about the member (a bug, memory) are raised.
+
+    Parameters
+    ----------
+    version : of the process that asks.
     """
-    if work.version != __version__:
+    if version != __version__:
         return Failed(
-            f"this process has ptmcad {__version__}, and the sweep was asked with {work.version}"
+            f"this process has ptmcad {__version__}, and the sweep was asked with {version}"
         )
     with _ONE_AT_A_TIME:
         started = perf_counter()
         try:
-            slice = work.question.slice(number)
-            result = region_map(slice, work.wanted.options)
-            summary = summary_of(result, work.wanted)
+            result = region_map(question.slice(number), wanted.options)
+            summary = summary_of(result, wanted)
         except LimitReached:
-            return Failed(out_of_time(work.wanted.timeout))
+            return Failed(out_of_time(wanted.timeout))
         except PtmcadError as error:
             return Refused(reason(error), perf_counter() - started)
         return Found(result.to_json(timings=False), summary, perf_counter() - started)

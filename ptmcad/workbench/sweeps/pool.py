@@ -32,7 +32,7 @@ from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError, shown
 from ptmcad.extras import Extra, require
-from ptmcad.workbench.sweeps.member import Failed, Work, compute, out_of_time
+from ptmcad.workbench.sweeps.member import Failed, out_of_time
 from ptmcad.workbench.worker import Task, Worker
 
 _OVERRUN = 1.0
@@ -194,12 +194,12 @@ class Cluster:
         When distributed is not installed, or no scheduler answers at the address.
     """
 
-    def __init__(self, work: Work, address: str) -> None:
+    def __init__(self, compute: Callable[[int], Any], address: str) -> None:
         require(Extra.distributed, key="--scheduler")
         import distributed
 
         client: Any = distributed.Client
-        self.work, self.address = work, address
+        self.compute, self.address = compute, address
         try:
             self.client: Any = client(address, timeout=CONNECT_SECONDS, set_as_default=False)
         except (OSError, ValueError) as error:
@@ -267,7 +267,7 @@ class Cluster:
             self._gathered = []
 
     def _send(self, numbers: tuple[int, ...]) -> None:
-        future = self.client.submit(_answers, self.work, numbers, pure=False)
+        future = self.client.submit(_answers, self.compute, numbers, pure=False)
         self._under_way[numbers] = future
         future.add_done_callback(lambda done: self._answers.put((numbers, done)))
 
@@ -291,9 +291,9 @@ class Cluster:
             self.client.close(timeout=2)
 
 
-def _answers(work: Work, numbers: Sequence[int]) -> list[Any]:
+def _answers(compute: Callable[[int], Any], numbers: Sequence[int]) -> list[Any]:
     """What a worker of the cluster does."""
-    return [compute(work, number) for number in numbers]
+    return [compute(number) for number in numbers]
 
 
 def _why(done: Any) -> str:

@@ -16,6 +16,7 @@ import os
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from time import monotonic
@@ -33,7 +34,7 @@ from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import share_for
 from ptmcad.version import __version__
 from ptmcad.workbench.sweeps.index import Index, opened, read_sweep
-from ptmcad.workbench.sweeps.member import Failed, Wanted, Work, reason
+from ptmcad.workbench.sweeps.member import Failed, Wanted, computing, reason
 from ptmcad.workbench.sweeps.pool import Pool, answers_of
 
 if TYPE_CHECKING:
@@ -91,13 +92,12 @@ def sweep(
     question = sweep_from(config)
     wanted = wanted_of(question, wanted)
     place = Path(f"{question.name}-sweep") if folder is None else Path(folder)
-    work = Work(question, wanted)
     with opened(place) as index:
         index.claim(_facts(question), _asked(question, wanted))
         index.check(question.names)
-        run = _Run(work, index, retries, progress, timeout)
+        run = _Run(question, index, retries, progress, timeout)
         try:
-            run.all(_workers(work, jobs, scheduler))
+            run.all(_workers(question, wanted, jobs, scheduler))
         except (LimitReached, OutputError) as stopped:
             raise type(stopped)(
                 f"{stopped}; {_left(index, question)}; the same command goes on"
@@ -145,15 +145,17 @@ def axes_of(question: Sweeping) -> tuple[str, ...]:
     return tuple(question.record.axes)
 
 
-def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[], Pool | Cluster]:
+def _workers(
+    question: Sweeping, wanted: Wanted, jobs: int | None, scheduler: str | None
+) -> Callable[[], Pool | Cluster]:
     """What makes the processes that compute, once something is to be computed."""
     if scheduler is None:
 
         def pool() -> Pool:
             prepare(
-                work.question.slice(0), work.wanted.options
+                question.slice(0), wanted.options
             )  # compiles once for all, where that is needed
-            return Pool(work, jobs or processors(), work.wanted.timeout)
+            return Pool(computing(question, wanted), jobs or processors(), wanted.timeout)
 
         return pool
     from ptmcad.workbench.sweeps.pool import Cluster
@@ -161,7 +163,7 @@ def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[]
     require(
         Extra.distributed, key="--scheduler"
     )  # whether or not there is anything left to compute
-    return lambda: Cluster(work, scheduler)
+    return lambda: Cluster(computing(question, wanted), scheduler)
 
 
 def processors() -> int:
@@ -216,18 +218,18 @@ class _Run:
 
     def __init__(
         self,
-        work: Work,
+        question: Sweeping,
         index: Index,
         retries: int,
         progress: Progress | None,
         timeout: float | None,
     ) -> None:
-        self.work, self.index, self.retries = work, index, retries
+        self.question, self.index, self.retries = question, index, retries
         self.progress, self.timeout = progress, timeout
         self.deadline = None if timeout is None else monotonic() + timeout
         self.failures: Counter[int] = Counter()
         self.again: deque[int] = deque()
-        self.total = len(work.question)
+        self.total = len(question)
         self.settled = 0
 
     def all(self, start: Callable[[], Pool | Cluster]) -> None:
@@ -284,7 +286,7 @@ class _Run:
 
     def _new(self) -> Iterator[int]:
         """The members that no run has come to, as they are entered into the index."""
-        question = self.work.question
+        question = self.question
         for low in range(self.planned, self.total, _AT_ONCE):
             self._patience()
             entered = [
@@ -311,17 +313,11 @@ class _Run:
         return number, parameters, hashlib.sha256(data.encode()).digest(), ""
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class Drawing:
-    """The task of drawing members of the sweep in a folder."""
+def _drawing(folder: Path, number: int, _check: object) -> Thumbnail:
+    """That of a member of the sweep in a folder."""
+    from ptmcad.show.report.atlas import sketch
 
-    folder: Path
-
-    def answer(self, number: int, _check: Callable[[], None]) -> Thumbnail:
-        """The drawing of a member."""
-        from ptmcad.show.report.atlas import sketch
-
-        return sketch(read_sweep(self.folder).result(number))
+    return sketch(read_sweep(folder).result(number))
 
 
 def sketches(
@@ -334,7 +330,7 @@ def sketches(
     OutputError
         When one cannot be drawn.
     """
-    pool = Pool(Drawing(folder), min(jobs or processors(), max(1, len(numbers) // 4)))
+    pool = Pool(partial(_drawing, folder), min(jobs or processors(), max(1, len(numbers) // 4)))
     left = iter(numbers)
     try:
         found = answers_of(pool, lambda: next(left, None), lambda: None)
