@@ -9,9 +9,7 @@ Everything is on the page, in text of at least `ptmcad.show.style.MIN_FONT` poin
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
-from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -22,9 +20,8 @@ from matplotlib.figure import Figure
 from ptmcad.answer.boundaries import NONE, Boundary
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import dress, scale_of, with_symbols
-from ptmcad.show.render.chartgrid import HeadAndFoot
+from ptmcad.show.render.chartgrid import HeadAndFoot, lay_out
 from ptmcad.show.render.colours import INK, RIM_INK, STRONG, Fill, undetermined_fill
 from ptmcad.show.render.fieldlines import contour_lines, pixel_edges
 from ptmcad.show.render.fitting import MIN_SIDE, dressed
@@ -119,7 +116,8 @@ def _figure(
     dress(axes, result.slice, view.x, view.y, dressed(font, (0.6 * size[0], 0.6 * size[1])))
     legend = _legend(result, field, boundaries, style)
     around = HeadAndFoot.of(title_of(result, field), legend, size[0], style, Type.of(style))
-    _lay_out(figure, axes, around, font)
+    lay_out(figure, around.head, around.foot, "the map with its scale does", MIN_SIDE * font / 72)
+    around.draw(figure)
     figure.set_label(f"{title_of(result, field)}\n{description(field)}")
     return figure
 
@@ -223,35 +221,6 @@ def _legend(
 
 
 _edge_mark = line_mark(*_edge(DEFAULT))
-
-
-def _lay_out(figure: Figure, axes: Any, around: HeadAndFoot, font: float) -> None:
-    """Give all parts their places: matplotlib's own layout between the title and the legend.
-
-    Raises
-    ------
-    ConfigError
-        When the page leaves too little to the map.
-    """
-    em, (wide, tall) = font / 72, figure.get_size_inches()
-    engine: Any = figure.get_layout_engine()
-    left = 0.5 * em / wide
-    middle = (left, around.foot / tall, 1 - 2 * left, 1 - (around.head + around.foot) / tall)
-    engine.set(rect=middle, w_pad=0.2 * em, h_pad=0.1 * em, wspace=0.0, hspace=0.0)
-    sides = (0.0, 0.0)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", UserWarning)
-        with suppress(UserWarning):  # that no room is left
-            figure.draw_without_rendering()
-            sides = axes.get_position().width * wide, axes.get_position().height * tall
-    least = MIN_SIDE * em
-    if min(sides) < least:
-        needed = (wide + max(0.0, least - sides[0]), tall + max(0.0, least - sides[1]))
-        raise ConfigError(
-            f"the map with its scale does not fit into {wide:.2f}x{tall:.2f}in in text of {font:g} points; "
-            f"it needs at least {needed[0] + 0.01:.2f}x{needed[1] + 0.01:.2f}in", key="size",
-        )  # fmt: skip
-    around.draw(figure)
 
 
 def bar_text(field: Field) -> str:
