@@ -22,7 +22,7 @@ from ptmcad.cli.range import command
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, slice_from_options
 from ptmcad.show.ranges.linetable import table
-from ptmcad.show.render.landscape import energy_of
+from ptmcad.show.render.energy import Energy
 
 SCHEMA = json.loads(
     (Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8")
@@ -60,7 +60,7 @@ def test_poses_agree_with_the_energy_written_out_again(number: int) -> None:
     seen = dense_search(values, 60)
     assert (seen["total"], seen["stable"]) == (len(poses.equilibria), poses.stable)
     assert seen["admissible"] == sum(pose.admissible is True for pose in poses.equilibria)
-    energy = energy_of(poses.model, poses.parameters)
+    energy = Energy(poses.model, poses.parameters)
     for pose in poses.equilibria:
         a, b = (np.array([float(x.center)]) for x in pose.angles)
         g1, g2, h11, h12, h22, lengths = derivatives(values, a, b)
@@ -70,7 +70,7 @@ def test_poses_agree_with_the_energy_written_out_again(number: int) -> None:
         assert lengths[:, 0] == pytest.approx(
             [float(s.length.center) for s in pose.springs], abs=1e-9
         )
-        assert energy(a, b)[0] == pytest.approx(energy.scaled(pose.energy.center), abs=1e-9)
+        assert energy(a, b)[0] == pytest.approx(float(pose.energy.center), abs=1e-9)
         for spring in pose.springs:
             force = spring.stiffness * (spring.length.center - spring.free_length)
             assert float(force) == pytest.approx(float(spring.force.center), abs=1e-7)
@@ -243,11 +243,6 @@ def test_range_on_the_command_line() -> None:
     assert isinstance(
         CliRunner().invoke(command, [*options, "--format", "svg"]).exception, ConfigError
     )
-
-
-def test_energy_has_no_free_length_unless_asked_for() -> None:
-    plain = solve(rho=Q(1), L2=Q(3, 2))
-    assert energy_of(plain.model, plain.parameters).roots == ()
 
 
 def test_a_free_length_of_zero_beside_one_that_is_a_number() -> None:

@@ -34,7 +34,7 @@ from ptmcad.question.config import load, slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Point
 from ptmcad.show.render.axes import scale_of, ticks
 from ptmcad.show.report import page
-from ptmcad.show.report.equilibria import at_sample, decimal_text, degrees, potential_at
+from ptmcad.show.report.equilibria import at_sample, decimal_text, degrees
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.show.report.reportpage import harmless, packed
 from ptmcad.show.report.reproduction import reproduction
@@ -416,22 +416,6 @@ def test_poses_satisfy_the_mechanism(shipped: Shipped) -> None:
             for text, angle in zip(e["unknowns"], (atan2(s1, c1), atan2(s2, c2)), strict=True):
                 digits = text.replace("−", "-").rstrip("°")
                 assert float(digits) == pytest.approx(angle * 180 / pi, abs=unit_of(digits), rel=0)
-            gradient = 0.0  # of the embedded potential along th1, which the landscape draws
-            for *powers, c in told["potential"]:
-                p, q, r, s = powers
-                rest = c * c2**r * s2**s
-                gradient += rest * (
-                    q * s1 ** max(q - 1, 0) * c1 ** (p + 1)
-                    - p * c1 ** max(p - 1, 0) * s1 ** (q + 1)
-                )
-            assert abs(gradient) < 1e-4
-
-
-@pytest.mark.parametrize("text", ["L1*", "L1^x", "L1+L2", "banana", "L1 * L2", "2/0*L1", "L1^100"])
-def test_a_potential_that_is_none_is_refused(shipped: Shipped, text: str) -> None:
-    system = replace(shipped("fig4").system, potential=text)
-    with pytest.raises(ConfigError, match="potential"):
-        potential_at(system, {"L1": Fraction(1), "L2": Fraction(1)})
 
 
 @given(
@@ -509,16 +493,14 @@ def damaged(result: RegionMap, kind: str) -> RegionMap:
         case "a box without end":
             wide = replace(cells[0].solutions[0], radius=Fraction(10**400))
             return replace(result, cells=(replace(cells[0], solutions=(wide,)), *cells[1:]))
-        case "an equilibrium off the circle":
+        case _:
             wrong = replace(cells[0].solutions[0], center=(Fraction(5),) * 4)
             return replace(result, cells=(replace(cells[0], solutions=(wrong,)), *cells[1:]))
-        case _:
-            return replace(result, system=replace(result.system, potential="k1*k9"))
 
 
 KINDS = ("cell of no region", "stack of no cell", "wall too many", "root that is not there", "a million equilibria",
          "a sample far away", "an area upside down", "a box without end",
-         "an equilibrium off the circle", "a potential of unknown names")  # fmt: skip
+         "an equilibrium off the circle")  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -2,17 +2,17 @@
 own kind of figure.
 
 Guarantee: points are where their exact coordinates are, and poses are those of the map's mechanism
-there. Poses of all points are drawn at one scale. Lines to the points cross neither each other nor
-text where `ptmcad.show.render.leaders` finds such courses.
+there. Poses of all points are drawn at one scale. Lines to the points are straight and, at one side,
+as short and as clear of text as exchanges of blocks make them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
+from math import dist
 from typing import Any
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
@@ -21,9 +21,8 @@ from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.blocks import LINE, Block, PointPoses, arranged, sized
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import stroke, write_lines
-from ptmcad.show.render.labels import Box, Position
+from ptmcad.show.render.labels import Box, Position, Stroke, crosses
 from ptmcad.show.render.layout import Layout
-from ptmcad.show.render.leaders import Course, routed
 from ptmcad.show.render.mappicture import MapDrawing, left_out
 from ptmcad.show.render.mechanism import STRONG, draw_sketch
 from ptmcad.show.render.posepicture import pose_axes
@@ -33,6 +32,10 @@ from ptmcad.show.style import MAX_SIDE, PictureStyle, Size, styled
 DrawnMap = tuple[Figure, tuple[str, ...]]
 """A picture of a map, and what it leaves out, in words."""
 MAX_POINTS = 12
+_COVERED, _HALF = 10.0, 0.035
+"""Inches of a line that are as bad as a text that it covers, and half a line's width with a little
+space.
+"""
 _STEPS, _STEP = 60, 1.05
 """How sizes are tried that would do."""
 
@@ -103,14 +106,23 @@ def _drawn(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
     figure = Figure(figsize=size, dpi=drawing.dpi, facecolor="white")
     moved = _moved(layout, plan.taken[0], size)
     axes = inner.draw_parts(figure, seen, moved)
-    texts = [*_texts(figure), *_legend_boxes(moved)]
-    heights = (moved.chart[1] + 0.05, moved.chart[1] + moved.chart[3] - 0.05)
+    figure.draw_without_rendering()  # which makes the numbers at the ticks
+    inches = figure.dpi_scale_trans.inverted()
+    texts: list[Box] = [
+        text.get_window_extent().transformed(inches).extents
+        for text in figure.findobj(Text)
+        if text.get_text().strip() and text.get_visible()
+    ]
+
+    def cost(start: Position, tip: Position) -> float:
+        covered = sum(crosses(Stroke(start, tip, _HALF), box) for box in texts)
+        return dist(start, tip) + _COVERED * covered
+
+    tips = [_tip(axes, seen.whole.view.approximate_position(at)) for at, _ in points]
     for side, column in zip(plan.sides, plan.columns(size[1]), strict=True):
-        tips = [_tip(axes, seen.whole.view.approximate_position(points[n][0])) for n in side]
-        order, courses = routed(tips, column.berths, texts, heights)
-        for (block, corner), course in zip(column.placed(order), courses, strict=True):
+        for block, corner, start in column.placed([tips[n] for n in side], cost):
             _draw_block(figure, block, corner, style)
-            _lead(figure, course, block.number, style)
+            _lead(figure, (start, tips[block.number - 1]), block.number, style)
     return figure, left_out(seen, layout)
 
 
@@ -136,36 +148,6 @@ def _moved(layout: Layout, left: float, size: Size) -> Layout:
     )
 
 
-def _texts(figure: Figure) -> list[Box]:
-    """What text covers, in inches."""
-    canvas: Any = FigureCanvasAgg(figure)
-    renderer: Any = canvas.get_renderer()
-    found: list[Box] = []
-    for axes in figure.axes:
-        axes.get_tightbbox(renderer)  # which makes the numbers at the ticks
-    for text in figure.findobj(Text):
-        if text.get_text().strip() and text.get_visible():
-            box = text.get_window_extent(renderer)
-            patch = text.get_bbox_patch()
-            box = box if patch is None else patch.get_window_extent(renderer)
-            found.append(
-                (box.x0 / figure.dpi, box.y0 / figure.dpi, box.x1 / figure.dpi, box.y1 / figure.dpi)
-            )
-    return found
-
-
-def _legend_boxes(layout: Layout) -> Iterator[Box]:
-    """What the entries of a legend cover, with their marks, and the insets, in inches."""
-    for (left, top), part in layout.legend:
-        under = top
-        for entry in part:
-            bottom = under - layout.type.entry_height(entry)
-            yield left, bottom, left + layout.type.entry_width(entry), under
-            under = bottom
-    for left, bottom, wide, high in layout.insets:
-        yield left, bottom, left + wide, bottom + high
-
-
 def _tip(axes: Any, at: Position) -> Position:
     """A point of the map, which is given as fractions of the axes' sides, in inches."""
     width, tall = (float(side) for side in axes.figure.get_size_inches())
@@ -189,20 +171,13 @@ def _draw_block(figure: Figure, block: Block, corner: Position, style: PictureSt
         draw_sketch(panel, scene.of(pose), STRONG, f"pose-{block.number}-{k + 1}-")
 
 
-def _lead(figure: Figure, course: Course, number: int, style: PictureStyle) -> None:
+def _lead(
+    figure: Figure, ends: tuple[Position, Position], number: int, style: PictureStyle
+) -> None:
     """A line to a point of the map, and a mark there."""
-    xs, ys = zip(*course, strict=True)
-    stroke(figure, xs, ys, color="white", linewidth=2.2, zorder=8, solid_joinstyle="round")
-    stroke(
-        figure,
-        xs,
-        ys,
-        color=INK,
-        linewidth=0.8,
-        zorder=8,
-        solid_joinstyle="round",
-        gid=f"leader-{number}",
-    )
+    xs, ys = zip(*ends, strict=True)
+    stroke(figure, xs, ys, color="white", linewidth=2.2, zorder=8)
+    stroke(figure, xs, ys, color=INK, linewidth=0.8, zorder=8, gid=f"leader-{number}")
     stroke(
         figure, xs[-1:], ys[-1:], marker="D", markersize=5.5 * style.base_font / 9, markerfacecolor="white",
         markeredgecolor=INK, markeredgewidth=1.2, linestyle="none", zorder=9, gid=f"point-{number}",

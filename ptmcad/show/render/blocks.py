@@ -7,10 +7,13 @@ has no room is refused.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import combinations
 from math import ceil
+
+from matplotlib.path import Path
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap
@@ -18,7 +21,6 @@ from ptmcad.answer.words import counted
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.inches import wrapped
 from ptmcad.show.render.labels import Position
-from ptmcad.show.render.leaders import Berth, Order
 from ptmcad.show.render.posepicture import assigned
 from ptmcad.show.render.sketch import PanelFrame, frame_of
 from ptmcad.show.render.view import Point
@@ -32,8 +34,10 @@ PANEL, MIN_PANEL = 138.0, 104.0
 _TALLEST = 120.0
 _MAP = 5.4, 6.9
 """Inches of the map with its legend, in 9 points."""
-GAP, _NEAR, _GUTTER = 0.16, 0.04, 0.11
-"""Inches around poses, and from them to where their line begins and where it may bend."""
+GAP, _NEAR = 0.16, 0.04
+"""Inches around poses, and from them to where their line begins."""
+_CROSSING, _STARTS = 100.0, 6
+"""What it costs that two lines cross, and steps along a block's edge, at which its line may begin."""
 LINE = 1.3
 """Between the lines of a head, in sizes of their type."""
 _SHARE = 0.58
@@ -79,30 +83,60 @@ class BlockColumn:
     page: float
     before: bool
 
-    def placed(self, order: Order) -> Iterator[tuple[Block, Position]]:
-        """The blocks in this order with their upper left corners, equal spaces between."""
+    def placed(
+        self, tips: Sequence[Position], cost: Callable[[Position, Position], float]
+    ) -> list[tuple[Block, Position, Position]]:
+        """The blocks from above with their upper left corners and where the lines to their points
+        begin; equal spaces between, and the lines as cheap as exchanges of blocks make them.
+
+        Parameters
+        ----------
+        tips : of the lines, in the blocks' order.
+        cost : of a line, from its start to its tip.
+        """
+        order = list(range(len(tips)))
+        found = self._with_lines(order, tips, cost)
+        improved = True
+        while improved:
+            improved = False
+            for a, b in combinations(range(len(order)), 2):
+                tried = list(order)
+                tried[a], tried[b] = tried[b], tried[a]
+                other = self._with_lines(tried, tips, cost)
+                if other[0] < found[0] - 1e-9:
+                    found, order, improved = other, tried, True
+        return found[1]
+
+    def _with_lines(
+        self,
+        order: Sequence[int],
+        tips: Sequence[Position],
+        cost: Callable[[Position, Position], float],
+    ) -> tuple[float, list[tuple[Block, Position, Position]]]:
+        """What is placed in an order, and what the lines cost."""
         heights = [block.height for block in self.blocks]
         free = (self.page - 2 * GAP - sum(heights)) / max(1, len(heights))
-        top = self.page - GAP
+        top, total = self.page - GAP, 0.0
+        found, lines = [], list[Path]()
         for n in order:
-            block = self.blocks[n]
+            block, tip = self.blocks[n], tips[n]
             own = block.columns * block.frame.width / 72
-            yield block, (self.left + (self.width - own if self.before else 0.0), top)
-            top -= heights[n] + free
-
-    def berths(self, order: Order) -> list[Berth]:
-        """Where the lines to the blocks' points may begin: not beside the heads, unless there is
-        nothing else.
-        """
-        edge, towards = (self.left + self.width, 1.0) if self.before else (self.left, -1.0)
-        found = []
-        for block, (_, top) in self.placed(order):
+            # beside the poses, not beside the head, unless there is nothing else
             low = top - block.height + GAP + _NEAR
             high = top - LINE * block.em * len(block.head) - _NEAR
             if not block.shown:
                 low = high = top - LINE / 2 * block.em
-            found.append(Berth(edge + towards * _NEAR, low, high, edge + towards * _GUTTER))
-        return found
+            edge = self.left + self.width + _NEAR if self.before else self.left - _NEAR
+            heights_tried = [low + (high - low) * k / _STARTS for k in range(_STARTS + 1)]
+            heights_tried.append(min(max(tip[1], low), high))
+            least, start = min((cost((edge, at), tip), (edge, at)) for at in heights_tried)
+            corner = (self.left + (self.width - own if self.before else 0.0), top)
+            found.append((block, corner, start))
+            total += least
+            lines.append(Path([start, tip]))
+            top -= heights[n] + free
+        crossed = sum(a.intersects_path(b, filled=False) for a, b in combinations(lines, 2))
+        return total + _CROSSING * crossed, found
 
 
 @dataclass(frozen=True, slots=True)

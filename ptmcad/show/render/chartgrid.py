@@ -8,7 +8,9 @@ colour stands for the same count in all of them; regions that they hide have arr
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -21,9 +23,8 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import INK, STRONG, THIN, Fill, Paint, fills_by_count, paint_of
-from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang
-from ptmcad.show.render.inches import Box, axes_at, wrapped, write_lines
-from ptmcad.show.render.labels import Position
+from ptmcad.show.render.fitting import MIN_SIDE
+from ptmcad.show.render.inches import wrapped, write_lines
 from ptmcad.show.render.legend import (
     Entry,
     Rows,
@@ -66,41 +67,35 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class PanelGrid:
-    """The places of charts, in inches, row after row from the corner of the first chart.
+    """Charts in rows from above, between a head and a foot of so many inches.
 
     Attributes
     ----------
-    corner : the upper left one of the first chart.
-    pitch : from a chart to the next one in its row, and to the one below.
-    key : from a chart down to its legend.
+    what : how an error speaks of the charts.
+    least : inches of a chart's sides.
     shared : whether numbers and names stand at the outer charts alone.
     """
 
-    corner: Position
-    sides: Size
-    pitch: Position
     columns: int
     how: Dress
     type: Type
-    key: float = 0.0
+    head: float
+    foot: float
+    what: str
+    least: float
     shared: bool = True
 
-    def box(self, number: int) -> Box:
-        """Of the chart with this number."""
-        row, column = divmod(number, self.columns)
-        left, top = self.corner
-        return (
-            left + column * self.pitch[0],
-            top - self.sides[1] - row * self.pitch[1],
-            *self.sides,
-        )
-
     def draw(self, figure: Figure, panels: Sequence[Panel], **heads: Any) -> None:
-        """All charts with their heads, which look as is asked for, and legends."""
-        em = self.type.head / 72
-        for number, panel in enumerate(panels):
-            box = self.box(number)
-            axes = axes_at(figure, box)
+        """All charts with their heads, which look as is asked for, and legends.
+
+        Raises
+        ------
+        ConfigError
+            When the page leaves too little to the charts.
+        """
+        rows = math.ceil(len(panels) / self.columns)
+        places: Any = figure.subplots(rows, self.columns, squeeze=False).flat
+        for number, (axes, panel) in enumerate(zip(places, panels, strict=False)):
             paint_map(axes, panel.seen, f"{number}-", panel.paint)
             view = panel.seen.view
             dress(axes, panel.seen.result.slice, view.x, view.y, self.how)
@@ -115,10 +110,48 @@ class PanelGrid:
                 )  # fmt: skip
             if self.shared:
                 _strip_inner(axes, number % self.columns > 0, number + self.columns < len(panels))
-            above = (box[0], box[1] + box[3] + 0.75 * em)
-            look = {"color": INK, **heads}
-            write_lines(figure, above, reversed(panel.head), self.type.head, -LINE * em, **look)
-            draw_legend(figure, panel.legend, box[0], box[1] - self.key, self.type)
+            look = {"loc": "left", "fontsize": self.type.head, "color": INK, **heads}
+            axes.set_title("\n".join(panel.head), **look)
+        for axes in places[len(panels) :]:
+            axes.remove()
+        lay_out(figure, self.head, self.foot, self.what, self.least)
+        wide = float(figure.get_size_inches()[0])
+        for axes, panel in zip(places, panels, strict=False):
+            left = axes.get_position().x0 * wide
+            draw_legend(figure, panel.legend, left, self.foot - 0.1, self.type)
+
+
+def lay_out(figure: Figure, head: float, foot: float, what: str, least: float) -> None:
+    """Place all axes of a page between a head and a foot of so many inches, by matplotlib's own
+    layout.
+
+    Raises
+    ------
+    ConfigError
+        When a side of the first axes is shorter than the least, in inches.
+    """
+    wide, tall = figure.get_size_inches()
+    side, room, sides = 0.06 / wide, tall - head - foot, (0.0, 0.0)
+    if room > least:
+        engine: Any = figure.get_layout_engine()
+        engine.set(rect=(side, foot / tall, 1 - 2 * side, room / tall), w_pad=0.03, h_pad=0.03)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", UserWarning)
+            with suppress(UserWarning):  # that no room is left
+                figure.draw_without_rendering()
+                box = figure.axes[0].get_position()
+                sides = box.width * wide, box.height * tall
+    if min(sides) < least:
+        spec: Any = figure.axes[0].get_subplotspec()
+        rows, columns = spec.get_gridspec().get_geometry()
+        needed = (
+            wide + columns * max(0.0, least - sides[0]),
+            tall + rows * max(0.0, least - sides[1]),
+        )
+        raise ConfigError(
+            f"{what} not fit into {wide:.2f}x{tall:.2f}in; at least {needed[0] + 0.01:.2f}x{needed[1] + 0.01:.2f}in "
+            "are needed", key="size",
+        )  # fmt: skip
 
 
 def _strip_inner(axes: Any, has_left: bool, has_below: bool) -> None:
@@ -234,38 +267,32 @@ def multiples_figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure
 
 def _figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
     font = style.base_font
-    em, small = font / 72, max(MIN_FONT, 0.85 * font)
+    em, small, scale = font / 72, max(MIN_FONT, 0.85 * font), font / 9
     type = Type.of(style)
-    how = Dress(small, 0.95 * font, (4, 4), scale=font / 9)
     seen = [shapes(result) for result in family.members]
-    parts = PageParts(family.members[0].slice, "", ((), ()), (seen[0].view,))
-    left, below, right, _ = overhang(parts, seen[0].view, (SIDE, SIDE), how)
     columns = _columns(len(seen), style.size)
     rows = math.ceil(len(seen) / columns)
-    gap, head = max(right, 1.9 * em), 1.7 * em
-    wide = style.size[0] if style.size is not None else left + columns * (SIDE * font / 9 + gap)
-    side = (wide - left) / columns - gap
+    wide = style.size[0] if style.size is not None else (0.5 + columns * (SIDE + 0.2)) * scale
+    side = (wide - 0.5 * scale) / columns - 0.2 * scale
     marks = [arrows_of(shape, (side, side), dpi, small) for shape in seen]
     thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
     paint = replace(paint_of(style, *family.members), thin_walls=thin)
     legend = family_entries(family, paint, thin, sum(hidden for _, hidden in marks))
     around = HeadAndFoot.of(title_of(family), legend, wide, style, type)
-    rest = around.head + rows * head + 0.5 * em * (rows - 1) + below + around.foot
-    tall = (style.size[1] - rest) / rows if style.size is not None else side
-    if min(side, tall) < 0.5 * MIN_SIDE * em:
-        raise ConfigError(
-            f"{len(seen)} maps do not fit: make it larger, or draw fewer members", key="size"
-        )
-    height = rest + rows * tall
-    figure = Figure(figsize=(wide, height), dpi=dpi, facecolor="white")
-    corner, pitch = (left, height - around.head - head), (side + gap, tall + head + 0.5 * em)
-    grid = PanelGrid(corner, (side, tall), pitch, columns, how, type)
+    named = 1 + (len(seen) > columns and len(seen) % columns > 0)
+    height = around.head + around.foot + rows * (side + 0.25 * scale) + 0.45 * scale * named
+    size = style.size or (wide, height)
+    figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
     heads = [(value_text(family, value),) for value in family.values]
     panels = [
         Panel(shape, paint, text, arrows=found)
         for shape, text, (found, _) in zip(seen, heads, marks, strict=True)
     ]
-    grid.draw(figure, panels)
+    how = Dress(small, 0.95 * font, (4, 4), scale=scale)
+    what = f"{len(seen)} maps do" if len(seen) > 1 else "the map does"
+    PanelGrid(columns, how, type, around.head, around.foot, what, 0.5 * MIN_SIDE * em).draw(
+        figure, panels
+    )
     around.draw(figure)
     return figure
 

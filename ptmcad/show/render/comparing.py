@@ -14,11 +14,10 @@ from matplotlib.figure import Figure
 
 from ptmcad.answer.comparison import Bounds, Change, Comparison
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, symbol
 from ptmcad.show.render.chartgrid import LINE, Panel, PanelGrid
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, Paint, paint_of, undetermined_fill
-from ptmcad.show.render.fitting import MIN_SIDE, PageParts, overhang, rewrapped
+from ptmcad.show.render.fitting import MIN_SIDE, rewrapped
 from ptmcad.show.render.inches import few, wrapped
 from ptmcad.show.render.legend import Entry, Type, entries, hidden_entries
 from ptmcad.show.render.mappicture import whole_title
@@ -109,30 +108,19 @@ def _figure(comparison: Comparison, dpi: int, style: PictureStyle) -> Figure:
     em = font / 72
     type = Type.of(style)
     first = shapes(comparison.first)
-    parts = PageParts(comparison.first.slice, "", ((), ()), (first.view,))
     width = style.widest if style.widest is not None else 3 * (SIDE * font / 9 + 6 * em)
-    how = Dress(max(MIN_FONT, 0.95 * font), 1.05 * font, (4, 5), scale=font / 9)
-    left, below, right, _ = overhang(parts, first.view, (SIDE, SIDE), how)
-    each = width / 3
-    side = each - left - right - 1.2 * em
-    seen_sides = (side, side if style.size is None or style.wide is not None else style.size[1] / 2)
+    side = width / 3 - 5.5 * em
+    given = style.size is not None and style.wide is None
+    seen_sides = (side, style.size[1] / 2 if given and style.size is not None else side)
     panels = _panels(comparison, first, style, seen_sides, dpi)
-    head = LINE * em * max(len(panel.head) for panel in panels) + 0.5 * em
-    legend = max(type.height(panel.legend) for panel in panels)
-    rest = head + below + 0.8 * em + legend + 0.6 * em
-    tall = style.size[1] - rest if style.size is not None and style.wide is None else side
-    if min(side, tall) < MIN_SIDE * em:
-        missing = MIN_SIDE * em - side, MIN_SIDE * em - tall
-        least = (width + 3 * max(0.0, missing[0]), rest + tall + max(0.0, missing[1]))
-        raise ConfigError(
-            f"three maps with their legends need at least {least[0] + 0.01:.2f}x{least[1] + 0.01:.2f}in",
-            key="size",
-        )
-    figure = Figure(figsize=(width, tall + rest), dpi=dpi, facecolor="white")
-    corner = (left + 0.3 * em, tall + rest - head)
-    grid = PanelGrid(
-        corner, (side, tall), (each, 0.0), 3, how, type, below + 0.8 * em, shared=False
-    )
+    foot = max(type.height(panel.legend) for panel in panels) + 0.2
+    heads = LINE * em * max(len(panel.head) for panel in panels)
+    tall = side + foot + heads + 4.5 * em
+    size = style.size if given and style.size is not None else (width, tall)
+    figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
+    how = Dress(max(MIN_FONT, 0.95 * font), 1.05 * font, (4, 5), scale=font / 9)
+    what = "three maps with their legends do"
+    grid = PanelGrid(3, how, type, 0.0, foot, what, MIN_SIDE * em, shared=False)
     grid.draw(figure, panels, fontweight="bold")
     title = f"{whole_title(comparison.first)} and {whole_title(comparison.second)}"
     figure.set_label(f"{title}\n{' '.join(difference_words(comparison))}")

@@ -1,119 +1,72 @@
 """The energy at a point as a function that can be drawn, less the work of moments where these work.
 
-Guarantee: the constant part is taken out exactly before anything is rounded, so that small
-differences of large energies are seen. The derivatives of what is drawn are zero at the equilibria:
-it is U - M u with a moment M on an unknown u.
+Guarantee: the derivatives of what is drawn are zero at the equilibria: it is U - M u with a moment M
+on an unknown u.
+
+Not guaranteed: more digits than doubles have. Differences of energies that are smaller against the
+energies themselves are lost.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from fractions import Fraction
 from math import radians
 
 import numpy as np
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import moments_work
-from ptmcad.exact.models.modelsystem import elements_of, system_from
-from ptmcad.exact.models.system import polynomial_at
+from ptmcad.errors import ConfigError
+from ptmcad.formulas.instructions import MAX_CONSTANT, Doubles
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
-from ptmcad.model.evaluate import Assignment
 from ptmcad.model.work import moments_at
 from ptmcad.show.render.view import Floats
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.text.numerals import Numbers, magnitude
-
-Terms = tuple[tuple[tuple[int, ...], float], ...]
+from ptmcad.text.numerals import Numbers
 
 
-def _sum(terms: Terms, bases: Sequence[Floats], shape: tuple[int, ...]) -> Floats:
-    total = np.zeros(shape)
-    for powers, coefficient in terms:
-        term = np.full_like(total, coefficient)
-        for base, power in zip(bases, powers, strict=True):
-            term = term * base**power
-        total += term
-    return total
-
-
-@dataclass(frozen=True, slots=True)
 class Energy:
-    """The energy as (U - offset) / unit: terms with exponents of the coordinates, cosine and sine
-    of each angle, then the unknowns on the line; and for each spring with a free length -k l0 with
-    the terms of its length squared, whose root it multiplies. Of each unknown on which a moment
-    works the number, and minus the moment over the unit."""
+    """The energy less the work of constant moments, at given parameters.
 
-    angles: int
-    offset: Fraction
-    unit: Fraction
-    terms: Terms
-    roots: tuple[tuple[float, Terms], ...] = ()
-    slopes: tuple[tuple[int, float], ...] = ()
+    Attributes
+    ----------
+    works : whether moments work.
+
+    Raises
+    ------
+    ConfigError
+        Where a parameter is too large for products of a few to be doubles.
+    """
+
+    def __init__(self, model: Model, parameters: Numbers) -> None:
+        for name, value in parameters.items():
+            if abs(value) > MAX_CONSTANT:
+                raise ConfigError(f"{name} is too large for the energy to be drawn")
+        system = compiled(model)
+        given = {name: float(value) for name, value in parameters.items()}
+        free = dict.fromkeys(model.free_lengths, 0.0) | given
+        self.angles, self.works = len(model.angles), bool(moments_at(model, parameters))
+        self._parts = Doubles((system.potential(), system.work), np)
+        self._unknowns = system.unknowns
+        self._given = {k: free[name] for k, name in enumerate(system.names) if name in free}
+
+    def _at(self, unknowns: Sequence[Floats | float]) -> tuple[Floats, Floats]:
+        """The energy and the moments' work."""
+        energy, work = self._parts.at(
+            self._given | dict(zip(self._unknowns, unknowns, strict=True))
+        )
+        return energy, work
 
     def __call__(self, *unknowns: Floats) -> Floats:
         """Over arrays of angles in radians, and of unknowns on the line."""
-        bases = [
-            function(angle) for angle in unknowns[: self.angles] for function in (np.cos, np.sin)
-        ]
-        bases += unknowns[self.angles :]
-        shape = np.broadcast(*unknowns).shape
-        total = _sum(self.terms, bases, shape)
-        for factor, square in self.roots:
-            total += factor * np.sqrt(np.maximum(_sum(square, bases, shape), 0.0))
-        for number, slope in self.slopes:
-            total += slope * unknowns[number]
-        return total
-
-    def scaled(self, value: Fraction) -> float:
-        """An energy in the picture's unit."""
-        return float((value - self.offset) / self.unit)
+        energy, work = self._at(unknowns)
+        values: Floats = np.broadcast_to(energy - work, np.broadcast(*unknowns).shape)
+        return values
 
     def level(self, pose: Pose, place: Sequence[float]) -> float:
-        """Where a pose lies: its energy less the moments' work up to a place, angles in degrees, in
-        the unit.
-        """
+        """Where a pose lies: its energy less the moments' work up to a place, angles in degrees."""
         inputs = [radians(x) if k < self.angles else x for k, x in enumerate(place)]
-        return self.scaled(pose.known_energy.center) + sum(
-            slope * inputs[k] for k, slope in self.slopes
-        )
-
-
-def energy_of(model: Model, parameters: Numbers) -> Energy:
-    """The energy at these parameters, its constant part taken out and its size made about 1."""
-    system = system_from(model)
-    values = {name: from_fraction(parameters[name]) for name in system.ring.parameters}
-    assert system.potential is not None
-    exact = {m: to_fraction(c) for m, c in polynomial_at(system, system.potential, values).items()}
-    offset = exact.pop((0,) * system.ring.width, Fraction(0))
-    known = compiled(model)
-    given = Assignment(dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters), Fraction)
-    moments = known.values(tuple(known.acting.values()), given)
-    unit = Fraction(10) ** magnitude(
-        max(map(abs, (*exact.values(), *moments)), default=Fraction(1))
-    )
-    roots = []
-    for spring in known.springs:
-        pull, collapsed = known.values((spring.pull, spring.collapsed), given)
-        if pull:
-            offset += collapsed
-            (square,) = elements_of(model, [spring.square])
-            square_terms = polynomial_at(system, square, values)
-            roots.append(
-                (
-                    float(-pull / unit),
-                    tuple((m, float(to_fraction(c))) for m, c in square_terms.items()),
-                )
-            )
-    terms = tuple((m, float(c / unit)) for m, c in sorted(exact.items()))
-    slopes = tuple(
-        (k, float(-moment / unit))
-        for k, moment in zip(known.acting, moments, strict=True)
-        if moment
-    )
-    return Energy(len(model.angles), offset, unit, terms, tuple(roots), slopes)
+        return float(pose.known_energy.center) - float(self._at(inputs)[1])
 
 
 def drawn(poses: Poses) -> str:

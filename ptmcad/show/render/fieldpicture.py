@@ -20,23 +20,19 @@ from matplotlib.figure import Figure
 from ptmcad.answer.boundaries import NONE, Boundary
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.errors import ConfigError
-from ptmcad.show.render.axes import Dress, dress, scale_of, with_symbols
-from ptmcad.show.render.chartgrid import HeadAndFoot
+from ptmcad.show.render.axes import dress, scale_of, with_symbols
+from ptmcad.show.render.chartgrid import HeadAndFoot, lay_out
 from ptmcad.show.render.colours import INK, RIM_INK, STRONG, Fill, undetermined_fill
-from ptmcad.show.render.fieldlines import branch_edges, contour_lines
-from ptmcad.show.render.fitting import MIN_SIDE, beside, dressed
-from ptmcad.show.render.inches import Box
+from ptmcad.show.render.fieldlines import contour_lines, pixel_edges
+from ptmcad.show.render.fitting import MIN_SIDE, dressed
 from ptmcad.show.render.legend import Entry, Type, line_mark
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.view import Floats, View
-from ptmcad.show.style import DEFAULT, MIN_FONT, PictureStyle, Size
+from ptmcad.show.style import DEFAULT, MIN_FONT, PictureStyle
 from ptmcad.show.units import with_unit
 
-SIDE, GAP, BAR = 4.6, 0.2, 0.2
-"""In inches, in 9 points: the map's side where no size is given, the space before the scale, and
-the scale.
-"""
+SIZE = (6.45, 5.95)
+"""Inches in 9 points, where no size is given."""
 COLOURS, GREYS = "viridis", ("#000000", "#d4d4d4")
 """Perceptually uniform, distinguishable to the colour-blind, and monotone on grey prints; or grey,
 none of it white.
@@ -97,17 +93,18 @@ def _figure(
     dpi: int,
     style: PictureStyle,
 ) -> Figure:
-    figure = Figure(figsize=style.size or (6.0, 6.0), dpi=dpi, facecolor="white")
     font = style.base_font
-    axes: Any = figure.add_axes((0.2, 0.2, 0.5, 0.5))
-    axes.set_gid("map")
+    size = style.size or tuple(side * font / 9 for side in SIZE)
+    figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
+    axes: Any = figure.add_subplot(gid="map")
     axes.set_facecolor(_EMPTY)
     known = field.known
     view = View.whole(result)
     if (field.region == NONE).any():
         fill_empty(axes, field, _extent(view), undetermined_fill(style.palette))
-    bar_axes = _fill(figure, axes, field, view, contours, style) if known.size else None
-    if not known.size:
+    if known.size:
+        _fill(figure, axes, field, view, contours, style)
+    else:
         axes.text(
             0.5, 0.5, _absent(field), transform=axes.transAxes, ha="center", color=INK, fontsize=font, zorder=5,
             bbox={"facecolor": "white", "edgecolor": "none"},
@@ -116,10 +113,11 @@ def _figure(
         if boundary.separates:
             shares = _shares(result, boundary.points)
             axes.plot(*shares.T, color=INK, linewidth=style.strong, transform=axes.transAxes)
-    chart = (SIDE, SIDE) if style.size is None else (0.6 * style.size[0], 0.6 * style.size[1])
-    dress(axes, result.slice, view.x, view.y, Dress() if style.flows else dressed(font, chart))
+    dress(axes, result.slice, view.x, view.y, dressed(font, (0.6 * size[0], 0.6 * size[1])))
     legend = _legend(result, field, boundaries, style)
-    _set_page(figure, axes, bar_axes, title_of(result, field), legend, style)
+    around = HeadAndFoot.of(title_of(result, field), legend, size[0], style, Type.of(style))
+    lay_out(figure, around.head, around.foot, "the map with its scale does", MIN_SIDE * font / 72)
+    around.draw(figure)
     figure.set_label(f"{title_of(result, field)}\n{description(field)}")
     return figure
 
@@ -153,8 +151,8 @@ def show_pixels(axes: Any, values: Any, extent: Sequence[float], **look: Any) ->
 
 def _fill(
     figure: Figure, axes: Any, field: Field, view: View, number: int, style: PictureStyle
-) -> Any:
-    """The pixels with their lines, and the scale, whose axes are returned."""
+) -> None:
+    """The pixels with their lines, and the scale."""
     extent = _extent(view)
     low, high = float(field.known.min()), float(field.known.max())
     span = {"vmin": low, "vmax": high if high > low else low + 1.0}
@@ -163,24 +161,16 @@ def _fill(
     levels = contour_lines(axes, field, extent, number)
     for found in filter(None, levels.values()):
         axes.add_collection(LineCollection(found, gid="contours", **lines), autolim=False)
-    jumps = branch_edges(field, extent)
-    for width, colour, kind in _edge(style):
-        if jumps:
-            drawn = LineCollection(
-                jumps,
-                colors=colour,
-                linewidths=width,
-                linestyles=kind,
-                gid="jumps",
-                capstyle="butt",
-                zorder=2.5,
-            )
-            axes.add_collection(drawn, autolim=False)
-    bar_axes = figure.add_axes((0.8, 0.2, 0.05, 0.5))
-    bar = figure.colorbar(image, cax=bar_axes)
+    jumps = [] if field.jumps is None else pixel_edges(*field.jumps, extent)
+    for look in _edge(style) if jumps else ():
+        drawn = LineCollection(jumps, gid="jumps", capstyle="projecting", zorder=2.5, **look)
+        axes.add_collection(drawn, autolim=False)
+    bar = figure.colorbar(image, ax=axes, aspect=23, fraction=0.06, pad=0.03)
+    font = max(MIN_FONT, style.base_font)
     if levels:
-        # the lines' values are among those at the bar
-        bar.set_ticks(list(levels))
+        # the lines' values are among those at the bar, as many as there is room for
+        most = 0.6 * 72 * float(figure.get_size_inches()[1]) / (1.3 * font)
+        bar.set_ticks(list(levels)[:: 1 + int(len(levels) / most)])
         bar.ax.hlines(
             [level for level, found in levels.items() if found],
             0,
@@ -189,11 +179,10 @@ def _fill(
             gid="levels",
             **lines,
         )
-    bar.ax.tick_params(labelsize=max(MIN_FONT, style.base_font), width=0.8 * style.line_scale)
-    bar.ax.yaxis.get_offset_text().set_fontsize(max(MIN_FONT, style.base_font))
+    bar.ax.tick_params(labelsize=font, width=0.8 * style.line_scale)
+    bar.ax.yaxis.get_offset_text().set_fontsize(font)
     bar.outline.set_linewidth(0.8 * style.line_scale)
     bar.set_label(bar_text(field), fontsize=max(MIN_FONT, 1.1 * style.base_font))
-    return bar_axes
 
 
 def _colours(style: PictureStyle) -> Any:
@@ -205,12 +194,10 @@ def _colours(style: PictureStyle) -> Any:
     return LinearSegmentedColormap.from_list("own", list(faces))
 
 
-def _edge(style: PictureStyle) -> Sequence[tuple[float, str, Any]]:
-    """Width, colour and dashes of the lines that make an edge between branches, from below."""
-    return (
-        (2.4 * style.line_scale, "white", "solid"),
-        (1.1 * style.line_scale, INK, (0, (3.0, 1.6))),
-    )
+def _edge(style: PictureStyle) -> Sequence[dict[str, Any]]:
+    """The double line that makes an edge between branches, from below."""
+    looks = ((2.4, INK), (1.0, "white"))
+    return [{"color": c, "linewidth": width * style.line_scale} for width, c in looks]
 
 
 def _legend(
@@ -233,66 +220,7 @@ def _legend(
     return legend
 
 
-_edge_mark = line_mark(
-    *({"color": c, "linewidth": width, "linestyle": kind} for width, c, kind in _edge(DEFAULT))
-)
-
-
-def _set_page(
-    figure: Figure, axes: Any, bar: Any, title: str, legend: Sequence[Entry], style: PictureStyle
-) -> None:
-    """Give all parts their places; a page without a size gets the one that it needs.
-
-    What stands beside axes is measured, thrice, as how many numbers an axis has depends on its
-    length.
-
-    Raises
-    ------
-    ConfigError
-        When a size leaves too little to the map.
-    """
-    font, size = style.base_font, style.size
-    em, scale = font / 72, font / 9
-    side, least = SIDE * scale, MIN_SIDE * em
-    wide, tall = size or (side + 2.2 * scale, side + 1.5 * scale)
-    around = HeadAndFoot.of(title, legend, wide, style, Type.of(style))
-    for _ in range(3):
-        left, below, right, above = beside(figure, axes)
-        if bar is not None:
-            right = max(right, (GAP + BAR) * scale + beside(figure, bar)[2])
-        rest = (left + right + 0.8 * em, below + above + around.head + around.foot)
-        if size is None:
-            wide, tall = side + rest[0], side + rest[1]
-            figure.set_size_inches(wide, tall)
-        chart = (wide - rest[0], tall - rest[1])
-        if min(chart) < least:
-            needed = (rest[0] + max(least, chart[0]), rest[1] + max(least, chart[1]))
-            raise ConfigError(
-                f"the map with its scale does not fit into {wide:.2f}x{tall:.2f}in in text of {font:g} points; "
-                f"it needs at least {needed[0] + 0.01:.2f}x{needed[1] + 0.01:.2f}in", key="size",
-            )  # fmt: skip
-        corner = (0.4 * em + left, around.foot + below)
-        _place(axes, (*corner, *chart), (wide, tall))
-        if bar is not None:
-            at = (corner[0] + chart[0] + GAP * scale, corner[1], BAR * scale, chart[1])
-            _place(bar, at, (wide, tall))
-            _thin_numbers(bar, chart[1])
-    around.draw(figure)
-
-
-def _place(axes: Any, box: Box, size: Size) -> None:
-    axes.set_position((box[0] / size[0], box[1] / size[1], box[2] / size[0], box[3] / size[1]))
-
-
-def _thin_numbers(bar: Any, tall: float) -> None:
-    """Leave out numbers at the scale that would lie on each other."""
-    ticks = [float(v) for v in bar.get_yticks() if bar.get_ylim()[0] <= v <= bar.get_ylim()[1]]
-    apart = 1.3 * bar.yaxis.get_ticklabels()[0].get_fontsize() / 72 if ticks else 0.0
-    if (
-        len(ticks) > 1
-        and tall * (ticks[1] - ticks[0]) / (bar.get_ylim()[1] - bar.get_ylim()[0]) < apart
-    ):
-        bar.set_yticks(ticks[::2])
+_edge_mark = line_mark(*_edge(DEFAULT))
 
 
 def bar_text(field: Field) -> str:

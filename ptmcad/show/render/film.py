@@ -26,11 +26,12 @@ from ptmcad.answer.motion import Motion
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
-from ptmcad.show.render.axes import Dress, symbol
-from ptmcad.show.render.chartgrid import Panel, PanelGrid
-from ptmcad.show.render.colours import Fill, fills_by_count, paint_of
-from ptmcad.show.render.legend import Entry, Type, draw_legend, head_of
+from ptmcad.show.render.axes import dress, symbol
+from ptmcad.show.render.colours import INK, Fill, fills_by_count, paint_of
+from ptmcad.show.render.inches import axes_at, write
+from ptmcad.show.render.legend import Entry, draw_legend, head_of
 from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.painting import paint_map
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.stage import Pixels, Stage
 from ptmcad.show.style import DEFAULT, PictureStyle
@@ -142,9 +143,8 @@ def _write_mp4(pictures: Stage | SweepFilm, path: Path, fps: int) -> None:
 
 SIZE, _DPI = (7.0, 5.2), 100
 """Inches of a picture."""
-_GRID = PanelGrid((0.77, 4.58), (4.34, 3.95), (0.0, 0.0), 1, Dress(), Type(12))
-_KEY = (5.25, 4.58)
-"""The upper left corner of the legend."""
+_CHART, _HEAD, _KEY = (0.77, 0.63, 4.34, 3.95), (0.77, 4.7), (5.25, 4.58)
+"""The map's place, the left end of the head's middle, and the legend's upper left corner."""
 _MAX_LENGTH = 90
 """Characters of the values above a map."""
 
@@ -181,7 +181,10 @@ class SweepFilm:
             f"{symbol(n)} = {shortest_text(fraction_of(v))}" for n, v in self.values[number].items()
         )
         head = text if len(text) <= _MAX_LENGTH else f"{text[:_MAX_LENGTH]}…"
-        _GRID.draw(figure, [Panel(shapes(result), paint_of(DEFAULT, result), (head,))])
+        axes, seen = axes_at(figure, _CHART), shapes(result)
+        paint_map(axes, seen, "", paint_of(DEFAULT, result))
+        dress(axes, result.slice, seen.view.x, seen.view.y)
+        write(figure, _HEAD, head, 12, color=INK)
         draw_legend(figure, self.legend, *_KEY)
         canvas: Any = FigureCanvasAgg(figure)
         canvas.draw()

@@ -214,14 +214,3 @@ def distance(point: Position, stroke: Stroke) -> float:
         else min(1.0, max(0.0, ((point[0] - ax) * dx + (point[1] - ay) * dy) / square))
     )
     return hypot(point[0] - ax - t * dx, point[1] - ay - t * dy)
-
-
-def touch(a: Position, b: Position, c: Position, d: Position) -> bool:
-    """Whether two segments have a point in common."""
-    if any(max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]) for k in (0, 1)):
-        return False
-    return _turn(a, b, c) * _turn(a, b, d) <= 0 and _turn(c, d, a) * _turn(c, d, b) <= 0
-
-
-def _turn(a: Position, b: Position, c: Position) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

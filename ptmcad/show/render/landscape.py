@@ -7,8 +7,7 @@ angle it is not periodic: it is cut at 180 degrees, and a title says so.
 
 Guarantee: every equilibrium is marked, at both edges where an angle is 180 degrees, with its number
 in the picture of `ptmcad.show.render.posepicture.draw_poses`. Contours pass through saddles and
-degenerate equilibria, also where the energy is large and its differences are small, because its
-constant part is taken out exactly before anything is rounded.
+degenerate equilibria, as far as doubles tell their energies apart.
 
 Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact
 poses.
@@ -38,7 +37,7 @@ from ptmcad.model.work import moments_at
 from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import scale_of, symbol, ticks
 from ptmcad.show.render.colours import INK
-from ptmcad.show.render.energy import Energy, drawn, energy_of, is_cut
+from ptmcad.show.render.energy import Energy, drawn, is_cut
 from ptmcad.show.render.inches import axes_at
 from ptmcad.show.render.labels import Box, Label, Position, Stroke, place
 from ptmcad.show.render.legend import Entry, draw_legend, point_mark
@@ -143,7 +142,8 @@ def draw_landscape(poses: Poses) -> Figure:
     Raises
     ------
     ConfigError
-        For a system without a potential, and for more than two unknowns.
+        For a system without a potential, for more than two unknowns, and where a parameter is too
+        large for doubles.
     """
     if reason := no_landscape(poses.model):
         raise ConfigError(reason)
@@ -155,7 +155,7 @@ def draw_landscape(poses: Poses) -> Figure:
 
 def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
     """The energy over one unknown."""
-    energy = energy_of(poses.model, poses.parameters)
+    energy = Energy(poses.model, poses.parameters)
     (side,) = sides_of(poses.model, shown, poses.units)
     values, inputs = side.sampled(_FINE)
     heights = energy(inputs)
@@ -196,7 +196,7 @@ def _page(poses: Poses, beside: float, what: str) -> tuple[Figure, Any]:
 def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
     """The energy over two unknowns."""
     energy, sides = (
-        energy_of(poses.model, poses.parameters),
+        Energy(poses.model, poses.parameters),
         sides_of(poses.model, shown, poses.units),
     )
     (across, up), heights = _sampled(energy, sides, _GRID)
@@ -364,17 +364,14 @@ def _kind(pose: Pose) -> str:
 
 def _energy_ticks(axes: Any, energy: Energy, low: float, high: float, unit: str) -> None:
     """Energies along a vertical axis between two levels."""
-    ends = (
-        energy.offset + energy.unit * Fraction(low),
-        energy.offset + energy.unit * Fraction(high),
-    )
+    ends = (Fraction(low), Fraction(high))
     scale = scale_of(*ends)
     found = ticks(ends, scale, 7)
     at = [low + float(share) * (high - low) for _, share in found]
     axes.yaxis.set_ticks(at, [text for text, _ in found])
     axes.minorticks_off()
     axes.tick_params(labelsize=9, direction="out", length=3.5)
-    axes.set_ylabel(with_unit(scale.name("V" if energy.slopes else "U"), unit), fontsize=10)
+    axes.set_ylabel(with_unit(scale.name("V" if energy.works else "U"), unit), fontsize=10)
 
 
 def _legend(poses: Poses, shown: Sequence[Pose]) -> Iterator[Entry]:

@@ -21,6 +21,7 @@ from ptmcad.answer.counts import Counts
 from ptmcad.answer.field import Field
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import INK, UNDETERMINED, fill_of_counts
+from ptmcad.show.render.fieldlines import pixel_edges
 from ptmcad.show.render.fieldpicture import COLOURS, bar_text, description, fill_empty, show_pixels
 from ptmcad.show.render.printing import printed, settings
 
@@ -84,16 +85,5 @@ def _chart(pixels: Grid | Field, dpi: int) -> tuple[Figure, Any]:
 
 def _walls(axes: Any, pixels: Grid | Field, region: NDArray[np.int64]) -> None:
     """Lines between neighbouring pixels of different regions."""
-    left, right, bottom, top = pixels.extent
-    rows, columns = region.shape
-    x, y = np.linspace(left, right, columns + 1), np.linspace(bottom, top, rows + 1)
-    upright = [
-        ((x[c + 1], y[r]), (x[c + 1], y[r + 1]))
-        for r, c in np.argwhere(region[:, 1:] != region[:, :-1])
-    ]
-    level = [
-        ((x[c], y[r + 1]), (x[c + 1], y[r + 1])) for r, c in np.argwhere(region[1:] != region[:-1])
-    ]
-    axes.add_collection(
-        LineCollection([*upright, *level], colors=INK, linewidths=_LINE), autolim=False
-    )
+    edges = pixel_edges(region[:, 1:] != region[:, :-1], region[1:] != region[:-1], pixels.extent)
+    axes.add_collection(LineCollection(edges, colors=INK, linewidths=_LINE), autolim=False)

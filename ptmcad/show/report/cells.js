@@ -120,7 +120,7 @@ function fillPanel(number, cell) {
   if (!DATA.drawable) {
     panel.append(html("p", "hint", "A system has no points, bars or springs to draw: its solutions in numbers, every digit "
       + "certified to one unit of the last place."), springTable(cell));
-    if (DATA.landscape && (cell.potential.length || FOLLOW)) {
+    if (DATA.landscape && FOLLOW) {
       const energy = drawLandscape(cell, () => {});
       cells.redraw = energy.redraw;
       panel.append(html("h3", "", landscapeTitle(cell)), energy.box, landscapeLegend());
@@ -149,12 +149,12 @@ function fillPanel(number, cell) {
   const without = cell.moments.length ? " U is the energy of springs and loads, without the " + DATA.work + "." : "";
   panel.append(grid, html("p", "hint", legendOfParts() + without));
   if (cell.total === null || cell.equilibria.length < cell.total) panel.append(html("p", "hint", "The result stores the stable poses alone."));
-  const landscape = DATA.landscape && (cell.potential.length || FOLLOW) ? drawLandscape(cell, pointed) : null;
+  const landscape = DATA.landscape && FOLLOW ? drawLandscape(cell, pointed) : null;
   cells.redraw = landscape && landscape.redraw;
   const numbers = html("details");
   numbers.append(html("summary", "", "Poses in numbers (every digit certified to one unit of the last place)"), springTable(cell));
   if (landscape) panel.append(html("h3", "", landscapeTitle(cell)), landscape.box, landscapeLegend());
-  else if (cell.potential.length) panel.append(html("p", "hint", "The energy is drawn here over two angles only; ptmcad solve --landscape draws it over any one or two unknowns."));
+  else if (FOLLOW && FOLLOW.energy !== null) panel.append(html("p", "hint", "The energy is drawn here over two angles only; ptmcad solve --landscape draws it over any one or two unknowns."));
   panel.append(numbers);
 }
 

@@ -6,18 +6,16 @@ holds the equilibrium, as `ptmcad.verify` checks. Numbers that are not texts are
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import chain
-from math import atan2, prod
+from math import atan2
 from operator import gt
 from typing import Any, NamedTuple, TypeVar
 
 from flint import acb, arb, ctx
 
-from ptmcad.answer.regionmap import Cell, RegionMap, Solution, System
+from ptmcad.answer.regionmap import Cell, RegionMap, Solution
 from ptmcad.errors import ConfigError, PoleError
 from ptmcad.formulas.evaluation import evaluated
 from ptmcad.model import Mechanism, Model
@@ -26,8 +24,6 @@ from ptmcad.question.slice import merged
 from ptmcad.text.balls import ball_of, ball_over, enclosure_of, exact
 from ptmcad.text.expressions import values_at
 from ptmcad.text.numerals import (
-    Numbers,
-    fraction_of,
     integer_text,
     magnitude,
     nearest_multiple,
@@ -36,7 +32,7 @@ from ptmcad.text.numerals import (
 )
 
 MAX_DRAWN = 10**100
-"""Of parameters and coefficients that can be drawn: their products stay far within the range of
+"""Of parameters that can be drawn: their products stay far within the range of
 floating point.
 """
 
@@ -49,40 +45,31 @@ _DRAWN_DIGITS = 9
 """Of numbers for drawing, or from which the page's script begins: a little more than are shown."""
 
 Value = TypeVar("Value")
-Potential = Mapping[tuple[int, ...], Fraction]
-"""Exponents of the system's unknowns to coefficients."""
 
 
 def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
-    """All that the page shows and draws for a cell's sample: parameters, loads, potential and
-    equilibria, as JSON data.
+    """All that the page shows and draws for a cell's sample: parameters, loads and equilibria, as
+    JSON data.
 
     Parameters are those besides the axes, which the sample has. Moments are those on the unknowns,
-    angles first, whose work is not in the potential; none where all are zero.
-
-    Where springs have free lengths, whose energy is no polynomial, the potential's terms are left
-    out.
+    angles first, whose work is not in the energy; none where all are zero.
 
     Raises
     ------
     ConfigError
-        When a parameter has no value there, or the stored potential or a box is none.
+        When a parameter has no value there, or a box is none.
     """
     try:
         values = values_at(result.slice.parameters, *cell.sample)
     except PoleError as error:
         raise ConfigError(f"a parameter has no value at a sample: {error}") from error
     model = result.slice.model
-    # a certified map knows angles by themselves, and its potential may have roots, of lengths alone
-    # too
+    # a certified map knows angles by themselves
     polynomial = result.cover is None and result.system.unknowns == coordinates(model)
-    potential = (
-        potential_at(result.system, values) if polynomial and result.system.potential else None
-    )
     drawn = (
         (polynomial or result.system.unknowns == model.sorted_unknowns)
         and all(name in values for name in model.without_free_lengths)
-        and all(abs(v) < MAX_DRAWN for v in (*values.values(), *(potential or {}).values()))
+        and all(abs(v) < MAX_DRAWN for v in values.values())
     )
     system = compiled(model)
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | values
@@ -95,13 +82,10 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
         return {
             "parameters": [[n, both(v)] for n, v in others.items()],
             "loads": [[float(component) for component in force] for force in loads],
-            "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()]
-            if drawn
-            else [],
             "moments": [
                 float(moment) for moment in moments if not all(m.is_zero() for m in moments)
             ],
-            "equilibria": _solutions(model, cell, known, potential, polynomial) if drawn else [],
+            "equilibria": _solutions(model, cell, known, polynomial) if drawn else [],
         }
 
 
@@ -137,11 +121,7 @@ def both(value: Fraction) -> str:
 
 
 def _solutions(
-    model: Model,
-    cell: Cell,
-    values: Mapping[str, Fraction],
-    potential: Potential | None,
-    polynomial: bool,
+    model: Model, cell: Cell, values: Mapping[str, Fraction], polynomial: bool
 ) -> list[dict[str, Any]]:
     """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last
     place.
@@ -149,15 +129,9 @@ def _solutions(
     system = compiled(model)
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
     drawn = system.shown
-    formulas = _Pose(
-        None if polynomial else system.potential(), drawn.points, drawn.stretches, drawn.elastic[1]
-    )
+    formulas = _Pose(system.potential(), drawn.points, drawn.stretches, drawn.elastic[1])
     poses: list[_Pose] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
-    energies = (
-        [pose.energy for pose in poses]
-        if potential is None
-        else [_energy(potential, box) for box in boxes]
-    )
+    energies = [pose.energy for pose in poses]
     energy_place = last_place((ball for ball in energies if ball is not None), _DIGITS)
     turns = 2 * len(model.angles)
     reals = [box[turns:] for box in boxes]
@@ -291,62 +265,6 @@ class _Within:
 
     def length(self, x: arb, y: arb) -> arb:
         return abs(acb(x, y))
-
-
-_TERM = re.compile(r"(^-?|[+-]) ?([^ ]+) ?")
-_MAX_CHARACTERS = 100_000
-"""Characters of a potential, which has some hundred."""
-_EXPONENT = re.compile(r"[1-9][0-9]?", re.ASCII)
-
-
-def potential_at(system: System, values: Numbers) -> Potential:
-    """The stored potential, a polynomial in the unknowns, with numbers for the parameters: exact.
-
-    Raises
-    ------
-    ConfigError
-        When the text is not a sum of products of numbers, parameters and unknowns.
-    """
-    text = system.potential
-    if len(text) > _MAX_CHARACTERS or "".join(m[0] for m in _TERM.finditer(text)) != text:
-        raise ConfigError("the stored potential is not a polynomial", key="system.potential")
-    found: dict[tuple[int, ...], Fraction] = {}
-    for sign, body in _TERM.findall(text):
-        exponents = [0] * len(system.unknowns)
-        coefficient = Fraction(-1 if sign == "-" else 1)
-        for factor in body.split("*"):
-            name, hat, exponent = factor.partition("^")
-            if hat and not _EXPONENT.fullmatch(exponent):
-                raise ConfigError(f"{factor[:40]!r} is not a power", key="system.potential")
-            times_taken = int(exponent) if hat else 1
-            if name in system.unknowns:
-                exponents[system.unknowns.index(name)] += times_taken
-            elif name in values:
-                coefficient *= values[name] ** times_taken
-            else:
-                coefficient *= _number(factor)
-        key = tuple(exponents)
-        found[key] = found.get(key, Fraction(0)) + coefficient
-    return {key: c for key, c in found.items() if c}
-
-
-def _number(text: str) -> Fraction:
-    try:
-        return fraction_of(text)
-    except ValueError as error:
-        raise ConfigError(
-            f"{text[:40]!r} is neither a number nor a known name", key="system.potential"
-        ) from error
-
-
-def _energy(potential: Potential, unknowns: Sequence[arb]) -> arb:
-    """The potential's value at unknowns in these balls."""
-    total = arb(0)
-    for exponents, coefficient in potential.items():
-        # not by powers, which are none of a ball around zero
-        powers = ([value] * n for value, n in zip(unknowns, exponents, strict=True))
-        total += prod(chain.from_iterable(powers), start=ball_of(coefficient))
-    return total
 
 
 _MAX_PLAIN_PLACES = 12

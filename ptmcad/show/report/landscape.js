@@ -6,32 +6,6 @@ const BANDS = 16;
 const PLOT = { side: 400, left: 84, bottom: 74, rim: 34 };
 
 function energyTable(cell, steps) {
-  const { potential: terms, moments: [one = 0, two = 0] } = cell;
-  if (!terms.length) return followedTable(cell, steps);
-  const powers = [];
-  const angles = [];
-  for (let k = 0; k <= steps; k += 1) {
-    const angle = -Math.PI + 2 * Math.PI * k / steps;
-    angles.push(angle);
-    powers.push([Math.cos(angle), Math.sin(angle)]);
-  }
-  const first = terms.map((t) => powers.map(([c, s]) => t[4] * c ** t[0] * s ** t[1]));
-  const second = terms.map((t) => powers.map(([c, s]) => c ** t[2] * s ** t[3]));
-  const table = [];
-  for (let j = 0; j <= steps; j += 1) {
-    const row = new Float64Array(steps + 1);
-    for (let i = 0; i <= steps; i += 1) {
-      let sum = 0;
-      for (let n = 0; n < terms.length; n += 1) sum += first[n][i] * second[n][j];
-      row[i] = sum - one * angles[i] - two * angles[j];
-    }
-    table.push(row);
-  }
-  return table;
-}
-
-// The same from the model's operations, for energies that are no polynomial and away from the samples.
-function followedTable(cell, steps) {
   const [one = 0, two = 0] = cell.moments;
   const parameters = parametersAt(cell.point);
   const angle = (k) => -Math.PI + 2 * Math.PI * k / steps;

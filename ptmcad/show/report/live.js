@@ -258,7 +258,7 @@ function drawLater() {
     const first = live.found[0];
     const moments = FOLLOW.moments.length ? [0, 1].map((unknown) => FOLLOW.moments
       .reduce((sum, [own, k]) => (own === unknown ? sum + first.values[k] : sum), 0)) : [];
-    const place = { potential: [], moments, point, equilibria: live.found.map((one) => ({
+    const place = { moments, point, equilibria: live.found.map((one) => ({
       kind: one.kind, energy: digits(one.values[FOLLOW.energy]), level: one.values[FOLLOW.energy],
       at: one.at.flatMap((angle) => [Math.cos(angle), Math.sin(angle)]),
     })) };

@@ -7,10 +7,11 @@ again is None.
 
 from __future__ import annotations
 
-import json
 import shlex
 from collections.abc import Mapping
 from dataclasses import replace
+
+import yaml
 
 from ptmcad.errors import ConfigError
 from ptmcad.model import Kind, built_in, mechanism_of
@@ -127,33 +128,17 @@ def _command(slice: Slice, values: Mapping[str, str]) -> str | None:
 
 
 def _yaml(mapping: Mapping[str, object]) -> str:
-    """The record as YAML; every text in double quotes, which take JSON's escapes."""
-    lines = []
-    for key, value in mapping.items():
-        if key in ("mechanism", "system") and isinstance(value, dict):
-            lines += [f"{key}:", *(f"  {part}: {_value(entry)}" for part, entry in value.items())]
-        else:
-            lines.append(f"{key}: {_value(value)}")
-    return "\n".join(lines) + "\n"
-
-
-def _value(value: object) -> str:
-    if isinstance(value, list | tuple):
-        return f"[{', '.join(map(_value, value))}]"
-    if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{_quoted(k)}: {_value(v)}' for k, v in value.items())}}}"
-    return _quoted(value)
-
-
-def _quoted(value: object) -> str:
-    text = str(value)
-    plain = (
-        text.isascii()
-        and text.replace("_", "a").isalnum()
-        and text[0].isalpha()
-        and text.lower() not in _WORDS
+    """The record as YAML, in which every number is a text."""
+    text: str = yaml.safe_dump(
+        _plain(mapping), sort_keys=False, default_flow_style=None, allow_unicode=True, width=100
     )
-    return text if plain else json.dumps(text, ensure_ascii=False)
+    return text
 
 
-_WORDS = frozenset(("null", "true", "false", "yes", "no", "on", "off", "y", "n", "nan", "inf"))
+def _plain(value: object) -> object:
+    """The same of texts, lists and mappings alone."""
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, Mapping):
+        return {str(key): _plain(entry) for key, entry in value.items()}
+    return str(value)
