@@ -25,7 +25,7 @@ from ptmcad.verification.derivation import (
     derivation_of,
 )
 from ptmcad.verification.fibrealgebra import NotFinite, SolutionAlgebra, fibre_over
-from ptmcad.verification.kinds import SignMeaning, meaning_of
+from ptmcad.verification.kinds import SignMeaning, kind_of, meaning_of
 from ptmcad.verification.report import Violation
 from ptmcad.verification.rootcounts import ends_of, numbered_root, roots_between, roots_within
 
@@ -109,8 +109,10 @@ class Claims:
 
     @property
     def derivation(self) -> Derivation:
-        """What solutions satisfy, in all parameters."""
-        return derivation_of(self.model)
+        """What solutions satisfy, in all parameters, with what the count asks of stable ones
+        besides.
+        """
+        return kind_of(self.result.slice.count).with_margins(derivation_of(self.model))
 
     @cached_property
     def base(self) -> tuple[fmpq, fmpq]:
@@ -169,7 +171,7 @@ class Claims:
             return self._fibres[x, y]
         try:
             point = derivation_at(self.model, self.parameters_at(x, y))
-            self._fibres[x, y] = fibre_over(point)
+            self._fibres[x, y] = fibre_over(kind_of(self.result.slice.count).with_margins(point))
             return self._fibres[x, y]
         except NotFinite:
             raise Violation(f"there are infinitely many solutions at {self.place(x, y)}") from None

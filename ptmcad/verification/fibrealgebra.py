@@ -248,6 +248,12 @@ class SolutionAlgebra:
         wanted = [*required, *(self.matrix(p) for p in self.point.stability)]
         return Counts(total, self._number(wanted), None)
 
+    def number_held(self) -> int:
+        """The number of the minima that count at which all conditions for stability are positive: a
+        count's margins.
+        """
+        return self._index([self.matrix(p) for p in self.conditions])[0]
+
     def within(
         self, center: Sequence[Fraction], radius: Fraction, *, counted: bool
     ) -> tuple[int, list[fmpq_mat]]:

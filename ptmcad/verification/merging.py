@@ -14,7 +14,7 @@ from ptmcad.text.numerals import approximate_text
 from ptmcad.verification.certified.counted import check_region
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import parameters_of, shorthands_of
-from ptmcad.verification.kinds import has_counts, has_margins, is_of_stable
+from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
 
 
@@ -102,16 +102,17 @@ def _check_references(r: RegionMap) -> None:
 def _check_count(claims: Claims) -> None:
     """The model has counts of the kind, exact maps may be by it, and no others are stored."""
     r, count = claims.result, claims.result.slice.count
-    is_of_stable(count)  # refuses a kind that is not known
-    if has_margins(count):
+    kind = kind_of(count)
+    if not kind.has_exact_maps or (kind.is_predicate and not claims.meaning.order):
         raise Violation(
             f"an exact map has no {count.value} counts by which its regions could be distinguished"
         )
-    if not has_counts(claims.model, count):
+    if not kind.is_of(claims.model):
         raise Violation(
             f"{claims.model.name} has no {count.value} counts by which regions could be distinguished"
         )
-    if further := {name for item in (*r.cells, *r.regions) for name in item.further}:
+    known = {count.value} if kind.is_predicate else set()
+    if further := {name for item in (*r.cells, *r.regions) for name in item.further} - known:
         raise Violation(f"an exact map has counts of {further.pop()} equilibria")
 
 
@@ -121,7 +122,9 @@ def _is_index(value: object, length: int) -> bool:
 
 def _counts(cell: Cell) -> object:
     """All that is counted, in few words."""
-    return (cell.total, cell.stable) if cell.index is None else cell.index
+    return ((cell.total, cell.stable) if cell.index is None else cell.index) + (
+        *cell.further.values(),
+    )
 
 
 def check_merges(claims: Claims) -> str:

@@ -19,6 +19,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Slice
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.derivation import derivation_of
+from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.report import Violation
 from ptmcad.verification.windowsigns import plainly_outside
 
@@ -125,7 +126,7 @@ def _expected(result: RegionMap) -> Iterator[PlanStep]:
 def _general(slice: Slice) -> Iterator[tuple[str, str, str]]:
     """What a plan says of every slice of a model by a kind of count: names, subjects and reasons."""
     model = slice.model
-    true = derivation_of(model)
+    true = kind_of(slice.count).with_margins(derivation_of(model))
     kept = bool(model.reals or true.inequalities or true.stability)
     for saving, what, why in _GENERAL:
         if saving == "sign-curve" and true.meaning.order < 2:

@@ -39,7 +39,6 @@ def small() -> FamilyMap:
 def test_every_member_has_its_chart_its_value_and_the_same_colours(family: FamilyMap) -> None:
     figure = family.plot()
     assert len(figure.axes) == 7
-    texts = [text.get_text() for text in figure.texts]
     assert [axes.get_title(loc="left") for axes in figure.axes] == [
         "c = 0", "c = 0.5", "c = 1", "c = 1.5", "c = 2", "c = 2.5", "c = 3",
     ]  # fmt: skip
@@ -108,7 +107,6 @@ def test_a_boundary_surface_is_drawn_with_the_members_curves_and_says_what_it_is
     (sheets,) = (each for each in axes.collections if each.get_gid() == "sheets")
     assert len(sheets.get_facecolor()) > len(surface.faces)  # and pieces of curves
     assert not sheets.get_rasterized()
-    texts = [text.get_text() for text in figure.texts]
     assert {"1", "3", "between 1 and 3", "boundary of a member"} <= set(texts)
     assert f"sheets: linear between {len(surface.members)} exact boundaries" in texts
     assert not any("not proved" in text for text in texts)

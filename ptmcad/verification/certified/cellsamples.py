@@ -13,7 +13,7 @@ from fractions import Fraction
 from ptmcad.answer.regionmap import Cell
 from ptmcad.verification.certified.counted import differs, stored
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
-from ptmcad.verification.kinds import is_of_stable, numbers_for
+from ptmcad.verification.kinds import kind_of, numbers_for
 from ptmcad.verification.normalform.boxes import Unproved, Zero
 from ptmcad.verification.normalform.waves import form_of
 from ptmcad.verification.report import Unchecked, Violation
@@ -88,8 +88,11 @@ def check_cell(claims: CertifiedClaims, cell: Cell) -> int:
         return _check_beside(claims, cell, reason)
     if differs(cell, there.counts):
         raise Violation(f"said to have {stored(cell)}; there are {there.counts}")
-    with_all = not is_of_stable(claims.result.slice.count)
-    kept = [e for e in there.found if with_all or "-" not in e.signs]
+    kept = [
+        e
+        for e in there.found
+        if not kind_of(claims.result.slice.count).is_of_stable or "-" not in e.signs
+    ]
     if len(cell.solutions) != len(kept):
         raise Violation(f"{len(cell.solutions)} boxes of solutions for {len(kept)} equilibria")
     try:

@@ -20,7 +20,7 @@ from ptmcad.verification.certified.coversweep import CoverSweep, sweep
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import shorthands_of
-from ptmcad.verification.kinds import has_counts, is_of_stable, numbers_for
+from ptmcad.verification.kinds import kind_of, numbers_for
 from ptmcad.verification.normalform.lattice import SliceLattice
 from ptmcad.verification.report import Violation
 
@@ -183,8 +183,7 @@ def _check_model(slice: Slice) -> None:
         )
     if not 1 <= len(model.unknowns) <= MAX_UNKNOWNS:
         raise Violation(f"no certified map is of {len(model.unknowns)} unknowns")
-    is_of_stable(slice.count)  # refuses a kind that is not known
-    if not has_counts(model, slice.count):
+    if not kind_of(slice.count).is_of(model):
         raise Violation(f"no certified map of {model.name!r} counts {slice.count.value}")
 
 

@@ -27,7 +27,7 @@ from ptmcad.verification.certified.counted import CellCounts, CountedPoint
 from ptmcad.verification.certified.krawczyk import Spent, zeros
 from ptmcad.verification.certified.narrow import is_wide, narrowed, precisions, tested
 from ptmcad.verification.coordinates import evaluated
-from ptmcad.verification.kinds import has_margins, is_of_stable
+from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.normalform.boxes import MIN_HALF_WIDTH, Floats, Unproved, Zero, is_same
 from ptmcad.verification.normalform.lattice import Range, SliceLattice
 from ptmcad.verification.normalform.waves import Form, Sides, form_of, sides
@@ -146,12 +146,12 @@ class ModelCounting:
         Unproved
             When a margin may be zero at a stable solution.
         """
-        counts = counts_of(self.form, found, self._count)
-        if not has_margins(self._count):
+        counts, kind = counts_of(self.form, found, self._count), kind_of(self._count)
+        if not kind.is_predicate:
             return counts
         field = BallEquations(self.form, values, ("margins",))
         stable = (zero for zero in found if "-" not in zero.signs)
-        number = sum(_is_long(field, zero) for zero in stable)
+        number = sum(_has_margins(field, zero, kind.undecided) for zero in stable)
         return replace(counts, further={self._count.value: number})
 
     def in_box(self, x: Fraction, y: Fraction, solution: Solution, k: int) -> Zero:
@@ -209,7 +209,7 @@ def _field(
     """
     if count is None:
         return BallEquations(form, values, sides=side)
-    stable = is_of_stable(count)
+    stable = kind_of(count).is_of_stable
     asked = ("inequalities", "stability") if stable else ("inequalities",)
     return BallEquations(form, values, asked, stable and bool(form.closing), side)
 
@@ -231,7 +231,7 @@ def _counted(field: BallEquations, found: Sequence[Zero], count: Count) -> list[
         if not all(c > 0 for c in conditions):
             where = ", ".join(f"{x:.6g}" for x in zero.center)
             raise Unproved(f"a condition may be zero at the solution near ({where})")
-        of_equations = not field.form.is_gradient and is_of_stable(count)
+        of_equations = not field.form.is_gradient and kind_of(count).is_of_stable
         signs = "+" * field.form.conditions_for_stability if of_equations else zero.signs
         kept.append(_apart(field, replace(zero, signs=signs)))
     return kept
@@ -300,14 +300,14 @@ def _balls(values: Mapping[str, Fraction]) -> dict[str, arb]:
     return {name: ball_of(value) for name, value in values.items()}
 
 
-def _is_long(field: BallEquations, zero: Zero) -> bool:
-    """Whether every spring is longer at a solution than it is free: all conditions of a field hold."""
+def _has_margins(field: BallEquations, zero: Zero, undecided: str) -> bool:
+    """Whether all conditions of a field hold at a solution."""
     found = field(zero.within).conditions
     if any(value < 0 for value in found):
         return False
     if all(value > 0 for value in found):
         return True
-    raise Unproved("a spring may be as long as its free length")
+    raise Unproved(undecided)
 
 
 def counts_of(form: Form, found: Sequence[Zero], count: Count) -> CellCounts:
@@ -321,10 +321,12 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> CellCounts:
     """
     if not form.is_gradient:
         number = len(found)
-        return CellCounts(stable=number) if is_of_stable(count) else CellCounts(total=number)
+        return (
+            CellCounts(stable=number) if kind_of(count).is_of_stable else CellCounts(total=number)
+        )
     negative = Counter(zero.signs.count("-") for zero in found)
     index = tuple(negative[k] for k in range(form.size + 1))
-    if is_of_stable(count):
+    if kind_of(count).is_of_stable:
         return CellCounts(stable=index[0])
     if form.is_smooth_on_a_torus and euler_sum(index):
         raise Violation(

@@ -20,7 +20,7 @@ import numpy as np
 from ptmcad.errors import ExpressionError
 from ptmcad.verification.coordinates import evaluated
 from ptmcad.verification.exclusion.forms import IntervalTape, tape_of
-from ptmcad.verification.kinds import is_of_stable
+from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.normalform.boxes import Floats
 from ptmcad.verification.normalform.lattice import Range, SliceLattice
 from ptmcad.verification.normalform.modelequations import Equations, Pair, bases
@@ -219,8 +219,8 @@ class _Systems:
     def __init__(self, lattice: SliceLattice, halves: Floats):
         self.lattice, self.model, self._halves = lattice, window_equations(lattice), halves
         self.count, self.form = lattice.slice.count, self.model.form
-        self.minima = self.form.is_gradient and is_of_stable(self.count)
-        stable = self.form.stability if is_of_stable(self.count) else ()
+        self.minima = self.form.is_gradient and kind_of(self.count).is_of_stable
+        stable = self.form.stability if kind_of(self.count).is_of_stable else ()
         self.conditions: list[Waves] = [*self.form.inequalities, *stable]
         self.asked = [self.model.waves(c) for c in self.conditions]
         self.positive, self.turning, self.where = self.asked, list[int](), ""
@@ -304,11 +304,9 @@ class _Systems:
                 )
         for k, (_, as_long) in enumerate(self.margins):
             taut = [value for j, (value, _) in enumerate(self.margins) if j != k]
+            name = f"{kind_of(self.count).boundary} {k}"
             yield self._system(
-                f"free length {k}",
-                [*equations, *as_long],
-                others,
-                [*dict.fromkeys([*signs, *taut])],
+                name, [*equations, *as_long], others, [*dict.fromkeys([*signs, *taut])]
             )
 
     def _minors(self, rows: Sequence[Sequence[int]]) -> list[int]:
@@ -398,8 +396,14 @@ class _Systems:
         m, f = self.model, self.model.list
         found: list[tuple[int, tuple[int, ...]]] = []
         for margin in self.form.margins:
-            free = m.polynomial(margin.free)
-            vector = m.waves(margin.vector[0]), m.waves(margin.vector[1])
+            if margin.vector is None:
+                value = m.waves(margin.value)
+                found.append((value, (value,)))
+                continue
+            free, vector = (
+                m.polynomial(margin.free),
+                (m.waves(margin.vector[0]), m.waves(margin.vector[1])),
+            )
             value = f.subtract(f.length(*vector), free)
             found.append((value, vector if f.constant(free) == 0 else (value,)))
         return found

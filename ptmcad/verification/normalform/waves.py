@@ -22,7 +22,7 @@ from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression
 from ptmcad.verification.coordinates import CoordinateRing, circle_names
 from ptmcad.verification.derivation import Derivation, derivation_of
-from ptmcad.verification.kinds import has_margins
+from ptmcad.verification.kinds import CheckedMargin, kind_of
 from ptmcad.verification.normalform.springlines import Parameters, SpringLine, line_of
 
 Multi = tuple[int, ...]
@@ -63,18 +63,18 @@ class SpringCone(NamedTuple):
     line: SpringLine | None
 
 
-class SpringMargin(NamedTuple):
-    """A spring that is to be longer than its free length where a stable solution counts.
+class Margin(NamedTuple):
+    """What is positive at a stable solution that is counted.
 
     Attributes
     ----------
-    value : |vector|^2 - free^2.
-    vector : between the spring's ends.
+    value : it, or of a spring that is to be longer than its free length |vector|^2 - free^2.
+    vector : between this spring's ends; None of what is no length.
     free : its free length, a polynomial in the parameters.
     """
 
     value: Waves
-    vector: Vector
+    vector: Vector | None
     free: fmpq_mpoly
 
 
@@ -107,7 +107,7 @@ class Form:
     stability: tuple[Waves, ...] = ()
     multiples: tuple[Waves, ...] = ()
     closing: tuple[int, ...] = ()
-    margins: tuple[SpringMargin, ...] = ()
+    margins: tuple[Margin, ...] = ()
 
     @property
     def conditions_for_stability(self) -> int:
@@ -265,16 +265,17 @@ def _form(
         tuple(stability),
         tuple(multiples),
         closing,
-        tuple(_margins(ring, true)) if has_margins(count) else (),
+        tuple(_margins(ring, kind_of(count).margins(true))),
     )
 
 
-def _margins(ring: _Exponentials, true: Derivation) -> Iterable[SpringMargin]:
+def _margins(ring: _Exponentials, margins: Iterable[CheckedMargin]) -> Iterable[Margin]:
     nothing = ring.numbers.constant(0)
-    for spring in true.springs:
-        free = next(iter(ring.waves(spring.free).values()), nothing)
-        value = ring.waves(spring.squared - spring.free**2)
-        yield SpringMargin(value, ring.vector(spring.vector), free)
+    for value, spring in margins:
+        free = nothing if spring is None else next(iter(ring.waves(spring.free).values()), nothing)
+        yield Margin(
+            ring.waves(value), None if spring is None else ring.vector(spring.vector), free
+        )
 
 
 def _divided(f: Waves, inequalities: Iterable[Waves]) -> Waves:
