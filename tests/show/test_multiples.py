@@ -107,6 +107,7 @@ def test_a_boundary_surface_is_drawn_with_the_members_curves_and_says_what_it_is
     (sheets,) = (each for each in axes.collections if each.get_gid() == "sheets")
     assert len(sheets.get_facecolor()) > len(surface.faces)  # and pieces of curves
     assert not sheets.get_rasterized()
+    texts = [text.get_text() for text in figure.texts]
     assert {"1", "3", "between 1 and 3", "boundary of a member"} <= set(texts)
     assert f"sheets: linear between {len(surface.members)} exact boundaries" in texts
     assert not any("not proved" in text for text in texts)
