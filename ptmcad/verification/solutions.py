@@ -55,7 +55,7 @@ from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import ball_at
 from ptmcad.verification.derivation import Derivation, parameters_of
 from ptmcad.verification.fibrealgebra import SolutionAlgebra
-from ptmcad.verification.kinds import meaning_of
+from ptmcad.verification.kinds import kind_of, meaning_of
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.principalminors import inertia
 from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
@@ -220,7 +220,8 @@ def check_counts(claims: Claims) -> str:
     """Total, stable and index of every cell; on a torus the sum of the signs; lengths and
     stiffnesses positive.
     """
-    model = claims.model
+    model, name = claims.model, claims.result.slice.count.value
+    kind = kind_of(claims.result.slice.count)
     for n, cell in enumerate(claims.result.cells):
         where = ", ".join(f"{axis}={text_of(cell.sample[axis])}" for axis in cell.sample.names)
         if (wrong := not_positive(model, claims.parameters_at(*cell.sample))) is not None:
@@ -236,6 +237,10 @@ def check_counts(claims: Claims) -> str:
             raise Violation(
                 f"cell {n} is said to have {_text(stored)}; at {where} there are {_text(counts)}"
             )
+        if kind.is_predicate and cell.further != (true := {name: fibre.number_held()}):
+            raise Violation(
+                f"cell {n} is said to have {_further(cell.further)}; at {where} there are {_further(true)}"
+            )
     return f"{len(claims.result.cells)} samples"
 
 
@@ -246,6 +251,10 @@ def _euler_sum(fibre: SolutionAlgebra, counts: Counts) -> int:
     if counts.index is None:
         return fibre.balance()
     return euler_sum(counts.index)
+
+
+def _further(numbers: Mapping[str, int]) -> str:
+    return ", ".join(f"{number} {name}" for name, number in numbers.items()) or "no further count"
 
 
 def _text(counts: Counts) -> str:
