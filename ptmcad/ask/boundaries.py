@@ -20,7 +20,6 @@ from ptmcad.answer.boundaries import Boundary
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.location import component_cells
 from ptmcad.cover.complement import outlines
-from ptmcad.cover.connectivity import shown
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.polyline import WallPolyline, chains, critical_shares
@@ -189,7 +188,6 @@ def _upper(value: Fraction) -> float:
 def _outlines(result: RegionMap, cover: Cover) -> Iterator[Boundary]:
     """The outlines of a certified map's cells."""
     complement, cells = component_cells(result, cover)
-    complement = shown(complement)
     numbers = [n for n in cells if n is not None]
     scale = [(a.width / cover.steps, a.low) for a in result.slice.axes]
     for number, polygons in zip(numbers, outlines(complement, numbers), strict=True):

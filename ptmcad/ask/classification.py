@@ -190,17 +190,13 @@ def prepare(slice: Slice, options: Options) -> float:
         if "imports" in options.without:
             with loading("all that there is"):
                 load_all()
-        return load_certified(options.progress, options)
+        return load_certified(options.progress)
     return 0.0
 
 
-def load_certified(progress: Progress | None = None, options: Options | None = None) -> float:
+def load_certified(progress: Progress | None = None) -> float:
     """Load the certified engine, and compile it where this machine has not done so; the seconds
     that this took.
-
-    Parameters
-    ----------
-    options : of what is wanted; all that there is is made ready where nothing is said.
 
     Raises
     ------
@@ -210,7 +206,7 @@ def load_certified(progress: Progress | None = None, options: Options | None = N
     with loading("the certified engine"):
         import_module("ptmcad.formulas.compilation")  # first: where numba is missing, it says so
         from ptmcad.certified.loading import load
-    return load(progress, options)
+    return load(progress)
 
 
 def _check_certified(slice: Slice, options: Options) -> None:

@@ -20,7 +20,6 @@ from ptmcad.answer.regionmap import Cell, Region, RegionMap
 from ptmcad.ask.location import component_cells
 from ptmcad.cover import components
 from ptmcad.cover.complement import Components, samples
-from ptmcad.cover.connectivity import stepped
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
@@ -110,7 +109,6 @@ def cover_difference(first: ComparedMap, second: ComparedMap) -> Comparison:
 def _finer(cover: Cover, steps: int) -> list[tuple[int, int, int, int]]:
     """A cover's rectangles on a lattice with more steps."""
     by = steps // cover.steps
-    cover = stepped(cover)
     return [
         (by * left, by * right, by * bottom, by * top)
         for left, right, bottom, top in cover.rectangles
@@ -124,9 +122,6 @@ def _held(complement: Components, sides: Sequence[ComparedMap]) -> dict[int, Hel
     corners = np.array(complement.rectangles, dtype=np.int64).reshape(-1, 4)
     found = []
     for of in sides:
-        if of.complement.frames is not None:
-            found.append(_located(of, complement))
-            continue
         tree, coarser = (
             of.complement.subdivision,
             complement.cover.steps // of.complement.cover.steps,
@@ -141,16 +136,6 @@ def _held(complement: Components, sides: Sequence[ComparedMap]) -> dict[int, Hel
         for n, (a, b) in enumerate(zip(*found, strict=True))
         if a is not None and b is not None
     }
-
-
-def _located(of: ComparedMap, complement: Components) -> list[int | None]:
-    """The region of a map with slanted pieces that holds the middle of each component's rectangle."""
-    scale = Fraction(of.complement.cover.steps, complement.cover.steps)
-    regions = []
-    for left, right, bottom, top in complement.rectangles:
-        place = of.complement.locate(scale * (left + right) / 2, scale * (bottom + top) / 2)
-        regions.append(None if place is None else of.region_of.get(place))
-    return regions
 
 
 def _possible(

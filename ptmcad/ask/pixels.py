@@ -167,9 +167,6 @@ def _certified(result: RegionMap, cover: Cover, centres: list[list[Fraction]]) -
         for row in range(rows)
         for column in (range(columns) if row in on_line[1] else on_line[0])
     }
-    if complement.frames is not None:
-        slanted = complement.frames.frame_of[leaf].reshape(rows, columns) >= 0
-        unsure |= {(int(row), int(column)) for row, column in np.argwhere(slanted)}
     for row, column in unsure:
         component = complement.locate(places[0][column], places[1][row])
         image[row, column] = NONE if component is None else number_of[component]

@@ -10,7 +10,7 @@ becomes a cone of a `plain.problem`, whose equations are sums of harmonics, and 
 
     plain.criticalcurves          the curves at which counts change, as systems
     branchandprune, refinement    their enclosures, in boxes that `contraction` shrinks
-    covering, slantedcover        the cover of all that the boxes hold
+    covering                      the cover of all that the boxes hold
     ptmcad.cover                  the components of its complement
     plain.zeros, plain.pointcounts, uniqueness    a count at a sample of each, proved
     mapassembly, engine           cells and regions

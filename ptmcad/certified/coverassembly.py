@@ -18,7 +18,7 @@ from ptmcad.answer.regionmap import Cell, PlanStep, Region, RegionMap, Status
 from ptmcad.certified.plain.pointcounts import BranchCounter
 from ptmcad.certified.plain.zeros import PointCount
 from ptmcad.certified.statement import system_text
-from ptmcad.cover.complement import Components, area_bounds, samples
+from ptmcad.cover.complement import Components, samples
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Point, Slice
 
@@ -77,7 +77,7 @@ class Assembler:
                     count.further,
                 )
             )
-            low, high = area_bounds(complement, n, known)
+            low, high = complement.area_bounds(n, known)
             area = (low * square, high * square)
             regions.append(
                 Region(

@@ -28,13 +28,12 @@ from ptmcad.certified.covering import (
     share_of,
     thinning,
 )
-from ptmcad.certified.loading import load, may_be_slanted
+from ptmcad.certified.loading import load
 from ptmcad.certified.pace import PARTS, SAFETY, Pace, SearchProgress
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.mirrors import halving
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.refinement import CurveEnclosure, begin, refine
-from ptmcad.certified.slantedcover import slanting
 from ptmcad.certified.specks import without_specks
 from ptmcad.certified.statement import plan_of
 from ptmcad.cover import components
@@ -76,8 +75,6 @@ MAP_SHRINK_RATIO = Fraction(9, 10)
 """A map on the way is worth making when the boxes' share is at most this part of what it was at the
 last one.
 """
-SLANTED_SHARE = Fraction(1, 500)
-"""Slanted pieces are tried once the boxes have at most this part of the window."""
 LAST_SHARE = 0.7
 """Of the time that a process has when it is asked to leave: the rest is for tasks to end and for
 the map's text.
@@ -115,7 +112,7 @@ class _MapSearch:
     """One computation of a map: the enclosures, which shrink, and the time each part took."""
 
     def __init__(self, slice: Slice, options: Options):
-        load(options.progress, options)
+        load(options.progress)
         self.pace = Pace(options.deadline)
         self.clock = self.pace.clock
         self.search_progress = SearchProgress(float(options.tolerance or TOLERANCE))
@@ -129,11 +126,7 @@ class _MapSearch:
             steps *= 2
         horizontal, vertical = slice.axes
         self.resumed = None if options.resume is None else options.resume.cover
-        whole = (
-            self.resumed is not None
-            or may_be_slanted(options)
-            or "mirror-images" in options.without
-        )
+        whole = self.resumed is not None or "mirror-images" in options.without
         window = (horizontal.low, horizontal.high), (vertical.low, vertical.high)
         self.lattice = Lattice(window, steps, None if whole else halving(slice))
         wanted = curves(slice, slice.count, options.without)
@@ -150,8 +143,6 @@ class _MapSearch:
         """The share that the boxes had when it was made."""
         self.uncounted = Fraction(0)
         """The share that it leaves outside of its cover."""
-        self.exhausted = False
-        """Whether slanted pieces alone left more than the tolerance."""
         self.seconds["plan"] = self.clock() - self.pace.started
 
     def run(self) -> RegionMap:
@@ -186,12 +177,6 @@ class _MapSearch:
                 return self._stopped(self._at_limit())
             cover = self._box_cover()
             undetermined = share_of(cover)
-            if undetermined > tolerance and self._slantable(undetermined):
-                slanted = self._slanted(undetermined, self.area * 4.0**-level)
-                if slanted is not None:
-                    return slanted
-                if self.exhausted:
-                    return self._stopped("slanted pieces are as thin as doubles can make them")
             thin = None if undetermined <= tolerance else self.thin_cover(undetermined)
             if thin is not None:
                 cover = thin
@@ -217,38 +202,6 @@ class _MapSearch:
         if kept < EARLY:
             return "the time limit was reached"
         return f"the search ended {kept:.1f} s before the time limit, which the last map may take,"
-
-    def _slantable(self, undetermined: Fraction) -> bool:
-        """Whether it is time for slanted pieces: the tolerance is small, and so are the boxes."""
-        return may_be_slanted(self.options) and undetermined <= SLANTED_SHARE
-
-    def _slanted(self, undetermined: Fraction, area: float) -> RegionMap | None:
-        """The map of a cover with slanted pieces; None where it leaves too much, and then it may be
-        the best so far.
-
-        Parameters
-        ----------
-        undetermined : the boxes' share of the window.
-        area : of a box's projection, below which the search has left it alone.
-        """
-        boxes = self.boxes()
-        if self.options.partial is not None and self.pace.due(boxes):  # it may take long
-            self._hand_over(undetermined)
-        start = self.clock()
-        lattice = Lattice(self.lattice.window, MAX_STEPS)
-        cover = slanting(self.enclosures, lattice).cover(
-            self.tolerance, self.jobs, lambda: self._must_end(boxes)
-        )
-        self.seconds["curves"] += self.clock() - start
-        result = self.map(cover, Status.CERTIFIED, None if self.pace.late(boxes) else area)
-        if result.undetermined <= self.tolerance:
-            return result
-        if self.best is None or result.undetermined < self.best.undetermined:
-            self.best = replace(result, status=Status.PARTIAL)
-            if self.options.partial is not None:
-                self.options.partial(self.best)
-        self.exhausted = share_of(replace(cover, patches=())) <= self.tolerance
-        return None
 
     def boxes(self) -> int:
         """The number of boxes there are by now."""

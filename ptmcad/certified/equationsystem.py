@@ -34,7 +34,6 @@ class EquationSystem:
     solved : int64 (k, 3): a variable and the places of two formulas, rest and slope, with
         rest + slope v = 0 for the variable's value v at each solution. They stand before
         ``solved_end``, at the beginning of the tape.
-    formulas : the equations, and their derivatives by the unknowns.
     """
 
     tape: Tape
@@ -45,13 +44,6 @@ class EquationSystem:
     nonnegative: Indices
     solved: Indices
     solved_end: int
-    formulas: tuple[Sequence[Formula], Sequence[Sequence[Formula]]]
-
-    def alone(self) -> EquationSystem:
-        """The same equations and derivatives, on a tape without anything else: at points that are
-        no solutions, formulas that are equal at solutions only may exclude each other."""
-        equations, jacobian = self.formulas
-        return system(equations, [int(x) for x in self.unknowns], jacobian=jacobian)
 
     def arguments(self) -> Arguments:
         """The system as the compiled code takes it."""
@@ -122,7 +114,6 @@ def system(
         tape.outputs[2][len(costly) :],
         np.column_stack([np.array([quotient.variable for quotient in solved], np.int64), places]),
         solved_end,
-        (equations, jacobian),
     )
 
 

@@ -1,9 +1,8 @@
 """All compiled code made ready: read from disk, or compiled where this machine has not done it yet.
 
 Guarantee: after `load` nothing is compiled in this process any more, whatever the slice; so no
-compilation falls into the time that a limit allows. What slanted pieces alone need, half of all, is
-loaded where they may be wanted. Processes that begin together on a new machine compile once: one
-does, and the others wait for it.
+compilation falls into the time that a limit allows. Processes that begin together on a new machine
+compile once: one does, and the others wait for it.
 """
 
 from __future__ import annotations
@@ -11,7 +10,6 @@ from __future__ import annotations
 import gc
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from fractions import Fraction
 from time import perf_counter
 
 import numpy as np
@@ -19,13 +17,11 @@ from numba.core.event import Event, Listener, install_listener
 
 from ptmcad.certified.boxstrips import areas_of_pieces, numbers_of_pieces, pieces, strips
 from ptmcad.certified.branchandprune import isolate
-from ptmcad.certified.curvetubes import tubes
 from ptmcad.certified.equationsystem import EquationSystem, system
 from ptmcad.certified.uniqueness import distinct
 from ptmcad.formulas.compilation import FUNCTIONS, in_turn
 from ptmcad.formulas.graph import Graph
 from ptmcad.formulas.intervalarithmetic import program, run
-from ptmcad.options import Options
 
 STAGE = "compiling the certified engine, once on this machine:"
 Progress = Callable[[str, int, int], None]
@@ -33,45 +29,34 @@ MIN_GARBAGE = 20_000
 """New objects between two collections while numba compiles, which makes millions that live: a
 seventh of its time went into looking for garbage among them. More would gain nothing and take
 memory."""
-SLANTED_BELOW = Fraction(1, 2000)
-"""Tolerances below are met by slanted pieces: of upright ones it takes twice as many for half of
-the error.
-"""
+
 _done: list[bool] = []
-"""For each time that all was made ready, whether slanted pieces were."""
+"""Filled once all was made ready."""
 
 
-def may_be_slanted(options: Options) -> bool:
-    """Whether a tolerance is so small that slanted pieces are tried."""
-    return options.tolerance is not None and options.tolerance < SLANTED_BELOW
-
-
-def load(progress: Progress | None = None, options: Options | None = None) -> float:
+def load(progress: Progress | None = None) -> float:
     """Use each compiled function once, on the line x = y, and its point (1/2, 1/2).
 
     Parameters
     ----------
     progress : called as progress(STAGE, done, total) with numbers of functions, as long as some
         have to be compiled.
-    options : they say which functions are needed; without them all are made ready.
 
     Returns
     -------
     The seconds that compiling took now, here or in a process that was waited for; 0 where all was
     read from disk, or had been loaded before.
     """
-    slanted = options is None or may_be_slanted(options)
-    if slanted in _done or True in _done:
+    if _done:
         return 0.0
     compiling = _Compiling(progress)
-    waited = 0.0
-    with install_listener("numba:compile", compiling), _fewer_collections():
-        for name in ("upright", "slanted") if slanted else ("upright",):
-            with in_turn(name) as seconds:
-                waited += seconds
-                for _ in _functions(name == "slanted"):
-                    pass
-    _done.append(slanted)
+    with (
+        install_listener("numba:compile", compiling),
+        _fewer_collections(),
+        in_turn("certified") as waited,
+    ):
+        _use_each()
+    _done.append(True)
     return compiling.seconds + waited
 
 
@@ -116,33 +101,20 @@ class _Compiling(Listener):
             )
 
 
-def _functions(slanted: bool) -> Iterator[None]:
-    """One by one all that Python calls, for slanted pieces or for all else.
-
-    The fastest to compile come first, so that there is soon something to report.
+def _use_each() -> None:
+    """Call all that Python calls, the fastest to compile first, so that there is soon something to
+    report.
     """
-    weights = np.ones(2)
     square = np.array([[0.0, 0.0, 1.0, 1.0]])
     line, point = _systems()
-    if slanted:
-        tubes(
-            line.arguments(), line.alone().arguments(), square, weights, (0, 0.0, 1.0), (2, 1e-3, 4)
-        )
-        yield
-        return
     distinct(square, square, 0)
-    yield
     low, high = np.empty((2, len(line.tape)))
     run(program(line.tape), square[0, :2], square[0, 2:], low, high, 0, len(line.tape))
-    yield
     thin = strips(line.arguments(), square)
-    yield
     numbers_of_pieces(thin, 0.25)
     areas_of_pieces(thin, 0.25)
     pieces(thin, 0.25)
-    yield
-    isolate(point.arguments(), point.arguments(), square, (1e-3, 64, 4), weights)
-    yield
+    isolate(point.arguments(), point.arguments(), square, (1e-3, 64, 4), np.ones(2))
 
 
 def _systems() -> tuple[EquationSystem, EquationSystem]:

@@ -127,10 +127,9 @@ def clock_stopped(timeout: float | None, spent: float = 0.0) -> Iterator[None]:
 def compile_certified(timeout: float | None, progress: Progress) -> None:
     """Load the certified engine, and compile it where that is needed, outside of the time limit."""
     from ptmcad.ask.classification import load_certified
-    from ptmcad.options import DEFAULTS
 
     with clock_stopped(timeout):
-        load_certified(progress, DEFAULTS)
+        load_certified(progress)
 
 
 @contextmanager

@@ -316,7 +316,6 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
     """The counts along a line, and all that is said of it."""
     from ptmcad.ask.classification import load_certified
     from ptmcad.cli.range_answers import answer, is_enclosed, request_codec
-    from ptmcad.options import DEFAULTS
     from ptmcad.show.document.designdocument import maximum
     from ptmcad.show.document.slicedocument import SLICE
     from ptmcad.show.ranges.rangedocument import bands_codec, document, enclosed_codec
@@ -345,7 +344,7 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
     if not report.ok or "critical" in data:  # which an earlier version answered
         return report
     if is_enclosed(slice, request):
-        load_certified(progress, DEFAULTS)
+        load_certified(progress)
 
     def anew(digits: int) -> Any:
         parts = answer(slice, replace(request, digits=digits)).parts

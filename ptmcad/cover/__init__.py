@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 
 def components(cover: Cover) -> Components:
-    """The connected components of the open window without the closed rectangles and the tubes.
+    """The connected components of the open window without the closed rectangles.
 
     Raises
     ------
-    ValueError When a rectangle or a slanted piece is not one, frames meet others inside, or the
-        lattice is too fine.
+    ValueError
+        When a rectangle is not one, or the lattice is too fine.
     """
     from ptmcad.cover import connectivity
 
@@ -32,14 +32,10 @@ def components(cover: Cover) -> Components:
 
 
 def union_area(cover: Cover) -> int:
-    """The area of the rectangles' union, in squares of a lattice step; with slanted pieces what it
-    is at most.
-    """
-    from ptmcad.cover import complement
+    """The area of the rectangles' union, in squares of a lattice step."""
+    from ptmcad.cover import connectivity
 
-    if cover.patches:
-        return cover.steps**2 - sum(components(cover).areas)
-    return complement.union_area(cover)
+    return connectivity.union_area(cover)
 
 
 def from_boxes(window: Window, low: Any, high: Any, steps: int) -> Cover:

@@ -8,10 +8,6 @@ rectangles with common points joins them. A sample is in its component, and not 
 rectangle. A component's polygons have it at their left hand, so that its outer ones turn left and
 those around its holes turn right; where a component touches itself in a corner, the polygons touch
 there and do not cross.
-
-As rectangles have interiors, an edge between two parts of the window that meet the interior of no
-rectangle is in no rectangle, while a corner at which only two such parts meet, diagonally, is in
-one. So components are joined across edges, and clusters across edges and corners.
 """
 
 from __future__ import annotations
@@ -22,33 +18,15 @@ from fractions import Fraction
 
 import numpy as np
 
-from ptmcad.cover import tubeframes as tubes
-from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle, Window
+from ptmcad.cover.rectangles import Cover, Rectangle, Window
 from ptmcad.cover.subdivision import (
     COVERED,
     CUT,
     FREE,
     Integers,
     Subdivision,
-    rectangle_array,
-    subdivide,
     touching,
 )
-
-_LIMB = 20
-"""Bits of a half coordinate: products of halves are summed without overflow, and put together as
-Python's integers.
-"""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Frames:
-    """Of a cover with slanted pieces: the frame of each part of the subdivision, or -1; the owners
-    of frames' parts.
-    """
-
-    frame_of: Integers
-    owners: tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,8 +45,7 @@ class Components:
         ascending.
     subdivision : of the window.
     owner : for each part of the subdivision the number of its component or, for a covered one, of
-        its cluster; -1 in a frame.
-    frames : of the slanted pieces; None when there are none.
+        its cluster.
     """
 
     cover: Cover
@@ -79,7 +56,6 @@ class Components:
     clusters_at: tuple[tuple[int, ...], ...]
     subdivision: Subdivision
     owner: Integers
-    frames: Frames | None = None
 
     def locate(self, u: Fraction, v: Fraction) -> int | None:
         """The component of a point in lattice coordinates; None when the point is in a closed
@@ -93,20 +69,10 @@ class Components:
         steps = self.cover.steps
         if not (0 < u < steps and 0 < v < steps):
             raise ValueError(f"({u}, {v}) is not in the open window")
-        found = {self._owner_at(leaf, u, v) for leaf in self.subdivision.leaves_at(u, v)}
-        return found.pop() if len(found) == 1 else None
-
-    def _owner_at(self, leaf: int, u: Fraction, v: Fraction) -> int | None:
-        """The component to which a leaf says that a point of it belongs."""
-        frame = -1 if self.frames is None else int(self.frames.frame_of[leaf])
-        if frame < 0:
-            return None if self.subdivision.state[leaf] == COVERED else int(self.owner[leaf])
-        assert self.frames is not None
-        patch = self.cover.patches[frame]
-        across = (u, v) if patch.along == 0 else (v, u)
-        number = tubes.place(patch, *across)
-        owner = -1 if number is None else self.frames.owners[frame][number]
-        return None if owner < 0 else owner
+        leaves = self.subdivision.leaves_at(u, v)
+        if any(self.subdivision.state[leaf] == COVERED for leaf in leaves):
+            return None
+        return int(self.owner[leaves[0]])
 
     @property
     def touching(self) -> tuple[tuple[int, int], ...]:
@@ -115,92 +81,29 @@ class Components:
             (n, cluster) for n, clusters in enumerate(self.clusters_at) for cluster in clusters
         )
 
+    def area_bounds(self, number: int, known: Container[int]) -> tuple[int, int]:
+        """A component's area; and with all that can be reached from it without entering another known
+        component.
 
-def bounding_boxes(leaves: Integers, group: Integers, groups: int) -> Integers:
-    """The smallest rectangle around the leaves of each group."""
-    boxes = np.empty((groups, 4), dtype=np.int64)
-    for k, (extreme, start) in enumerate(((np.minimum, MAX_STEPS), (np.maximum, 0)) * 2):
-        boxes[:, k] = start
-        extreme.at(boxes[:, k], group, leaves[:, k])
-    return boxes
-
-
-def grown(tree: Subdivision, boxes: Integers, around: Integers) -> Integers:
-    """Free rectangles made as long as they can be, first along their shorter sides; each stays in
-    what is around it.
-    """
-    boxes = boxes.copy()
-    upright = boxes[:, 1] - boxes[:, 0] > boxes[:, 3] - boxes[:, 2]
-    for flipped in (False, True):
-        for lower in (True, False):
-            # column of the side that moves, and of the opposite one
-            side = np.where(upright != flipped, 2, 0) + (0 if lower else 1)
-            rows = np.arange(len(boxes))
-            strip = boxes.copy()
-            strip[rows, side], strip[rows, side ^ 1] = around[rows, side], boxes[rows, side]
-            box, leaf = tree.meeting(strip, closed=False)
-            hit = tree.state[leaf] == COVERED
-            ends = tree.bounds[leaf[hit], side[box[hit]] ^ 1]
-            limit = strip[rows, side]
-            (np.maximum if lower else np.minimum).at(limit, box[hit], ends)
-            boxes[rows, side] = limit
-    return boxes
-
-
-def as_rectangles(array: Integers) -> tuple[Rectangle, ...]:
-    """Rows of an array of shape (k, 4) as tuples."""
-    return tuple(zip(*array.T.tolist(), strict=True))
-
-
-def sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:
-    """The exact sum of the areas in each group."""
-    width, tall = boxes[:, 1] - boxes[:, 0], boxes[:, 3] - boxes[:, 2]
-    mask = (1 << _LIMB) - 1
-    sums = [0] * groups
-    for i in (0, 1):
-        for j in (0, 1):
-            part = np.zeros(groups, dtype=np.int64)
-            # at most 2^40 each: room for 2^22 leaves
-            np.add.at(
-                part,
-                group,
-                ((width >> _LIMB) if i else width & mask) * ((tall >> _LIMB) if j else tall & mask),
-            )
-            shift = _LIMB * (i + j)
-            sums = [s + (p << shift) for s, p in zip(sums, part.tolist(), strict=True)]
-    return sums
-
-
-def union_area(cover: Cover) -> int:
-    """The area of the rectangles' union, in squares of a lattice step."""
-    tree = subdivide(rectangle_array(cover), cover.steps)
-    covered = tree.bounds[tree.state == COVERED]
-    return sums_of_areas(covered, np.zeros(len(covered), dtype=np.int64), 1)[0]
-
-
-def area_bounds(components: Components, number: int, known: Container[int]) -> tuple[int, int]:
-    """A component's area; and with all that can be reached from it without entering another known
-    component.
-
-    In squares of a lattice step. What is reached are clusters, each of them once, and components
-    that are not known. The connected set of points with the component's count is no larger, unless
-    it reaches another known component.
-    """
-    around: dict[int, list[int]] = {}
-    for component, cluster in components.touching:
-        around.setdefault(cluster, []).append(component)
-    reached, clusters, waiting = {number}, set[int](), [number]
-    while waiting:
-        for cluster in components.clusters_at[waiting.pop()]:
-            if cluster not in clusters:
-                clusters.add(cluster)
-                more = {m for m in around[cluster] if m not in known} - reached
-                reached |= more
-                waiting += more
-    high = sum(components.areas[m] for m in reached) + sum(
-        components.cluster_areas[cluster] for cluster in clusters
-    )
-    return components.areas[number], high
+        In squares of a lattice step. What is reached are clusters, each of them once, and components
+        that are not known. The connected set of points with the component's count is no larger, unless
+        it reaches another known component.
+        """
+        around: dict[int, list[int]] = {}
+        for component, cluster in self.touching:
+            around.setdefault(cluster, []).append(component)
+        reached, clusters, waiting = {number}, set[int](), [number]
+        while waiting:
+            for cluster in self.clusters_at[waiting.pop()]:
+                if cluster not in clusters:
+                    clusters.add(cluster)
+                    more = {m for m in around[cluster] if m not in known} - reached
+                    reached |= more
+                    waiting += more
+        high = sum(self.areas[m] for m in reached) + sum(
+            self.cluster_areas[cluster] for cluster in clusters
+        )
+        return self.areas[number], high
 
 
 _PLACES = (

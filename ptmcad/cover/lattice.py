@@ -103,14 +103,6 @@ def _exactly(value: float, low: Fraction, width: Fraction, steps: int) -> int:
     return min(max((Fraction(value) - low) * steps // width, -1), steps)
 
 
-def framed(cover: Cover) -> Cover:
-    """A cover of more, in which slanted pieces are the whole of their frames."""
-    frames = (patch.frame for patch in cover.patches)
-    return (
-        Cover(cover.steps, tuple(sorted({*cover.rectangles, *frames}))) if cover.patches else cover
-    )
-
-
 def combined(cover: Cover) -> Cover:
     """A cover of the same points by at most as many rectangles, found at small cost."""
     return cover_of(_fewer(rectangle_array(cover)), cover.steps)
@@ -120,10 +112,9 @@ def gathered(cover: Cover, most: int) -> Cover:
     """A cover of more, by at most so many rectangles: boxes around what the cover has in each
     square of a grid.
 
-    The grid is the finest that needs no more of them; a cover of no more rectangles stays as it is,
-    but for frames of slanted pieces, which become rectangles.
+    The grid is the finest that needs no more of them; a cover of no more rectangles stays as it is.
     """
-    array = rectangle_array(framed(cover))
+    array = rectangle_array(cover)
     if len(array) <= most:
         return cover_of(array, cover.steps)
     result = array

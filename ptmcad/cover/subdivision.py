@@ -81,9 +81,8 @@ class Subdivision:
             active = active[self.state[part[active]] == CUT]
         return part
 
-    def meeting(self, boxes: Integers, *, closed: bool) -> tuple[Integers, Integers]:
-        """All pairs of a box (its position) and a leaf that have points in common; unless closed,
-        inner points.
+    def meeting(self, boxes: Integers) -> tuple[Integers, Integers]:
+        """All pairs of a box (its position) and a leaf that have inner points in common.
 
         Parameters
         ----------
@@ -97,7 +96,7 @@ class Subdivision:
             box, part = box[~leaf], part[~leaf]
             axis, cut, child = self.axis[part], self.cut[part], self.child[part]
             low, high = boxes[box, 2 * axis], boxes[box, 2 * axis + 1]
-            below, above = (low <= cut, high >= cut) if closed else (low < cut, high > cut)
+            below, above = low < cut, high > cut
             box = np.concatenate([box[below], box[above]])
             part = np.concatenate([child[below], child[above] + 1])
         return np.concatenate([b for b, _ in found]), np.concatenate([p for _, p in found])

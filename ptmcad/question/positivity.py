@@ -18,11 +18,10 @@ from enum import Enum
 from fractions import Fraction
 from functools import lru_cache
 from heapq import heappop, heappush
-from itertools import count, product
+from itertools import count, pairwise, product
 from math import comb, lcm
 from typing import NamedTuple
 
-from ptmcad.cover.tubeframes import halved
 from ptmcad.question.signs import PROVED, Box, Corner, Interval, Undecided, Verdict, Witness
 from ptmcad.question.slice import Axes
 from ptmcad.text.expressions import Expression, Term, polynomial_value
@@ -193,7 +192,7 @@ def _halves(part: _Part) -> tuple[_Part, _Part]:
     rows, (x, y) = part.rows, part.box
     columns = tuple(zip(*rows, strict=True))
     across = _variation(rows) > _variation(columns)  # along y
-    first, second = zip(*map(halved, rows if across else columns), strict=True)
+    first, second = zip(*map(_halved, rows if across else columns), strict=True)
     if not across:
         first, second = (tuple(zip(*half, strict=True)) for half in (first, second))
     shift = part.shift + len((rows if across else columns)[0]) - 1
@@ -201,6 +200,17 @@ def _halves(part: _Part) -> tuple[_Part, _Part]:
     middle = (low + high) / 2
     boxes = [(x, half) if across else (half, y) for half in ((low, middle), (middle, high))]
     return _Part(boxes[0], first, shift), _Part(boxes[1], second, shift)
+
+
+def _halved(row: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """De Casteljau's subdivision at the middle, times 2^degree."""
+    degree = len(row) - 1
+    left, right, sums = [row[0] << degree], [row[-1] << degree], list(row)
+    for step in range(1, degree + 1):
+        sums = [a + b for a, b in pairwise(sums)]
+        left.append(sums[0] << (degree - step))
+        right.append(sums[-1] << (degree - step))
+    return tuple(left), tuple(reversed(right))
 
 
 def _variation(rows: Sequence[Sequence[int]]) -> int:

@@ -115,10 +115,8 @@ def _curves(result: RegionMap) -> str:
 
 
 def _covered(cover: Cover) -> str:
-    n = len(cover.rectangles)
-    slanted = sum(len(patch.tubes) for patch in cover.patches)
-    tubes = f" and {several(slanted, 'slanted piece')}" if slanted else ""
-    return f"cover     {several(n, 'rectangle')}{tubes} around the curves where counts change"
+    rectangles = several(len(cover.rectangles), "rectangle")
+    return f"cover     {rectangles} around the curves where counts change"
 
 
 def _time(result: RegionMap) -> str:

@@ -1,4 +1,6 @@
-"""Documents as version 0.1.0 wrote them, in tests/data, are read by every later version."""
+"""Documents as version 0.1.0 wrote them, in tests/data, are read by every later version; and a map
+with slanted pieces, of a later one.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ from ptmcad.cli import run
 from ptmcad.version import __version__
 
 EARLIER = Path(__file__).resolve().parents[1] / "data" / "written-by-0.1.0"
-MAPS = ["cubic", "family/cubics-c1_3", "truss"]
+MAPS = ["cubic", "family/cubics-c1_3", "truss", "slanted"]
 
 
 @pytest.mark.parametrize(

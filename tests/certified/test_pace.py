@@ -8,7 +8,7 @@ pytest.importorskip("numba")
 
 import gc
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -17,7 +17,7 @@ from numba.core.event import install_listener
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.certified import engine, loading, refinement, slantedcover
+from ptmcad.certified import engine, loading, refinement
 from ptmcad.certified.pace import (
     ALLOWANCE,
     MAP_TIME_SHARE,
@@ -135,7 +135,6 @@ def stopped(
         patch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
         patch.setattr(refinement, "BUDGET", 500)
         patch.setattr(refinement, "search_curve", clock.slowed(refinement.search_curve, 0.1))
-        patch.setattr(slantedcover, "search_curve", clock.slowed(slantedcover.search_curve, 0.1))
         if phase == "handing":
             hand = clock.slowed(handed.append, length)
         else:
@@ -249,12 +248,11 @@ def test_garbage_is_looked_for_less_while_compiling(
     """
     usual = gc.get_threshold()
 
-    def functions(_slanted: bool) -> Iterator[None]:
+    def use_each() -> None:
         assert gc.get_threshold()[0] == during
-        yield
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(loading, "_functions", functions)
+    monkeypatch.setattr(loading, "_use_each", use_each)
     monkeypatch.setattr(loading, "_done", [])
     gc.set_threshold(before, 7, 8)
     try:

@@ -65,7 +65,7 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     monkeypatch.setitem(sys.modules, "ptmcad.formulas.compilation", compiled)
     monkeypatch.setitem(sys.modules, "ptmcad.certified.engine", module)
     loading = ModuleType("ptmcad.certified.loading")
-    loading.load = lambda progress, options: 0.0  # type: ignore[attr-defined]
+    loading.load = lambda progress: 0.0  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "ptmcad.certified.loading", loading)
     # the map made by hand has more counts than its question needs, which a stored map must not have
     monkeypatch.setattr(
@@ -170,7 +170,7 @@ def test_compilation_is_told_apart(
 ) -> None:
     taken = [38.0, 0.0, 0.0, 0.0]
     monkeypatch.setattr(
-        sys.modules["ptmcad.certified.loading"], "load", lambda progress, options: taken.pop(0)
+        sys.modules["ptmcad.certified.loading"], "load", lambda progress: taken.pop(0)
     )
     assert run(["classify", *HAND, "--out", str(tmp_path)]) == 0
     assert " s, of which 38 s compilation (once); 28 % undetermined;" in capsys.readouterr().out
@@ -185,7 +185,7 @@ def test_the_engine_is_compiled_beforehand(
 ) -> None:
     taken = [12.34, 0.0]
     monkeypatch.setattr(
-        sys.modules["ptmcad.certified.loading"], "load", lambda progress, options: taken.pop(0)
+        sys.modules["ptmcad.certified.loading"], "load", lambda progress: taken.pop(0)
     )
     assert run(["warm-up"]) == run(["warm-up"]) == 0
     said = capsys.readouterr().out.splitlines()
@@ -286,7 +286,7 @@ from ptmcad.question.slice import Count
 def arrived():
     (here / "arrived").touch()
     time.sleep(60)
-def load(progress, options):
+def load(progress):
     return 0.0
 def search():
     pass
@@ -365,9 +365,7 @@ def test_a_signal_saves_the_best_map_and_says_how_to_go_on(
 
 @forked
 def test_a_signal_before_the_first_map_says_that_there_is_none(tmp_path: Path) -> None:
-    status, said = _stand_in(
-        tmp_path, "def load(progress, options):\n    arrived()", stop=signal.SIGTERM
-    )
+    status, said = _stand_in(tmp_path, "def load(progress):\n    arrived()", stop=signal.SIGTERM)
     why = "the engine was still being loaded or compiled"
     assert (status, said) == (
         143,
@@ -389,7 +387,7 @@ def test_compiling_is_no_part_of_the_time_limit(
         "ptmcad.ask.classification.perf_counter", lambda: counter() + clock["ahead"]
     )
 
-    def load(progress: object, options: object) -> float:
+    def load(progress: object) -> float:
         clock["ahead"] += 1000
         return 1000.0
 
@@ -464,7 +462,7 @@ def _resumed_and_stopped(earlier: RegionMap, found: RegionMap) -> None:
         raise LimitReached("the time limit was reached", partial=found)
 
     loading, module = ModuleType("ptmcad.certified.loading"), ModuleType("ptmcad.certified.engine")
-    loading.load = lambda progress, options: 0.0  # type: ignore[attr-defined]
+    loading.load = lambda progress: 0.0  # type: ignore[attr-defined]
     module.certified_map = stand_in  # type: ignore[attr-defined]
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from support.examples import examples
 
 from ptmcad.cover import components, from_boxes, union_area
-from ptmcad.cover.complement import area_bounds, outlines, samples, simplest_between
+from ptmcad.cover.complement import outlines, samples, simplest_between
 from ptmcad.cover.lattice import combined, gathered
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
 
@@ -270,9 +270,9 @@ def test_area_bounds_count_a_shared_cluster_once() -> None:
     ring = Cover(8, ((2, 6, 2, 3), (2, 6, 5, 6), (2, 3, 2, 6), (5, 6, 2, 6)))
     found = components(ring)
     assert found.areas == (48, 4)
-    assert area_bounds(found, 0, {0, 1}) == (48, 60)
-    assert area_bounds(found, 1, {0, 1}) == (4, 16)
-    assert area_bounds(found, 0, {0}) == (48, 64)
+    assert found.area_bounds(0, {0, 1}) == (48, 60)
+    assert found.area_bounds(1, {0, 1}) == (4, 16)
+    assert found.area_bounds(0, {0}) == (48, 64)
 
 
 def test_two_rectangles_that_touch_in_a_corner_part_the_window() -> None:

@@ -316,30 +316,3 @@ def test_error_of_a_certified_map() -> None:
     damaged = cover_error(known["stable"], replace(result, cells=tuple(cells)), "stable")
     assert damaged is not None
     assert damaged["wrong"][0] > result.undetermined + Fraction(1, 20)
-
-
-@pytest.mark.slow
-def test_error_of_a_certified_map_with_slanted_pieces() -> None:
-    """What is between tubes is shown: the error is near the undetermined share, and another count
-    is seen.
-    """
-    pytest.importorskip("numba")
-    slice = ptmcad.load(CONFIGS / "systems" / "cubic.yaml")
-    known = truths(ptmcad.classify(slice))
-    result = ptmcad.classify(slice, engine="certified", tolerance="1e-4")
-    assert known is not None and known.keys() == {"total"}
-    assert result.cover is not None and result.cover.patches
-    error = cover_error(known["total"], result, "total")
-    assert error is not None and error["faintest"] is not None
-    assert (
-        error["wrong"][0]
-        <= result.undetermined
-        <= error["wrong"][1]
-        < result.undetermined + Fraction(1, 10**4)
-    )
-    assert error["faintest"][0] > 0.99
-    first = replace(result.cells[0], total=7)
-    damaged = cover_error(
-        known["total"], replace(result, cells=(first, *result.cells[1:])), "total"
-    )
-    assert damaged is not None and damaged["wrong"][0] > 0.1

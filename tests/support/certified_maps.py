@@ -9,7 +9,7 @@ from math import hypot
 
 from ptmcad.answer.regionmap import Cell, Region, RegionMap, Status, System
 from ptmcad.cover import components
-from ptmcad.cover.complement import area_bounds, samples
+from ptmcad.cover.complement import samples
 from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Point
@@ -58,7 +58,7 @@ def certified(
     cells, regions = [], []
     for n in range(len(complement.areas)):
         x, y = next(samples(complement, n, window))
-        low, high = area_bounds(complement, n, range(len(complement.areas)))
+        low, high = complement.area_bounds(n, range(len(complement.areas)))
         minima = stable(float(x) / 2, float(y) / 2)
         point = Point(slice.axis_names, x, y)
         total, index = 2 * minima + 2, (minima, minima + 1, 1)

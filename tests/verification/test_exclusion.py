@@ -106,17 +106,11 @@ def a_map(name: str, tolerance: float = 3e-3) -> RegionMap:
 
 
 def without(stored: RegionMap, number: int) -> RegionMap:
-    """A map without one of its pieces."""
+    """A map without one of its rectangles."""
     cover = stored.cover
     assert cover is not None
-    rectangles, patches = list(cover.rectangles), list(cover.patches)
-    if number < len(rectangles):
-        del rectangles[number]
-    else:
-        del patches[number - len(rectangles)]
-    return replace(
-        stored, cover=replace(cover, rectangles=tuple(rectangles), patches=tuple(patches))
-    )
+    kept = cover.rectangles[:number] + cover.rectangles[number + 1 :]
+    return replace(stored, cover=replace(cover, rectangles=kept))
 
 
 @pytest.mark.parametrize("name", RECORDS)
@@ -148,7 +142,7 @@ def outcomes(stored: RegionMap, tries: int, effort: int = MAX_EFFORT) -> Iterato
     cover = stored.cover
     assert cover is not None
     rng = random.Random(20)
-    for number in rng.sample(range(len(cover.rectangles) + len(cover.patches)), tries):
+    for number in rng.sample(range(len(cover.rectangles)), tries):
         try:
             yield check_free_area(effort, CertifiedClaims(without(with_one_cell(stored), number)))
         except Violation as violation:
@@ -162,31 +156,6 @@ def test_a_dropped_rectangle_is_found(name: str) -> None:
     found = list(outcomes(a_map(name), 6))
     assert all(text.startswith(("found: at", "100 %")) for text in found)
     assert sum(text.startswith("found") for text in found) >= 4
-
-
-@pytest.mark.slow
-def test_a_dropped_slanted_piece_is_found() -> None:
-    stored = a_map("zeeman", 1e-5)
-    assert stored.cover is not None
-    assert len(stored.cover.patches) > 50
-    assert sum(text.startswith("found: at") for text in outcomes(stored, 8, 6)) >= 5
-
-
-@pytest.mark.slow
-def test_a_piece_of_a_billionth_of_the_window_is_found() -> None:
-    stored = with_one_cell(a_map("zeeman", 1e-5))
-    assert stored.cover is not None
-    areas = [
-        2 * t.half * (p.frame[1 + 2 * p.along] - p.frame[2 * p.along])
-        for p in stored.cover.patches
-        for t in p.tubes
-    ]
-    smallest = sorted(range(len(areas)), key=lambda k: areas[k])[len(areas) // 3]
-    assert areas[smallest] < stored.cover.steps**2 * 1e-9
-    with pytest.raises(Violation, match="critical curve"):
-        check_free_area(
-            8, CertifiedClaims(without(stored, len(stored.cover.rectangles) + smallest))
-        )
 
 
 @pytest.mark.parametrize("count", PAPER)
@@ -334,7 +303,7 @@ def test_formulas_that_exclude_nothing_are_left_out(monkeypatch: pytest.MonkeyPa
 @pytest.mark.parametrize("drawn", [1_000, pytest.param(20_000, marks=pytest.mark.slow)])
 def test_what_is_held_lies_in_the_cover(drawn: int) -> None:
     """Strips that are said to be held have no point outside, by the sweep, which is exact."""
-    for name, tolerance in (("zeeman", 3e-3), ("zeeman", 1e-5)):
+    for name, tolerance in (("zeeman", 3e-3), ("truss", 3e-3)):
         claims = CertifiedClaims(a_map(name, tolerance))
         pieces, rng, held, steps = pieces_of(claims), random.Random(1), 0, claims.sweep.steps
         for _ in range(drawn):

@@ -5,8 +5,8 @@ Guarantee: reading what was written gives an equal map; numbers are written exac
 exact map as decimals of 18 digits rounded outwards; the same map gives the same text, timings
 apart. A document that is not one is refused with the place of the first fault: every key must be
 known and present, every value of its type and within limits, and no key may occur twice; a
-cover's rectangles lie in the window, sorted and distinct, and its patches are slanted pieces. Whether
-what it claims is true is not asked here; `ptmcad.verify` does that.
+cover's rectangles lie in the window, sorted and distinct. Whether what it claims is true is not
+asked here; `ptmcad.verify` does that. Slanted pieces of earlier versions become rectangles.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
+from itertools import islice, pairwise
 from operator import attrgetter
 from typing import Any
 
@@ -32,11 +32,11 @@ from ptmcad.answer.regionmap import (
     System,
     Wall,
 )
-from ptmcad.cover.rectangles import MAX_STEPS, Cover, Patch, Tube
-from ptmcad.cover.tubeframes import flaw
+from ptmcad.cover.rectangles import MAX_STEPS, Cover
 from ptmcad.question.counts import PREDICATES, Count
 from ptmcad.question.slice import Point, Slice
 from ptmcad.show.document.exactnumbers import INDEX, merged
+from ptmcad.show.document.slantedpieces import read_tubes, with_cover
 from ptmcad.show.document.slicedocument import SLICE, polynomial_over
 from ptmcad.text.codec import (
     COUNT,
@@ -96,7 +96,10 @@ def read(text: str) -> RegionMap:
     for key in _EXACT_ONLY if certified else ():
         if (place := document.entry(key)).value != []:
             raise place.fault("is not empty, as it is in a map with a cover")
-    return _codec(slice.axis_names, certified, slice).read(document)
+    found = _codec(slice.axis_names, certified, slice).read(document)
+    if found.cover is not None and document.entry("cover").has("patches"):
+        return with_cover(found, found.cover)
+    return found
 
 
 def _needs_cover(count: Count) -> bool:
@@ -198,12 +201,6 @@ def schema() -> Mapping[str, Any]:
 
 
 MAX_RECTANGLES = 1_000_000
-MAX_PATCHES = 200_000
-MAX_CONTROLS = 64
-MAX_CONTROL = 2**60
-"""Of a half width, and of a control's absolute value: the curve passes a frame within the window.
-"""
-_FIRST_TUBE = 5
 
 
 def _cover(node: Node) -> Cover:
@@ -239,48 +236,12 @@ def _cover(node: Node) -> Cover:
             raise place.fault(
                 f"is not sorted, or not of distinct rectangles: see numbers {k} and {k + 1}"
             )
-    return Cover(steps, rectangles, _patches(entry["patches"], steps) if "patches" in entry else ())
-
-
-def _patches(node: Node, steps: int) -> tuple[Patch, ...]:
-    """The slanted pieces, each in its frame; whether frames are disjoint is known when the
-    components are.
-    """
-    if not isinstance(node.value, list) or len(node.value) > MAX_PATCHES:
-        raise node.fault(f"is not a list of at most {MAX_PATCHES} patches")
-    found = []
-    for k, value in enumerate(node.value):
-        place = Node(value, f"{node.place}[{k}]")
-        if not isinstance(value, list) or len(value) < _FIRST_TUBE:
-            raise place.fault("is not a frame, an axis and tubes")
-        head, tubes = value[:_FIRST_TUBE], value[_FIRST_TUBE:]
-        if not all(type(n) is int for n in head):
-            raise place.fault("does not begin with a frame and an axis: five integers")
-        for tube in tubes:
-            if (
-                not isinstance(tube, list)
-                or not 1 < len(tube) <= MAX_CONTROLS
-                or not all(map(_is_short, tube))
-            ):
-                raise place.fault(
-                    f"has a tube that is not a half width and up to {MAX_CONTROLS} controls"
-                )
-        patch = Patch(
-            (head[0], head[1], head[2], head[3]),
-            head[4],
-            tuple(Tube(t[0], tuple(t[1:])) for t in tubes),
-        )
-        wrong = flaw(patch, steps)
-        if wrong:
-            raise place.fault(f"is no slanted piece: {wrong}")
-        found.append(patch)
-    if any(one >= next_one for one, next_one in pairwise(found)):
-        raise node.fault("is not sorted, or has a patch twice")
-    return tuple(found)
-
-
-def _is_short(value: object) -> bool:
-    return type(value) is int and abs(value) <= MAX_CONTROL
+    if "patches" in entry:
+        around = (r for tube in read_tubes(entry["patches"], steps) for r in tube.rectangles(steps))
+        rectangles = tuple(sorted({*rectangles, *islice(around, MAX_RECTANGLES)}))
+        if next(around, None) is not None:
+            raise entry["patches"].fault(f"needs more than {MAX_RECTANGLES} rectangles")
+    return Cover(steps, rectangles)
 
 
 def cover_line(cover: Cover) -> str:
@@ -288,16 +249,7 @@ def cover_line(cover: Cover) -> str:
     rectangles = ",\n".join(
         f"{left},{right},{low},{high}" for left, right, low, high in cover.rectangles
     )
-    slanted = ",\n".join(
-        json.dumps(_patch(patch), separators=(",", ":")) for patch in cover.patches
-    )
-    patches = f', "patches": [\n{slanted}\n]' if cover.patches else ""
-    return f'  "cover": {{"steps": {cover.steps}, "rectangles": [\n{rectangles}\n]{patches}}}'
-
-
-def _patch(patch: Patch) -> list[Any]:
-    """Its frame and its axis, then for each tube the half width and the controls."""
-    return [*patch.frame, patch.along, *([tube.half, *tube.controls] for tube in patch.tubes)]
+    return f'  "cover": {{"steps": {cover.steps}, "rectangles": [\n{rectangles}\n]}}'
 
 
 _INTEGERS = {"type": "array", "items": {"type": "integer", "minimum": 0}}
@@ -309,7 +261,7 @@ COVER: Codec[Cover] = Codec(
         "properties": {
             "steps": {"type": "integer", "minimum": 1, "maximum": MAX_STEPS},
             "rectangles": _INTEGERS,
-            "patches": {"type": "array", "items": {"type": "array", "minItems": _FIRST_TUBE + 1}},
+            "patches": {"type": "array", "items": {"type": "array", "minItems": 6}},
         },
         "required": ["steps", "rectangles"],
         "additionalProperties": False,

@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover import components
 from ptmcad.cover.complement import Components, outlines
-from ptmcad.cover.connectivity import shown as with_steps
 from ptmcad.cover.subdivision import FREE
 from ptmcad.show.render.polylines import simplified_polygons
 from ptmcad.show.render.view import CellShape, Floats, Same, View, WallShape
@@ -172,7 +171,6 @@ def _cover_outline(of: Same[RegionMap]) -> CoverOutline:
     region_at = np.full(len(complement.areas) + 1, -1, dtype=np.int64)
     for cell, number in number_of.items():
         region_at[number] = result.cells[cell].region
-    complement = with_steps(complement)
     traced = outlines(complement, list(number_of.values()))
     return CoverOutline(result, View.whole(result), complement, traced, region_at)
 

@@ -25,7 +25,6 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.location import component_cells
-from ptmcad.cover import connectivity
 from ptmcad.cover.subdivision import COVERED, FREE, repeated
 from ptmcad.errors import LimitReached
 from ptmcad.exact.cad.polyline import WallPolyline, chains, critical_shares
@@ -52,8 +51,6 @@ DENSITY = 8
 """Points on the side of a pixel."""
 MAX_PIECE = 2.0**-11
 """Between points on the boundary of a certified map."""
-NARROW = 2**15
-"""Slanted pieces of a cover are in rectangles that are narrower than this part of the window."""
 UNKNOWN = 0.1
 """A wall whose distance is not proved to be less is left out of what distances are measured to."""
 
@@ -246,20 +243,18 @@ def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
     if None in counts:
         return None
     complement, cells = component_cells(result, result.cover)
-    parts = connectivity.shown(complement, NARROW)
-    tree = parts.subdivision
+    tree = complement.subdivision
     rectangles = tree.bounds / result.cover.steps
     if truth.base:
         rectangles = rectangles[:, [2, 3, 0, 1]]
-    free = (tree.state == FREE) & (parts.owner >= 0)
+    free = tree.state == FREE
     pieces = rectangles[free]
     shown = np.array(
-        [counts[cells[n]] if n in cells else -1 for n in parts.owner[free].tolist()], dtype=np.int64
+        [counts[cells[n]] if n in cells else -1 for n in complement.owner[free].tolist()],
+        dtype=np.int64,
     )
-    areas = np.diff(pieces[:, :2], axis=1) * np.diff(pieces[:, 2:], axis=1)
-    loose = 1 - float(areas.sum()) - float(result.undetermined)
     drawn = rectangles[tree.state == COVERED], MAX_PIECE
-    found = _error(truth, pieces, shown, drawn, float(result.undetermined), max(loose, 0.0))
+    found = _error(truth, pieces, shown, drawn, float(result.undetermined))
     return found | {"undetermined": outward(0, result.undetermined)[1]}
 
 
@@ -269,7 +264,6 @@ def _error(
     shown: np.ndarray,
     drawn: tuple[Floats, float],
     least: float,
-    loose: float = 0.0,
 ) -> Figures:
     """The figures of pieces that show a count.
 
@@ -277,7 +271,6 @@ def _error(
     ----------
     drawn : the boundary between them, as of `distance`.
     least : the share that is undetermined.
-    loose : the share that no piece holds though something is shown there.
     """
     right, areas = (
         shown_areas(truth, pieces, shown),
@@ -285,10 +278,10 @@ def _error(
     )
     doubts = truth.doubts()
     wrong, doubt = 1 - float(right.sum()), float(doubts.sum()) / 2 + ROUNDING
-    bounds = (float(np.clip(x, least, 1.0)) for x in (wrong - doubt - loose, wrong + doubt))
+    bounds = (float(np.clip(x, least, 1.0)) for x in (wrong - doubt, wrong + doubt))
     with np.errstate(divide="ignore"):
         low = (right - doubts) / (areas + doubts)
-        high = (right + doubts + loose) / (areas - doubts).clip(0)
+        high = (right + doubts) / (areas - doubts).clip(0)
     return figures(
         outward(*bounds),
         least,

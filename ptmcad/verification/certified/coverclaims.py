@@ -26,9 +26,6 @@ from ptmcad.verification.report import Violation
 
 MAX_STEPS = 2**40
 MAX_UNKNOWNS = 3
-SLACK = 4
-"""Columns and rows of lattice squares of a frame that rounding may concern, for each of its parts.
-"""
 
 
 class CertifiedClaims(Claims):
@@ -43,16 +40,6 @@ class CertifiedClaims(Claims):
     @cached_property
     def sweep(self) -> CoverSweep:
         return sweep(self.cover)
-
-    @cached_property
-    def slack(self) -> int:
-        """By how much areas may be told differently because of rounding, in squares of the lattice."""
-        sides = (
-            (right - left + top - bottom) * (len(patch.tubes) + 1)
-            for patch in self.cover.patches
-            for left, right, bottom, top in [patch.frame]
-        )
-        return SLACK * sum(sides)
 
     @property
     def lattice(self) -> SliceLattice:
@@ -146,16 +133,6 @@ def check_form(claims: CertifiedClaims) -> str:
     for one, two in pairwise(r.cover.rectangles):
         if not one < two:
             raise Violation(f"the rectangles {one} and {two} are not sorted")
-    if any(not one < two for one, two in pairwise(r.cover.patches)):
-        raise Violation("the slanted pieces are not sorted")
-    for patch in r.cover.patches:
-        left, right, bottom, top = patch.frame
-        if not (
-            0 <= left < right <= steps and 0 <= bottom < top <= steps and patch.along in (0, 1)
-        ):
-            raise Violation(f"{patch.frame} is not a frame of the lattice")
-        if any(len(tube.controls) < 2 for tube in patch.tubes):
-            raise Violation(f"a slanted piece in {patch.frame} has no polynomial")
     needed = numbers_for(r.slice.count, claims.meaning)
     for what, items in (("cell", r.cells), ("region", r.regions)):
         for n, item in enumerate(items):
@@ -168,9 +145,7 @@ def check_form(claims: CertifiedClaims) -> str:
             raise Violation(f"cell {n} of a certified map has a stack")
         if wrong := contradiction_in(cell):
             raise Violation(f"cell {n} has {wrong}")
-    number = sum(len(patch.tubes) for patch in r.cover.patches)
-    slanted = f"{number} slanted pieces, " if number else ""
-    return f"{len(r.cover.rectangles)} rectangles, {slanted}{len(r.cells)} cells, {len(r.regions)} regions"
+    return f"{len(r.cover.rectangles)} rectangles, {len(r.cells)} cells, {len(r.regions)} regions"
 
 
 def _check_model(slice: Slice) -> None:
@@ -193,15 +168,11 @@ def check_components(claims: CertifiedClaims) -> str:
     """
     r, found = claims.result, claims.sweep
     cells = claims.cell_of
-    larger = Counter[Fraction | int](found.areas.values())
+    larger = Counter(found.areas.values())
     for component, n in cells.items():
         area, level = found.areas[component], r.cells[n].level
-        before = sum(number for other, number in larger.items() if other > area + claims.slack)
-        if (
-            not before
-            <= level
-            < sum(number for other, number in larger.items() if other >= area - claims.slack)
-        ):
+        before = sum(number for other, number in larger.items() if other > area)
+        if not before <= level < sum(number for other, number in larger.items() if other >= area):
             raise Violation(
                 f"cell {n} is said to be component {level} by area, but {before} are larger"
             )
@@ -210,7 +181,7 @@ def check_components(claims: CertifiedClaims) -> str:
         raise Violation("two cells are said to be the same component")
     known = sum(found.areas[component] for component in cells)
     true = 1 - Fraction(known, found.steps**2)
-    if not true <= r.undetermined <= true + Fraction(claims.slack, found.steps**2):
+    if r.undetermined != true:
         raise Violation(
             f"the undetermined share of the window is {approximate_text(true)}, not {approximate_text(r.undetermined)}"
         )
@@ -240,7 +211,7 @@ def check_regions(claims: CertifiedClaims) -> str:
                 f"region {number} is said to have at least the area {text_of(low)}, but "
                 f"only {approximate_text(least * claims.square)} is proved"
             )
-        if high < (reach - claims.slack) * claims.square:
+        if high < reach * claims.square:
             raise Violation(
                 f"region {number} is said to have at most the area {approximate_text(high)}, but with "
                 f"what is undetermined beside it, it may have "
@@ -251,7 +222,7 @@ def check_regions(claims: CertifiedClaims) -> str:
     return f"{len(r.regions)} regions"
 
 
-def _reach(claims: CertifiedClaims, component: int) -> int | Fraction:
+def _reach(claims: CertifiedClaims, component: int) -> int:
     """The area that a region, which is a cell, has if all that is undetermined beside it belongs to
     it, in squares.
 

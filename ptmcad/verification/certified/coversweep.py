@@ -1,12 +1,9 @@
-"""What a cover leaves free, found by a sweep: gaps, blocks and frames of slanted pieces, strip by
-strip.
+"""What a cover leaves free, found by a sweep: gaps and blocks, strip by strip.
 
-Guarantee: what is said to be connected is so, and bounds of areas hold; without slanted pieces they
-are exact. All coordinates are integers or rationals.
+Guarantee: exact. All coordinates are integers or rationals.
 
 From strip to strip gaps and blocks go on, but in zones in which rectangles begin or end, with what
-touches these: what is new there is joined with what was there. Beside frames all begin anew, as
-frames' sides change with the height.
+touches these: what is new there is joined with what was there.
 
 The engine finds the same by subdivision of the window.
 """
@@ -22,22 +19,19 @@ from itertools import pairwise
 from typing import Any
 
 from ptmcad.cover.rectangles import Cover
-from ptmcad.verification.certified.slantedframes import Part, SlantedFrame
-from ptmcad.verification.report import Violation
 
-Entry = tuple[int, int, int]
-"""Of a rectangle or a frame: left, right, and the frame's number; -1 for a rectangle."""
+Entry = tuple[int, int]
+"""Of a rectangle: left, right."""
 
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """Something of a strip from left to right: a gap or a block with its node, or a frame."""
+    """A gap or a block of a strip, with its node."""
 
     left: int
     right: int
     free: bool
     node: int
-    frame: int = -1
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,44 +43,31 @@ class CoverSweep:
     lines : heights of the edges; strip k lies between lines k and k + 1.
     component_of : of each node its component or, of closed ones, its cluster: what closed blocks
         that meet are together.
-    first_part : of each frame the node of the part below its tubes.
-    areas : of components, at most; cluster_areas : at least.
+    areas, cluster_areas : of components and of clusters.
     touching : pairs (component, cluster) that share boundary points.
     """
 
     steps: int
     lines: tuple[int, ...]
     rows: tuple[tuple[Item, ...], ...]
-    frames: tuple[SlantedFrame, ...]
     component_of: tuple[int, ...]
-    first_part: tuple[int, ...]
-    areas: dict[int, Fraction]
-    cluster_areas: dict[int, Fraction]
+    areas: dict[int, int]
+    cluster_areas: dict[int, int]
     touching: frozenset[tuple[int, int]]
 
     def locate(self, u: Fraction, v: Fraction) -> int | None:
-        """The component of a point of the open window; None where it is in the cover, or on a
-        frame's side.
-        """
-        found = {self._at(item, u, v) for item in self._items((u, v), (u, v))}
+        """The component of a point of the open window; None where it is in the cover."""
+        found = {
+            self.component_of[item.node] if item.free else None
+            for item in self._items((u, v), (u, v))
+        }
         return found.pop() if len(found) == 1 else None
-
-    def _at(self, item: Item, u: Fraction, v: Fraction) -> int | None:
-        if item.frame < 0:
-            return self.component_of[item.node] if item.free else None
-        frame = self.frames[item.frame]
-        number = frame.place(u, v) if frame.patch.along == 0 else frame.place(v, u)
-        return None if number is None else self.component_of[self.first_part[item.frame] + number]
 
     def free_around(self, u: Fraction, v: Fraction, half: Fraction) -> bool:
         """Whether the closed square of this half width around a point is free."""
         if min(u, v) < half or max(u, v) + half > self.steps:
             return False
-        low, high = (u - half, v - half), (u + half, v + half)
-        return all(
-            item.free if item.frame < 0 else self.frames[item.frame].avoids(low, high)
-            for item in self._items(low, high)
-        )
+        return all(item.free for item in self._items((u - half, v - half), (u + half, v + half)))
 
     def _items(
         self, low: tuple[Fraction, Fraction], high: tuple[Fraction, Fraction]
@@ -112,9 +93,9 @@ class _Sets:
 
     parent: list[int]
     free: list[bool]
-    areas: list[Fraction | int]
+    areas: list[int]
 
-    def add(self, free: bool, area: Fraction | int) -> int:
+    def add(self, free: bool, area: int) -> int:
         self.parent.append(len(self.parent))
         self.free.append(free)
         self.areas.append(area)
@@ -138,157 +119,89 @@ def sweep(cover: Cover) -> CoverSweep:
     ----------
     cover : whose rectangles lie in the window (`ptmcad.verification.certified.coverclaims` checks
         it).
-
-    Raises
-    ------
-    Violation
-        When a patch is none, or a frame meets something else.
     """
     begin: dict[int, list[Entry]] = defaultdict(list)
     end: dict[int, list[Entry]] = defaultdict(list)
-    pieces = [(r, -1) for r in cover.rectangles] + [
-        (patch.frame, k) for k, patch in enumerate(cover.patches)
-    ]
-    for (left, right, bottom, top), number in pieces:
-        begin[bottom].append((left, right, number))
-        end[top].append((left, right, number))
+    for left, right, bottom, top in cover.rectangles:
+        begin[bottom].append((left, right))
+        end[top].append((left, right))
     lines = sorted({0, cover.steps, *begin, *end})
-    found = _Strips(cover)
+    found = _Strips(cover.steps)
     active: list[Entry] = []
-    for low, high in pairwise(lines):
+    for low in lines[:-1]:
         for entry in end[low]:
             del active[bisect_left(active, entry)]
         for entry in begin[low]:
             insort(active, entry)
-        found.add(low, high, [*end[low], *begin[low]], active)
+        found.add(low, [*end[low], *begin[low]], active)
     return found.result(tuple(lines))
 
 
 class _Strips:
     """The strips so far, and how what is in them hangs together."""
 
-    def __init__(self, cover: Cover) -> None:
-        self._steps = cover.steps
-        self._frames = tuple(SlantedFrame(patch, k) for k, patch in enumerate(cover.patches))
+    def __init__(self, steps: int) -> None:
+        self._steps = steps
         self._sets = _Sets([], [], [])
-        self._first_part: list[int] = []
-        self._first_tube: list[int] = []
         self._pairs: set[tuple[int, int]] = set()
         self._rows: list[tuple[Item, ...]] = []
         self._row: list[Item] = []
-        for frame in self._frames:
-            self._add_frame(frame)
 
-    def _add_frame(self, frame: SlantedFrame) -> None:
-        sets, first = self._sets, len(self._sets.free)
-        for area in frame.parts:
-            sets.add(True, area)
-        tube = len(sets.free)
-        self._first_part.append(first)
-        self._first_tube.append(tube)
-        rest = (frame.high - frame.low) * (frame.top - frame.bottom) - sum(frame.parts)
-        for k in range(len(frame.centers)):
-            # all of what no part has is the first one's: where tubes are not in one cluster the
-            # rest is at least 0
-            sets.add(False, max(rest, 0) if k == 0 and len(frame.centers) == 1 else 0)
-            for part in (first + k, first + k + 1):
-                if sets.areas[part] >= 1:
-                    self._pairs.add((part, tube + k))
-
-    def add(self, low: int, high: int, changed: Sequence[Entry], active: list[Entry]) -> None:
-        """The strip between two lines.
+    def add(self, low: int, changed: Sequence[Entry], active: list[Entry]) -> None:
+        """The strip above a line.
 
         Parameters
         ----------
-        changed : what ends or begins at the lower one.
+        changed : what ends or begins at the line.
         active : all that is in the strip, sorted.
         """
         row = self._row
-        whole = self._frames or not row
         # from the right, so that the numbers of what is left of a zone stay
-        for first, last in [(0, len(row))] if whole else reversed(_zones(changed, row)):
+        for first, last in reversed(_zones(changed, row)) if row else [(0, 0)]:
             old = row[first:last]
-            bottom, top = (old[0].left, old[-1].right) if old else (0, self._steps)
-            inner = active[bisect_left(active, (bottom,)) : bisect_left(active, (top,))]
-            new = [self._new_item(entry, low) for entry in _row(inner, bottom, top)]
+            left, right = (old[0].left, old[-1].right) if old else (0, self._steps)
+            inner = active[bisect_left(active, (left,)) : bisect_left(active, (right,))]
+            new = [
+                Item(a, b, free, self._sets.add(free, -(b - a) * low))
+                for a, b, free in _gaps_and_blocks(inner, left, right)
+            ]
             self._grow(old, low)
-            beside = [*row[max(first - 1, 0) : first], *new, *row[last : last + 1]]
-            for one, two in pairwise(beside):
-                ends = low, high
-                self._meet(self._parts(one, 0, 1, ends), self._parts(two, 0, 0, ends), *ends)
-            self._meet_below(old, new, low)
+            for one, two in pairwise(
+                [*row[max(first - 1, 0) : first], *new, *row[last : last + 1]]
+            ):
+                self._meet(one, two, along=True)
+            for one, two in _touching(old, new):
+                self._meet(one, two, along=max(one.left, two.left) < min(one.right, two.right))
             row[first:last] = new
         self._rows.append(tuple(row))
 
-    def _new_item(self, entry: tuple[int, int, bool, int], low: int) -> Item:
-        left, right, free, number = entry
-        node = -1 if number >= 0 else self._sets.add(free, -(right - left) * low)
-        return Item(left, right, free, node, number)
-
-    def _meet_below(self, old: Sequence[Item], new: Sequence[Item], line: int) -> None:
-        for one, two in _touching(old, new):
-            # what a frame that goes on across the line meets there, it meets along its upright
-            # sides in one strip
-            if not self._frames or (
-                _ends(one, self._frames, line, 3) and _ends(two, self._frames, line, 2)
-            ):
-                self._meet(
-                    self._parts(one, 1, 1, (one.left, one.right)),
-                    self._parts(two, 1, 0, (two.left, two.right)),
-                    max(one.left, two.left),
-                    min(one.right, two.right),
-                )
-
-    def _meet(
-        self,
-        below: Sequence[Part],
-        above: Sequence[Part],
-        low: Fraction | int,
-        high: Fraction | int,
-    ) -> None:
-        for a, b, open_one, one in below:
-            for c, d, open_two, two in above:
-                start, stop = max(a, c, low), min(b, d, high)
-                if open_one and open_two:
-                    if start < stop:
-                        self._sets.join(one, two)
-                elif start <= stop:
-                    if open_one == open_two:
-                        self._sets.join(one, two)
-                    else:
-                        self._pairs.add((one, two) if open_one else (two, one))
-
-    def _parts(self, item: Item, axis: int, side: int, ends: tuple[int, int]) -> Sequence[Part]:
-        if item.frame < 0:
-            return ((*ends, item.free, item.node),)
-        return [
-            (a, b, is_open, (self._first_part if is_open else self._first_tube)[item.frame] + n)
-            for a, b, is_open, n in self._frames[item.frame].side(axis, side)
-        ]
+    def _meet(self, one: Item, two: Item, *, along: bool) -> None:
+        """Two items touch: along an edge, or in a corner."""
+        if one.free != two.free:
+            self._pairs.add((one.node, two.node) if one.free else (two.node, one.node))
+        elif along or not one.free:
+            self._sets.join(one.node, two.node)
 
     def _grow(self, items: Sequence[Item], height: int) -> None:
-        """What begins or ends at a line: of areas what is below the line is taken off, or added."""
+        """Items end at a line: their areas are those below it, less what is below their beginning."""
         for item in items:
-            if item.frame < 0:
-                self._sets.areas[item.node] += (item.right - item.left) * height
+            self._sets.areas[item.node] += (item.right - item.left) * height
 
     def result(self, lines: tuple[int, ...]) -> CoverSweep:
         """All of it, once the last strip is there."""
         sets = self._sets
         self._grow(self._row, self._steps)
         component_of = tuple(map(sets.top, sets.parent))
-        areas: dict[int, Fraction] = defaultdict(Fraction)
-        cluster_areas: dict[int, Fraction] = defaultdict(Fraction)
+        areas: dict[int, int] = defaultdict(int)
+        cluster_areas: dict[int, int] = defaultdict(int)
         for n, is_free in enumerate(sets.free):
             (areas if is_free else cluster_areas)[component_of[n]] += sets.areas[n]
         return CoverSweep(
             self._steps,
             lines,
             tuple(self._rows),
-            self._frames,
             component_of,
-            tuple(self._first_part),
-            {n: area for n, area in areas.items() if area > 0},
+            dict(areas),
             dict(cluster_areas),
             frozenset((component_of[a], component_of[b]) for a, b in self._pairs),
         )
@@ -301,7 +214,7 @@ def _zones(changed: Sequence[Entry], row: Sequence[Item]) -> list[tuple[int, int
     found: list[tuple[int, int]] = []
     met = (
         (bisect_left(row, left, key=_right), bisect_right(row, right, key=_left))
-        for left, right, _ in changed
+        for left, right in changed
     )
     for zone in sorted(met):
         before = found.pop() if found and zone[0] <= found[-1][1] else zone
@@ -313,40 +226,27 @@ def _left(item: Item) -> Any:
     return item.left
 
 
-def _ends(item: Item, frames: Sequence[SlantedFrame], line: int, side: int) -> bool:
-    """Whether an item has its bottom (side 2) or its top (3) on the line between two strips."""
-    return item.frame < 0 or frames[item.frame].patch.frame[side] == line
-
-
-def _row(active: list[Entry], bottom: int, top: int) -> Iterator[tuple[int, int, bool, int]]:
-    """Gaps, blocks and frames of a part of a strip: left, right, whether it is free, the frame's
-    number or -1.
-
-    Raises
-    ------
-    Violation
-        When a frame overlaps something.
-    """
-    at = bottom
-    block: tuple[int, int] | None = None
-    for left, right, number in [*active, (top, top, -2)]:
-        if block is not None and (number != -1 or left > block[1]):
-            yield *block, False, -1
-            at, block = block[1], None
-        if number == -1:
-            if block is None and left < at:
-                raise Violation("a slanted piece's frame meets a rectangle")
-            if block is None and left > at:
-                yield at, left, True, -1
-            block = (left, right) if block is None else (block[0], max(block[1], right))
+def _gaps_and_blocks(
+    active: Sequence[Entry], start: int, end: int
+) -> Iterator[tuple[int, int, bool]]:
+    """A part of a strip from the left: ends, and whether it is free."""
+    at = start
+    block: Entry | None = None
+    for left, right in active:
+        if block is not None and left <= block[1]:
+            block = block[0], max(block[1], right)
             continue
-        if left < at:
-            raise Violation("a slanted piece's frame meets another one, or a rectangle")
+        if block is not None:
+            yield *block, False
+            at = block[1]
         if left > at:
-            yield at, left, True, -1
-        if number >= 0:
-            yield left, right, False, number
-        at = right
+            yield at, left, True
+        block = left, right
+    if block is not None:
+        yield *block, False
+        at = block[1]
+    if at < end:
+        yield at, end, True
 
 
 def _touching(below: Sequence[Item], above: Sequence[Item]) -> Iterator[tuple[Item, Item]]:

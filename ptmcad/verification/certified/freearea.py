@@ -12,11 +12,9 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from ptmcad.cover.rectangles import Patch
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
-from ptmcad.verification.certified.coversweep import CoverSweep
 from ptmcad.verification.certified.sampling import check_point
-from ptmcad.verification.exclusion.pieces import MAX_CONTROLS, Bound, PieceRow, Pieces, pieces_in
+from ptmcad.verification.exclusion.pieces import Pieces, pieces_in
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.report import Unchecked
 
@@ -29,9 +27,6 @@ MIN_BOX = 2.0**-20
 """Share of the window: boxes over less are not halved ..."""
 FINER = 2.0**-28
 """... but for those that are left then, in a further search of some boxes more."""
-BESIDE_AT_FIRST, BESIDE = 8, 2
-"""A strip of 2^-(8 + 2 effort) of the window is left out on each side of a slanted piece. Such a
-piece is much thinner than what first derivatives say of a curve, which is bent."""
 _FINER_BOXES = 20_000
 _PLACES = 12
 _STEPS_AWAY = (4, 64)
@@ -68,8 +63,7 @@ def check_free_area(
         systems = systems_of(claims.lattice)
     except Unproved as reason:
         return Unchecked(str(reason))
-    wider = claims.sweep.steps >> (BESIDE_AT_FIRST + BESIDE * effort)
-    pieces, beside = pieces_of(claims, wider), widened(claims, wider)
+    pieces = pieces_of(claims)
     budget = (
         BOXES_AT_FIRST * GROWTH ** (effort - 1) // len(systems) if effort < MAX_EFFORT else 2**62
     )
@@ -88,28 +82,22 @@ def check_free_area(
             left += [finer.open, finer.stuck]
             looked += finer.looked
         left.append(rest.open)
-    return _in_words(claims, left, pieces, beside, f"{looked} boxes, effort {effort}")
+    return _in_words(claims, left, pieces, f"{looked} boxes, effort {effort}")
 
 
-def _in_words(
-    claims: CertifiedClaims, left: Sequence[Any], pieces: Pieces, beside: float, text: str
-) -> str:
+def _in_words(claims: CertifiedClaims, left: Sequence[Any], pieces: Pieces, text: str) -> str:
     """What share of the free area is proved, with boxes left by the searches."""
     from ptmcad.verification.exclusion.running import share_over  # loads numba
 
     places = [boxes for boxes in left if len(boxes)]
-    if not places and not beside:
+    if not places:
         return f"100 % of the free area is proved free of critical curves; {text}"
-    free = sum(claims.sweep.areas[component] for component in claims.cell_of) - claims.slack
-    share = 1 - (share_over(places, pieces) + beside) * claims.sweep.steps**2 / float(max(free, 1))
+    free = sum(claims.sweep.areas[component] for component in claims.cell_of)
+    share = 1 - share_over(places, pieces) * claims.sweep.steps**2 / float(max(free, 1))
     text = f"{_percent(share)} % of the free area is proved free of critical curves; {text}"
-    if beside:
-        text += f"; not beside slanted pieces, on {beside:.1e} of the window"
-    if places:
-        largest = max(places, key=lambda boxes: float((boxes[:, 0, 1] - boxes[:, 0, 0]).max()))
-        where = _where(claims, *_middle(largest[(largest[:, 0, 1] - largest[:, 0, 0]).argmax()]))
-        text += f"; not, among others, around {where}"
-    return Unchecked(text)
+    largest = max(places, key=lambda boxes: float((boxes[:, 0, 1] - boxes[:, 0, 0]).max()))
+    where = _where(claims, *_middle(largest[(largest[:, 0, 1] - largest[:, 0, 0]).argmax()]))
+    return Unchecked(f"{text}; not, among others, around {where}")
 
 
 def _percent(share: float) -> str:
@@ -172,74 +160,13 @@ def _check_at(claims: CertifiedClaims, u: Fraction, v: Fraction) -> None:
         check_point(claims, cell, u, v, reason="; a critical curve was found there")
 
 
-def pieces_of(claims: CertifiedClaims, wider: int = 0) -> Pieces:
-    """The pieces of a map's cover, and the components that have no cell.
-
-    Parameters
-    ----------
-    wider : lattice steps by which tubes and their frames are made wider on all sides; what this
-        adds is not proved.
-    """
-    cover = claims.cover
-    rows: list[PieceRow] = [PieceRow(r) for r in cover.rectangles]
-    for patch in cover.patches:
-        left, right, bottom, top = patch.frame
-        frame = left - wider, right + wider, bottom - wider, top + wider
-        rows += [
-            PieceRow(
-                frame,
-                patch.along,
-                (-t.half - wider, t.controls),
-                (t.half + wider, t.controls),
-                wider,
-            )
-            for t in patch.tubes
-            if len(t.controls) <= MAX_CONTROLS
-        ]
+def pieces_of(claims: CertifiedClaims) -> Pieces:
+    """The rectangles of a map's cover, and what is free but in no cell."""
     cells, found = claims.cell_of, claims.sweep
-    rows += _open_in_strips(found, cells) + _open_in_frames(found, cells)
-    return pieces_in(rows, cover.steps)
-
-
-def widened(claims: CertifiedClaims, wider: int) -> float:
-    """At most this share of the window is added to tubes by making them wider."""
-    cover = claims.cover
-    total = 0
-    for patch in cover.patches:
-        length = patch.frame[2 * patch.along + 1] - patch.frame[2 * patch.along]
-        for t in patch.tubes:
-            total += 2 * (t.half + wider) * (length + 2 * wider) - 2 * t.half * length
-    return total / cover.steps**2 * (1 + 1e-9)
-
-
-def _open_in_strips(found: CoverSweep, cells: dict[int, int]) -> list[PieceRow]:
-    return [
-        PieceRow((item.left, item.right, low, high))
+    open_parts = [
+        (item.left, item.right, low, high)
         for (low, high), row in zip(pairwise(found.lines), found.rows, strict=True)
         for item in row
-        if item.frame < 0 and item.free and found.component_of[item.node] not in cells
+        if item.free and found.component_of[item.node] not in cells
     ]
-
-
-def _open_in_frames(found: CoverSweep, cells: dict[int, int]) -> list[PieceRow]:
-    rows = []
-    for frame, first in zip(found.frames, found.first_part, strict=True):
-        patch = frame.patch
-        for k in range(len(patch.tubes) + 1):
-            if (
-                found.component_of[first + k] not in cells
-                and len(patch.tubes[0].controls) <= MAX_CONTROLS
-            ):
-                rows.append(PieceRow(patch.frame, patch.along, *_between(patch, k)))
-    return rows
-
-
-def _between(patch: Patch, k: int) -> tuple[Bound, Bound]:
-    """What bounds the part of a frame that has so many tubes below it, together with the tubes
-    beside it.
-    """
-    below, above = patch.tubes[k - 1 : k], patch.tubes[k : k + 1]
-    return (
-        (-below[0].half, below[0].controls) if k else None,
-        (above[0].half, above[0].controls) if above else None,
-    )
+    return pieces_in([*claims.cover.rectangles, *open_parts], claims.cover.steps)

@@ -24,12 +24,10 @@ from fractions import Fraction
 from itertools import accumulate, product
 from math import ceil, isqrt
 
-from ptmcad.cover.rectangles import Cover, Rectangle
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.cover.rectangles import Rectangle
 from ptmcad.verification.certified.cellsamples import HOPELESS
 from ptmcad.verification.certified.counted import CountedPoint, differs, stored
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
-from ptmcad.verification.certified.slantedframes import SlantedFrame
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.report import Unchecked, Violation
 
@@ -45,10 +43,8 @@ lattice.
 _MAX_TRIALS = 400
 """Random points looked at for one that is free."""
 _FIRST_TRIALS = 40
-PLACES_ON_TUBES = 4
-"""Beside which points are tried, for each tube."""
 """The same for points beside rectangles, of which others will do."""
-Edge = tuple[Fraction | int, Fraction | int, Fraction | int, Fraction | int]
+Edge = tuple[int, int, int, int]
 """A side of a rectangle within a square: left, right, bottom, top, one pair of them equal; in
 lattice steps times the number of squares side by side, in which squares begin and end at whole
 numbers."""
@@ -153,10 +149,7 @@ def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[Sa
     """Points beside rectangles, as many as boxes: from one square of the grid after the other, in
     random order.
     """
-    cover = claims.cover
-    edges = _edges(cover.rectangles, claims.sweep.steps, _side(number))
-    for square, places in _along_tubes(cover, _side(number), rng).items():
-        edges.setdefault(square, []).extend(places)
+    edges = _edges(claims.cover.rectangles, claims.sweep.steps, _side(number))
     order = sorted(edges)
     rng.shuffle(order)
     totals = {
@@ -196,25 +189,6 @@ def _edges(
             if 0 < across < side * steps:
                 for j, low, high in _cut(bottom, top, steps):
                     found.setdefault((across // steps, j), []).append((across, across, low, high))
-    return found
-
-
-def _along_tubes(cover: Cover, side: int, rng: random.Random) -> dict[tuple[int, int], list[Edge]]:
-    """Places on tubes, in the form of short edges that points are across of, some in each frame."""
-    found: dict[tuple[int, int], list[Edge]] = {}
-    for k, patch in enumerate(cover.patches):
-        frame = SlantedFrame(patch, k)
-        for center in frame.centers:
-            for _ in range(PLACES_ON_TUBES):
-                s = _uniform(rng)
-                u, value = frame.low + s * (frame.high - frame.low), center(from_fraction(s))
-                v = to_fraction(value)
-                if not frame.bottom <= v <= frame.top:
-                    continue
-                places = (u, u + 1, v, v) if patch.along == 0 else (v, v, u, u + 1)
-                left, right, bottom, top = (side * x for x in places)
-                square = int(left // cover.steps), int(bottom // cover.steps)
-                found.setdefault(square, []).append((left, right, bottom, top))
     return found
 
 

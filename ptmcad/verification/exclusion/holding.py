@@ -1,10 +1,8 @@
 """Whether pieces of the window hold a strip: compiled code.
 
 A strip is what of a rectangle lies near a line: over u in [a, b], v is within [low, high] of
-middle + slope (u - from). The rectangle is cut along all sides of frames that pass through it. Then
-each frame has all of a part or nothing of it, and within a part a piece has all points whose v less
-the line lies between two numbers; these intervals together have to hold that of the strip. Frames'
-sides are whole numbers, so cutting is exact.
+middle + slope (u - from). It is cut along all sides of pieces that pass through it. Then each piece
+has all of a part or nothing of it. Pieces' sides are whole numbers, so cutting is exact.
 """
 
 from __future__ import annotations
@@ -15,14 +13,12 @@ from typing import Any
 import numpy as np
 
 from ptmcad.verification.exclusion.arithmetic import compiled
-from ptmcad.verification.exclusion.pieces import MAX_CONTROLS, SLACK
+from ptmcad.verification.exclusion.pieces import SLACK
 
 MAX_PIECES = 96
 """Of the pieces that a strip may meet: with more nothing is decided."""
 MAX_PARTS = 96
 _BINS_AT_ONCE = 64
-_OUTSIDE = 0.01
-"""By how much of its interval a polynomial may be continued."""
 _MIN_SHARE = 0.02
 """Of a strip's length: a part that is shorter is not halved."""
 
@@ -121,94 +117,18 @@ def _edge(pieces: Any, side: int, near: Any, number: int, a: float, b: float) ->
 
 @compiled
 def _part(pieces: Any, along: int, near: Any, number: int, strip: Any, part: Any) -> bool:
-    """Whether the pieces hold a part of a strip, which no side of a frame passes through."""
+    """Whether a piece holds a part of a strip, which no side of a rectangle passes through."""
     a, b = part[0], part[1]
     slack = SLACK * pieces.steps
     least, most = _across(strip, a, b)
     least, most = max(least - slack, part[2]), min(most + slack, part[3])
-    low, high = np.empty(MAX_PIECES), np.empty(MAX_PIECES)
-    line_a, line_b = strip[3] + strip[4] * (a - strip[2]), strip[3] + strip[4] * (b - strip[2])
     for m in range(number):
-        n = near[m]
-        low[m], high[m] = inf, -inf
-        f = pieces.frames[n]
+        f = pieces.frames[near[m]]
         if (
-            f[2 * along] > a
-            or f[2 * along + 1] < b
-            or f[2 - 2 * along] > least
-            or f[3 - 2 * along] < most
+            f[2 * along] <= a
+            and f[2 * along + 1] >= b
+            and f[2 - 2 * along] <= least
+            and f[3 - 2 * along] >= most
         ):
-            continue
-        straight = pieces.lower[n, 1] == 0 and pieces.upper[n, 1] == 0
-        if straight or (pieces.along[n] != along and _between(pieces, n, least, most, a, b)):
             return True
-        if pieces.along[n] == along:
-            p, q = _shares(pieces.spans[n], a, b)
-            low[m], high[m] = -inf, inf
-            if pieces.lower[n, 1]:
-                low[m] = _off(pieces.controls, pieces.lower[n], p, q, line_a, line_b, 1) + slack
-            if pieces.upper[n, 1]:
-                high[m] = _off(pieces.controls, pieces.upper[n], p, q, line_a, line_b, -1) - slack
-    # from below: each interval that begins in what is held already takes it further
-    at = max(strip[5], part[2] - max(line_a, line_b)) - slack
-    end = min(strip[6], part[3] - min(line_a, line_b)) + slack
-    moved = True
-    while moved and at < end:
-        moved = False
-        for m in range(number):
-            if low[m] <= at < high[m]:
-                at, moved = high[m], True
-    return bool(at >= end)
-
-
-@compiled
-def _between(pieces: Any, n: int, a: float, b: float, least: float, most: float) -> bool:
-    """Whether a piece has all of a rectangle, [a, b] along its own axis, between its polynomials."""
-    slack = SLACK * pieces.steps
-    p, q = _shares(pieces.spans[n], a, b)
-    if (
-        pieces.lower[n, 1]
-        and _off(pieces.controls, pieces.lower[n], p, q, least, least, 1) > -slack
-    ):
-        return False
-    return not (
-        pieces.upper[n, 1] and _off(pieces.controls, pieces.upper[n], p, q, most, most, -1) < slack
-    )
-
-
-@compiled
-def _shares(span: Any, a: float, b: float) -> Any:
-    """Where a and b are, as shares of an interval; a little outside of it where the frame was made
-    wider.
-    """
-    return (a - span[0]) / (span[1] - span[0]), (b - span[0]) / (span[1] - span[0])
-
-
-@compiled
-def _off(
-    controls: Any, bound: Any, p: float, q: float, line_a: float, line_b: float, sign: int
-) -> float:
-    """The most (sign 1) or the least (-1) that a polynomial is above a line, between p and q of its
-    frame.
-
-    By de Casteljau's rule it has controls for this part; the line's own are evenly spaced between
-    its ends.
-    """
-    start, number = bound[0], bound[1]
-    if not (-_OUTSIDE <= p < 1 and q <= 1 + _OUTSIDE):
-        return sign * inf
-    c = np.empty(MAX_CONTROLS)
-    for k in range(number):
-        c[k] = controls[start + k]
-    for level in range(1, number):
-        for k in range(number - level):
-            c[k] = (1 - p) * c[k] + p * c[k + 1]
-    share = (q - p) / (1 - p) if p < 1 else 0.0
-    for level in range(1, number):
-        for k in range(number - 1, level - 1, -1):
-            c[k] = (1 - share) * c[k - 1] + share * c[k]
-    found = -inf
-    for k in range(number):
-        t = k / (number - 1)
-        found = max(found, sign * (c[k] - ((1 - t) * line_a + t * line_b)))
-    return sign * found
+    return False
