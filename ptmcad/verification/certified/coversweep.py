@@ -104,33 +104,6 @@ def _right(item: Item) -> Any:
     return item.right
 
 
-@dataclass(slots=True)
-class _Sets:
-    """Disjoint sets of gaps or of blocks, which grow together, with what is known of their areas so
-    far.
-    """
-
-    parent: list[int]
-    free: list[bool]
-    areas: list[Fraction | int]
-
-    def add(self, free: bool, area: Fraction | int) -> int:
-        self.parent.append(len(self.parent))
-        self.free.append(free)
-        self.areas.append(area)
-        return len(self.parent) - 1
-
-    def top(self, n: int) -> int:
-        while self.parent[n] != n:
-            self.parent[n] = self.parent[self.parent[n]]
-            n = self.parent[n]
-        return n
-
-    def join(self, one: int, two: int) -> None:
-        one, two = self.top(one), self.top(two)
-        self.parent[max(one, two)] = min(one, two)
-
-
 def sweep(cover: Cover) -> CoverSweep:
     """Sweep the window from below.
 
@@ -165,12 +138,16 @@ def sweep(cover: Cover) -> CoverSweep:
 
 
 class _Strips:
-    """The strips so far, and how what is in them hangs together."""
+    """The strips so far, and how what is in them hangs together: disjoint sets of gaps and blocks,
+    which grow together, with what is known of their areas.
+    """
 
     def __init__(self, cover: Cover) -> None:
         self._steps = cover.steps
         self._frames = tuple(SlantedFrame(patch, k) for k, patch in enumerate(cover.patches))
-        self._sets = _Sets([], [], [])
+        self._parent: list[int] = []
+        self._free: list[bool] = []
+        self._areas: list[Fraction | int] = []
         self._first_part: list[int] = []
         self._first_tube: list[int] = []
         self._pairs: set[tuple[int, int]] = set()
@@ -179,20 +156,37 @@ class _Strips:
         for frame in self._frames:
             self._add_frame(frame)
 
+    def _add_node(self, free: bool, area: Fraction | int) -> int:
+        self._parent.append(len(self._parent))
+        self._free.append(free)
+        self._areas.append(area)
+        return len(self._parent) - 1
+
+    def _top(self, n: int) -> int:
+        parent = self._parent
+        while parent[n] != n:
+            parent[n] = parent[parent[n]]
+            n = parent[n]
+        return n
+
+    def _join(self, one: int, two: int) -> None:
+        one, two = self._top(one), self._top(two)
+        self._parent[max(one, two)] = min(one, two)
+
     def _add_frame(self, frame: SlantedFrame) -> None:
-        sets, first = self._sets, len(self._sets.free)
+        first = len(self._free)
         for area in frame.parts:
-            sets.add(True, area)
-        tube = len(sets.free)
+            self._add_node(True, area)
+        tube = len(self._free)
         self._first_part.append(first)
         self._first_tube.append(tube)
         rest = (frame.high - frame.low) * (frame.top - frame.bottom) - sum(frame.parts)
         for k in range(len(frame.centers)):
             # all of what no part has is the first one's: where tubes are not in one cluster the
             # rest is at least 0
-            sets.add(False, max(rest, 0) if k == 0 and len(frame.centers) == 1 else 0)
+            self._add_node(False, max(rest, 0) if k == 0 and len(frame.centers) == 1 else 0)
             for part in (first + k, first + k + 1):
-                if sets.areas[part] >= 1:
+                if self._areas[part] >= 1:
                     self._pairs.add((part, tube + k))
 
     def add(self, low: int, high: int, changed: Sequence[Entry], active: list[Entry]) -> None:
@@ -222,7 +216,7 @@ class _Strips:
 
     def _new_item(self, entry: tuple[int, int, bool, int], low: int) -> Item:
         left, right, free, number = entry
-        node = -1 if number >= 0 else self._sets.add(free, -(right - left) * low)
+        node = -1 if number >= 0 else self._add_node(free, -(right - left) * low)
         return Item(left, right, free, node, number)
 
     def _meet_below(self, old: Sequence[Item], new: Sequence[Item], line: int) -> None:
@@ -251,10 +245,10 @@ class _Strips:
                 start, stop = max(a, c, low), min(b, d, high)
                 if open_one and open_two:
                     if start < stop:
-                        self._sets.join(one, two)
+                        self._join(one, two)
                 elif start <= stop:
                     if open_one == open_two:
-                        self._sets.join(one, two)
+                        self._join(one, two)
                     else:
                         self._pairs.add((one, two) if open_one else (two, one))
 
@@ -270,17 +264,16 @@ class _Strips:
         """What begins or ends at a line: of areas what is below the line is taken off, or added."""
         for item in items:
             if item.frame < 0:
-                self._sets.areas[item.node] += (item.right - item.left) * height
+                self._areas[item.node] += (item.right - item.left) * height
 
     def result(self, lines: tuple[int, ...]) -> CoverSweep:
         """All of it, once the last strip is there."""
-        sets = self._sets
         self._grow(self._row, self._steps)
-        component_of = tuple(map(sets.top, sets.parent))
+        component_of = tuple(map(self._top, self._parent))
         areas: dict[int, Fraction] = defaultdict(Fraction)
         cluster_areas: dict[int, Fraction] = defaultdict(Fraction)
-        for n, is_free in enumerate(sets.free):
-            (areas if is_free else cluster_areas)[component_of[n]] += sets.areas[n]
+        for n, is_free in enumerate(self._free):
+            (areas if is_free else cluster_areas)[component_of[n]] += self._areas[n]
         return CoverSweep(
             self._steps,
             lines,
