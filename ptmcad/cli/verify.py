@@ -171,7 +171,7 @@ def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]
         yield "", partial(_verified_poses, poses, _versions_in(path))
     elif kind == "range":
         found = read_other(path, _range_in, "ptmcad-range/1")
-        yield "", partial(_verified_range, path, found)
+        yield "", partial(_verified_range, path, found, how["seed"])
     elif kind == "family":
         family = read_family_file(path, whole=False)
         for value, member in family:
@@ -312,7 +312,9 @@ def _verified_poses(stored: Poses, versions: Any, progress: Progress) -> VerifyR
     return VerifyReport((*report.checks, check_anew(written, json.loads(anew.to_json()))))
 
 
-def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> VerifyReport:
+def _verified_range(
+    path: Path, data: dict[str, Any], seed: int | None, progress: Progress
+) -> VerifyReport:
     """The counts along a line, and all that is said of it."""
     from ptmcad.ask.classification import load_certified
     from ptmcad.cli.range_answers import answer, is_enclosed, request_codec
@@ -336,7 +338,7 @@ def _verified_range(path: Path, data: dict[str, Any], progress: Progress) -> Ver
         for key, codec in (("enclosed", enclosed_codec), ("bands", bands_codec)):
             if key in data:
                 codec(request.digits).read(Node(data[key], key))
-        report = verify_range(data, slice, progress, maxima)
+        report = verify_range(data, slice, progress, maxima, seed)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
         raise ConfigError(
             f"is damaged or not a ptmcad-range/1 file: {error}", file=str(path)

@@ -31,6 +31,8 @@ from ptmcad.verification.kinds import SignMeaning, has_moments_apart, meaning_of
 
 T = TypeVar("T")
 Vector = tuple[fmpq_mpoly, fmpq_mpoly]
+Required = tuple[str, fmpq_mpoly, bool]
+"""What has to be positive: in words, as a polynomial in parameters, and whether it may not vanish."""
 
 
 def parameters_of(model: Model) -> tuple[str, ...]:
@@ -86,16 +88,6 @@ class SpringVector(NamedTuple):
     def collapsed(self) -> fmpq_mpoly:
         """The energy where it has no length."""
         return self.pull * self.free * fmpq(1, 2)
-
-
-class Required(NamedTuple):
-    """What has to be positive, or at least not negative, in words and as a polynomial in
-    parameters.
-    """
-
-    what: str
-    value: fmpq_mpoly
-    strict: bool
 
 
 def squared(vector: Vector) -> fmpq_mpoly:
@@ -296,13 +288,15 @@ def _unconstrained(
     energy = sum((s.energy for s in springs), ring.context.constant(0))
     for point, x, y in mechanism.loads:
         energy -= points[point][0] * ring.value(x) + points[point][1] * ring.value(y)
-    required = [Required(f"the stiffness of spring {s.name}", s.stiffness, True) for s in springs]
-    required += [Required(f"the free length of spring {s.name}", s.free, False) for s in springs]
+    required: list[Required] = [
+        (f"the stiffness of spring {s.name}", s.stiffness, True) for s in springs
+    ]
+    required += [(f"the free length of spring {s.name}", s.free, False) for s in springs]
     for number, torsion in enumerate(mechanism.torsion, 1):
         stiffness, rest = ring.value(torsion.stiffness), tuple(map(from_fraction, torsion.rest))
         cosine, sine = ring.circle(torsion.angle)
         energy += stiffness * (1 - cosine * rest[0] - sine * rest[1])
-        required.append(Required(f"the stiffness of torsion spring {number}", stiffness, True))
+        required.append((f"the stiffness of torsion spring {number}", stiffness, True))
     closing = tuple(
         squared(between(bar.start, bar.end)) - ring.value(bar.length) ** 2
         for bar in mechanism.closing

@@ -50,9 +50,10 @@ _NOTHING = Enclosure(Fraction(0), Fraction(0))
 
 @dataclass(frozen=True, slots=True)
 class _DesignLines:
-    """A stored design, with the ranges of any one."""
+    """A stored design, with the ranges of any one; their random points follow from the seed."""
 
     found: BestDesign
+    seed: str
 
     def ranges(self, design: Mapping[str, Fraction]) -> list[Span]:
         """All ranges with the wanted count, by their own ends; none where the conditions are not
@@ -71,7 +72,9 @@ class _DesignLines:
 
     def line(self, known: dict[str, Expression], along: Axis) -> ParameterLine:
         """The line along an axis, by what the other parameters are on it."""
-        return ParameterLine(self.found.model, self._parameters(known), along.low, along.high)
+        return ParameterLine(
+            self.found.model, self._parameters(known), along.low, along.high, self.seed
+        )
 
     def _parameters(self, known: dict[str, Expression]) -> dict[str, Expression]:
         """The model's parameters, by what the document and the model say of them."""
@@ -144,10 +147,10 @@ def verify_design(
             "ranges of each design by itself",
             partial(_check_values, within=headway.within),
         ),
-        ("bound", "ranges of random designs", partial(_check_bound, seed=drawn(seed))),
+        ("bound", "ranges of random designs", _check_bound),
         ("extremes", "ranges on the lines themselves", _check_extremes),
     )
-    checks = checked(_DesignLines(found), steps, (), headway)
+    checks = checked(_DesignLines(found, drawn(seed)), steps, (), headway)
     checks.append(
         Check(
             "bound of every design",
@@ -323,8 +326,8 @@ def _check_values(lines: _DesignLines, within: Callable[[int, int], None]) -> st
     return f"{len(found.points)} designs"
 
 
-def _check_bound(lines: _DesignLines, seed: str) -> str:
-    found = lines.found
+def _check_bound(lines: _DesignLines) -> str:
+    found, seed = lines.found, lines.seed
     if found.bound is None or found.along is None:
         return Unchecked("nothing is claimed, or not of a range")
     if found.value is not None and found.bound < found.value.low:
@@ -380,6 +383,7 @@ def _check_extremes(lines: _DesignLines) -> str:
         along,
         over,
         found.working,
+        lines.seed,
     )
     try:
         return check_maxima(both, found.maxima)

@@ -78,12 +78,17 @@ class LineGap(Span):
 class ParameterLine:
     """A model whose parameters are rational functions of one variable, the first axis, and a range
     of that.
+
+    Attributes
+    ----------
+    seed : of the points at which rational functions are read off and compared.
     """
 
     model: Model
     parameters: Mapping[str, Expression]
     low: Fraction
     high: Fraction
+    seed: str
 
     def counts_at(self, value: Fraction) -> Counts | None:
         """The counts at a point; None where a solution is degenerate, and where parameters have no
@@ -125,7 +130,7 @@ class ParameterLine:
         ------
         NotKnown
         """
-        source = random.Random(repr(self.parameters))
+        source = random.Random(f"line {self.seed}")
         fresh = [(at, self._functions(at)) for at in (source.getrandbits(24) for _ in range(FRESH))]
         for bits in BITS:
             base = source.getrandbits(bits) | 1 << bits
@@ -162,7 +167,7 @@ class ParameterLine:
         if norms[0] == 0:
             raise NotKnown("there is a degenerate solution at random points")
         if self.model.reals:
-            form = random.Random("form")
+            form = random.Random(f"form {self.seed}")
             traces = found.form_traces(
                 [form.getrandbits(10) for _ in range(found.point.coordinates)]
             )
@@ -249,6 +254,7 @@ class SliceLines:
     at : the line at a value of the axis ``over``.
     across : the line along that axis at a value of the axis of ranges.
     working : the wanted count.
+    seed : of the random values.
     """
 
     at: Callable[[Fraction], ParameterLine]
@@ -256,6 +262,12 @@ class SliceLines:
     along: Axis
     over: Axis
     working: int
+    seed: str
+
+    def between(self, low: Fraction, high: Fraction, number: int) -> list[Fraction]:
+        """Random values in an interval."""
+        source = random.Random(f"{low} {high} {self.seed}")
+        return [low + (high - low) * Fraction(source.randrange(1, 64), 64) for _ in range(number)]
 
     def has(self, value: End, width: Fraction) -> bool | None:
         """Whether the longest range on a line is at least so long; None where that was not found
@@ -298,16 +310,11 @@ class SliceLines:
         NotKnown
         """
         common = fmpz_poly([0])
-        for value in _between(self.along.low, self.along.high, ACROSS):
+        for value in self.between(self.along.low, self.along.high, ACROSS):
             common = common.gcd(self.across(value).critical)
         linear = [factor for factor, _ in common.factor()[1] if factor.degree() == 1]
         values = [Fraction(-int(factor[0]), int(factor[1])) for factor in linear]
         return [value for value in values if self.over.low < value < self.over.high]
-
-
-def _between(low: Fraction, high: Fraction, number: int) -> list[Fraction]:
-    source = random.Random(f"{low} {high}")
-    return [low + (high - low) * Fraction(source.randrange(1, 64), 64) for _ in range(number)]
 
 
 def check_maxima(lines: SliceLines, maxima: Sequence[Maximum]) -> str:
@@ -327,7 +334,7 @@ def check_maxima(lines: SliceLines, maxima: Sequence[Maximum]) -> str:
         known = len(claims)
         if m.place is Place.PLATEAU:
             inside = [
-                *_between(m.at.low, m.at.high, INSIDE),
+                *lines.between(m.at.low, m.at.high, INSIDE),
                 *(v for v in special if m.at.low <= v <= m.at.high),
             ]
             claims += [
@@ -350,5 +357,5 @@ def check_maxima(lines: SliceLines, maxima: Sequence[Maximum]) -> str:
         if found is (not expected):
             words = "no range so long as is said" if expected else "a longer range than is said"
             raise Violation(f"at {over.name} = {shortest_text(lower(value))} there is {words}")
-    told = f"{len(claims)} claims of {len(maxima)} places"
+    told = f"{len(claims)} claims of {len(maxima)} places; seed {lines.seed}"
     return Unchecked(f"{told}; {unknown} were not decided") if unknown else told

@@ -40,6 +40,7 @@ from ptmcad.verification.report import (
     VerifyReport,
     Violation,
     checked,
+    drawn,
 )
 from ptmcad.verification.rootcounts import roots_within
 from ptmcad.verification.solutions import map_of
@@ -63,6 +64,7 @@ def verify_range(
     slice: Slice,
     progress: Progress | None = None,
     maxima: Sequence[Maximum] = (),
+    seed: int | None = None,
 ) -> VerifyReport:
     """Check the document of ``ptmcad range`` without the code that made it.
 
@@ -70,7 +72,9 @@ def verify_range(
     ----------
     slice : of which the document is.
     maxima : where it says that ranges over the other axis are longest.
+    seed : of the random points of lines; a fresh one when None.
     """
+    chosen = drawn(seed)
     claims = Claims(map_of(slice, ()))
     steps = [
         ("parameters as written", "expressions compared", lambda _: check_text(claims)),
@@ -96,17 +100,18 @@ def verify_range(
         )
         if part in data
     ]
-    checks = checked((data, slice), steps, (), CheckProgress(progress))
+    checks = checked((data, slice, chosen), steps, (), CheckProgress(progress))
     checks += [
         Check(name, "", None, words) for part, (name, words) in UNCHECKED.items() if part in data
     ]
     return VerifyReport(tuple(checks))
 
 
-_Asked = tuple[Mapping[str, Any], Slice]
+_Asked = tuple[Mapping[str, Any], Slice, str]
+"""The document, its slice, and the seed."""
 
 
-def _line(slice: Slice, along: Mapping[str, Any], value: Fraction) -> ParameterLine:
+def _line(slice: Slice, along: Mapping[str, Any], seed: str, value: Fraction) -> ParameterLine:
     """The line along one axis at a value of the other one."""
     low, high = map(fraction_of, along["window"])
     known = {
@@ -116,24 +121,23 @@ def _line(slice: Slice, along: Mapping[str, Any], value: Fraction) -> ParameterL
         name: slice.parameters[name].to_text(slice.axis_names)
         for name in parameters_of(slice.model)
     }
-    return ParameterLine(
-        slice.model, {name: parse(text, known) for name, text in texts.items()}, low, high
-    )
+    parameters = {name: parse(text, known) for name, text in texts.items()}
+    return ParameterLine(slice.model, parameters, low, high, seed)
 
 
 def _check_line(asked: _Asked) -> str:
-    data, slice = asked
+    data, slice, seed = asked
     found = data["line"]
     (value,) = map(fraction_of, found["at"].values())
     try:
-        _check_intervals(_line(slice, found["along"], value), found["intervals"], None)
+        _check_intervals(_line(slice, found["along"], seed, value), found["intervals"], None)
     except NotKnown as reason:
         return Unchecked(str(reason))
-    return f"{len(found['intervals'])} intervals"
+    return f"{len(found['intervals'])} intervals; seed {seed}"
 
 
 def _check_rows(asked: _Asked) -> str:
-    data, slice = asked
+    data, slice, seed = asked
     found, unknown = data["over"], 0
     parts = [part for row in found["rows"] for part in row["operation"]]
     working = {part["total"] if part["stable"] is None else part["stable"] for part in parts}
@@ -141,7 +145,7 @@ def _check_rows(asked: _Asked) -> str:
         raise Violation(f"operation ranges have {working} solutions")
     for row in found["rows"]:
         try:
-            line = _line(slice, found["along"], fraction_of(row["value"]))
+            line = _line(slice, found["along"], seed, fraction_of(row["value"]))
             _check_intervals(line, row["operation"], next(iter(working), -1))
         except NotKnown:
             unknown += 1
@@ -149,11 +153,11 @@ def _check_rows(asked: _Asked) -> str:
         return Unchecked(
             f"{len(found['rows']) - unknown} rows; of {unknown} more nothing was found out"
         )
-    return f"{len(found['rows'])} rows"
+    return f"{len(found['rows'])} rows; seed {seed}"
 
 
 def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
-    data, slice = asked
+    data, slice, seed = asked
     found = data["over"]
     if "stable" not in found:
         return Unchecked("an earlier version made it: attainment is not told")
@@ -161,11 +165,12 @@ def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
         next(a for a in slice.axes if a.name == found[key]["name"]) for key in ("along", "over")
     )
     lines = SliceLines(
-        partial(_line, slice, found["along"]),
-        partial(_line, slice, found["over"]),
+        partial(_line, slice, found["along"], seed),
+        partial(_line, slice, found["over"], seed),
         along,
         over,
         found["stable"],
+        seed,
     )
     try:
         return check_maxima(lines, maxima)
@@ -233,7 +238,7 @@ def _is_below(end: End, value: Fraction) -> bool:
 
 def _check_enclosed(asked: _Asked) -> str:
     """Counts at the sample and next to both ends of each interval."""
-    data, slice = asked
+    data, slice, _ = asked
     found, number, unknown = data["enclosed"], 0, 0
     ((other, value),) = found["at"].items()
     counting = CertifiedClaims(map_of(replace(slice, count=Count.TOTAL), ())).counting

@@ -33,7 +33,7 @@ from ptmcad.verification.exclusion.criticalsystems import systems_of
 from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate, tape_of
 from ptmcad.verification.exclusion.holding import holds
 from ptmcad.verification.exclusion.pieces import no_pieces
-from ptmcad.verification.exclusion.running import Rest, search
+from ptmcad.verification.exclusion.running import search
 from ptmcad.verification.normalform.operations import MAX_VARIABLES, Formulas
 
 ZEEMAN: dict[str, Any] = {
@@ -255,8 +255,8 @@ def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(
     system, pieces = systems_of(claims.lattice)[0], no_pieces(claims.sweep.steps)
 
     def left() -> tuple[int, set[bytes]]:
-        rest = search(system, pieces, system.start[None], 4_000, 2.0**-20)
-        return rest.looked, {box.tobytes() for box in rest.open}
+        unseen, _, looked = search(system, pieces, system.start[None], 4_000, 2.0**-20)
+        return looked, {box.tobytes() for box in unseen}
 
     monkeypatch.setattr(running, "LEARNT_FROM", 10**9)
     all_at_once = left()
@@ -284,17 +284,17 @@ def test_formulas_that_exclude_nothing_are_left_out(monkeypatch: pytest.MonkeyPa
         if tapes[-1] == len(system.tape.code):
             tried_by_all.update(box.tobytes() for box in arguments[3])
 
-    def done() -> Rest:
+    def done() -> tuple[Any, Any, int]:
         return search(system, pieces, system.start[None], 50_000, 2.0**-6)
 
     found = done()
     monkeypatch.setattr(running, "LEARNT_FROM", 10**9)
     by_all = done()
-    assert len(found.open) == 0 == len(by_all.open)
-    assert found.looked < 1.2 * by_all.looked
+    assert len(found[0]) == 0 == len(by_all[0])
+    assert found[2] < 1.2 * by_all[2]
     monkeypatch.undo()
     monkeypatch.setattr(running, "look", watched)
-    left = {box.tobytes() for box in done().stuck}
+    left = {box.tobytes() for box in done()[1]}
     assert len(left) > 100
     assert left <= tried_by_all
     assert min(tapes) < 0.8 * max(tapes) == 0.8 * len(system.tape.code)

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from ptmcad.answer.counts import Counted, MorseIndex
 from ptmcad.answer.regionmap import Cell, RegionMap
+from ptmcad.verification.normalform.boxes import Zero
 from ptmcad.verification.report import Violation
 
 
@@ -78,5 +78,4 @@ class CountedPoint:
     """
 
     counts: CellCounts
-    found: Sequence[Any]
-    values: Any
+    found: Sequence[Zero]

@@ -73,15 +73,17 @@ def check_free_area(
         def progress(share: float, k: int = k) -> None:
             report(int(1000 * (k + share)), 1000 * len(systems))
 
-        rest = search(system, pieces, system.start[None], budget, MIN_BOX, progress)
-        looked += rest.looked
-        if len(rest.stuck):
-            _refute(claims, rest.stuck)
-            finer = search(system, pieces, rest.stuck, _FINER_BOXES, FINER)
-            _refute(claims, finer.stuck)
-            left += [finer.open, finer.stuck]
-            looked += finer.looked
-        left.append(rest.open)
+        unseen, stuck, number = search(
+            system, pieces, system.start[None], budget, MIN_BOX, progress
+        )
+        looked += number
+        left.append(unseen)
+        if len(stuck):
+            _refute(claims, stuck)
+            unseen, stuck, number = search(system, pieces, stuck, _FINER_BOXES, FINER)
+            _refute(claims, stuck)
+            left += [unseen, stuck]
+            looked += number
     return _in_words(claims, left, pieces, f"{looked} boxes, effort {effort}")
 
 

@@ -86,7 +86,7 @@ class ModelCounting:
                 try:
                     numbers = _balls(values)
                     found = self._found(numbers, starts, smallest)
-                    return CountedPoint(self._counts(numbers, found), found, values)
+                    return CountedPoint(self._counts(numbers, found), found)
                 except Spent:
                     raise  # more digits would not make them fewer
                 except Unproved as unproved:

@@ -23,7 +23,7 @@ from ptmcad.verification.exclusion.forms import IntervalTape, tape_of
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.normalform.boxes import Floats
 from ptmcad.verification.normalform.lattice import Range, SliceLattice
-from ptmcad.verification.normalform.modelequations import Equations, Pair, bases
+from ptmcad.verification.normalform.modelequations import Equations, Pair
 from ptmcad.verification.normalform.operations import Formulas
 from ptmcad.verification.normalform.unknownbounds import half_widths
 from ptmcad.verification.normalform.waves import Waves, form_of, sides
@@ -260,31 +260,24 @@ class _Systems:
     def _on_side(self) -> Iterator[CriticalSystem]:
         m, f, springs = self.model, self.model.list, self.turning
         charted = not self.minima and self.form.size > 1
-        plain = [[int(i == j) for j in range(self.form.size)] for i in range(self.form.size)]
-        at_solutions, degenerate, signs = list[int](), list[int](), [*self.positive]
-        for basis in (*bases(self.form), plain):
-            m.turn_to(basis)
-            equations, rows = m.equations(m.directions()), m.hessian(m.directions())
-            balanced = [] if self.form.closing else [m.balanced(k) for k in springs]
-            determinant = f.determinant(rows)
-            at_solutions += [
-                *equations,
-                *(e for k in springs for e in (*m.balances(k), *m.directed(k))),
+        signs = [*self.positive]
+        equations, rows = m.equations(m.directions()), m.hessian(m.directions())
+        balanced = [] if self.form.closing else [m.balanced(k) for k in springs]
+        determinant = f.determinant(rows)
+        at_solutions = [e for k in springs for e in (*m.balances(k), *m.directed(k))]
+        degenerate = [d for d, _ in balanced]
+        if self.minima:
+            signs += [
+                *self._minors(rows),
+                *(entry for _, diagonal in balanced for entry in diagonal),
             ]
-            degenerate += [determinant, *(d for d, _ in balanced)]
-            if self.minima:
-                signs += [
-                    *self._minors(rows),
-                    *(entry for _, diagonal in balanced for entry in diagonal),
-                ]
-                signs += [m.bend(k) for k in springs] if self.form.size > 1 else []
         long = (
             [f.subtract(f.length(*m.cones[k].vector), self._short(k)) for k in springs]
             if charted
             else []
         )
-        others = [e for e in dict.fromkeys(at_solutions) if e not in equations]
-        last = [d for d in dict.fromkeys(degenerate) if d != determinant]
+        others = list(dict.fromkeys(at_solutions))
+        last = list(dict.fromkeys(degenerate))
         yield self._system(
             "folds", equations, [determinant, *others, *last], [*dict.fromkeys(signs), *long]
         )

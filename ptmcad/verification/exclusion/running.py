@@ -7,7 +7,6 @@ boxes that are left.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -28,21 +27,6 @@ WORTH = 0.01
 """Share of the boxes that any formula excludes: those that exclude fewer are left out."""
 
 
-@dataclass(frozen=True, slots=True)
-class Rest:
-    """What a search leaves.
-
-    Attributes
-    ----------
-    open : boxes that were not looked at; stuck : those that were not halved any more.
-    looked : how many were looked at.
-    """
-
-    open: Any
-    stuck: Any
-    looked: int
-
-
 def search(
     system: CriticalSystem,
     pieces: Pieces,
@@ -50,7 +34,7 @@ def search(
     budget: int,
     smallest: float,
     report: Callable[[float], None] = lambda _share: None,
-) -> Rest:
+) -> tuple[Any, Any, int]:
     """Look at boxes, and halve them.
 
     Parameters
@@ -59,6 +43,11 @@ def search(
     budget : number of boxes.
     smallest : share of the window's width; boxes over less than that are stuck.
     report : called with the share of the start's volume that is done with.
+
+    Returns
+    -------
+    The boxes that were not looked at, those that were not halved any more, and how many were looked
+    at.
     """
     choice = _Choice(system, pieces, smallest)
     waiting, stuck, looked, number = [start.copy()], [start[:0]], 0, len(start)
@@ -80,7 +69,7 @@ def search(
             if len(children):
                 waiting.append(children)
             report(gone / whole if whole else 1.0)
-    return Rest(np.concatenate([start[:0], *waiting]), np.concatenate(stuck), looked)
+    return np.concatenate([start[:0], *waiting]), np.concatenate(stuck), looked
 
 
 class _Choice:

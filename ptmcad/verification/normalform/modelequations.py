@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import combinations, product
+from itertools import combinations
 from math import prod
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.verification.coordinates import monomials
 from ptmcad.verification.normalform.operations import Formulas
 from ptmcad.verification.normalform.springlines import SpringLine
-from ptmcad.verification.normalform.waves import Form, Key, Sides, SpringCone, Waves, by
+from ptmcad.verification.normalform.waves import Form, Sides, SpringCone, Waves, by
 
 Pair = tuple[int, int]
 
@@ -78,24 +78,13 @@ class Equations:
         )
         self.sides: Sides = {}
         self.unknowns = [formulas.variable(k + 2) for k in range(form.size)]
-        self.turn_to([[int(i == j) for j in range(form.size)] for i in range(form.size)])
-
-    def turn_to(self, basis: Sequence[Sequence[int]]) -> None:
-        """Write all that follows in another basis of the unknowns' directions, by rows.
-
-        Equations and slopes are those along its vectors; what cancels between waves is gone before
-        it is evaluated.
-        """
-        form, n, f = self.form, self.form.size, self.list
-        self.basis = basis
+        f = formulas
         # a bar that is short makes its own equation small, and all that is next to it: nothing is
         # lost by dividing
-        self._common = [self._in_all(i) for i in range(n)]
-        self.factors = [
-            f.product(self.parameters[name] for name in names) for names in self._common
-        ]
+        self._common = [self._in_all(i) for i in range(form.size)]
+        self.factors = [f.product(parameters[name] for name in names) for names in self._common]
         self.cones = [s for s in map(self._spring, form.cones) if f.constant(s.pull) != 0]
-        rows = self._turned(form.equations)
+        rows = self._divided(form.equations)
         self.smooth = list(map(self.waves, rows))
         self.jacobian = [list(map(self.waves, self._slopes(row))) for row in rows]
 
@@ -103,12 +92,9 @@ class Equations:
         """The positive parameters that are in every term of an equation and of the springs' parts
         in it.
         """
-        rows = [_combined(self.basis[i], self.form.equations)]
+        rows = [self.form.equations[i]]
         for cone in self.form.cones:
-            rows += [self._slopes(coordinate)[i] for coordinate in cone.vector]
-            rows += [
-                _combined(self.basis[i], [weight[k] for weight in cone.weights]) for k in (0, 1)
-            ]
+            rows += [by(coordinate, i) for coordinate in cone.vector] + [*cone.weights[i]]
         found = [
             {name for name, _ in names}
             for row in rows
@@ -118,16 +104,12 @@ class Equations:
         common = set.intersection(*found) if found else set()
         return tuple(sorted(common & self._positive))
 
-    def _turned(self, rows: Sequence[Waves]) -> list[Waves]:
-        """Those along the basis, divided by the factors."""
-        return self._divided([_combined(vector, rows) for vector in self.basis])
-
     def _slopes(self, row: Waves) -> list[Waves]:
-        """The derivatives along the basis."""
-        slopes = [by(row, k) for k in range(self.form.size)]
-        return [_combined(vector, slopes) for vector in self.basis]
+        """The derivatives by the unknowns."""
+        return [by(row, k) for k in range(self.form.size)]
 
     def _divided(self, rows: Sequence[Waves]) -> list[Waves]:
+        """Those of all equations, without the equations' factors."""
         return [_without(row, names) for row, names in zip(rows, self._common, strict=True)]
 
     def polynomial(self, p: fmpq_mpoly) -> int:
@@ -158,7 +140,7 @@ class Equations:
 
     def _spring(self, cone: SpringCone) -> ConeFormulas:
         slopes = [self._divided(self._slopes(coordinate)) for coordinate in cone.vector]
-        weights = [self._turned([weight[k] for weight in cone.weights]) for k in (0, 1)]
+        weights = [self._divided([weight[k] for weight in cone.weights]) for k in (0, 1)]
         bends = [[bend for row in rows for bend in self._slopes(row)] for rows in weights]
 
         def pairs(of: Sequence[Sequence[Waves]]) -> tuple[Pair, ...]:
@@ -185,23 +167,14 @@ class Equations:
         ]
 
     def hessian(
-        self,
-        directions: Mapping[int, Pair],
-        without: int | None = None,
-        left_out: int | None = None,
+        self, directions: Mapping[int, Pair], without: int | None = None
     ) -> list[list[int]]:
         """The equations' Jacobian, rows divided by the factors; of one spring only what has not its
         inverse length.
-
-        Parameters
-        ----------
-        left_out : a spring of which nothing is in it.
         """
         f, n = self.list, self.form.size
         rows = [list(row) for row in self.jacobian]
         for k, s in enumerate(self.cones):
-            if k == left_out:
-                continue
             u = directions[k]
             turning, pushed = ([f.cross(u, g) for g in some] for some in (s.slopes, s.weights))
             for i in range(n):
@@ -234,8 +207,8 @@ class Equations:
         return x, y
 
     def _spin(self, s: ConeFormulas, j: int) -> Fraction:
-        """How fast such a line turns along the j-th vector of the basis."""
-        return Fraction(sum(a * b for a, b in zip(s.line.twice, self.basis[j], strict=True)), 2)
+        """How fast such a line turns with an unknown."""
+        return Fraction(s.line.twice[j], 2)
 
     def _with_line(self, s: ConeFormulas, vector: Pair) -> Pair:
         """A vector turned as such a line is."""
@@ -329,38 +302,6 @@ class Equations:
                 total = f.add(total, part) if (i + j) % 2 else f.subtract(total, part)
         return f.multiply(total, f.inverse_length(*s.vector)), diagonal
 
-    def bend(self, k: int) -> int:
-        """|d| times a bound of the Hessian's trace from above, wherever one spring has a length and
-        others have one.
-
-        The trace is that of the rest, plus K sum |g_ii| at most, less K/|d| times the sum of (u x
-        g_i)^2. The least of that sum over all unit vectors u is the smaller eigenvalue of the sum
-        of the g_i g_i^T, at least its determinant over its trace.
-        """
-        f, s, n = self.list, self.cones[k], self.form.size
-        length = f.length(*s.vector)
-        slopes = [
-            (f.multiply(c, g[0]), f.multiply(c, g[1]))
-            for c, g in zip(self.factors, s.slopes, strict=True)
-        ]
-        gram = f.sum(f.power(f.cross(g, h), 2) for g, h in combinations(slopes, 2))
-        size = f.sum(f.dot(g, g) for g in slopes)
-        rows = self.hessian(self.directions(), left_out=k)
-        trace = f.sum(
-            f.multiply(c, f.add(rows[i][i], f.multiply(s.pull, f.length(*s.bends[i * n + i]))))
-            for i, c in enumerate(self.factors)
-        )
-        return f.subtract(f.multiply(length, trace), f.divide(f.multiply(s.pull, gram), size))
-
-
-def _combined(factors: Sequence[int], rows: Sequence[Waves]) -> Waves:
-    """A sum of whole multiples of waves."""
-    found: dict[Key, fmpq_mpoly] = {}
-    for factor, row in zip(factors, rows, strict=True):
-        for key, p in row.items() if factor else ():
-            found[key] = found[key] + factor * p if key in found else factor * p
-    return {key: p for key, p in found.items() if not p.is_zero()}
-
 
 def _without(row: Waves, names: Sequence[str]) -> Waves:
     """A row of which all terms have these parameters, divided by them."""
@@ -370,19 +311,3 @@ def _without(row: Waves, names: Sequence[str]) -> Waves:
         return p / prod((gens[name] for name in names), start=p.context().constant(1))
 
     return {key: divided(p) for key, p in row.items()} if names else row
-
-
-def bases(form: Form) -> list[list[list[int]]]:
-    """Further bases, in which two unknowns turn together: those that make the equations shorter."""
-    n, found = form.size, []
-    for (i, j), sign in product(combinations(range(n), 2), (1, -1)):
-        vector = [0] * n
-        vector[i], vector[j] = 1, sign
-        rows = [
-            form.equations,
-            *([by(d, k) for k in range(n)] for cone in form.cones for d in cone.vector),
-        ]
-        before = sum(len(row[i]) + len(row[j]) for row in rows)
-        if sum(len(_combined(vector, row)) for row in rows) < before - len(rows) // 2:
-            found.append([vector if k == j else [int(k == m) for m in range(n)] for k in range(n)])
-    return found

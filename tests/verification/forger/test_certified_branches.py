@@ -401,7 +401,7 @@ def test_no_box_is_proved_outside_of_the_domain(name: str, text: str, words: str
     r = with_parameter(name, text)(springs())
     claims = CertifiedClaims(r)
     with pytest.raises(Unproved, match=words):
-        claims.counting.over(*[claims.lattice.window] * 2, CountedPoint(CellCounts(), (), {}))
+        claims.counting.over(*[claims.lattice.window] * 2, CountedPoint(CellCounts(), ()))
 
 
 DEGENERATE: Box = ((0.0, 0.0), (2.0**-20, 2.0**-20))
@@ -435,7 +435,9 @@ def test_equilibria_that_are_gone_on_with_are_different_and_persist() -> None:
     claims = CertifiedClaims(r)
     counting = claims.counting
     there = counting.at(*r.cells[0].sample)
-    field = BallEquations(counting.form, {n: ball_of(v) for n, v in there.values.items()})
+    field = BallEquations(
+        counting.form, {n: ball_of(v) for n, v in claims.parameters_at(*r.cells[0].sample).items()}
+    )
     whole, found = (3.2, 3.2), there.found
     (start,) = SolutionPlaces(claims.lattice)(
         *((c, c) for c in claims.lattice.on(*r.cells[0].sample))
