@@ -39,7 +39,6 @@ def small() -> FamilyMap:
 def test_every_member_has_its_chart_its_value_and_the_same_colours(family: FamilyMap) -> None:
     figure = family.plot()
     assert len(figure.axes) == 7
-    texts = [text.get_text() for text in figure.texts]
     assert [axes.get_title(loc="left") for axes in figure.axes] == [
         "c = 0", "c = 0.5", "c = 1", "c = 1.5", "c = 2", "c = 2.5", "c = 3",
     ]  # fmt: skip
