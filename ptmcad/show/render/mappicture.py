@@ -40,7 +40,6 @@ from ptmcad.show.render.slivers import (
     Sliver,
     Zoom,
     arrows,
-    counts_of,
     draw_arrows,
     ranked,
     seen_thin_walls,
@@ -119,7 +118,7 @@ class _Seen:
         ranked = self.ranked
         result = self.whole.result
         named = [(sliver, _name_of(result, sliver, None)) for sliver in ranked]
-        placed = arrows(self.whole, named, counts_of(result), sides, size)
+        placed = arrows(self.whole, named, sides, size)
         kept = [arrow.sliver for arrow in placed if arrow.clear]
         if len(kept) == len(ranked):
             return self
@@ -289,7 +288,7 @@ class MapDrawing(NamedTuple):
             _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
         sides, size = (layout.chart[2] * 72, layout.chart[3] * 72), layout.arrow_size
         named = list(zip(marked, names, strict=True))
-        led = arrows(seen.whole, named, counts_of(result), sides, size, not layout.insets)
+        led = arrows(seen.whole, named, sides, size, not layout.insets)
         draw_arrows(axes, led, paint.scale)
         draw_overlay(axes, seen.whole.view, self.overlay, paint.scale, layout.arrow_size)
         return axes
