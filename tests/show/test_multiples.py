@@ -19,7 +19,7 @@ from ptmcad.show.render.chartgrid import multiples_figure
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.printing import content, save
 from ptmcad.show.render.solid import MAX_FLOORS, solid_figure
-from ptmcad.show.render.surfacepicture import MAX_SIDE, camera_of, halved
+from ptmcad.show.render.surfacepicture import MAX_SIDE, box_of, halved, towards_eye
 from ptmcad.show.style import DEFAULT
 
 RECORD: dict[str, Any] = {
@@ -143,9 +143,9 @@ def test_what_is_in_front_is_painted_last(solid: tuple[FamilyMap, BoundarySurfac
     assert areas[colours[:, 0] == 1].sum() == pytest.approx(2**0.5 / 2)
     assert (colours[:, 1] == 1).sum() == 1
     axes = solid[0].plot(surface=solid[1]).axes[0]
-    camera = camera_of(axes)
-    eye = camera.unboxed(np.full(3, 0.5) + 10 * camera.towards)
-    middle = camera.unboxed(np.full(3, 0.5))
+    low, size = box_of(axes)
+    eye = (0.5 + 10 * towards_eye(axes)) * size + low
+    middle = 0.5 * size + low
     depths = [proj3d.proj_transform(*point, axes.get_proj())[2] for point in (eye, middle)]
     screen = [proj3d.proj_transform(*point, axes.get_proj())[:2] for point in (eye, middle)]
     assert depths[0] < depths[1]

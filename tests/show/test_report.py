@@ -22,7 +22,7 @@ from flint import arb, ctx
 from hypothesis import given
 from hypothesis import strategies as st
 from support.certified_map import certified_map
-from support.pages import data_of, unpacked
+from support.pages import data_of
 from support.shipped_records import OTHER
 
 import ptmcad
@@ -36,7 +36,7 @@ from ptmcad.show.render.axes import scale_of, ticks
 from ptmcad.show.report import page
 from ptmcad.show.report.equilibria import at_sample, decimal_text, degrees
 from ptmcad.show.report.error_curve import read_error_curve
-from ptmcad.show.report.reportpage import harmless, packed
+from ptmcad.show.report.reportpage import harmless
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.report.sections import question
 from ptmcad.text.balls import ball_over, enclosure_of
@@ -85,23 +85,6 @@ def test_every_cell_is_on_the_map_and_in_the_data(shipped: Shipped, name: str) -
             text_of(cell.sample[1]),
         ]
     assert data["names"] == list(result.slice.axis_names)
-
-
-ENTRIES = st.one_of(
-    st.integers(0, 2), st.sampled_from(["a long text", "another one"]), st.lists(st.none())
-)
-INNER = st.lists(st.fixed_dictionaries({"x": ENTRIES, "y": ENTRIES}))
-
-
-@given(st.lists(st.fixed_dictionaries({"a": ENTRIES, "b": INNER})))
-def test_packed_tables_are_read_as_they_were(rows: list[dict[str, Any]]) -> None:
-    assert unpacked(json.loads(json.dumps(packed(rows, inner=("b",))))) == rows
-
-
-def test_what_is_the_same_everywhere_is_written_once() -> None:
-    text = "the same in all of them"
-    rows = [{"a": text, "b": [{"x": text} for _ in range(n)]} for n in range(9)]
-    assert json.dumps(packed(rows, inner=("b",))).count(text) == 2
 
 
 def test_the_page_asks_for_nothing(shipped: Shipped) -> None:

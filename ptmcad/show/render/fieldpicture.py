@@ -94,7 +94,7 @@ def _figure(
     style: PictureStyle,
 ) -> Figure:
     font = style.base_font
-    size = style.size or tuple(side * font / 9 for side in SIZE)
+    size = style.size or (SIZE[0] * font / 9, SIZE[1] * font / 9)
     figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
     axes: Any = figure.add_subplot(gid="map")
     axes.set_facecolor(_EMPTY)

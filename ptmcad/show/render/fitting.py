@@ -10,9 +10,10 @@ Measured, not guessed: widths of text in its font, and what numbers and names ta
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from math import ceil
 from typing import Any
 
 from matplotlib import rcParams
@@ -50,72 +51,25 @@ Measured = tuple[Box, Size]
 
 @dataclass(frozen=True, slots=True)
 class PageParts:
-    """What has to be laid out.
+    """What has to be laid out, and on which page.
 
     Attributes
     ----------
     title : one line; empty for none.
-    legend : its entries with areas, and without.
+    legends : the legend's entries with areas, and without.
     views : of the whole map and of the insets.
+    size, font : of the page in inches, and of its text in points.
     measured : what has been found out about axes; filled while the parts are laid out.
     """
 
     slice: Slice
     title: str
-    legend: tuple[Sequence[Entry], Sequence[Entry]]
+    legends: tuple[Sequence[Entry], Sequence[Entry]]
     views: tuple[View, ...]
-    measured: dict[tuple[View, Dress], Measured] = field(default_factory=dict)
-
-
-def fitted(parts: PageParts, style: PictureStyle, size: Size) -> Layout:
-    """The layout of the parts on a page of this size, in inches; within
-    `ptmcad.show.render.printing.settings`.
-
-    Raises
-    ------
-    ConfigError
-        When they do not fit; the message has the least size of the same shape that would do.
-    """
-    for font in _fonts(style):
-        found = _on(parts, style, size, font)
-        if found is not None:
-            return found
-    larger = size
-    for _ in range(_STEPS):
-        larger = (larger[0] * _STEP, larger[1] * _STEP)
-        if _on(parts, style, larger, _fonts(style)[-1]) is not None:
-            break
-    raise ConfigError(
-        f"axes and legend do not fit into {_inches(size)} in text of {_fonts(style)[-1]:g} points; "
-        f"the least size of this shape that does is {_inches(larger, up=True)}"
-        + ("" if style.legend is LegendPlace.NONE else ", or leave the legend out"),
-        key="size",
-    )
-
-
-def _inches(size: Size, up: bool = False) -> str:
-    return "x".join(f"{side + (0.005 if up else 0):.2f}" for side in size) + "in"
-
-
-def _fonts(style: PictureStyle) -> list[float]:
-    """The sizes of text that are tried: the one that is asked for, or smaller and smaller ones."""
-    first = style.base_font
-    if style.font_size is not None:
-        return [first]
-    return [first, *(first - 0.5 * k for k in range(1, int(2 * (first - MIN_FONT)) + 1))]
-
-
-@dataclass(frozen=True, slots=True)
-class _PageLayout:
-    """A page that is being laid out, with sizes of text.
-
-    ``em`` is the font's size in inches, and ``rim`` the space around everything.
-    """
-
-    parts: PageParts
     style: PictureStyle
-    size: Size
-    font: float
+    size: Size = (0.0, 0.0)
+    font: float = 9.0
+    measured: dict[tuple[View, Dress], Measured] = field(default_factory=dict)
 
     @property
     def em(self) -> float:
@@ -141,9 +95,10 @@ class _PageLayout:
         """Sizes at axes of these sides, with as many numbers as there is room for."""
         return dressed(self.font, (width, height), small)
 
-    def title(self) -> list[str]:
-        title = self.parts.title
-        return few(wrapped(title, self.size[0] - 2 * self.rim, self.title_size), MAX_TITLE_LINES)
+    def titles(self) -> list[str]:
+        return few(
+            wrapped(self.title, self.size[0] - 2 * self.rim, self.title_size), MAX_TITLE_LINES
+        )
 
     @property
     def title_line(self) -> float:
@@ -152,7 +107,7 @@ class _PageLayout:
     @property
     def top(self) -> float:
         """Of what stands below the title."""
-        lines = len(self.title())
+        lines = len(self.titles())
         return (
             self.size[1]
             - self.rim
@@ -164,12 +119,51 @@ class _PageLayout:
     ) -> Layout:
         inset = insets[0] if insets else chart
         return Layout(
-            size=self.size, chart=chart, title=self.title(),
+            size=self.size, chart=chart, title=self.titles(),
             title_at=(self.rim, self.size[1] - self.rim - self.title_line / 2), title_line=self.title_line,
             legend=legend, insets=insets, type=self.type, axes=self.dressed(chart[2], chart[3]),
             inset_axes=self.dressed(inset[2], inset[3], small=True), title_size=self.title_size,
             inset_size=self.inset_size, arrow_size=_points(0.89 * self.font),
         )  # fmt: skip
+
+
+def fitted(parts: PageParts, size: Size) -> Layout:
+    """The layout of the parts on a page of this size, in inches; within
+    `ptmcad.show.render.printing.settings`.
+
+    Raises
+    ------
+    ConfigError
+        When they do not fit; the message has the least size of the same shape that would do.
+    """
+    style = parts.style
+    for font in _fonts(style):
+        found = _on(replace(parts, size=size, font=font))
+        if found is not None:
+            return found
+    larger = size
+    for _ in range(_STEPS):
+        larger = (larger[0] * _STEP, larger[1] * _STEP)
+        if _on(replace(parts, size=larger, font=_fonts(style)[-1])) is not None:
+            break
+    raise ConfigError(
+        f"axes and legend do not fit into {_inches(size)} in text of {_fonts(style)[-1]:g} points; "
+        f"the least size of this shape that does is {_inches(larger, up=True)}"
+        + ("" if style.legend is LegendPlace.NONE else ", or leave the legend out"),
+        key="size",
+    )
+
+
+def _inches(size: Size, up: bool = False) -> str:
+    return "x".join(f"{side + (0.005 if up else 0):.2f}" for side in size) + "in"
+
+
+def _fonts(style: PictureStyle) -> list[float]:
+    """The sizes of text that are tried: the one that is asked for, or smaller and smaller ones."""
+    first = style.base_font
+    if style.font_size is not None:
+        return [first]
+    return [first, *(first - 0.5 * k for k in range(1, int(2 * (first - MIN_FONT)) + 1))]
 
 
 def dressed(font: float, sides: Size, small: bool = False) -> Dress:
@@ -190,18 +184,17 @@ def _points(size: float) -> float:
     return max(MIN_FONT, size)
 
 
-def _on(parts: PageParts, style: PictureStyle, size: Size, font: float) -> Layout | None:
+def _on(page: PageParts) -> Layout | None:
     """The first layout, in the order in which parts are given up, that has room for what it shows."""
-    page = _PageLayout(parts, style, size, font)
-    for legend in parts.legend:
-        for insets in dict.fromkeys((len(parts.views) - 1, 0)):
+    for legend in page.legends:
+        for insets in dict.fromkeys((len(page.views) - 1, 0)):
             found = _placed(page, legend, insets)
             if found is not None:
-                return replace(found, shortened=legend != parts.legend[0])
+                return replace(found, shortened=legend != page.legends[0])
     return None
 
 
-def _placed(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | None:
+def _placed(page: PageParts, legend: Sequence[Entry], insets: int) -> Layout | None:
     """The legend where it is asked for; else at the right unless the map is much larger when it is
     below.
     """
@@ -216,7 +209,7 @@ def _placed(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout |
     return right if min(right.chart[2:]) >= _NEARLY * min(below.chart[2:]) else below
 
 
-def _right(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | None:
+def _right(page: PageParts, legend: Sequence[Entry], insets: int) -> Layout | None:
     """The legend, and insets below it, at the right of the map."""
     em, (width, _) = page.em, page.size
     for least in (*(max(share * width, MIN_SIDE * em) for share in _GOOD), MIN_SIDE * em):
@@ -239,7 +232,7 @@ def _right(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | 
     return None
 
 
-def _below(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | None:
+def _below(page: PageParts, legend: Sequence[Entry], insets: int) -> Layout | None:
     """The legend in columns below the map, and insets in a row between."""
     em, (width, _) = page.em, page.size
     best: tuple[float, list[list[Entry]]] | None = None
@@ -248,7 +241,8 @@ def _below(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | 
         entries = [rewrapped(entry, room, page.type) for entry in legend if entry.lines]
         if max(page.type.entry_width(entry) for entry in entries) > room * 1.01:
             continue
-        columns = _balanced(entries, number, page.type)
+        most = ceil(len(entries) / number)
+        columns = [entries[k : k + most] for k in range(0, len(entries), most)]
         height = max(page.type.height(column) for column in columns)
         if best is None or height < best[0] - 1e-9:
             best = (height, columns)
@@ -273,12 +267,12 @@ def _below(page: _PageLayout, legend: Sequence[Entry], insets: int) -> Layout | 
     )
 
 
-def _alone(page: _PageLayout, _legend: Sequence[Entry], insets: int) -> Layout | None:
+def _alone(page: PageParts, _legend: Sequence[Entry], insets: int) -> Layout | None:
     found = _over(page, page.rim, insets)
     return None if found is None else page.layout(found[0], (), found[1])
 
 
-def _over(page: _PageLayout, bottom: float, insets: int) -> tuple[Box, list[Box]] | None:
+def _over(page: PageParts, bottom: float, insets: int) -> tuple[Box, list[Box]] | None:
     """The map and a row of insets above a height."""
     em, width = page.em, page.size[0]
     boxes: list[Box] = []
@@ -297,22 +291,20 @@ def _over(page: _PageLayout, bottom: float, insets: int) -> tuple[Box, list[Box]
     return None if chart is None else (chart, boxes)
 
 
-def _chart(page: _PageLayout, width: float, height: float) -> Box | None:
+def _chart(page: PageParts, width: float, height: float) -> Box | None:
     """The map's place in a part of the page at its left and top; None where that is too small."""
     inner = (0.8 * width, 0.8 * height)
     for _ in range(3):  # what numbers take depends on how many there are, hence on the sides
         if min(inner) < MIN_SIDE * page.em:
             return None
-        left, below, right, _above = overhang(
-            page.parts, page.parts.views[0], inner, page.dressed(*inner)
-        )
+        left, below, right, _above = overhang(page, page.views[0], inner, page.dressed(*inner))
         inner = (width - left - right, height - below)
     if min(inner) < MIN_SIDE * page.em:
         return None
     return (page.rim + left, page.top - inner[1], *inner)
 
 
-def _stacked(page: _PageLayout, place: tuple[float, float, float], insets: int) -> list[Box] | None:
+def _stacked(page: PageParts, place: tuple[float, float, float], insets: int) -> list[Box] | None:
     """Insets one below the other, from a left end and a top in a column of some width."""
     left, top, column = place
     boxes: list[Box] = []
@@ -331,17 +323,16 @@ def _stacked(page: _PageLayout, place: tuple[float, float, float], insets: int) 
     return boxes
 
 
-def _inset_head(page: _PageLayout) -> float:
+def _inset_head(page: PageParts) -> float:
     """Inches of the two lines over an inset."""
     return 3.0 * page.inset_size / 72
 
 
-def _inset_overhang(page: _PageLayout) -> Box:
+def _inset_overhang(page: PageParts) -> Box:
     """What numbers and names of the insets' axes take: the most of all."""
     sides = (_INSET[0] * page.em, _INSET[1] * page.em)
     found = [
-        overhang(page.parts, view, sides, page.dressed(*sides, small=True))
-        for view in page.parts.views[1:]
+        overhang(page, view, sides, page.dressed(*sides, small=True)) for view in page.views[1:]
     ]
     left, below, right, above = (max(of[k] for of in found) for k in range(4))
     return left, below + 0.3 * page.em, right, above
@@ -405,32 +396,3 @@ def rewrapped(entry: Entry, width: float, type: Type) -> Entry:
         else []
     )
     return replace(entry, lines=(*head, *rest), heads=len(head))
-
-
-def _balanced(entries: Sequence[Entry], number: int, type: Type) -> list[list[Entry]]:
-    """Columns in reading order, none longer than it must be."""
-    heights = [type.entry_height(entry) for entry in entries]
-    most = next(
-        most for most in _sums(heights) if len(list(_columns(entries, heights, most))) <= number
-    )
-    return list(_columns(entries, heights, most))
-
-
-def _sums(heights: Sequence[float]) -> list[float]:
-    """What a column can be high, in increasing order."""
-    runs = {sum(heights[a:b]) for a in range(len(heights)) for b in range(a + 1, len(heights) + 1)}
-    return sorted(run + 1e-9 for run in runs)
-
-
-def _columns(
-    entries: Sequence[Entry], heights: Sequence[float], most: float
-) -> Iterator[list[Entry]]:
-    column: list[Entry] = []
-    filled = 0.0
-    for entry, height in zip(entries, heights, strict=True):
-        if column and filled + height > most:
-            yield column
-            column, filled = [], 0.0
-        column.append(entry)
-        filled += height
-    yield column

@@ -2,12 +2,12 @@
 
 Guarantee: the same for the same drawing. A label covers a stroke, a box or another label, or its
 line passes one, only where none of the places that are tried within the bounds is free; then it
-stands where it meets the fewest. Which labels are clear of all others is known.
+stands where it meets the fewest. Which labels are clear of all boxes and others is known.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import atan2, cos, hypot, pi, sin
@@ -15,8 +15,6 @@ from math import atan2, cos, hypot, pi, sin
 Position = tuple[float, float]
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top."""
-Cost = Callable[[float, Position, Box], float]
-"""What a place of a label costs, by its distance, its centre and what it covers."""
 
 _DIRECTIONS = 32
 DISTANCES = (4.0, 6.0, 9.0, 13.0, 18.0, 24.0, 31.0, 40.0, 52.0, 66.0, 84.0, 110.0, 140.0, 180.0)
@@ -36,14 +34,14 @@ class Stroke:
 @dataclass(frozen=True, slots=True)
 class Label:
     """A text and the point that it names; half its width and height; the direction that it had best
-    lie in; what its places cost, if it is not the nearest that is best.
+    lie in; whether a line to it may lie across strokes.
     """
 
     text: str
     at: Position
     half: Position
     towards: Position = (1.0, 0.0)
-    cost: Cost | None = None
+    across: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +49,7 @@ class Placed:
     """A label's centre, and the end of a line that leads from its point to it when it lies far from
     there.
 
-    ``clear`` says whether label and line meet nothing that is drawn, or placed before.
+    ``clear`` says whether label and line meet no box, and no label that was placed before.
     """
 
     label: Label
@@ -85,7 +83,7 @@ def place(
     ----------
     strokes, boxes : what no label may cover.
     bounds : the box that no label may leave.
-    distances : from a point to its label, in increasing order, which are tried.
+    distances : from a point to its label, in the order in which they are tried.
     skip : whether labels that are not clear are left out, so that nothing has to be clear of them.
     """
     drawn, taken = list(strokes), list(boxes)
@@ -108,26 +106,25 @@ def _best(
     bounds: Box,
     distances: Sequence[float],
 ) -> Placed:
-    least, best = (len(strokes) + len(boxes) + 1, 0, 0.0), Placed(label, label.at)
+    least, best = (len(strokes) + len(boxes) + 1, 0), Placed(label, label.at)
     for distance, wanted in _candidates(label, distances):
-        # a point at the bounds has room beside itself, along them
-        center = _within(wanted, label.half, bounds) if label.cost else wanted
+        center = _within(wanted, label.half, bounds)
         box = around(center, label.half)
-        if box[0] < bounds[0] or box[1] < bounds[1] or box[2] > bounds[2] or box[3] > bounds[3]:
-            continue
-        covered = sum(crosses(stroke, box) for stroke in strokes)
-        covered += sum(overlap(box, other) for other in boxes)
+        on_boxes = sum(overlap(box, other) for other in boxes)
+        covered = on_boxes + sum(crosses(stroke, box) for stroke in strokes)
         if covered > least[0]:
             continue
         leader, passed = None, 0
-        if distance > _NEAR or label.cost:
+        if distance > _NEAR:
             leader = _edge(label.at, box)
             line = Stroke(label.at, leader, 0.5)
             passed = sum(crosses(line, other) for other in boxes if not holds(other, label.at))
-        cost = (covered, passed, label.cost(distance, center, box) if label.cost else 0.0)
-        if cost < least:
-            least, best = cost, Placed(label, center, leader, not covered + passed)
-            if cost == (0, 0, 0.0):
+            on_boxes += passed
+            if not label.across:
+                passed += sum(touch(line, stroke) for stroke in strokes)
+        if (covered, passed) < least:
+            least, best = (covered, passed), Placed(label, center, leader, not on_boxes)
+            if least == (0, 0):
                 break
     return best
 
@@ -214,3 +211,15 @@ def distance(point: Position, stroke: Stroke) -> float:
         else min(1.0, max(0.0, ((point[0] - ax) * dx + (point[1] - ay) * dy) / square))
     )
     return hypot(point[0] - ax - t * dx, point[1] - ay - t * dy)
+
+
+def touch(one: Stroke, other: Stroke) -> bool:
+    """Whether two strokes' middle lines have a point in common."""
+    a, b, c, d = one.start, one.end, other.start, other.end
+    if any(max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]) for k in (0, 1)):
+        return False
+    return _turn(a, b, c) * _turn(a, b, d) <= 0 and _turn(c, d, a) * _turn(c, d, b) <= 0
+
+
+def _turn(a: Position, b: Position, c: Position) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

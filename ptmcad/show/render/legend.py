@@ -139,12 +139,15 @@ def entries(
         yield thin_entry()
 
 
-def line_mark(*looks: Mapping[str, Any]) -> Mark:
-    """A line, or several on each other from below."""
+def line_mark(
+    *looks: Mapping[str, Any], points: Sequence[Position] = ((0.0, 0.0), (SWATCH, 0.0))
+) -> Mark:
+    """A line through points in inches, or several on each other from below."""
 
     def mark(figure: Any, left: float, middle: float) -> None:
+        xs, ys = zip(*((left + x, middle + y) for x, y in points), strict=True)
         for look in looks:
-            stroke(figure, (left, left + SWATCH), (middle, middle), **look)
+            stroke(figure, xs, ys, **look)
 
     return mark
 

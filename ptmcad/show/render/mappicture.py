@@ -40,7 +40,6 @@ from ptmcad.show.render.slivers import (
     Sliver,
     Zoom,
     arrows,
-    counts_of,
     draw_arrows,
     ranked,
     seen_thin_walls,
@@ -119,7 +118,7 @@ class _Seen:
         ranked = self.ranked
         result = self.whole.result
         named = [(sliver, _name_of(result, sliver, None)) for sliver in ranked]
-        placed = arrows(self.whole, named, counts_of(result), sides, size)
+        placed = arrows(self.whole, named, sides, size)
         kept = [arrow.sliver for arrow in placed if arrow.clear]
         if len(kept) == len(ranked):
             return self
@@ -221,16 +220,17 @@ class MapDrawing(NamedTuple):
                 self.title,
                 self.legend(seen),
                 (whole.view, *(zoom.outline.view for zoom in seen.views)),
+                style,
             )
             try:
-                layout = fitted(parts, style, style.size or _natural(style, parts))
+                layout = fitted(parts, style.size or _natural(parts))
             except ConfigError:
                 if not seen.hidden:
                     raise
                 # a small picture rather has no word on the thin regions without a label, which it
                 # shows all the same
-                shorter = replace(parts, legend=self.legend(seen, with_hidden=False))
-                layout = fitted(shorter, style, style.size or _natural(style, shorter))
+                shorter = replace(parts, legends=self.legend(seen, with_hidden=False))
+                layout = fitted(shorter, style.size or _natural(shorter))
             if seen.views and not layout.insets:
                 # what no inset shows is named by a label that an arrow leads to it, if that has
                 # room
@@ -289,7 +289,7 @@ class MapDrawing(NamedTuple):
             _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
         sides, size = (layout.chart[2] * 72, layout.chart[3] * 72), layout.arrow_size
         named = list(zip(marked, names, strict=True))
-        led = arrows(seen.whole, named, counts_of(result), sides, size, not layout.insets)
+        led = arrows(seen.whole, named, sides, size, not layout.insets)
         draw_arrows(axes, led, paint.scale)
         draw_overlay(axes, seen.whole.view, self.overlay, paint.scale, layout.arrow_size)
         return axes
@@ -308,12 +308,13 @@ def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _natural(style: PictureStyle, parts: PageParts) -> Size:
+def _natural(parts: PageParts) -> Size:
     """A size for a map as large as in a picture that grows with what it shows, in proportion to the
     text.
     """
+    style = parts.style
     scale = style.base_font / 9
-    lines = sum(len(entry.lines) for entry in parts.legend[0])
+    lines = sum(len(entry.lines) for entry in parts.legends[0])
     wide = {LegendPlace.RIGHT: 8.4, None: 8.4, LegendPlace.BELOW: 6.0, LegendPlace.NONE: 5.7}[
         style.legend
     ]

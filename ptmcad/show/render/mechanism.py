@@ -21,7 +21,7 @@ from ptmcad.show.linedrawing import approximate_places, fitted
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import axes_at
 from ptmcad.show.render.labels import Position
-from ptmcad.show.render.legend import SWATCH, Mark
+from ptmcad.show.render.legend import SWATCH, Mark, line_mark
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import (
     AMPLITUDE,
@@ -183,9 +183,8 @@ def _slider(x: float, y: float, colour: str, upright: bool = False) -> Any:
 
 def bar_mark(number: int, style: SketchColours = STRONG, many: bool = False) -> Mark:
     """A bar in a legend: of two a number, or one of many."""
-    return _line_mark(
-        [(0.0, 0.0), (SWATCH, 0.0)], style.bars[number], MANY_BARS if many else BAR_WIDTHS[number]
-    )
+    width = MANY_BARS if many else BAR_WIDTHS[number]
+    return line_mark({"color": style.bars[number], "linewidth": width, "solid_capstyle": "butt"})
 
 
 def spring_mark() -> Mark:
@@ -195,24 +194,12 @@ def spring_mark() -> Mark:
     for k in range(2 * turns):
         u = ends + (SWATCH - 2 * ends) * (k + 0.5) / (2 * turns)
         points.append((u, AMPLITUDE / 72 * (1 if k % 2 else -1)))
-    return _line_mark([*points, (SWATCH - ends, 0.0), (SWATCH, 0.0)], STRONG.spring, 0.95)
+    look = {"color": STRONG.spring, "linewidth": 0.95, "solid_joinstyle": "round"}
+    return line_mark(look, points=[*points, (SWATCH - ends, 0.0), (SWATCH, 0.0)])
 
 
 _SMALL_SPIRAL = 6.8
 """In points, the radius in a legend, whose lines are no higher."""
-
-
-def _line_mark(points: Sequence[Position], colour: str, width: float) -> Mark:
-    def mark(figure: Any, left: float, middle: float) -> None:
-        u, v = zip(*((left + x, middle + y) for x, y in points), strict=True)
-        figure.add_artist(
-            Line2D(
-                u, v, transform=figure.dpi_scale_trans, color=colour, linewidth=width, solid_capstyle="butt",
-                solid_joinstyle="round",
-            )
-        )  # fmt: skip
-
-    return mark
 
 
 def symbol_mark(kind: str) -> Mark:

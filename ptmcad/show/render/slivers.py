@@ -8,7 +8,7 @@ steps of shortening the view reach.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -21,7 +21,8 @@ from ptmcad.answer.regionmap import Merge, Region, RegionMap
 from ptmcad.cover.subdivision import connected
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import text_width
-from ptmcad.show.render.labels import Box, Cost, Label, Position, around, place
+from ptmcad.show.render.labels import Box, Label, Position, Stroke, around, place, polyline
+from ptmcad.show.render.polylines import simplified_line
 from ptmcad.show.render.view import Interval, Point, Same, Shapes, View
 from ptmcad.show.style import Size
 from ptmcad.show.table import count_text
@@ -271,16 +272,13 @@ walls around it.
 """
 RIMMED = 126
 """The same where it has a rim of its own colour instead of walls (1.7 points)."""
-_DISTANCES = (10, 20, 34, 50, 70, 95, 125, 160, 200)
+_DISTANCES = (34, 50, 70, 95, 125, 160, 200, 20, 10)
 _SIDE = 331.2
 """Points of the picture's side, for these; on a smaller one they are shorter."""
-_SHORT, _TIP, _EDGE = 30, 6.0, 2.0
-"""Points: a shorter arrow is as bad as one that passes another region; around an arrow's tip; from
-the picture's edge to a label.
+_TIP, _EDGE, _ROUGHLY = 6.0, 2.0, 0.01
+"""Points around an arrow's tip, and from the picture's edge to a label; and how far curves may be from
+their places, as a share of the picture.
 """
-_OTHER_REGION, _FOREIGN = 75, 300
-"""What a place costs for every other region than one that its label or its arrow lies on, and where
-its label lies on one of another count: more than all distances."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -319,51 +317,44 @@ def ranked(whole: Shapes, slivers: Sequence[Sliver], thin: Sequence[int]) -> lis
 def arrows(
     whole: Shapes,
     named: Sequence[tuple[Sliver, str]],
-    said: Sequence[str],
     sides: Size,
     size: float,
     skip: bool = True,
 ) -> list[Arrow]:
-    """Arrows with these names to slivers.
-
-    Labels stand on a region of another count only where no place on one of their own is as clear.
+    """Arrows with these names to slivers, from labels towards the picture's middle that cover no border
+    between counts if there is room.
 
     Parameters
     ----------
     named : slivers and what their labels say.
-    said : what is said of each region of the map: the label of one best stands where the same is
-        true.
     sides : width and height of the picture, in points.
     size : of the texts, in points.
     skip : whether labels that are not clear are not to be drawn.
     """
-    image = whole.raster(96, 96) if named else np.zeros((1, 1), dtype=np.int64)
     tips = [whole.view.approximate_position(sliver.at) for sliver, _ in named]
     points = [(x * sides[0], y * sides[1]) for x, y in tips]
     scale = min(*sides, _SIDE) / _SIDE
-
-    def cost(tip: Position, homes: set[int]) -> Cost:
-        def of(distance: float, center: Position, box: Box) -> float:
-            covered = _covered(image, box, sides)
-            foreign = not {*covered} <= homes | {-1}
-            others = len(covered) - 1 + _passed(image, tip, center, sides)
-            short = distance < scale * _SHORT
-            return distance + _FOREIGN * foreign + _OTHER_REGION * (others + short)
-
-        return of
-
     labels = []
-    for (sliver, name), tip in zip(named, points, strict=True):
-        homes = {n for n, text in enumerate(said) if text == said[sliver.region]}
+    for (_, name), (x, y) in zip(named, points, strict=True):
         half = (36 * text_width(name, size) + 0.25 * size + 1, 0.85 * size + 1)
-        labels.append(Label(name, tip, half, cost=cost(tip, homes)))
+        inwards = (sides[0] / 2 - x or 1.0, sides[1] / 2 - y or 1.0)
+        labels.append(Label(name, (x, y), half, inwards, across=False))
     bounds = (_EDGE, _EDGE, sides[0] - _EDGE, sides[1] - _EDGE)
     around_tips = [around(point, (_TIP, _TIP)) for point in points]
-    placed = place(labels, (), around_tips, bounds, [scale * d for d in _DISTANCES], skip)
+    strokes = _borders(whole, sides) if labels else ()
+    placed = place(labels, strokes, around_tips, bounds, [scale * d for d in _DISTANCES], skip)
     return [
         Arrow(sliver, one.label.text, tip, (one.center[0] / sides[0], one.center[1] / sides[1]), size, one.clear)
         for (sliver, _), tip, one in zip(named, tips, placed, strict=True)
     ]  # fmt: skip
+
+
+def _borders(whole: Shapes, sides: Size) -> Iterator[Stroke]:
+    """What labels are not to cover: where counts change, roughly."""
+    lines = [line for _, separates, line in whole.walls(_ROUGHLY) if separates]
+    lines += [simplified_line(line, _ROUGHLY) for line in whole.edges()]
+    for line in lines:
+        yield from polyline((line * sides).tolist(), 0.5)
 
 
 def counts_of(result: RegionMap) -> list[str]:
@@ -390,31 +381,8 @@ def arrows_of(
     slivers = ranked(whole, [Sliver(n, inside(whole, n)) for n in thin], thin)
     named = [(sliver, said[sliver.region]) for sliver in slivers]
     points = (72 * sides[0], 72 * sides[1])
-    found = [arrow for arrow in arrows(whole, named, said, points, size) if arrow.clear]
+    found = [arrow for arrow in arrows(whole, named, points, size) if arrow.clear]
     return found, len(thin) - len(found)
-
-
-def _passed(image: NDArray[np.int64], a: Position, b: Position, sides: Size) -> int:
-    """How many other regions than one an arrow passes, from its tip to its label's centre."""
-    steps = np.linspace(0.0, 1.0, 24)
-    row, column = (
-        np.clip(
-            (a[k] + (b[k] - a[k]) * steps) / sides[k] * image.shape[1 - k],
-            0,
-            image.shape[1 - k] - 1,
-        ).astype(int)
-        for k in (1, 0)
-    )
-    return len(np.unique(image[row, column])) - 1
-
-
-def _covered(image: NDArray[np.int64], box: Box, sides: Size) -> list[int]:
-    """The regions that the box covers."""
-    rows, columns = image.shape
-    left, right = (int(min(max(v / sides[0], 0.0), 0.999) * columns) for v in (box[0], box[2]))
-    bottom, top = (int(min(max(v / sides[1], 0.0), 0.999) * rows) for v in (box[1], box[3]))
-    found: list[int] = np.unique(image[bottom : top + 1, left : right + 1]).tolist()
-    return found
 
 
 def draw_arrows(axes: Any, found: Iterable[Arrow], scale: float) -> None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -54,34 +54,17 @@ _SEAM = 0.3
 """Points by which triangles overlap, so that no gap is seen between them."""
 
 
-class Camera(NamedTuple):
-    """How the box is seen, in parallel projection.
-
-    Attributes
-    ----------
-    low, size : the box's corner, and a unit of its coordinates, in data's units; shape (3,).
-    towards : unit vector towards the eye, in the box's coordinates.
-    """
-
-    low: Floats
-    size: Floats
-    towards: Floats
-
-    def boxed(self, points: Floats) -> Floats:
-        """Points in the box's coordinates, from 0 to `BOX`."""
-        return (points - self.low) / self.size
-
-    def unboxed(self, points: Floats) -> Floats:
-        return points * self.size + self.low
-
-
-def camera_of(axes: Any) -> Camera:
-    """That of axes whose limits and direction of view are set."""
+def box_of(axes: Any) -> tuple[Floats, Floats]:
+    """The box's corner, and a unit of its coordinates, from 0 to `BOX`, in data's units."""
     limits = np.array([axes.get_xlim3d(), axes.get_ylim3d(), axes.get_zlim3d()], dtype=float)
+    return limits[:, 0], (limits[:, 1] - limits[:, 0]) / BOX
+
+
+def towards_eye(axes: Any) -> Floats:
+    """Unit vector towards the eye, in parallel projection, in the box's coordinates."""
     elevation, azimuth = np.deg2rad([axes.elev, axes.azim])
     flat = np.cos(elevation)
-    towards = np.array([flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation)])
-    return Camera(limits[:, 0], (limits[:, 1] - limits[:, 0]) / BOX, towards)
+    return np.array([flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation)])
 
 
 def sheet_colours(family: FamilyMap, surface: BoundarySurface, paint: Paint) -> dict[Pair, str]:
@@ -154,18 +137,15 @@ def add_sheets(
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    camera = camera_of(axes)
-    corners = camera.boxed(surface.vertices)[surface.faces]
+    (low, size), towards = box_of(axes), towards_eye(axes)
+    corners = ((surface.vertices - low) / size)[surface.faces]
     plain = np.array([to_rgb(colours[sheet.counts]) for sheet in surface.sheets]).reshape(-1, 3)
     faces = plain[surface.sheet] * _brightness(corners)[:, None]
     corners, faces = halved(corners, faces)
-    ribbons = [
-        _ribbons(camera.boxed(line) + _LIFT * camera.towards, camera.towards, width)
-        for line in curves
-    ]
+    ribbons = [_ribbons((line - low) / size + _LIFT * towards, towards, width) for line in curves]
     lines = np.concatenate([np.zeros((0, 3, 3)), *ribbons])
     lines, inks = halved(lines, np.tile(to_rgb(INK), (len(lines), 1)))
-    pieces = camera.unboxed(np.concatenate([corners, lines]))
+    pieces = np.concatenate([corners, lines]) * size + low
     shades = np.concatenate([faces, inks])
     if len(pieces):
         axes.add_collection3d(

@@ -3,17 +3,6 @@
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
 
-// A table that comes as columns, in which equal entries are written once.
-function unpacked({ length, columns }) {
-  const rows = Array.from({ length }, () => ({}));
-  for (const [name, { of, at, many, rows: inner }] of Object.entries(columns)) {
-    const all = many ? unpacked(inner) : [];
-    rows.forEach((row, k) => { row[name] = many ? all.splice(0, many[k]) : of[!at ? k : at.length ? at[k] : 0]; });
-  }
-  return rows;
-}
-if (DATA.cells) DATA.cells = unpacked(DATA.cells); // the atlas of a sweep has none
-
 function svg(name, attributes, text) {
   const element = document.createElementNS("http://www.w3.org/2000/svg", name);
   for (const key in attributes) element.setAttribute(key, attributes[key]);
