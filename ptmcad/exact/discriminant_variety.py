@@ -29,7 +29,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ptmcad.algebra.bernstein import nowhere_zero
-from ptmcad.algebra.groebner import GroebnerBasis, MonomialOrder, groebner_basis
+from ptmcad.algebra.groebner import GroebnerBasis, groebner_basis
 from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
     Coefficient,
@@ -305,9 +305,7 @@ def harmless(
     proved = [f for f in suspects if bounded_away_from_zero(rows, jacobian_norm, f)]
     for permutation in _OTHER_ORDERS:
         if len(proved) < len(suspects) and len(permutation) == equations.unknowns:
-            other = quotient_algebra(
-                groebner_basis(equations.equations, MonomialOrder(permutation))
-            )
+            other = quotient_algebra(groebner_basis(equations.equations, permutation))
             assert other is not None  # the ideal is zero-dimensional in any order
             rows = multiples(other, equations.jacobian)
             proved += [
@@ -347,4 +345,4 @@ def algebra_of(equations: SliceSystem) -> QuotientAlgebra:
 
 def basis_of(equations: SliceSystem) -> GroebnerBasis:
     """The reduced basis, in grevlex order of the coordinates as they come."""
-    return groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns))))
+    return groebner_basis(equations.equations, tuple(range(equations.unknowns)))

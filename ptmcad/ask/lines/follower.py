@@ -34,8 +34,8 @@ from ptmcad.ask.fields.equations import Floats, apart
 from ptmcad.ask.fields.track import Track
 from ptmcad.ask.lines.diagram import Sample
 from ptmcad.ask.lines.landing import CriticalValue, beside, ends_from, landed
-from ptmcad.ask.lines.linesystem import DIGITS, LineSystem, line_system
-from ptmcad.ask.lines.meeting import Meeting, PlacedSolution, guess_of, what_meets
+from ptmcad.ask.lines.linesystem import DIGITS, LineSystem, guess_of, line_system
+from ptmcad.ask.lines.meeting import Meeting, PlacedSolution, what_meets
 from ptmcad.ask.quantities import open_chain
 from ptmcad.errors import ConfigError
 from ptmcad.formulas.continuation import BITS, Reached, at_value, bridge, follow
