@@ -125,16 +125,8 @@ def discriminant_variety(
     unbounded = poles(algebra, doubtful, equations.unbounded, [*hidden, *proved])
     for factors, why in ((hidden, NO_POINT), (proved, HARMLESS), (doubtful, "")):
         seen.adopt([f for f in factors if f in unbounded], Kind.INFINITY, why)
-    if "sign-curve" in without:
-        for order in range(1, on.system.criterion.order):
-            minor = element_on_slice(on.system, leading_minor(on.system, order), on.parameters)
-            seen.adopt(
-                irreducible_factors(norm(algebra, lifted(minor, equations.unknowns))[0]),
-                Kind.AUXILIARY,
-            )
-    if "hermite-matrix" in without:
-        for part in determinant(trace_form(algebra)):
-            seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
+    for polynomial in _superfluous(on, equations, algebra, without):
+        seen.adopt(irreducible_factors(polynomial), Kind.AUXILIARY)
     components = tuple(
         replace(c, continuum=continuum(from_plane(c.polynomial), on, given, jacobian_norm[0]))
         if not c.left_out
@@ -142,6 +134,18 @@ def discriminant_variety(
         for c in seen.in_order()
     )
     return DiscriminantVariety(components, algebra.dimension, equations.unknowns > given.unknowns)
+
+
+def _superfluous(
+    on: SystemOnAxes, equations: SliceSystem, algebra: QuotientAlgebra, without: frozenset[str]
+) -> Iterator[Coefficient]:
+    """What two savings leave out."""
+    if "sign-curve" in without:
+        for order in range(1, on.system.criterion.order):
+            minor = element_on_slice(on.system, leading_minor(on.system, order), on.parameters)
+            yield norm(algebra, lifted(minor, equations.unknowns))[0]
+    if "hermite-matrix" in without:
+        yield from determinant(trace_form(algebra))
 
 
 def check_hypotheses(on: SystemOnAxes) -> None:
