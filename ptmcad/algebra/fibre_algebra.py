@@ -281,14 +281,10 @@ def _represented(
     for _ in range(degree - 1):
         row = row * step
         traces_of_powers += row.entries()
+    one = [fmpq(int(i == 0)) for i in range(size)]
+    forms = zip(one, *([m[i, 0] for i in range(size)] for m in algebra.multiplication), strict=True)
     columns, column_denominator = fmpq_mat(
-        size,
-        count + 1,
-        [
-            c
-            for i in range(size)
-            for c in (fmpq(int(i == 0)), *(m[i, 0] for m in algebra.multiplication))
-        ],
+        size, count + 1, [c for row in forms for c in row]
     ).numer_denom()
     traces = fmpz_mat(degree, size, traces_of_powers) * columns
     # rows of coefficients: the quotients of the radical by T, T^2, and so on
