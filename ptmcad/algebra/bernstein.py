@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any
 
 from flint import fmpq, fmpz_mat, fmpz_poly
 
@@ -25,19 +25,15 @@ Terms = Iterable[tuple[tuple[Any, ...], Any]]
 """Exponents of three variables, with coefficients."""
 
 
-class Table(NamedTuple):
-    """A polynomial, not zero, in powers of its variables: for each power of the third a matrix of
-    the other two's.
+Table = tuple[fmpz_mat, ...]
+"""A polynomial, not zero, in powers of its three variables: for each power of the third a matrix that
+has the first one's powers as its rows, and the second one's as its columns.
+"""
 
-    Attributes
-    ----------
-    degrees : in the three variables.
-    layers : the matrix of number k has the first variable's powers as its rows, the second one's as
-        its columns.
-    """
 
-    degrees: tuple[int, int, int]
-    layers: tuple[fmpz_mat, ...]
+def _degrees(table: Table) -> tuple[int, int, int]:
+    """In the three variables."""
+    return table[0].nrows() - 1, table[0].ncols() - 1, len(table) - 1
 
 
 def table_of(terms: Terms) -> Table:
@@ -47,7 +43,7 @@ def table_of(terms: Terms) -> Table:
     layers = tuple(fmpz_mat(n + 1, m + 1) for _ in range(top + 1))
     for (i, j, k), c in known:
         layers[k][i, j] = c
-    return Table((n, m, top), layers)
+    return layers
 
 
 def over(table: Table, box: Sequence[Interval]) -> Table:
@@ -58,31 +54,30 @@ def over(table: Table, box: Sequence[Interval]) -> Table:
     box : the ranges of the three variables; of one that does not occur any will do.
     """
     matrices = [
-        _substitution(degree, interval) for degree, interval in zip(table.degrees, box, strict=True)
+        _substitution(degree, interval)
+        for degree, interval in zip(_degrees(table), box, strict=True)
     ]
     right = matrices[1].transpose()
-    sides = [matrices[0] * layer * right for layer in table.layers]
-    return Table(table.degrees, tuple(_combined(matrices[2], sides)))
+    sides = [matrices[0] * layer * right for layer in table]
+    return tuple(_combined(matrices[2], sides))
 
 
 def halves(table: Table) -> tuple[Table, Table]:
     """The coefficients over the lower and the upper half of the first variable's range, up to
     positive factors.
     """
-    lower, upper = _halving(table.degrees[0])
-    return (
-        table._replace(layers=tuple(lower * layer for layer in table.layers)),
-        table._replace(layers=tuple(upper * layer for layer in table.layers)),
-    )
+    lower, upper = _halving(_degrees(table)[0])
+    return tuple(lower * layer for layer in table), tuple(upper * layer for layer in table)
 
 
 def quarters(table: Table) -> Iterator[Table]:
     """The coefficients over the quarters of the first two variables' ranges, up to positive
     factors.
     """
-    for across, up in product(_halving(table.degrees[0]), _halving(table.degrees[1])):
+    n, m, _ = _degrees(table)
+    for across, up in product(_halving(n), _halving(m)):
         transposed = up.transpose()
-        yield table._replace(layers=tuple(across * layer * transposed for layer in table.layers))
+        yield tuple(across * layer * transposed for layer in table)
 
 
 def sign(table: Table) -> int:
@@ -93,19 +88,16 @@ def sign(table: Table) -> int:
     ----------
     table : of coefficients over the box.
     """
-    n, m, _ = table.degrees
+    n, m, _ = _degrees(table)
     found = 0
-    for layer in (
-        table.layers[0],
-        table.layers[-1],
-    ):  # values at the corners, most often of different signs
+    for layer in (table[0], table[-1]):  # values at the corners, most often of different signs
         for i in (0, n):
             for j in (0, m):
                 value = layer[i, j]
                 if value and found * value < 0:
                     return 0
                 found = found or (int(value > 0) - int(value < 0))
-    for layer in table.layers:
+    for layer in table:
         for value in layer.entries():
             if value:
                 if not found:
@@ -125,9 +117,10 @@ def on_lines(tables: Iterable[Table], at: tuple[fmpq, fmpq]) -> UnivariatePolyno
     """
     total = fmpz_poly([1])
     for table in tables:
-        columns = [at[0] ** j for j in range(table.degrees[1] + 1)]
-        rows = [fmpq(0)] * (table.degrees[0] + 1)
-        for k, layer in enumerate(table.layers):
+        n, m, _ = _degrees(table)
+        columns = [at[0] ** j for j in range(m + 1)]
+        rows = [fmpq(0)] * (n + 1)
+        for k, layer in enumerate(table):
             height = at[1] ** k
             for i in range(len(rows)):
                 rows[i] += sum(
@@ -194,10 +187,10 @@ def nowhere_zero(p: Coefficient, box: Sequence[Interval], depth: int = 4) -> boo
 
 def _is_free(table: Table, depth: int) -> bool:
     """Whether the quarters of a rectangle are proved to be free of zeros, their boundaries too."""
-    corners = table.layers[0].entries()
+    corners = table[0].entries()
     if depth == 0 or corners[0] * corners[-1] <= 0:
         return False
     return all(
-        (sign(part) and all(part.layers[0].entries())) or _is_free(part, depth - 1)
+        (sign(part) and all(part[0].entries())) or _is_free(part, depth - 1)
         for part in quarters(table)
     )

@@ -1,8 +1,9 @@
-"""Branches of a plane curve near a point and over a short interval: on which side of a line, and
-how steep.
+"""Branches of a plane curve near a point and over a short interval: on which side of a line, how
+steep, and where they have a given direction.
 
 Guarantee: answers of `side_of_chord` are proved; enclosures of slopes contain them for every
-abscissa of the panel; None means not proved.
+abscissa of the panel; None means not proved. No point of the curve off the real roots of
+`tangent_resultant` has the direction.
 
 A chord starts at a point (u0, v0) of the curve p = 0, u0 rational, v0 algebraic: v = v0 + s
 (u - u0). The coefficients of p(u0 + t, v0 + s t) by powers of t are polynomials in v0; which of
@@ -15,10 +16,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flint import Ordering, arb, arb_poly, ctx, fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
+from flint import (
+    Ordering,
+    arb,
+    arb_poly,
+    ctx,
+    fmpq,
+    fmpq_mpoly_ctx,
+    fmpq_poly,
+    fmpz_mpoly,
+    fmpz_poly,
+)
 
-from ptmcad.algebra.curve_branches import local_coefficients
-from ptmcad.algebra.real_roots import RealRoot, avoids, refine
+from ptmcad.algebra.polynomials import Coefficient, coefficients_in, local_coefficients
+from ptmcad.algebra.real_roots import RealRoot, avoids, refine, squarefree_part
+from ptmcad.algebra.resultants import resultant
 
 _TWO: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("v", "t"), Ordering.degrevlex)
 _DEPTH = 12
@@ -132,3 +144,29 @@ def slope_over(
         )
         second = -(p_vv * first * first + 2 * p_uv * first + p_uu) / p_v
         return (first, second) if first.is_finite() and second.is_finite() else None
+
+
+Direction = tuple[int, int]
+"""(dx, dy), not both zero: (1, 0) is horizontal, where the curve folds over the y-axis."""
+
+
+def tangency(p: Coefficient, direction: Direction) -> fmpz_mpoly:
+    """The polynomial dx p_x + dy p_y: on p = 0 it vanishes where that is tangent, and at singular
+    points.
+    """
+    return p.derivative(0) * direction[0] + p.derivative(1) * direction[1]
+
+
+def tangent_resultant(p: Coefficient, direction: Direction) -> fmpz_poly:
+    """The squarefree polynomial in y that vanishes where p = 0 has such a (complex) point or a
+    singular one.
+
+    Raises
+    ------
+    ArithmeticError When there are infinitely many: the curve contains a line of that direction, or
+        a multiple component.
+    """
+    eliminated = resultant(coefficients_in(p, 0), coefficients_in(tangency(p, direction), 0))
+    if not eliminated:
+        raise ArithmeticError("the curve contains a line of the direction, or a multiple component")
+    return squarefree_part(eliminated)

@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
 
-from ptmcad.algebra.polynomials import shifted
+from ptmcad.algebra.polynomials import local_coefficients
 from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 
 DERIVATIVE_BITS = 24
@@ -304,20 +304,6 @@ def _length(
                     (value / arb(radius) ** number, slope / arb(radius) ** number),
                 )
     return length, beyond
-
-
-def local_coefficients(
-    in_v: Sequence[fmpz_poly],
-    middle: fmpq | arb,
-    radius: fmpq | arb,
-    origin: fmpq | arb,
-    number: int | None = None,
-) -> list[arb_poly]:
-    """Coefficients b_i(h) of p(middle + radius h, origin + w) = sum_i b_i(h) w^i: all, or so many
-    first ones.
-    """
-    line = arb_poly([arb(middle), arb(radius)])
-    return shifted([arb_poly(c)(line) for c in in_v], arb(origin), number)
 
 
 def _series(local: Sequence[arb_poly], order: int) -> arb_poly:

@@ -253,41 +253,58 @@ def univariate_representation(
             different = hermite_matrix(algebra, scalar_matrix(size, fmpq(1))).rank()
         if degree not in (size, different):
             continue
-        powers = [denominator**i for i in range(size + 1)]
-        row, row_denominator = _basis_traces(algebra)
-        traces_of_powers = row.entries()
-        for _ in range(degree - 1):
-            row = row * step
-            traces_of_powers += row.entries()
-        columns, column_denominator = fmpq_mat(
-            size,
-            count + 1,
-            [
-                c
-                for i in range(size)
-                for c in (fmpq(int(i == 0)), *(m[i, 0] for m in algebra.multiplication))
-            ],
-        ).numer_denom()
-        traces = fmpz_mat(degree, size, traces_of_powers) * columns
-        # rows of coefficients: the quotients of the radical by T, T^2, and so on
-        padded = [*radical.coeffs(), *[fmpz(0)] * degree]
-        hankel = fmpz_mat(
-            degree, degree, [c for i in range(1, degree + 1) for c in padded[i : i + degree]]
-        )
-        totals = (hankel * traces).entries()
-        scale = fmpq(1, row_denominator * column_denominator)
-        slope, *coordinates = (
-            fmpq_poly(_stretched(totals[k :: count + 1], powers)) * scale for k in range(count + 1)
-        )
-        minimal, whole = (_stretched(p.coeffs(), powers) for p in (radical, characteristic))
-        return UnivariateRepresentation(
-            minimal // minimal.content(),
-            tuple(coordinates),
-            slope,
-            weights,
-            whole // whole.content(),
-        )
+        return _represented(algebra, weights, (step, denominator), characteristic, radical)
     return None
+
+
+def _represented(
+    algebra: FibreAlgebra,
+    weights: tuple[int, ...],
+    form: tuple[fmpz_mat, fmpz],
+    characteristic: fmpz_poly,
+    radical: fmpz_poly,
+) -> UnivariateRepresentation:
+    """The representation by a form that separates the solutions.
+
+    Parameters
+    ----------
+    weights : of the unknowns in the form.
+    form : the matrix of multiplication by it, times a denominator, and this.
+    characteristic : of that matrix.
+    radical : its squarefree part.
+    """
+    size, count, degree = algebra.dimension, len(algebra.multiplication), radical.degree()
+    step, denominator = form
+    powers = [denominator**i for i in range(size + 1)]
+    row, row_denominator = _basis_traces(algebra)
+    traces_of_powers = row.entries()
+    for _ in range(degree - 1):
+        row = row * step
+        traces_of_powers += row.entries()
+    one = [fmpq(int(i == 0)) for i in range(size)]
+    forms = zip(one, *([m[i, 0] for i in range(size)] for m in algebra.multiplication), strict=True)
+    columns, column_denominator = fmpq_mat(
+        size, count + 1, [c for row in forms for c in row]
+    ).numer_denom()
+    traces = fmpz_mat(degree, size, traces_of_powers) * columns
+    # rows of coefficients: the quotients of the radical by T, T^2, and so on
+    padded = [*radical.coeffs(), *[fmpz(0)] * degree]
+    hankel = fmpz_mat(
+        degree, degree, [c for i in range(1, degree + 1) for c in padded[i : i + degree]]
+    )
+    totals = (hankel * traces).entries()
+    scale = fmpq(1, row_denominator * column_denominator)
+    slope, *coordinates = (
+        fmpq_poly(_stretched(totals[k :: count + 1], powers)) * scale for k in range(count + 1)
+    )
+    minimal, whole = (_stretched(p.coeffs(), powers) for p in (radical, characteristic))
+    return UnivariateRepresentation(
+        minimal // minimal.content(),
+        tuple(coordinates),
+        slope,
+        weights,
+        whole // whole.content(),
+    )
 
 
 def _stretched(coefficients: Sequence[fmpz], powers: Sequence[fmpz]) -> fmpz_poly:

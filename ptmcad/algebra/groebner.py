@@ -27,22 +27,19 @@ from ptmcad.algebra.polynomials import (
     ratio,
 )
 
+Order = tuple[int, ...]
+"""The graded reverse lexicographic order for the unknowns taken in the order of this permutation."""
+
 
 def grevlex_key(m: Monomial) -> tuple[int, ...]:
     """Greater for the greater monomial in the graded reverse lexicographic order."""
     return (sum(m), *(-e for e in reversed(m)))
 
 
-class MonomialOrder(NamedTuple):
-    """Graded reverse lexicographic order for the unknowns taken in the order of ``permutation``."""
-
-    permutation: tuple[int, ...]
-
-    def key(self, monomial: Monomial) -> tuple[int, ...]:
-        return (sum(monomial), *(-monomial[k] for k in reversed(self.permutation)))
-
-    def leading(self, p: UnknownPolynomial) -> Monomial:
-        return max(p, key=self.key)
+def order_key(order: Order) -> Callable[[Monomial], tuple[int, ...]]:
+    """Greater for the greater monomial in an order."""
+    backwards = order[::-1]
+    return lambda m: (sum(m), *(-m[k] for k in backwards))
 
 
 class GroebnerBasis(NamedTuple):
@@ -55,13 +52,13 @@ class GroebnerBasis(NamedTuple):
         once.
     """
 
-    order: MonomialOrder
+    order: Order
     elements: tuple[UnknownPolynomial, ...]
     leading: tuple[Monomial, ...]
     removed: tuple[Coefficient, ...] = ()
 
 
-def groebner_basis(generators: Sequence[UnknownPolynomial], order: MonomialOrder) -> GroebnerBasis:
+def groebner_basis(generators: Sequence[UnknownPolynomial], order: Order) -> GroebnerBasis:
     """The reduced Groebner basis over Q(x, y) of the ideal that the generators span.
 
     Parameters
@@ -69,21 +66,20 @@ def groebner_basis(generators: Sequence[UnknownPolynomial], order: MonomialOrder
     generators : polynomials in the unknowns with coefficients in Z[x, y]; empty ones are zero and
         ignored.
     """
+    key = order_key(order)
     basis: list[tuple[UnknownPolynomial, Monomial]] = []
     pairs: set[tuple[int, int]] = set()
     removed: list[Coefficient] = []
 
     def adjoin(p: UnknownPolynomial) -> None:
         pairs.update((i, len(basis)) for i in range(len(basis)))
-        basis.append((p, order.leading(p)))
+        basis.append((p, max(p, key=key)))
 
     for generator in generators:
         if generator:
             adjoin(generator)
     while pairs:
-        i, j = min(
-            pairs, key=lambda pair: (order.key(_join(basis[pair[0]][1], basis[pair[1]][1])), pair)
-        )
+        i, j = min(pairs, key=lambda pair: (key(_join(basis[pair[0]][1], basis[pair[1]][1])), pair))
         pairs.discard((i, j))
         (p, lead_p), (q, lead_q) = basis[i], basis[j]
         join = _join(lead_p, lead_q)
@@ -97,7 +93,7 @@ def groebner_basis(generators: Sequence[UnknownPolynomial], order: MonomialOrder
             for k in range(len(basis))
         ):
             continue  # chain criterion: both pairs with k have been dealt with
-        remainder = _reduce(_s_polynomial(p, lead_p, q, lead_q, join), basis, order, removed)
+        remainder = _reduce(_s_polynomial(p, lead_p, q, lead_q, join), basis, key, removed)
         if remainder:
             adjoin(remainder)
     return _reduced(basis, order, removed)
@@ -184,13 +180,13 @@ def _primitive(
 def _reduce(
     p: UnknownPolynomial,
     basis: Sequence[tuple[UnknownPolynomial, Monomial]],
-    order: MonomialOrder,
+    key: Callable[[Monomial], tuple[int, ...]],
     removed: list[Coefficient],
 ) -> UnknownPolynomial:
     """The full remainder of p, primitive; p is scaled by leading coefficients on the way."""
     rest, done = _primitive(p, {}, removed)
     while rest:
-        top = order.leading(rest)
+        top = max(rest, key=key)
         divisor = next(((q, m) for q, m in basis if divides(m, top)), None)
         if divisor is None:
             done[top] = rest.pop(top)
@@ -206,7 +202,7 @@ def _reduce(
 
 def _reduced(
     basis: Sequence[tuple[UnknownPolynomial, Monomial]],
-    order: MonomialOrder,
+    order: Order,
     removed: list[Coefficient],
 ) -> GroebnerBasis:
     minimal = [
@@ -218,6 +214,8 @@ def _reduced(
     ]
     elements, leading = [], []
     for index, (p, m) in enumerate(minimal):
-        elements.append(_reduce(p, minimal[:index] + minimal[index + 1 :], order, removed))
+        elements.append(
+            _reduce(p, minimal[:index] + minimal[index + 1 :], order_key(order), removed)
+        )
         leading.append(m)
     return GroebnerBasis(order, tuple(elements), tuple(leading), tuple(removed))

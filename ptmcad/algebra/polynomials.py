@@ -15,6 +15,8 @@ from typing import Any
 
 from flint import (
     Ordering,
+    arb,
+    arb_poly,
     fmpq,
     fmpq_mpoly,
     fmpq_mpoly_ctx,
@@ -238,6 +240,20 @@ def shifted(rows: Sequence[Any], by: Any, number: int | None = None) -> list[Any
         for i in range(len(found) - 2, start - 1, -1):
             found[i] = found[i] + found[i + 1] * by
     return found[:number]
+
+
+def local_coefficients(
+    in_v: Sequence[fmpz_poly],
+    middle: fmpq | arb,
+    radius: fmpq | arb,
+    origin: fmpq | arb,
+    number: int | None = None,
+) -> list[arb_poly]:
+    """Coefficients b_i(h) of p(middle + radius h, origin + w) = sum_i b_i(h) w^i: all, or so many
+    first ones.
+    """
+    line = arb_poly([arb(middle), arb(radius)])
+    return shifted([arb_poly(c)(line) for c in in_v], arb(origin), number)
 
 
 class Restrictions:

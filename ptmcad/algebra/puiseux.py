@@ -26,10 +26,9 @@ from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 from ptmcad.algebra.curve_branches import (
     SeriesTube,
     TooFewBits,
-    local_coefficients,
     tube_around,
 )
-from ptmcad.algebra.polynomials import shifted
+from ptmcad.algebra.polynomials import local_coefficients, shifted
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.text.flint_numbers import simplest_between
 

@@ -16,7 +16,7 @@ from functools import lru_cache
 from operator import add
 from typing import NamedTuple
 
-from ptmcad.algebra.groebner import GroebnerBasis, divides, shifted
+from ptmcad.algebra.groebner import GroebnerBasis, divides, order_key, shifted
 from ptmcad.algebra.plane_determinants import characteristic, determinant, least_assignment
 from ptmcad.algebra.polynomials import (
     Coefficient,
@@ -99,7 +99,7 @@ class QuotientAlgebra(NamedTuple):
 
 def quotient_algebra(groebner: GroebnerBasis) -> QuotientAlgebra | None:
     """The quotient by the ideal; None when it is not zero-dimensional."""
-    unknowns = len(groebner.order.permutation)
+    unknowns = len(groebner.order)
     basis = standard_monomials(groebner.leading, unknowns)
     if basis is None:
         return None
@@ -113,7 +113,7 @@ def quotient_algebra(groebner: GroebnerBasis) -> QuotientAlgebra | None:
     rules = dict(zip(groebner.leading, groebner.elements, strict=True))
     algebra = QuotientAlgebra(basis, table, zero, one)
     border = border_of(basis)
-    for m in sorted(border, key=groebner.order.key):
+    for m in sorted(border, key=order_key(groebner.order)):
         if m in rules:
             row = [zero] * len(basis)
             for n, c in rules[m].items():

@@ -14,7 +14,8 @@ of the tables.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from itertools import islice
 from time import process_time
 from typing import NamedTuple
@@ -99,14 +100,14 @@ def sizes(
     """
     end = process_time() + seconds
     limits = problem.on.limits
-    probe = _Probe(problem.on, solutions, most)
-    usual = probe.at(_GENERIC)
+    system_at = partial(_system_at, problem.on, solutions, most)
+    usual = system_at(_GENERIC)
     if usual is None:
         return None
     found, tables = [], []
     for line in _LINES:
         known = [restricted(p, (_place(0, line), _place(1, line)), next(primes())) for p in limits]
-        values = probe.values(line, usual.algebra.basis)
+        values = _values(system_at, line, usual.algebra.basis)
         seen = _sizes_on(values, [g for g in known if g.degree() > 0], end)
         if seen is None:
             return None
@@ -117,7 +118,7 @@ def sizes(
     degrees = x.degree, y.degree
     # where solutions are lost on such a line they go to infinity there: no critical component
     lines = [
-        n.has_zero and probe.at(at) is not None
+        n.has_zero and system_at(at) is not None
         for n, at in ((x, (fmpq(0), _GENERIC[1])), (y, (_GENERIC[0], fmpq(0))))
     ]
     of_tables = tables[1], tables[2], max(tables)
@@ -137,38 +138,39 @@ is the usual.
 """
 
 
-class _Probe(NamedTuple):
-    """What is asked at points: the system, where it has as many solutions as at a generic one."""
+_SystemAt = Callable[[Sample], PointSystem | None]
+"""The system at a point; None where solutions are lost."""
 
-    on: SystemOnAxes
-    solutions: int
-    most: WorkLimit | None
 
-    def at(self, at: Sample) -> PointSystem | None:
-        """The system at a point; None where solutions are lost."""
-        try:
-            point = point_system(self.on.system, self.on.values(at), most=self.most)
-        except (ZeroDivisionError, DegeneratePoint, LimitReached):
-            return None
-        return point if point.algebra.dimension == self.solutions else None
+def _system_at(
+    on: SystemOnAxes, solutions: int, most: WorkLimit | None, at: Sample
+) -> PointSystem | None:
+    try:
+        point = point_system(on.system, on.values(at), most=most)
+    except (ZeroDivisionError, DegeneratePoint, LimitReached):
+        return None
+    return point if point.algebra.dimension == solutions else None
 
-    def values(self, line: tuple[int, int], basis: Sequence[Monomial]) -> Iterator[_Value]:
-        """Values modulo a prime; points over which solutions are lost are left out."""
-        prime = next(primes())
-        for t in range(MAX_POINTS):
-            s = (t + 1) // 2 * (-1) ** t
-            x, y = _place(s, line)
-            point = self.at((fmpq(x), fmpq(y)))
-            tables = None if point is None else _residues(point.algebra, prime)
-            if point is None or tables is None:
-                continue
-            entries = [int(c) for table in tables for c in table.entries()]
-            usual_here = point.algebra.basis == basis
-            yield (
-                s,
-                _norm(tables, point.jacobian, prime),
-                weighted(entries, prime) if usual_here else None,
-            )
+
+def _values(
+    system_at: _SystemAt, line: tuple[int, int], basis: Sequence[Monomial]
+) -> Iterator[_Value]:
+    """Values modulo a prime; points over which solutions are lost are left out."""
+    prime = next(primes())
+    for t in range(MAX_POINTS):
+        s = (t + 1) // 2 * (-1) ** t
+        x, y = _place(s, line)
+        point = system_at((fmpq(x), fmpq(y)))
+        tables = None if point is None else _residues(point.algebra, prime)
+        if point is None or tables is None:
+            continue
+        entries = [int(c) for table in tables for c in table.entries()]
+        usual_here = point.algebra.basis == basis
+        yield (
+            s,
+            _norm(tables, point.jacobian, prime),
+            weighted(entries, prime) if usual_here else None,
+        )
 
 
 def _residues(algebra: FibreAlgebra, prime: int) -> list[nmod_mat] | None:

@@ -29,7 +29,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ptmcad.algebra.bernstein import nowhere_zero
-from ptmcad.algebra.groebner import GroebnerBasis, MonomialOrder, groebner_basis
+from ptmcad.algebra.groebner import GroebnerBasis, groebner_basis
 from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
     Coefficient,
@@ -125,16 +125,8 @@ def discriminant_variety(
     unbounded = poles(algebra, doubtful, equations.unbounded, [*hidden, *proved])
     for factors, why in ((hidden, NO_POINT), (proved, HARMLESS), (doubtful, "")):
         seen.adopt([f for f in factors if f in unbounded], Kind.INFINITY, why)
-    if "sign-curve" in without:
-        for order in range(1, on.system.criterion.order):
-            minor = element_on_slice(on.system, leading_minor(on.system, order), on.parameters)
-            seen.adopt(
-                irreducible_factors(norm(algebra, lifted(minor, equations.unknowns))[0]),
-                Kind.AUXILIARY,
-            )
-    if "hermite-matrix" in without:
-        for part in determinant(trace_form(algebra)):
-            seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
+    for polynomial in _superfluous(on, equations, algebra, without):
+        seen.adopt(irreducible_factors(polynomial), Kind.AUXILIARY)
     components = tuple(
         replace(c, continuum=continuum(from_plane(c.polynomial), on, given, jacobian_norm[0]))
         if not c.left_out
@@ -142,6 +134,18 @@ def discriminant_variety(
         for c in seen.in_order()
     )
     return DiscriminantVariety(components, algebra.dimension, equations.unknowns > given.unknowns)
+
+
+def _superfluous(
+    on: SystemOnAxes, equations: SliceSystem, algebra: QuotientAlgebra, without: frozenset[str]
+) -> Iterator[Coefficient]:
+    """What two savings leave out."""
+    if "sign-curve" in without:
+        for order in range(1, on.system.criterion.order):
+            minor = element_on_slice(on.system, leading_minor(on.system, order), on.parameters)
+            yield norm(algebra, lifted(minor, equations.unknowns))[0]
+    if "hermite-matrix" in without:
+        yield from determinant(trace_form(algebra))
 
 
 def check_hypotheses(on: SystemOnAxes) -> None:
@@ -305,9 +309,7 @@ def harmless(
     proved = [f for f in suspects if bounded_away_from_zero(rows, jacobian_norm, f)]
     for permutation in _OTHER_ORDERS:
         if len(proved) < len(suspects) and len(permutation) == equations.unknowns:
-            other = quotient_algebra(
-                groebner_basis(equations.equations, MonomialOrder(permutation))
-            )
+            other = quotient_algebra(groebner_basis(equations.equations, permutation))
             assert other is not None  # the ideal is zero-dimensional in any order
             rows = multiples(other, equations.jacobian)
             proved += [
@@ -347,4 +349,4 @@ def algebra_of(equations: SliceSystem) -> QuotientAlgebra:
 
 def basis_of(equations: SliceSystem) -> GroebnerBasis:
     """The reduced basis, in grevlex order of the coordinates as they come."""
-    return groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns))))
+    return groebner_basis(equations.equations, tuple(range(equations.unknowns)))

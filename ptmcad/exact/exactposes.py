@@ -75,6 +75,11 @@ def exact_poses(
     # of equal energies the larger value of the separating form comes first, in which ``found``
     # increases
     order = sorted(range(len(poses)), key=lambda k: (poses[k].stable is not True, energies[k], -k))
+    remarks = [
+        "" if degenerate else _remark(found, coinciding),
+        BY_MSOLVE if point.algebra.by_msolve else "",
+        *_vanishing(given, known, [solutions[k] for k in order]),
+    ]
     return Poses(
         given,
         parameters,
@@ -82,18 +87,7 @@ def exact_poses(
         Status.ON_VARIETY if degenerate else Status.EXACT,
         digits,
         max((bits for _, bits in results), default=0),
-        "; ".join(
-            [
-                *filter(
-                    None,
-                    [
-                        "" if degenerate else _remark(found, coinciding),
-                        BY_MSOLVE if point.algebra.by_msolve else "",
-                    ],
-                ),
-                *_vanishing(given, known, [solutions[k] for k in order]),
-            ]
-        ),
+        "; ".join(filter(None, remarks)),
     )
 
 

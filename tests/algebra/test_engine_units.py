@@ -22,7 +22,7 @@ from ptmcad import load
 from ptmcad.algebra.bernstein import nowhere_zero
 from ptmcad.algebra.fibre_algebra import evaluate as multiplication
 from ptmcad.algebra.fibre_algebra import fibre
-from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
+from ptmcad.algebra.groebner import groebner_basis
 from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
     PLANE,
@@ -339,7 +339,7 @@ def test_basis_specialises_to_flints(name: str) -> None:
     there.
     """
     _, equations = slice_system(name)
-    order = MonomialOrder(tuple(range(equations.unknowns)))
+    order = tuple(range(equations.unknowns))
     basis = groebner_basis(equations.equations, order)
     for x, y in POINTS:
         ours = []
@@ -362,7 +362,7 @@ def test_norm_is_the_product_over_the_fibre(name: str) -> None:
     """
     parameters, equations = slice_system(name)
     algebra = quotient_algebra(
-        groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns))))
+        groebner_basis(equations.equations, tuple(range(equations.unknowns)))
     )
     assert algebra is not None
     above, below = norm(algebra, equations.jacobian)
@@ -407,7 +407,7 @@ def test_poles_by_characteristic_polynomials_are_those_by_power_traces(name: str
     problem = problem_of(load(CONFIGS / f"{name}.yaml"))
     equations = on_slice(problem.system, problem.on.parameters)
     algebra = quotient_algebra(
-        groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns))))
+        groebner_basis(equations.equations, tuple(range(equations.unknowns)))
     )
     assert algebra is not None
     suspects = irreducible_factors(multiplication_denominator(algebra))
@@ -424,7 +424,7 @@ def test_a_pole_that_the_line_does_not_show_is_found_in_the_plane() -> None:
     """The only root is (y - x - 1009)/f, and nothing on the line y = x + 1009: of f = x, so only a
     suspect is found.
     """
-    basis = groebner_basis([{(1,): X, (0,): X + LINE - Y}], MonomialOrder((0,)))
+    basis = groebner_basis([{(1,): X, (0,): X + LINE - Y}], (0,))
     algebra = quotient_algebra(basis)
     assert algebra is not None
     assert poles(algebra, [X], (0,)) == [X]

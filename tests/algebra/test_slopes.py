@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from flint import fmpq
 
+from ptmcad.algebra.chords import Direction, tangent_resultant
 from ptmcad.algebra.polynomials import from_plane
 from ptmcad.algebra.real_roots import isolate
-from ptmcad.algebra.slopes import Direction, tangent_resultant
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.text.plane import PlanePolynomial
 

@@ -9,7 +9,7 @@ import pytest
 from flint import fmpq
 
 import ptmcad
-from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
+from ptmcad.algebra.groebner import groebner_basis
 from ptmcad.algebra.polynomials import SPACE, UnknownPolynomial, at_third
 from ptmcad.ask.members import Common, in_common, member_map
 from ptmcad.errors import PtmcadError
@@ -120,7 +120,7 @@ def test_divisions_on_the_way_are_noted() -> None:
     z, one = SPACE.gens()[2], SPACE.constant(1)
     first: UnknownPolynomial = {(2,): z, (0,): -z}
     second: UnknownPolynomial = {(3,): one, (2,): -6 * one, (1,): 11 * one, (0,): -6 * one}
-    basis = groebner_basis([first, second], MonomialOrder((0,)))
+    basis = groebner_basis([first, second], (0,))
     assert basis.leading == ((1,),)
     leading = [g[m] for g, m in zip(basis.elements, basis.leading, strict=True)]
     assert any(at_third(unit, fmpq(0)).is_zero() for unit in (*basis.removed, *leading))

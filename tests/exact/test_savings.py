@@ -23,7 +23,7 @@ from support.same_maps import difference, exchanged
 from support.shipped_records import EXACT
 
 import ptmcad
-from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
+from ptmcad.algebra.groebner import groebner_basis
 from ptmcad.algebra.polynomials import (
     ONE,
     PLANE,
@@ -166,9 +166,7 @@ def test_maps_that_differ_are_told_apart(shipped: Shipped) -> None:
 def algebra_of(slice: Slice) -> QuotientAlgebra:
     system = system_of("ptm")
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
-    found = quotient_algebra(
-        groebner_basis(on_slice(system, parameters).equations, MonomialOrder((0, 1, 2, 3)))
-    )
+    found = quotient_algebra(groebner_basis(on_slice(system, parameters).equations, (0, 1, 2, 3)))
     assert found is not None
     return found
 
@@ -195,7 +193,7 @@ def test_away_from_zero_where_a_root_is_lost(constant: Coefficient, expected: bo
     """Roots of y u^2 - u + c near y = 0: one is about 1/y, the other about c; with c = y their
     product is 1.
     """
-    basis = groebner_basis([{(2,): Y, (1,): -ONE, (0,): constant}], MonomialOrder((0,)))
+    basis = groebner_basis([{(2,): Y, (1,): -ONE, (0,): constant}], (0,))
     algebra = quotient_algebra(basis)
     assert algebra is not None
     unknown = {(1,): ONE}

@@ -34,8 +34,8 @@ from ptmcad.ask.fields.equations import Floats, apart
 from ptmcad.ask.fields.track import Track
 from ptmcad.ask.lines.diagram import Sample
 from ptmcad.ask.lines.landing import CriticalValue, beside, ends_from, landed
-from ptmcad.ask.lines.linesystem import DIGITS, LineSystem, line_system
-from ptmcad.ask.lines.meeting import Meeting, PlacedSolution, guess_of, what_meets
+from ptmcad.ask.lines.linesystem import DIGITS, LineSystem, guess_of, line_system
+from ptmcad.ask.lines.meeting import Meeting, PlacedSolution, what_meets
 from ptmcad.ask.quantities import open_chain
 from ptmcad.errors import ConfigError
 from ptmcad.formulas.continuation import BITS, Reached, at_value, bridge, follow
@@ -81,14 +81,47 @@ def pose_paths(
 
     Of a system that does not say what a stable solution is, all solutions are followed.
     """
-    varying, _, _ = varying_axis(slice, along, at)
-    axis, begin, model = slice.axes[varying], number_for("--path", start), slice.model
-    if not axis.holds(begin):
+    criterion, begin = slice.model.criterion, number_for("--path", start)
+    follower = _follower(slice, along, at, begin)
+    line = follower.family.line
+    stable = [k for k, pose in enumerate(follower.start.poses, 1) if criterion.works(pose.stable)]
+    if number is not None and number not in stable:
+        what = f"{len(stable)} {criterion.poses}"
         raise ConfigError(
-            f"{begin} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path"
+            f"{number} is none of the {what} at {along} = {begin}, counted from 1", key="--pose"
+        )
+    found = []
+    chosen = stable if number is None else [number]
+    for done, k in enumerate(chosen):
+        if follower.family.lengths and progress is not None:
+            progress("paths: pose", done, len(chosen))
+        found.append(follower.path(k))
+    return PosePaths(
+        slice.name,
+        slice.model,
+        line.along,
+        line.at,
+        begin,
+        tuple(found),
+        moved(slice.model, line.parameters),
+    )
+
+
+def _follower(slice: Slice, along: str, at: Mapping[str, Any], start: Fraction) -> Follower:
+    """The line with its solutions at the start.
+
+    Raises
+    ------
+    ConfigError
+        As `pose_paths`.
+    """
+    axis = slice.axes[varying_axis(slice, along, at)[0]]
+    if not axis.holds(start):
+        raise ConfigError(
+            f"{start} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path"
         )
     enclosed = has_free_lengths(slice, along, at)
-    if enclosed and open_chain(model) is None:
+    if enclosed and open_chain(slice.model) is None:
         raise ConfigError(
             "poses of closed loops are not followed where springs have free lengths: leave --path out, and solve tells "
             "the poses at single points",
@@ -97,29 +130,14 @@ def pose_paths(
     line = line_of(slice, along, at, free=enclosed)
     critical = _changes_on(slice, line, enclosed=enclosed)
     family = line_system(line)
-    untold = enclosed and any(_order(c.at, begin) == 0 for c in critical)
-    here = None if untold else family.solutions.at(begin)
+    is_open = enclosed and any(_order(c.at, start) == 0 for c in critical)
+    here = None if is_open else family.solutions.at(start)
     if here is None:
         doubt = ", or not told from one" * enclosed
         raise ConfigError(
-            f"{along} = {begin} is a critical value{doubt}: start beside it", key="--path"
+            f"{along} = {start} is a critical value{doubt}: start beside it", key="--path"
         )
-    follower = Follower(slice, family, critical, here)
-    stable = [k for k, pose in enumerate(here.poses, 1) if model.criterion.works(pose.stable)]
-    if number is not None and number not in stable:
-        what = f"{len(stable)} {model.criterion.poses}"
-        raise ConfigError(
-            f"{number} is none of the {what} at {along} = {begin}, counted from 1", key="--pose"
-        )
-    found = []
-    chosen = stable if number is None else [number]
-    for done, k in enumerate(chosen):
-        if enclosed and progress is not None:
-            progress("paths: pose", done, len(chosen))
-        found.append(follower.path(k))
-    return PosePaths(
-        slice.name, model, axis, line.at, begin, tuple(found), moved(model, line.parameters)
-    )
+    return Follower(slice, family, critical, here)
 
 
 def _changes_on(slice: Slice, line: Line, *, enclosed: bool) -> tuple[Change, ...]:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from flint import arb, ctx
 
 from ptmcad.algebra.polynomials import Monomial
+from ptmcad.answer.poses import Pose
 from ptmcad.ask.lines.diagram import SolutionsOnLine
 from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import Part, Terms
@@ -21,7 +22,7 @@ from ptmcad.formulas.graph import Formula, Graph, expression_formula
 from ptmcad.model.compile import CompiledSystem
 from ptmcad.question.line import Line, compiled_on
 from ptmcad.question.slice import relaxed_springs
-from ptmcad.text.balls import ball_over
+from ptmcad.text.balls import ball_of, ball_over
 from ptmcad.text.flint_numbers import to_fraction
 
 DIGITS = 12
@@ -160,3 +161,9 @@ def _product(first: Formula, powers: Iterable[tuple[Formula, int]]) -> Formula:
 def coordinates_of(point: Vector, angles: int) -> list[arb]:
     """Cosine and sine of each angle, then the unknowns on the line."""
     return [*(f(a) for a in point[:angles] for f in (arb.cos, arb.sin)), *point[angles:]]
+
+
+def guess_of(pose: Pose) -> Vector:
+    """The middles of a pose's unknowns."""
+    with ctx.workprec(BITS):
+        return tuple(ball_of(a.center) for a in (*pose.angles, *pose.reals))

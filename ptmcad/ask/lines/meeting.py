@@ -20,10 +20,8 @@ from typing import NamedTuple
 
 from flint import arb, arb_mat, ctx
 
-from ptmcad.algebra.polynomials import PLANE
-from ptmcad.answer.poses import Pose
-from ptmcad.ask.lines.linesystem import LineSystem, coordinates_of
-from ptmcad.ask.lines.mirror import Mirror, mirror_of
+from ptmcad.ask.lines.linesystem import LineSystem, coordinates_of, guess_of
+from ptmcad.ask.lines.mirror import QUARTERS, Mirror, mirror_of
 from ptmcad.exact.models.system import on_slice
 from ptmcad.exact.ranges.exactline import system_on
 from ptmcad.formulas.continuation import BITS, Reached, Vector, at_value, bridge
@@ -34,11 +32,6 @@ Range = tuple[arb, arb]
 """The ends of what an unknown may be."""
 _MAX_GROUP = 8
 """Solutions of which all groupings are looked through: of eight there are 4140."""
-_QUARTERS = (
-    Mirror(PLANE.constant(1), PLANE.constant(0)),
-    Mirror(PLANE.constant(0), PLANE.constant(1)),
-)
-"""The lines at which an angle is reflected that becomes its negative, or half a turn less it."""
 _MAX_PIECES = 4000
 _MAX_DEPTH = 60
 """Into how many pieces, and how often, a region's boundary is cut."""
@@ -77,13 +70,10 @@ class Meeting(NamedTuple):
     fixed: Mapping[int, Mirror] = {}
 
 
-class _Symmetry(NamedTuple):
-    """How a change of the unknowns that leaves the equations alone permutes a group, and which
-    unknowns it reflects.
-    """
-
-    images: tuple[int, ...]
-    fixed: Mapping[int, Mirror]
+_Symmetry = tuple[tuple[int, ...], Mapping[int, Mirror]]
+"""How a change of the unknowns that leaves the equations alone permutes a group, and which unknowns
+it reflects.
+"""
 
 
 class _Member(NamedTuple):
@@ -113,7 +103,7 @@ def what_meets(family: LineSystem, current: Reached, after: Fraction) -> Meeting
         return _without_region(family, unmatched, tuple(beyond))
     group, box = region
     symmetries = _symmetries(family, group, after)
-    classes = _own_classes(group, [s.images for s in symmetries])
+    classes = _own_classes(group, [images for images, _ in symmetries])
     if not classes:
         return None
     if len(classes) > 1 and any(group[k].ahead for c in classes for k in c):
@@ -124,8 +114,8 @@ def what_meets(family: LineSystem, current: Reached, after: Fraction) -> Meeting
         for side in (False, True)
     )
     own = next(iter(classes)) if len(classes) == 1 else frozenset()
-    kept = [s for s in symmetries if own and {s.images[k] for k in own} == own]
-    fixed = {k: line for s in kept for k, line in s.fixed.items()}
+    kept = (lines for images, lines in symmetries if own and {images[k] for k in own} == own)
+    fixed = {k: line for lines in kept for k, line in lines.items()}
     return Meeting(met, left, len(classes) > 1, tuple(beyond), box, fixed)
 
 
@@ -142,12 +132,6 @@ def _solutions(family: LineSystem, value: Fraction) -> list[PlacedSolution] | No
         rank = int(pose.stable is not True) if pose.index is None else pose.index
         found.append(PlacedSolution(Reached(value, place, place), rank))
     return found
-
-
-def guess_of(pose: Pose) -> Vector:
-    """The middles of a pose's unknowns."""
-    with ctx.workprec(BITS):
-        return tuple(ball_of(a.center) for a in (*pose.angles, *pose.reals))
 
 
 def _unmatched(
@@ -303,15 +287,11 @@ def _isolates(
 
 def _outside(family: LineSystem, point: Vector, box: Sequence[Range]) -> bool:
     """Whether a point is certainly outside a box, by any number of whole turns."""
-    for k, (x, (low, high)) in enumerate(zip(point, box, strict=True)):
-        if k >= family.angles:
-            if x < low or x > high:
-                return True
-            continue
-        turn = 2 * arb.pi()
-        if all(y < low or y > high for y in (x - turn, x, x + turn)):
-            return True
-    return False
+    turn = 2 * arb.pi()
+    return any(
+        all(y < low or y > high for y in ((x - turn, x, x + turn) if k < family.angles else (x,)))
+        for k, (x, (low, high)) in enumerate(zip(point, box, strict=True))
+    )
 
 
 def _symmetries(family: LineSystem, group: Sequence[_Member], after: Fraction) -> list[_Symmetry]:
@@ -342,9 +322,7 @@ def _symmetries(family: LineSystem, group: Sequence[_Member], after: Fraction) -
                     for n, k in enumerate(ordered)
                     if change.images[k] == k and change.signs[k] < 0
                 }
-                found.append(
-                    _Symmetry(images, {n: _QUARTERS[change.halves[k]] for n, k in own.items()})
-                )
+                found.append((images, {n: QUARTERS[change.halves[k]] for n, k in own.items()}))
     return found
 
 
@@ -369,9 +347,7 @@ def _reflections(
             return []
         moved.append(coordinates_of(tuple(2 * turned - t for t in m.shifted), len(m.shifted)))
     images = _images(group, places, moved)
-    return (
-        [] if images is None else [_Symmetry(images, dict.fromkeys(range(family.angles), mirror))]
-    )
+    return [] if images is None else [(images, dict.fromkeys(range(family.angles), mirror))]
 
 
 def _images(

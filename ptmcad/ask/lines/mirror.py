@@ -22,7 +22,13 @@ from typing import NamedTuple
 
 from flint import arb
 
-from ptmcad.algebra.polynomials import Coefficient, Monomial, UnknownPolynomial, constant_like
+from ptmcad.algebra.polynomials import (
+    PLANE,
+    Coefficient,
+    Monomial,
+    UnknownPolynomial,
+    constant_like,
+)
 from ptmcad.text.balls import ball_over
 
 Gaussian = tuple[Coefficient, Coefficient]
@@ -48,6 +54,13 @@ class Mirror(NamedTuple):
             return None
         # of its two directions one away from the cut of the arc tangent
         return arb.atan2(-y, -x) if x < 0 else arb.atan2(y, x)
+
+
+QUARTERS = (
+    Mirror(PLANE.constant(1), PLANE.constant(0)),
+    Mirror(PLANE.constant(0), PLANE.constant(1)),
+)
+"""The lines at which an angle is reflected that becomes its negative, or half a turn less it."""
 
 
 def mirror_of(equations: Sequence[UnknownPolynomial], angles: int) -> Mirror | None:

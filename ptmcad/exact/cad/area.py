@@ -143,12 +143,8 @@ class _Frame(NamedTuple):
         return tuple((max(exact(t.lower()), Fraction(0)), exact(t.upper()) + lost) for t in totals)
 
 
-class _Unreachable(ArithmeticError):
-    """The tolerance cannot be reached at this precision, or with strips of this width left out."""
-
-    def __init__(self, strips: bool) -> None:
-        super().__init__()
-        self.strips = strips
+class _StripsTooWide(ArithmeticError):
+    """The tolerance cannot be reached with strips of this width left out."""
 
 
 def region_areas(
@@ -197,12 +193,9 @@ def region_areas(
                 return tuple(_with_room(b, tolerance, whole) for b in bounds), bits
         except TooFewBits:
             bits = 3 * bits // 2
-        except _Unreachable as obstacle:
-            # a region is tiny, or the precision is too low for it: the effort grows fast, so this
-            # ends soon
-            if not obstacle.strips:
-                bits = 3 * bits // 2
-            elif own:
+        except _StripsTooWide:
+            # a region is tiny: the effort grows fast, so this ends soon
+            if own:
                 own = False
             else:
                 bits, share, finer = bits + finer, share / 2**finer, 2 * finer
@@ -246,10 +239,10 @@ def _areas(
     borders = list(parts.borders(spans))
     rough, sizes = _rough(spans, parts, borders, effort)
     if lost * 4 > from_fraction(tolerance) * min(rough) * _HOPELESS_RATIO:
-        raise _Unreachable(strips=True)
+        raise _StripsTooWide
     right = fmpq(2) ** (ctx.prec - _SPARE_BITS) * from_fraction(tolerance)
     if any(size > area * right for size, area in zip(sizes, rough, strict=True)):
-        raise _Unreachable(strips=False)
+        raise TooFewBits
     load = Counter(i for row in borders for b in row for i in parts.beside(b))
     # of a panel's integral: what would do if all were about as bad, with some more panels than
     # borders
@@ -359,7 +352,7 @@ def _refine(
         if not poor:
             return bounds
         if any(to_fraction(frame.lost) * 4 > tolerance * bounds[i][1] for i in poor):
-            raise _Unreachable(strips=True)
+            raise _StripsTooWide
         load = Counter(i for p in panels for i in frame.parts.beside(p.border))
         target = {
             i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor
@@ -370,7 +363,7 @@ def _refine(
             if p.width > allowed:
                 check()
                 if p.high - p.low < effort.narrowest:
-                    raise _Unreachable(strips=False)
+                    raise TooFewBits
                 least = min(frame.allowed[p.border.below], frame.allowed[p.border.above])
                 refined += halves(p, effort, min(least, from_fraction(allowed) / 4))
             else:

@@ -27,7 +27,7 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.algebraic_numbers import root_of
 from ptmcad.algebra.chords import slope_over
-from ptmcad.algebra.curve_branches import local_coefficients
+from ptmcad.algebra.polynomials import local_coefficients
 from ptmcad.algebra.real_roots import Interval, RealRoot, halve, isolate, order, refine, sign_at
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.regionmap import CriticalValue, RegionMap

@@ -55,10 +55,10 @@ class ParametricSystem(NamedTuple):
         unknowns.
     jacobian : their derivatives by the unknowns, row by row; of a potential its Hessian.
     equation_terms, jacobian_terms : the same, sorted for evaluation at many points.
+    criterion : what is known of solutions.
     potential : U, in units of force times length, without the work of constant moments, which are
         in the equations alone; None where equations are given, or a moment depends on another
         unknown than its own.
-    criterion : what is known of solutions.
     inequalities : a solution counts where all of them are positive.
     stability : where there is no potential a solution is stable where all of these are positive; of
         a potential the additional conditions of a predicate by which solutions are counted.
@@ -71,8 +71,8 @@ class ParametricSystem(NamedTuple):
     jacobian: tuple[tuple[TrigonometricPolynomial, ...], ...]
     equation_terms: tuple[Terms, ...]
     jacobian_terms: tuple[tuple[Terms, ...], ...]
-    potential: TrigonometricPolynomial | None
     criterion: Criterion
+    potential: TrigonometricPolynomial | None = None
     inequalities: tuple[TrigonometricPolynomial, ...] = ()
     stability: tuple[TrigonometricPolynomial, ...] = ()
     positive: tuple[str, ...] = ()
@@ -109,7 +109,6 @@ def from_equations(
         jacobian,
         tuple(terms_of(ring, e) for e in equations),
         tuple(tuple(terms_of(ring, d) for d in row) for row in jacobian),
-        asked.pop("potential", None),
         **asked,
     )
 
@@ -236,13 +235,11 @@ def on_slice(system: ParametricSystem, parameters: Ratios) -> SliceSystem:
             boundary.append(common)
             vanishing.append(common)
     equations += [{m: one * c for m, c in circle.items()} for circle in ring.circles]
-    inequalities = tuple(map(on, system.inequalities))
-    stability = tuple(map(on, system.criterion.decisive(system.stability)))
     return SliceSystem(
         tuple(equations),
         element_on_slice(system, leading_minor(system, system.dimension), parameters),
-        inequalities,
-        stability,
+        tuple(map(on, system.inequalities)),
+        tuple(map(on, system.criterion.decisive(system.stability))),
         tuple(boundary),
         tuple(vanishing),
         ring.width,

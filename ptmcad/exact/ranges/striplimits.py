@@ -13,11 +13,10 @@ from fractions import Fraction
 from flint import arb, fmpq
 
 from ptmcad.algebra.algebraic_numbers import fibre_roots, refined, root_of
-from ptmcad.algebra.chords import side_of_chord, slope_over
+from ptmcad.algebra.chords import side_of_chord, slope_over, tangent_resultant
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
 from ptmcad.algebra.real_roots import Interval, RealRoot, isolate, refine, sign
 from ptmcad.algebra.resultants import resultant
-from ptmcad.algebra.slopes import tangent_resultant
 from ptmcad.answer.intervals import End
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.rangestrips import (

@@ -19,7 +19,6 @@ from forger.consistency import (
     with_plan,
 )
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.exact.mapassembly import _solutions
 from ptmcad.exact.models.system import on_axes
 from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Count, Point
@@ -87,7 +86,7 @@ def _sampled(r: RegionMap, s: int) -> RegionMap:
             by /= 2
         at = (u, v + by) if r.base == 0 else (v + by, u)
         found = count_at("a sample", on, (from_fraction(at[0]), from_fraction(at[1])))
-        cells[n] = replace(cell, sample=Point(r.slice.axis_names, *at), solutions=_solutions(found))
+        cells[n] = replace(cell, sample=Point(r.slice.axis_names, *at), solutions=found.solutions)
     return _sampled_regions(replace(r, cells=tuple(cells)))
 
 
