@@ -152,12 +152,13 @@ def way_text(found: Forecast) -> str:
 def duration(seconds: float) -> str:
     """A time to one or two digits.
 
-    >>> [duration(s) for s in (0.26, 8.2, 95, 5000)]
-    ['0.3 s', '8 s', '1.6 min', '1.4 h']
+    >>> [duration(s) for s in (0.26, 8.2, 95, 5000, 200000)]
+    ['0.3 s', '8 s', '1.6 min', '1.4 h', '2.3 days']
     """
     if seconds < 60:
         return f"{_round(seconds):g} s"
-    return f"{seconds / 60:.2g} min" if seconds < 3600 else f"{seconds / 3600:.2g} h"
+    units = (("min", 60, 3600), ("h", 3600, 86400), ("days", 86400, math.inf))
+    return next(f"{seconds / size:.2g} {unit}" for unit, size, end in units if seconds < end)
 
 
 def _round(x: float) -> float:

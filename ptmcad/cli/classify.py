@@ -13,6 +13,7 @@ import click
 
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.timings import with_compilation
+from ptmcad.ask.engines import is_certified
 from ptmcad.cli.commonoptions import (
     Idle,
     file_option,
@@ -139,8 +140,6 @@ def _report_why_none(slice: Slice, options: Options, output: Output, reason: str
     """Say why there is no map yet to the process that watches, when maps of this engine can be gone
     on from.
     """
-    from ptmcad.ask.engines import is_certified
-
     if "json" in output.formats and is_certified(slice, options.engine):
         kept = "; the map to go on from is as it was" if options.resume is not None else ""
         send(Topic.RESUMABLE, "there was no partial map to save yet", f"{reason}{kept}")
@@ -192,7 +191,6 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
     ConfigError
         For a name that no saving of the engine has.
     """
-    from ptmcad.ask.engines import is_certified
     from ptmcad.exact import exactplan
 
     certified = is_certified(slice, options.engine)
@@ -219,8 +217,6 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
 
 def warn(slice: Slice, options: Options) -> None:
     """Say at once where the exact engine will take long."""
-    from ptmcad.ask.engines import is_certified
-
     if is_certified(slice, options.engine) or slice.has_free_lengths or slice.model == ptm():
         return
     from ptmcad.ask.checking import warning
@@ -248,8 +244,6 @@ def _one(key: str, given: tuple[str, ...]) -> str | None:
 
 def _idle(slice: Slice, options: Options) -> tuple[Idle, ...]:
     """The options that the slice's engine does not need."""
-    from ptmcad.ask.engines import is_certified
-
     certified = is_certified(slice, options.engine)
     return (
         ("no_areas", certified, "this engine gets areas at no extra cost"),

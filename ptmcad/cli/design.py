@@ -8,7 +8,6 @@ from typing import Any
 
 import click
 
-from ptmcad.answer.design import BestDesign
 from ptmcad.cli.commonoptions import (
     Formats,
     format_option,
@@ -20,7 +19,7 @@ from ptmcad.cli.commonoptions import (
     report_idle,
 )
 from ptmcad.cli.completion import names, settings
-from ptmcad.cli.drawing import figure, report_written, share_of, write_result
+from ptmcad.cli.drawing import report_written, share_of, write_answer
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import question_in
@@ -127,18 +126,6 @@ def command(
             )
         click.echo(f"{question_in(question.record, question.record.name or stem)}\n{found.table()}")
         if wanted:
-            _save(found, wanted, out)
+            write_answer(out, wanted, lambda _: render.figure_of_design(found), found.to_json)
             report_written(out, wanted)
     return 3 if found.bound is not None and found.best is not None and not found.proved else 0
-
-
-def _save(found: BestDesign, wanted: tuple[str, ...], folder: Path) -> None:
-    """Write the pictures and, last, the JSON."""
-
-    pictures = {
-        name: figure(name, lambda: render.figure_of_design(found))
-        for name in wanted
-        if name[-5:] != ".json"
-    }
-    file = next((name for name in wanted if name not in pictures), "")
-    write_result(folder, pictures, file, found.to_json() if file else "")

@@ -105,6 +105,26 @@ def write_result(
         raise PictureError(f"{error}; the result, without pictures, is in {place}{why}") from error
 
 
+def write_answer(
+    folder: Path,
+    names: Iterable[str],
+    make: Callable[[str], Any],
+    text: Callable[[], str],
+) -> None:
+    """Write an answer's files, as `write_result`: the JSON, where one of the names is its, and a
+    picture of each other name.
+
+    Parameters
+    ----------
+    make : gives the figure of a name.
+    text : gives the JSON.
+    """
+    known = tuple(names)
+    file = next((name for name in known if name.endswith(".json")), "")
+    pictures = {name: figure(name, partial(make, name)) for name in known if name != file}
+    write_result(folder, pictures, file, text() if file else "")
+
+
 PICTURES = ("png", "svg", "pdf", "eps")
 DATA = ("csv", "npz")
 MESHES = ("obj", "ply")

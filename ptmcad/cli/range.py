@@ -23,7 +23,7 @@ from ptmcad.cli.commonoptions import (
     report_idle,
 )
 from ptmcad.cli.completion import names, pair_of_names, point, quantity_names
-from ptmcad.cli.drawing import figure, report_written, write_result
+from ptmcad.cli.drawing import report_written, write_answer
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.progress import ProgressBar
@@ -229,8 +229,7 @@ def command(
         enclosed = is_enclosed(slice, request)
         parts = _parts(request)
         pictures = {f"{stem}{part}.{suffix}": part for part in parts for suffix in suffixes}
-        file = f"{stem}.json" if "json" in formats else ""
-        names = [*pictures, *filter(None, [file])]
+        names = [*pictures, *([f"{stem}.json"] if "json" in formats else [])]
         if names:
             check_writable(out, tuple(names))
         report_idle(idle_output(names))
@@ -241,32 +240,22 @@ def command(
             found = answer(slice, request)
         click.echo(found.text)
         if names:
-            _save(slice, request, found, out, pictures, file)
+            write_answer(
+                out,
+                names,
+                lambda name: found.pictures[pictures[name]](),
+                lambda: _text(slice, request, found),
+            )
             report_written(out, names)
 
 
-def _save(
-    slice: Slice,
-    request: RangeRequest,
-    found: RangeAnswer,
-    out: Path,
-    pictures: Mapping[str, str],
-    file: str,
-) -> None:
-    """Write the pictures, each of a part of the answer, and, last, the JSON, where it has a file."""
-    text = ""
-    if file:
-        from ptmcad.show.document.slicedocument import SLICE
-        from ptmcad.show.ranges.rangedocument import document
+def _text(slice: Slice, request: RangeRequest, found: RangeAnswer) -> str:
+    """The answer as JSON."""
+    from ptmcad.show.document.slicedocument import SLICE
+    from ptmcad.show.ranges.rangedocument import document
 
-        asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}
-        text = document(slice.name, slice.mechanism, {**found.parts, **asked})
-    write_result(
-        out,
-        {name: figure(name, found.pictures[part]) for name, part in pictures.items()},
-        file,
-        text,
-    )
+    asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}
+    return document(slice.name, slice.mechanism, {**found.parts, **asked})
 
 
 def _parts(request: RangeRequest) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +20,7 @@ from ptmcad.cli.commonoptions import (
     report_idle,
 )
 from ptmcad.cli.completion import point
-from ptmcad.cli.drawing import figure, report_written, write_result
+from ptmcad.cli.drawing import report_written, write_answer
 from ptmcad.cli.limits import ResourceLimits, clock_stopped, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.progress import ProgressBar
@@ -77,14 +76,11 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
         When a file cannot be written.
     """
     landscape = f"{name}-landscape."
-    pictures = [file for file in names if not file.endswith(".json")]
 
     def make(file: str) -> Any:
         return (render.draw_landscape if file.startswith(landscape) else render.draw_poses)(poses)
 
-    writers = {file: figure(file, partial(make, file)) for file in pictures}
-    file = next((file for file in names if file not in writers), "")
-    write_result(folder, writers, file, poses.to_json() if file else "")
+    write_answer(folder, names, make, poses.to_json)
 
 
 @click.command("solve")

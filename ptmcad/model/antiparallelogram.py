@@ -6,7 +6,7 @@ Guarantee: the angle of its second bar is the one on the branch on which its bar
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ptmcad.model.elements import Element, Kind, Part, Place, squared
 from ptmcad.model.trees import cosine_and_sine, negative, total
@@ -85,12 +85,3 @@ class XJoint(NamedTuple):
                 Part("bars", Kind.LENGTH, squared(off), meaning),
             )
         )
-
-
-def second_bar(bars: Any, length: Any, cosine: Any, sine: Any) -> tuple[Any, Any, Any]:
-    """D cos psi, D sin psi and D, of L, b, cos th and sin th, in any numbers that can be added and
-    multiplied.
-    """
-    far, near = bars * bars, length * length
-    twice = bars * length + bars * length
-    return (far + near) * cosine - twice, (far - near) * sine, far + near - twice * cosine

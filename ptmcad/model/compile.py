@@ -25,7 +25,6 @@ from ptmcad.formulas.evaluation import evaluated as with_values
 from ptmcad.formulas.graph import Formula, Graph, gradient
 from ptmcad.model import closedloops as loops
 from ptmcad.model import crossed
-from ptmcad.model.antiparallelogram import second_bar
 from ptmcad.model.criterion import Criterion
 from ptmcad.model.crossed import Follower
 from ptmcad.model.description import Mechanism, Model, equations_in
@@ -323,7 +322,7 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
     followers = []
     for joint in mechanism.xjoints:
         bars, base = ring.of((joint.bars, joint.length))
-        turned_by = second_bar(bars, base, ring.cos(joint.angle), ring.sin(joint.angle))
+        turned_by = crossed.second_bar(bars, base, ring.cos(joint.angle), ring.sin(joint.angle))
         first, second = (ring.variables[angle].variable for angle in (joint.angle, joint.other))
         followers.append(Follower(first, second, *turned_by))
     known = replace(

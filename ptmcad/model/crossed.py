@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import prod
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.evaluation import values
@@ -54,6 +54,15 @@ class Follower(NamedTuple):
     cosine: Formula
     sine: Formula
     below: Formula
+
+
+def second_bar(bars: Any, length: Any, cosine: Any, sine: Any) -> tuple[Any, Any, Any]:
+    """D cos psi, D sin psi and D, of L, b, cos th and sin th (`ptmcad.model.antiparallelogram`), in
+    any numbers that can be added and multiplied.
+    """
+    far, near = bars * bars, length * length
+    twice = bars * length + bars * length
+    return (far + near) * cosine - twice, (far - near) * sine, far + near - twice * cosine
 
 
 def conditions(

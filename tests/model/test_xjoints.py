@@ -23,7 +23,7 @@ from ptmcad.exact.models.system import at_point, polynomial_at
 from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.stages import problem_of
 from ptmcad.model import ClosedMechanism
-from ptmcad.model.antiparallelogram import second_bar
+from ptmcad.model.crossed import second_bar
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.derivation import coordinates_of, derivation_at
 

@@ -47,18 +47,22 @@ _LEAVES = {
 }
 
 
-def record_schema() -> dict[str, Any]:
-    """The schema; a record about the paper's mechanism knows its parameters only."""
-    read = record_codec(None).schema
-    paper, nothing = ptm(), Context(Faults())
-    parameters = {
+def _of_ptm() -> dict[str, Any]:
+    """Each parameter of the paper's mechanism."""
+    return {
         name: {
             **VALUE,
             "description": MEANINGS[name],
             "default": plain_data(Scalar(parameter.default, Place())),
         }
-        for name, parameter in paper.parameters.items()
+        for name, parameter in ptm().parameters.items()
     }
+
+
+def record_schema() -> dict[str, Any]:
+    """The schema; a record about the paper's mechanism knows its parameters only."""
+    read = record_codec(None).schema
+    parameters, nothing = _of_ptm(), Context(Faults())
     whole = read["properties"]
     models = [
         {"enum": [*mechanism_names()]},
@@ -88,7 +92,7 @@ def record_schema() -> dict[str, Any]:
         "$defs": {
             "ptm": {
                 "description": "A record about the mechanism ptm.",
-                "properties": {"mechanism": {"const": paper.name}},
+                "properties": {"mechanism": {"const": ptm().name}},
                 "not": {"required": ["system"]},
             },
             "ptm-parameters": {

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from random import Random
 
 from ptmcad.ask.checking import CheckedSlice
+from ptmcad.ask.forecast import duration
 from ptmcad.question.config.sweeps import Sweeping
 from ptmcad.workbench.sweeps.member import Failed, Wanted, computing
 from ptmcad.workbench.sweeps.run import axes_of, processors
@@ -42,7 +43,7 @@ def sweep_text(question: Sweeping, first: CheckedSlice) -> Iterator[str]:
         if len(taken) == 1
         else f"{len(taken)} members took {low} to {high} s"
     )
-    yield f"{'time':<12}about {_duration(whole)} on {_these_processors()}: {each} with ranges"
+    yield f"{'time':<12}about {duration(max(1.0, whole))} on {_these_processors()}: {each} with ranges"
 
 
 def _seconds(question: Sweeping) -> list[float]:
@@ -66,17 +67,3 @@ def _seconds(question: Sweeping) -> list[float]:
 def _these_processors() -> str:
     number = processors()
     return "one processor" if number == 1 else f"{number} processors"
-
-
-def _duration(seconds: float) -> str:
-    """A time to one or two digits.
-
-    >>> [_duration(seconds) for seconds in (0.04, 8.2, 95, 5000, 200000)]
-    ['1 s', '8 s', '1.6 min', '1.4 h', '2.3 days']
-    """
-    if seconds < 60:
-        return f"{max(1, round(seconds))} s"
-    for unit, size, limit in (("min", 60, 3600), ("h", 3600, 86400)):
-        if seconds < limit:
-            return f"{seconds / size:.2g} {unit}"
-    return f"{seconds / 86400:.2g} days"
