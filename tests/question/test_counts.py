@@ -16,7 +16,7 @@ from ptmcad.model.evaluate import value_at
 from ptmcad.question.config import load, slice_from_mapping
 from ptmcad.question.counts import KINDS, Count
 from ptmcad.question.slice import count_fault
-from ptmcad.verification.kinds import has_counts
+from ptmcad.verification.kinds import kind_of
 
 
 @pytest.mark.parametrize("count", list(Count))
@@ -82,4 +82,4 @@ def test_margins_are_in_the_unknowns_alone(monkeypatch: pytest.MonkeyPatch) -> N
         slice = load(name)
         fault = count_fault(Count.ADMISSIBLE, slice.model, slice.parameters)
         assert fault.split(":")[0] == found
-        assert has_counts(slice.model, Count.ADMISSIBLE) is (not found)
+        assert kind_of(Count.ADMISSIBLE).is_of(slice.model) is (not found)
