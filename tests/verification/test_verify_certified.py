@@ -786,7 +786,7 @@ def test_a_count_that_the_checker_does_not_know_is_refused(
     stable: RegionMap, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A kind that records, engines and documents have, and that has no row in the checker's table."""
-    monkeypatch.delitem(kinds._OF_STABLE, Count.ADMISSIBLE)
+    monkeypatch.delitem(kinds._KINDS, Count.ADMISSIBLE)
     slice = replace(stable.slice, count=Count.ADMISSIBLE)
     report = ptmcad.verify(replace(stable, slice=slice), boxes=0)
     assert report.violation == "form: the checker does not know what admissible counts are"
