@@ -54,3 +54,7 @@ def test_close_roots_ask_for_more_precision() -> None:
     )
     assert sturm.roots_between(p, fmpq(0), fmpq(1)) == 2
     assert sturm.roots_between(p, fmpq(1, 10**40 + 1), fmpq(1)) == 1
+
+
+def test_a_root_in_the_middle_is_found() -> None:
+    assert sturm.numbered_root(fmpz_poly([0, 1, 0, 1]), fmpq(-1), fmpq(1), 0) == 0

@@ -146,16 +146,21 @@ def test_any_changed_entry_of_the_file_is_rejected(
     assert not accepted
 
 
-LARGE_WINDOW = {
-    "name": "large",
-    "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
-    "axes": {"a": ["-1e30", "1e30"], "b": ["-1e30", "1e30"]},
-}
+CUBIC = {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}
+WAVES = {"unknowns": {"t": "angle"}, "potential": "a*cos(t) + b*sin(t) + cos(2*t)"}
+HUGE, UNIT = ["-1e30", "1e30"], [-1, 1]
 
 
-def test_areas_in_large_windows_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("system", "axes"),
+    [(CUBIC, {"a": HUGE, "b": HUGE}), (CUBIC, {"a": UNIT, "b": HUGE}), (WAVES, {"a": HUGE, "b": HUGE})],
+    ids=["cubic", "flat cubic", "waves"],
+)  # fmt: skip
+def test_areas_in_large_windows_are_told(
+    system: dict[str, Any], axes: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """By some panels for each doubling; from wrong ones, of a small region beside a huge one, too."""
-    true = stored(ptmcad.classify(LARGE_WINDOW))
+    true = stored(ptmcad.classify({"name": "large", "system": system, "axes": axes}))
     tried = []
 
     def counted(*given: Any) -> Any:

@@ -39,6 +39,7 @@ from ptmcad.verification.coordinates import power
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.normalform.unknownbounds import half_widths
 from ptmcad.verification.normalform.waves import form_of
+from ptmcad.verification.principalminors import inertia
 from ptmcad.verification.report import Violation
 
 pytest.importorskip("numba")
@@ -330,6 +331,8 @@ SOME: dict[str, tuple[str, Callable[[RegionMap], RegionMap], str]] = {
     "a moment that turns": (
         "pendulum", lambda r: with_model(r, moments=(r.slice.model.moments[0]._replace(value=Name("th")),)), "form",
     ),
+    "one more equation": ("cubic", lambda r: with_model(r, equations=r.slice.model.equations * 2), "equations"),
+    "stable roots": ("cubic", lambda r: replace(r, slice=replace(r.slice, count=Count.STABLE)), "form"),
 }  # fmt: skip
 
 
@@ -363,11 +366,12 @@ def assert_rejected(false: RegionMap, by: str) -> None:
 
 
 FAST = ("truss", "cubic", "reaction")
-"""A mechanism with cones, equations, and conditions: nine more are altered in the same ways."""
+"""A mechanism with cones, equations, and conditions: ten more are altered in the same ways."""
+SOME_SIGNS = {("signs", "loop"), ("signs", "switch")}
 
 
 @pytest.mark.parametrize(("kind", "name"), [
-    pytest.param(*case, marks=() if case[1] in FAST or case == ("signs", "loop") else pytest.mark.slow)
+    pytest.param(*case, marks=() if case[1] in FAST or case in SOME_SIGNS else pytest.mark.slow)
     for case in product(ALL, RECORDS)
 ])  # fmt: skip
 def test_a_false_map_is_rejected(kind: str, name: str) -> None:
@@ -526,6 +530,7 @@ def test_nothing_is_proved_of_a_double_solution() -> None:
     whole = half_widths(form, field.values)
     with pytest.raises(Unproved, match="degenerate"):
         zeros(field, [((0.0,), whole)], whole, 5_000)
+    assert inertia([[arb(0, 1)] * 2] * 2) is None
 
 
 @pytest.mark.parametrize("exponent", [0, 1, 2, 3, 4])

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 import ptmcad
 from ptmcad.answer.design import BestDesign
+from ptmcad.cli import run
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.verification import verify_design
 
@@ -83,3 +85,23 @@ def test_forgeries_are_found(found: BestDesign) -> None:
     for name, (wrong, words) in forged.items():
         violation = verify_design(wrong, seed=3).violation
         assert violation is not None and words in violation, name
+
+
+def test_the_command_takes_designs(
+    found: BestDesign,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("design.json").write_text(found.to_json(), encoding="utf-8")
+    assert run(["verify", "design.json"]) == 0
+    assert "boxes cover the bounds" in capsys.readouterr().out
+    Path("forged.json").write_text(
+        replace(found, boxes=found.boxes[1:]).to_json(), encoding="utf-8"
+    )
+    assert run(["verify", "forged.json"]) == 1
+    assert "violated: form: the reason names another number of boxes" in capsys.readouterr().err
+    Path("damaged.json").write_text(found.to_json().replace('"seed"', '"sead"'), encoding="utf-8")
+    assert run(["verify", "damaged.json"]) == 2
+    assert "is damaged or not a ptmcad-design/1 file" in capsys.readouterr().err

@@ -7,10 +7,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpz_poly
 
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.verification import sturm
 from ptmcad.verification.claims import PlaneCurve
+from ptmcad.verification.sturm import numbered_root
 from ptmcad.verification.wallintegrals import IntegralEffort, PanelPart, WallSeries, integrals_over
 
 HEIGHTS = (fmpq(-3), fmpq(3))
@@ -117,6 +119,35 @@ POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
 
 def branch_of(terms: Terms, root: int) -> WallSeries:
     return WallSeries.of(PlaneCurve.of(0, PlanePolynomial.of(terms), 0), root)
+
+
+def test_a_root_is_found_in_a_window_of_any_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In few steps: the window is cut to what may hold roots at first."""
+    asked, true = [], sturm.roots_above
+
+    def counted(coefficients: tuple[int, ...], at: fmpq) -> int:
+        asked.append(at)
+        return true(coefficients, at)
+
+    monkeypatch.setattr(sturm, "roots_above", counted)
+    far = fmpq(10) ** 300
+    for p, expected in (
+        (fmpz_poly([-1, 3]), [fmpq(1, 3)]),
+        (fmpz_poly([-6, 11, -6, 1]), [fmpq(1), fmpq(2), fmpq(3)]),
+        (fmpz_poly([0, -(10**40), 1]), [fmpq(0), fmpq(10**40)]),
+        (fmpz_poly([-1, 0, 10**40]), [fmpq(-1, 10**20), fmpq(1, 10**20)]),
+        (fmpz_poly([1, 0, 1]), []),
+    ):
+        for number, value in enumerate(expected):
+            asked.clear()
+            sturm._counted_above.cache_clear()
+            found = numbered_root(p, -far, far, number)
+            assert found is not None
+            assert abs(found - value) < arb(2) ** -40 * abs(arb(value)) + arb(2) ** -400
+            assert len(asked) < 12
+            assert numbered_root(p, value, far, len(expected) - number - 1) is None
+        assert numbered_root(p, -far, far, len(expected)) is None
+        assert numbered_root(p, far / 2, far, 0) is None
 
 
 def test_precision_that_rounding_uses_up_is_asked_for() -> None:
