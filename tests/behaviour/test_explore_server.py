@@ -278,17 +278,3 @@ def test_the_file_leads_a_browser_to_the_page(one: Browser, opened: tuple[Explor
     one.visit(file.as_uri(), "typeof view !== 'undefined' && view.shown !== null")
     assert one.run("location.href") == f"http://127.0.0.1:{own.port}/"
     assert one.complaints() == []
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
-def test_a_page_that_has_been_quiet_for_a_while_goes_on(
-    one: Browser, own: Explorer, record: Path
-) -> None:
-    """The connection that its browser kept has been closed meanwhile."""
-    with explorer(record) as found:
-        one.visit(found.address, "view.shown !== null")
-        time.sleep(11)
-        one.run("changed('c', '1/2')")
-        one.until("view.of.c === '1/2'")
-        assert one.run("document.querySelector('#gone').hidden")

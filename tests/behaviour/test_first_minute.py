@@ -147,31 +147,6 @@ def test_no_two_shipped_records_have_one_name(capfd: pytest.CaptureFixture[str])
     assert {line.split()[0] for line in listed.splitlines()[1:]} == set(names)
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        "check fig4",
-        "classify fig4 --format json --no-areas",
-        "solve fig4 --at rho=7/10,L2=3/2",
-        "range duffing --along W --at G=1/2",
-        "variety duffing",
-        "init fig4",
-        "classify equal-loads --members 2 --format json --no-areas",
-    ],
-)
-def test_shipped_records_are_found_by_name(
-    command: str, folder: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    assert run(command.split()) == 0
-    assert capfd.readouterr().err == ""
-
-
-def test_shipped_records_are_found_by_name_in_python(folder: Path) -> None:
-    assert ptmcad.classify("duffing").slice == ptmcad.load("duffing")
-    assert len(ptmcad.solve("fig4", rho=0.7, L2=1.5).equilibria) == 6
-    assert len(ptmcad.family("equal-loads", values=[-10]).members) == 1
-
-
 def test_a_file_wins_over_a_shipped_record(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """A folder of the name does not."""
     Path("duffing").write_text(

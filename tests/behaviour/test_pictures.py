@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 import yaml
 from matplotlib.path import Path as Curve
-from support import browser as chromium
 from support.maps import CONFIGS
 from support.records import TRUSS
 
@@ -345,18 +344,3 @@ def test_half_a_turn_is_one_angle_and_its_symbol_stands_in_all_of_a_picture(tmp_
     assert "angle α_1 (degrees)" in texts(tmp_path / "arm-range-branches.svg")
     # beyond W = 0.59 two other poses are stable, then the one that hangs
     assert "stable, not followed" in texts(tmp_path / "arm-range-path.svg")
-
-
-@pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
-def test_half_a_turn_is_180_degrees_on_a_page(one: chromium.Browser, tmp_path: Path) -> None:
-    """The page opens at a point where the arm hangs."""
-    (tmp_path / "arm.yaml").write_text(ARM, encoding="utf-8")
-    out = ["--out", str(tmp_path)]
-    assert (
-        run(["classify", str(tmp_path / "arm.yaml"), "--no-areas", "--format", "json", *out]) == 0
-    )
-    assert run(["report", str(tmp_path / "arm.json"), *out]) == 0
-    one.open(tmp_path / "arm.html")
-    one.until("document.body.textContent.includes('°')")
-    told = one.run("document.body.textContent")
-    assert "α_1 = 180.00°, β = 180.00°" in told and "−180.00°" not in told

@@ -159,84 +159,8 @@ def test_paths_end_at_a_pitchfork_as_what_meets_there(
     )
 
 
-@pytest.mark.slow
-def test_a_stable_pose_between_two_unstable_ones_meets_both(tmp_path: Path) -> None:
-    """About (W - 1/2) cos th - cos 2th: upright its second derivative is 0 where its fourth one is
-    negative.
-    """
-    record = """
-name: upright
-mechanism:
-  parameters: {W: {kind: force}, l0: {kind: free length, default: 1/10}}
-  unknowns: {th: angle}
-  points: {O: [0, 0], A: [0, 5], P: [sin(th), cos(th)], R: [sin(2*th), cos(2*th)]}
-  bars: [[O, P], [O, R]]
-  springs: [{between: [A, P], k: 1/10, free: l0}]
-  loads: {P: [0, -W], R: [0, 1]}
-axes: {W: [0, 6], l0: [1/20, 1/5]}
-"""
-    ends = path_ends(record, "W", "l0=1/10", "1", tmp_path)
-    assert [(high["meeting"], high["leaving"]) for _, high in ends] == [([], []), ([0, 1, 1], [1])]
-
-
 def test_without_the_symmetry_there_is_no_pitchfork(tmp_path: Path) -> None:
     """A load across unfolds both: a fold is left of each, beside a pose that goes on."""
     found = met(BALANCER.replace("default: 0}", "default: 1/1000}"), "k", "l0=1/10", tmp_path)
     assert [change["met"] for change in found["changes"]] == [["fold"], ["fold"]]
     assert all(change["proved"] for change in found["changes"])
-
-
-PLATE = """
-name: plate
-mechanism:
-  parameters: {f: {kind: force}, s: {kind: free length, default: 2}}
-  unknowns: {h: length, phi: angle}
-  points: {A: [-2, 0], B: [2, 0], P: [0, h]}
-  bodies: {plate: {at: P, angle: phi, points: {Q: [-1/2, 0], R: [1/2, 0], T: [0, 1]}}}
-  springs: [{between: [A, Q], k: 1, free: s}, {between: [B, R], k: 1, free: s}]
-  loads: {T: [0, f], P: [0, 1/10]}
-axes: {f: [-1, 1], s: [1, 5/2]}
-"""
-"""A level plate that moves up and down: where it tilts, phi -> -phi exchanges the springs, and h
-goes on.
-"""
-
-
-@pytest.mark.slow
-def test_pitchforks_beside_an_unknown_that_moves(tmp_path: Path) -> None:
-    """Level at phi = 0 or upside down: U_h = 0 gives f by h, and U_phi,phi = 0 is an equation for h
-    alone.
-    """
-
-    def tilt(h: float, up: float) -> tuple[float, float]:
-        """The load that holds the level plate at a height, and the second derivative by the angle
-        there.
-        """
-        reach = 2 - up / 2
-        length = np.hypot(reach, h)
-        load = 2 * (length - 2) * h / length - 0.1
-        bent = (reach * up / 2 + 1 / 4 - h**2 / (4 * length**2)) / length
-        return load, 2 * (h**2 / (4 * length**2) + (length - 2) * bent) + load * up
-
-    expected = []
-    for up in (1.0, -1.0):
-        heights = np.linspace(-6, 6, 24001)
-        for pair in pairwise(heights):
-            low, high = pair
-            if tilt(low, up)[1] * tilt(high, up)[1] < 0:
-                for _ in range(60):
-                    middle = (low + high) / 2
-                    low, high = (
-                        (middle, high)
-                        if tilt(low, up)[1] * tilt(middle, up)[1] > 0
-                        else (low, middle)
-                    )
-                expected.append(tilt(low, up)[0])
-    found = met(PLATE, "f", "s=2", tmp_path)
-    ends = [
-        float(change["at"]["decimal"])
-        for change in found["changes"]
-        if change["met"] == ["pitchfork"]
-    ]
-    assert len(ends) == 4
-    assert ends == pytest.approx(sorted(f for f in expected if -1 < f < 1), abs=1e-8)

@@ -4,7 +4,6 @@ such springs.
 
 from __future__ import annotations
 
-import random
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -14,76 +13,50 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from support.dense_search import dense_search
 from support.few import few
+from support.left_out import without_curves
 from support.loop_search import taut_along
-from support.minima_search import minima
+from support.places import random_points
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.certified import engine
 from ptmcad.certified.plain.pointcounts import plain_counter
-from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.errors import ConfigError, DegenerateSliceError
-from ptmcad.model.builtinmechanisms import RECORD
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.slice import Slice
 from ptmcad.verification import verify
 
 pytest.importorskip("numba")
 
-CHAIN: dict[str, Any] = {
-    "name": "chain",
-    "mechanism": {
-        "name": "sprung_chain",
-        "parameters": {"F": {"kind": "force"}, "l0": {"kind": "free length"}},
-        "unknowns": {"th1": "angle", "th2": "angle"},
-        "points": {
-            "O": [0, 0],
-            "A": [0, 2],
-            "B": ["3/2", "-1/2"],
-            "P": ["cos(th1)", "sin(th1)"],
-            "Q": ["cos(th1) + cos(th2)", "sin(th1) + sin(th2)"],
-        },
-        "bars": [["O", "P"], ["P", "Q"]],
-        "springs": [
-            {"between": ["A", "P"], "k": 1, "free": "l0"},
-            {"between": ["B", "Q"], "k": 2, "free": "l0"},
-        ],
-        "loads": {"Q": ["F", 0]},
-    },
-    "axes": {"F": [-2, 0], "l0": ["1/4", 2]},
-    "count": "admissible",
-}
-WITHOUT: dict[str, Any] = CHAIN | {
-    "mechanism": CHAIN["mechanism"]
-    | {"springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}, {"between": ["B", "Q"], "k": 2}]}
-}
-"""The second spring has no free length."""
-ROOF: dict[str, Any] = {
-    "name": "roof",
-    "mechanism": {
-        "name": "sprung_slider",
-        "parameters": {
-            "f": {"kind": "force"},
-            "a": {"kind": "length"},
-            "l0": {"kind": "free length", "default": 1},
-        },
-        "unknowns": {"h": "length"},
-        "points": {"A": ["-a", 0], "S": [0, "h"]},
-        "springs": [{"between": ["A", "S"], "k": 1, "free": "l0"}],
-        "loads": {"S": [0, "f"]},
-    },
-    "axes": {"a": ["1/10", "19/10"], "f": ["1/100", 1]},
-    "count": "admissible",
-}
-PLAIN_PTM: dict[str, Any] = {
-    "name": "plain",
-    "mechanism": {key: value for key, value in RECORD.items() if key != "symmetries"}
-    | {"name": "plain"},
-    "parameters": {"L1": 1, "k": 100, "l0": "1/2", "F3": -10, "F4": -10},
-    "axes": {"rho": ["1/20", 2], "L2": [0, 2]},
-    "count": "admissible",
-}
+CHAIN: dict[str, Any] = yaml.safe_load("""
+name: chain
+mechanism:
+  name: sprung_chain
+  parameters: {F: {kind: force}, l0: {kind: free length}}
+  unknowns: {th1: angle, th2: angle}
+  points:
+    O: [0, 0]
+    A: [0, 2]
+    B: [3/2, -1/2]
+    P: [cos(th1), sin(th1)]
+    Q: [cos(th1) + cos(th2), sin(th1) + sin(th2)]
+  bars: [[O, P], [P, Q]]
+  springs: [{between: [A, P], k: 1, free: l0}, {between: [B, Q], k: 2, free: l0}]
+  loads: {Q: [F, 0]}
+axes: {F: [-2, 0], l0: [1/4, 2]}
+count: admissible
+""")
+ROOF: dict[str, Any] = yaml.safe_load("""
+name: roof
+mechanism:
+  name: sprung_slider
+  parameters: {f: {kind: force}, a: {kind: length}, l0: {kind: free length, default: 1}}
+  unknowns: {h: length}
+  points: {A: [-a, 0], S: [0, h]}
+  springs: [{between: [A, S], k: 1, free: l0}]
+  loads: {S: [0, f]}
+axes: {a: [1/10, 19/10], f: [1/100, 1]}
+count: admissible
+""")
 FOUR_BAR: dict[str, Any] = {
     key: value
     for key, value in yaml.safe_load(
@@ -93,9 +66,7 @@ FOUR_BAR: dict[str, Any] = {
     ).items()
     if key != "reference"
 } | {"parameters": {"G": 1}, "axes": {"F": [0, 4], "l0": ["1/2", 2]}, "count": "admissible"}
-RECORDS = {"chain": CHAIN, "one without": WITHOUT, "roof": ROOF, "four-bar": FOUR_BAR}
-NEAR = 2e-3
-"""Of a length to the free one: an equilibrium there is left to the proofs."""
+RECORDS = {"chain": CHAIN, "roof": ROOF, "four-bar": FOUR_BAR}
 
 
 def slice_of(record: dict[str, Any], **changes: Any) -> Slice:
@@ -107,59 +78,6 @@ def map_of(name: str, tolerance: str) -> RegionMap:
     return ptmcad.classify(slice_of(RECORDS[name]), tolerance=tolerance)
 
 
-def points_of(slice: Slice, number: int, seed: int = 1) -> list[tuple[Fraction, Fraction]]:
-    rng = random.Random(seed)
-    one, two = slice.axes
-    shares = [
-        (Fraction(rng.randrange(1, 10**4), 10**4), Fraction(rng.randrange(1, 10**4), 10**4))
-        for _ in range(number)
-    ]
-    return [
-        (one.low + u * (one.high - one.low), two.low + v * (two.high - two.low)) for u, v in shares
-    ]
-
-
-def in_chain(force: float, free: tuple[float, float]) -> tuple[int, int, bool]:
-    """The numbers of minima and of admissible ones, and whether a spring is nearly as long as its
-    free length.
-    """
-
-    def lengths(a: Any, b: Any) -> tuple[Any, Any]:
-        px, py = np.cos(a), np.sin(a)
-        return np.hypot(px, py - 2), np.hypot(px + np.cos(b) - 1.5, py + np.sin(b) + 0.5)
-
-    def energy(a: Any, b: Any) -> Any:
-        one, two = lengths(a, b)
-        return (one - free[0]) ** 2 / 2 + (two - free[1]) ** 2 - force * (np.cos(a) + np.cos(b))
-
-    found = [lengths(*p) for p in minima(energy)]
-    taut = [l1 > free[0] and l2 > free[1] for l1, l2 in found]
-    return (
-        len(found),
-        sum(taut),
-        any(min(abs(l1 - free[0]), abs(l2 - free[1])) < NEAR for l1, l2 in found),
-    )
-
-
-@pytest.mark.parametrize(("name", "tolerance"), [("chain", "1/100"), ("one without", "1/100")])
-@pytest.mark.slow_cases("chain-1/100")
-def test_counts_in_cells_are_those_of_a_search(name: str, tolerance: str) -> None:
-    m = map_of(name, tolerance)
-    assert m.undetermined < Fraction(tolerance)
-    assert {cell.admissible for cell in m.cells} >= {1, 2}
-    known = 0
-    for x, y in points_of(m.slice, 60):
-        at = m.locate(F=x, l0=y)
-        stable, admissible, close = in_chain(
-            float(x), (float(y), 0.0 if name == "one without" else float(y))
-        )
-        if at.cell is None or close:
-            continue
-        known += 1
-        assert (at.stable, at.admissible) == (stable, admissible), (x, y)
-    assert known > 45
-
-
 def test_the_known_answer_of_a_spring_on_a_slider() -> None:
     """(h - l0 h/l) = f > 0 has just one solution with l > l0: below, where h < 0, it is compressed."""
     m = map_of("roof", "1/200")
@@ -168,51 +86,11 @@ def test_the_known_answer_of_a_spring_on_a_slider() -> None:
     assert {cell.stable for cell in m.cells} == {1, 2}
 
 
-@pytest.mark.parametrize("number", [5, pytest.param(20, marks=pytest.mark.slow)])
-def test_by_the_papers_mechanism(number: int) -> None:
-    """Against formulas made by hand for it, and against a search."""
-    plain, seen = plain_counter(slice_of(PLAIN_PTM)), set()
-    for x, y in points_of(slice_of(PLAIN_PTM), number, seed=3):
-        count = plain.at(x, y, Count.ADMISSIBLE)
-        values = {f"k{n}": 100.0 for n in (1, 2, 3)} | {f"l0_{n}": 0.5 for n in (1, 2, 3)}
-        values |= {
-            "rho": float(x),
-            "L1": 1,
-            "L2": float(y),
-            "F3": -10,
-            "F4": -10,
-            "F3x": 0,
-            "F4x": 0,
-        }
-        known = dense_search(values)
-        if known["margin"] < 1e-6 or np.min(np.abs(known["lengths"] - 0.5)) < NEAR:
-            continue
-        assert count.decided
-        assert (count.stable, count.admissible) == (known["stable"], known["admissible"]), (x, y)
-        seen.add(count.admissible)
-    assert seen >= {0, 1, 2}
-
-
-@pytest.mark.slow
-def test_maps_by_plain_formulas_and_those_made_by_hand() -> None:
-    window = {"rho": ["7/5", "3/2"], "L2": ["21/20", "23/20"]}
-    one, two = (
-        ptmcad.classify(slice_of(PLAIN_PTM, axes=window, mechanism=mechanism), tolerance="1/20")
-        for mechanism in (PLAIN_PTM["mechanism"], "ptm")
-    )
-    for a, b in ((one, two), (two, one)):
-        for cell in a.cells:
-            at = b.locate(rho=cell.sample[0], L2=cell.sample[1])
-            assert at.admissible in (None, cell.admissible)
-    assert {cell.admissible for cell in one.cells} == {cell.admissible for cell in two.cells}
-    assert len(one.regions) == len(two.regions) == 2
-
-
 def test_closed_loops() -> None:
     m = map_of("four-bar", "1/100")
     assert {cell.admissible for cell in m.cells} >= {0, 1, 2}
     tried = 0
-    for x, y in points_of(m.slice, 80):
+    for x, y in random_points(m.slice, 80, 1):
         at = m.locate(F=x, l0=y)
         if at.cell is None:
             continue
@@ -271,20 +149,6 @@ def test_a_count_that_is_wrong_by_one_is_refused(name: str) -> None:
         assert not verify(changed, seed=1).ok
 
 
-def without(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
-    """Leave out the curves whose names have one of these."""
-
-    def kept(name: str) -> bool:
-        return not any(part in name for part in names)
-
-    complete = engine.curves
-
-    def some(*given: Any, **options: Any) -> tuple[CriticalCurve, ...]:
-        return tuple(curve for curve in complete(*given, **options) if kept(curve.name))
-
-    monkeypatch.setattr(engine, "curves", some)
-
-
 @pytest.mark.parametrize(("name", "tolerance"), [("chain", "1/20"), ("four-bar", "1/20")])
 @pytest.mark.slow_cases("chain-1/20")
 @pytest.mark.slow
@@ -292,7 +156,7 @@ def test_without_boundaries_at_free_lengths_counts_are_wrong(
     name: str, tolerance: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     right = map_of(name, "1/100")
-    without(monkeypatch, "has its free length")
+    without_curves(monkeypatch, "has its free length")
     wrong = ptmcad.classify(slice_of(RECORDS[name]), tolerance=tolerance)
     one, two = right.slice.axis_names
     assert any(

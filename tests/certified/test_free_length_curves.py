@@ -7,20 +7,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from support import dense_search
 
 from ptmcad.certified.branchandprune import search_curve
 from ptmcad.certified.plain.criticalcurves import curves
-from ptmcad.certified.plain.geometry import geometry
-from ptmcad.certified.plain.problem import problem_of
-from ptmcad.certified.plain.springchart import chart
 from ptmcad.certified.refinement import CriticalCurve
-from ptmcad.formulas.intervalarithmetic import program, run
-from ptmcad.formulas.tape import record
 from ptmcad.model import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis, constant
@@ -46,33 +41,11 @@ def slice_of(free: str, x: str = "rho", y: str = "L2", **values: str) -> Slice:
 
 
 def derivatives(z: Vector, free: float, load: float) -> tuple[Vector, Vector]:
-    """Gradient and Hessian of the energy in (th1, th2), spring by spring; z = (rho, L2, th1, th2),
-    L1 = k = 1.
-
-    At one point, or at as many as z has columns.
-    """
-    rho, bar, th1, th2 = z
-    a3, da3 = np.array([np.cos(th1), np.sin(th1)]), np.array([-np.sin(th1), np.cos(th1)])
-    arm, darm = (
-        bar * np.array([-np.cos(th2), np.sin(th2)]),
-        bar * np.array([np.sin(th2), np.cos(th2)]),
-    )
-    zero, base = np.zeros_like(a3), np.array([rho, np.zeros_like(rho)])
-    slope1, slope2 = -load * da3[1], -load * darm[1]
-    h11, h12, h22 = load * a3[1], np.zeros_like(rho), load * arm[1]
-    for d, (first1, first2), (second1, second2) in (
-        (base + arm, (zero, darm), (zero, -arm)),
-        (base - a3, (-da3, zero), (a3, zero)),
-        (base + arm - a3, (-da3, darm), (a3, -arm)),
-    ):
-        length = np.hypot(*d)
-        pull, bend = 1 - free / length, free / length**3
-        part1, part2 = (first1 * d).sum(0), (first2 * d).sum(0)
-        slope1, slope2 = slope1 + pull * part1, slope2 + pull * part2
-        h11 = h11 + pull * (first1 * first1 + second1 * d).sum(0) + bend * part1 * part1
-        h12 = h12 + pull * (first1 * first2).sum(0) + bend * part1 * part2
-        h22 = h22 + pull * (first2 * first2 + second2 * d).sum(0) + bend * part2 * part2
-    return np.array([slope1, slope2]), np.array([[h11, h12], [h12, h22]])
+    """Gradient and Hessian of the energy in (th1, th2) at z = (rho, L2, th1, th2), with L1 = k = 1."""
+    values = dict.fromkeys(("L1", "k1", "k2", "k3"), 1.0) | dict.fromkeys(("F3x", "F4x"), 0.0)
+    values |= dict.fromkeys(("l0_1", "l0_2", "l0_3"), free) | {"F3": load, "F4": load}
+    g1, g2, h11, h12, h22, _ = dense_search.derivatives(values | {"rho": z[0], "L2": z[1]}, *z[2:])
+    return np.array([g1, g2]), np.array([[h11, h12], [h12, h22]])
 
 
 def refine(f: Callable[[Vector], Vector], z: Vector) -> Vector | None:
@@ -145,47 +118,6 @@ def test_true_folds_lie_in_the_enclosures(free: str, load: str, number: int) -> 
             assert covers(rectangles(stable, z[:2], 0.013, 1e-7), z[:2], 1e-8)
 
 
-def test_absorption_by_the_cone_lies_in_the_enclosure() -> None:
-    """At l3 = 0 the pull of springs 1 and 2 and the loads on A3 and A4 has the size of the free
-    length.
-    """
-    free, load = 0.2, -0.1
-
-    def defect(rho: float, bar: float, side: float) -> float:
-        c1 = (rho * rho + 1 - bar * bar) / (2 * rho)
-        joint = np.array([c1, side * np.sqrt(1 - c1 * c1)])
-        base = np.array([rho, 0.0])
-        t1, t2 = np.array([-joint[1], joint[0]]), np.array([-joint[1], joint[0] - rho]) / bar
-        forces = []
-        for anchor, t in (
-            (base, t1),
-            (np.zeros(2), t2),
-        ):  # spring 2 pulls A3 to A2, spring 1 pulls A4 to A1
-            d = anchor - joint
-            forces.append(((1 - free / np.hypot(*d)) * d + [0, load]) @ t)
-        # spring 3 pulls A3 by free * u and A4 by -free * u
-        return float(np.linalg.norm(np.linalg.solve(np.array([t1, -t2]), -np.array(forces))) - free)
-
-    name = "point where spring A3A4 has no length"
-    cone = tuple(c for c in curves(slice_of("1/5", **LOADED), Count.TOTAL) if c.name == name)
-    rng, seen = np.random.default_rng(3), 0
-    while seen < 12:
-        bar, side = rng.uniform(0.3, 1.8), float(rng.choice([-1.0, 1.0]))
-        steps = [
-            float(r) for r in np.linspace(0.1, 1.9, 60) if abs(1 - bar) + 0.02 < r < 1 + bar - 0.02
-        ]
-        for start, end in pairwise(steps):
-            low, high = start, end
-            if defect(low, bar, side) * defect(high, bar, side) < 0:
-                for _ in range(50):
-                    middle = (low + high) / 2
-                    below = defect(start, bar, side) * defect(middle, bar, side) > 0
-                    low, high = (middle, high) if below else (low, middle)
-                p = np.array([low, bar])
-                assert covers(rectangles(cone, p, 0.013, 1e-7), p, 1e-8)
-                seen += 1
-
-
 def test_enclosures_are_thin() -> None:
     """A fold's enclosure over a square is a small part of it, so the tests above are not passed by
     covering all.
@@ -222,18 +154,3 @@ def test_curves_of_each_count() -> None:
         "point where spring A3A4 has its free length",
     ]
     assert [c.name for c in curves(slice_of("0", **LOADED), Count.TOTAL)] == ["fold"]
-
-
-def test_formulas_of_the_fold_agree_with_the_energy() -> None:
-    """Equations, Hessian and determinant, against derivatives that share no code with the engine."""
-    rng = np.random.default_rng(1)
-    m = chart(geometry(problem_of(slice_of("1/5", **LOADED))))
-    tape = record([[*m.equations, *(entry for row in m.hessian for entry in row), m.determinant()]])
-    low, high = np.empty(len(tape)), np.empty(len(tape))
-    for _ in range(20):
-        z = rng.uniform([0.2, 0.2, -3, -3], [1.9, 1.9, 3, 3])
-        slope, h = derivatives(z, 0.2, -0.1)
-        assert run(program(tape), z, z, low, high, 0, len(tape))
-        np.testing.assert_allclose(
-            low[tape.outputs[0]], [*slope, *h.ravel(), np.linalg.det(h)], rtol=1e-9, atol=1e-9
-        )

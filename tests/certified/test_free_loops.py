@@ -7,7 +7,6 @@ is wrong then.
 
 from __future__ import annotations
 
-import random
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cache
@@ -17,21 +16,16 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
+from support.left_out import without_curves
 from support.loop_search import Energy, Numbers, counts_along
+from support.places import random_points
 
 import ptmcad
-from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.ask.lines.along import certified_intervals
-from ptmcad.ask.lines.rangerows import operation_widths
-from ptmcad.certified import engine
-from ptmcad.certified.engine import certified_map
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.certified.plain import criticalcurves as plain_curves
 from ptmcad.certified.plain.pointcounts import plain_counter
-from ptmcad.certified.plain.problem import problem_of
-from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.errors import ConfigError
 from ptmcad.formulas.graph import Formula
-from ptmcad.options import Options
 from ptmcad.question.slice import Count
 from ptmcad.show.report.scripttape import tape
 from ptmcad.workbench.fields.quantityfield import field_of, request_of
@@ -86,25 +80,13 @@ def energy_of(p: Mapping[str, float]) -> Energy:
     return energy
 
 
-def random_points(slice: ptmcad.Slice, seed: int) -> list[tuple[Fraction, Fraction]]:
-    rng = random.Random(seed)
-    shares = [
-        (Fraction(rng.randrange(1, 10**6), 10**6), Fraction(rng.randrange(1, 10**6), 10**6))
-        for _ in range(400)
-    ]
-    (one, two) = slice.axes
-    return [
-        (one.low + u * (one.high - one.low), two.low + v * (two.high - two.low)) for u, v in shares
-    ]
-
-
 def wrong_counts(
     m: RegionMap, number: int = POINTS, seed: int = 5
 ) -> list[tuple[Fraction, Fraction]]:
     """Of so many random points outside of the cover those at which the search finds another count."""
     first, second = m.slice.axis_names
     found, tried = [], 0
-    for x, y in random_points(m.slice, seed):
+    for x, y in random_points(m.slice, 400, seed):
         cell = m.locate(**{first: x, second: y}).cell
         if cell is None or tried == number:
             continue
@@ -141,33 +123,6 @@ def test_counts_are_those_of_a_search_along_the_loop(name: str, count: str, tole
     assert not wrong_counts(m)
 
 
-@pytest.mark.slow
-def test_as_free_lengths_vanish_counts_are_the_exact_engine_s() -> None:
-    slice = slice_of("four-bar-free")
-    for x, y in random_points(slice, 11)[:6]:
-        at = {"F": x, "G": y}
-        exact, near = (ptmcad.solve(replaced(l0), **at) for l0 in ("0", "1/1000000000"))
-        assert (exact.status, near.status) == (Status.EXACT, Status.CERTIFIED)
-        assert len(exact.equilibria) == len(near.equilibria)
-        assert exact.stable == near.stable
-
-
-def replaced(l0: str) -> dict[str, Any]:
-    return FOUR_BAR | {"parameters": {"l0": l0}}
-
-
-@pytest.mark.slow
-def test_poses_are_the_critical_points_along_the_loop() -> None:
-    slice = slice_of("anchored")
-    for x, y in random_points(slice, 3)[:6]:
-        p = values_at(slice, x, y)
-        poses = ptmcad.solve(ANCHORED, x=x, y=y)
-        assert (len(poses.equilibria), poses.stable) == counts_along(p, energy_of(p))
-        assert len({pose.energy.text(8) for pose in poses.equilibria if pose.energy}) == len(
-            poses.equilibria
-        )
-
-
 def test_a_relaxed_spring_is_told() -> None:
     """Of an unloaded loop on one spring: its force and the energy are zero, to 100 digits, and the
     pose is stable.
@@ -182,88 +137,6 @@ def test_a_relaxed_spring_is_told() -> None:
     )
     assert all(pose.stable and pose.admissible is None for pose in relaxed)
     assert len(poses.equilibria) == 8
-
-
-LOOSE: dict[str, tuple[str, float, float]] = {
-    "L1": ("length", 0.5, 1.5), "L2": ("length", 0.5, 1.5), "L3": ("length", 0.5, 2), "b": ("length", 1, 3),
-    "k1": ("stiffness", 0.5, 2), "k2": ("stiffness", 0.2, 2), "F": ("force", -2, 2), "G": ("force", -2, 2),
-    "x": ("number", -1, 3), "y": ("number", -2, 2), "l1": ("free length", 0, 1.5), "l2": ("free length", 0, 1.5),
-}  # fmt: skip
-"""Kinds and ranges of what a random four-bar is made of: C = (x, y) holds the second crank's end.
-"""
-
-
-def random_slice(seed: int) -> ptmcad.Slice:
-    rng = random.Random(seed)
-
-    def between(low: float, high: float) -> str:
-        return str(Fraction(rng.uniform(low, high)).limit_denominator(30))
-
-    axes: dict[str, list[str]] = {}
-    for name in rng.sample(sorted(LOOSE), 2):
-        _, low, high = LOOSE[name]
-        middle = rng.uniform(low, high)
-        axes[name] = [between(low, middle), between(middle + 0.1, high + 0.2)]
-    mechanism = FOUR_BAR["mechanism"] | {
-        "parameters": {n: {"default": 1} | ({} if k == "number" else {"kind": k}) for n, (k, *_) in LOOSE.items()},
-        "points": FOUR_BAR["mechanism"]["points"] | {"C": ["x", "y"]},
-        "springs": [
-            {"between": ["C", "Q"], "k": "k1", "free": "l1"}, {"between": ["B0", "P"], "k": "k2", "free": "l2"},
-        ],
-    }  # fmt: skip
-    values = {
-        name: between(low, high) for name, (_, low, high) in LOOSE.items() if name not in axes
-    }
-    record = {"name": "loose", "mechanism": mechanism, "parameters": values, "axes": axes}
-    return ptmcad.slice_from_mapping(record | {"count": rng.choice(["total", "stable"])})
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(16))
-def test_random_four_bars(seed: int) -> None:
-    slice = random_slice(seed)
-    m = ptmcad.classify(slice, tolerance="1/50", timeout=120)
-    decided = 0
-    for x, y in random_points(slice, seed)[:POINTS]:
-        cell = m.locate(**dict(zip(slice.axis_names, (x, y), strict=True))).cell
-        if cell is None:
-            continue
-        decided += 1
-        p = values_at(slice, x, y)
-
-        def energy(
-            px: Numbers, py: Numbers, qx: Numbers, qy: Numbers, p: dict[str, float] = p
-        ) -> Numbers:
-            first = np.hypot(qx - p["x"], qy - p["y"]) - p["l1"]
-            second = np.hypot(px - p["b"], py) - p["l2"]
-            work: Numbers = (
-                (p["k1"] * first**2 + p["k2"] * second**2) / 2 - p["F"] * py - p["G"] * qy
-            )
-            return work
-
-        total, stable = counts_along(p, energy, 20001)
-        said = m.cells[cell]
-        assert (said.total, said.stable) == (
-            (None, stable) if slice.count is Count.STABLE else (total, None)
-        ), (x, y)
-    assert decided > 0.9 * POINTS
-
-
-@pytest.mark.slow
-def test_intervals_along_a_line() -> None:
-    """With stable counts; and an operation range is where most poses are stable, as without free
-    lengths.
-    """
-    slice = slice_of("four-bar-free")
-    found = certified_intervals(slice, "F", {"G": "18/5"}, 10)
-    assert len(found.intervals) == 3
-    for interval in found.intervals:
-        p = values_at(slice, interval.sample, Fraction(18, 5))
-        assert (interval.total, interval.stable) == counts_along(p, energy_of(p))
-    widths = operation_widths(slice, "F", 3, 6)
-    assert widths.working == 3
-    with pytest.raises(ConfigError, match="not followed where springs have free lengths"):
-        ptmcad.pose_paths(slice, "F", {"G": "18/5"}, "1")
 
 
 def test_a_map_of_an_angle_is_that_of_the_poses() -> None:
@@ -314,7 +187,7 @@ def test_a_slider_in_any_order_of_the_unknowns(unknowns: dict[str, str]) -> None
     """Bounds of the slider follow from the loop; the determinant's sign from the order."""
     record = crank(unknowns)
     slice = ptmcad.slice_from_mapping(record)
-    for x, y in random_points(slice, 2)[:4]:
+    for x, y in random_points(slice, 4, 2):
         poses = ptmcad.solve(record, W=x, M=y)
         assert (len(poses.equilibria), poses.stable) == crank_counts(float(x), float(y))
     # as many minima as maxima are along a closed curve: which pose is stable is told by energies
@@ -325,48 +198,9 @@ def test_a_slider_in_any_order_of_the_unknowns(unknowns: dict[str, str]) -> None
     assert ordered[-1].stable is False
     stable = ptmcad.classify(slice, tolerance="1/50")
     assert stable.undetermined < Fraction(1, 50)
-    for x, y in random_points(slice, 4)[:40]:
+    for x, y in random_points(slice, 40, 4):
         cell = stable.locate(W=x, M=y).cell
         assert cell is None or stable.cells[cell].stable == crank_counts(float(x), float(y))[1]
-
-
-LADDER: dict[str, Any] = {
-    "name": "ladder",
-    "mechanism": {
-        "name": "ladder",
-        "parameters": {"F": {"kind": "force"}, "G": {"kind": "force"}},
-        "unknowns": {"x": "length", "y": "length"},
-        "points": {"A": [2, 0], "P": ["x", 0], "Q": ["4/5*y", "3/5*y"]},
-        "closing": [{"between": ["P", "Q"], "length": 1}],
-        "springs": [{"between": ["A", "Q"], "k": 1, "free": "3/2"}],
-        "loads": {"P": ["F", 0], "Q": [0, "G"]},
-    },
-    "axes": {"F": [-2, 2], "G": [-2, 2]},
-    "count": "total",
-}
-"""A bar between two sliders on oblique guides; no unknown is an angle."""
-
-
-@pytest.mark.slow
-def test_sliders_that_bound_one_another() -> None:
-    """Only the loop does: x^2 + y^2 - 8/5 x y = 1; in the checker, too."""
-    m = ptmcad.classify(ptmcad.slice_from_mapping(LADDER), tolerance="1/50")
-    turn = np.linspace(-np.pi, np.pi, 20001)
-    y = np.sin(turn) / 0.6
-    x = np.cos(turn) + 0.8 * y
-    tried = 0
-    for f, g in random_points(m.slice, 8)[:60]:
-        energy = (np.hypot(0.8 * y - 2, 0.6 * y) - 1.5) ** 2 / 2 - float(f) * x - float(g) * 0.6 * y
-        rising = np.diff(energy) > 0
-        cell = m.locate(F=f, G=g).cell
-        if cell is not None:
-            tried += 1
-            assert m.cells[cell].total == int((rising != np.roll(rising, 1)).sum())
-    assert tried > 40
-    report = ptmcad.verify(m, boxes=2)
-    assert report.ok, report.table()
-    told = {check.name: check for check in report.checks}
-    assert told["counts and solutions"].passed, told["counts and solutions"].detail
 
 
 def test_what_is_not_computed_is_refused() -> None:
@@ -382,18 +216,6 @@ def test_what_is_not_computed_is_refused() -> None:
         ptmcad.slice_from_mapping(FOUR_BAR | {"mechanism": two_free})
     with pytest.raises(ConfigError, match="choose certified or auto"):
         ptmcad.classify(slice_of("four-bar-free"), engine="exact")
-
-
-def without_curves(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
-    """Leave out the curves whose names begin with one of these."""
-    complete = engine.curves
-
-    def some(*given: Any, **options: Any) -> tuple[CriticalCurve, ...]:
-        return tuple(
-            curve for curve in complete(*given, **options) if not curve.name.startswith(names)
-        )
-
-    monkeypatch.setattr(engine, "curves", some)
 
 
 @pytest.mark.slow
@@ -462,73 +284,3 @@ def test_without_short_springs_counts_are_wrong(monkeypatch: pytest.MonkeyPatch)
     assert not wrong_counts(ptmcad.classify(slice, tolerance="1/50"))
     without_curves(monkeypatch, "fold with spring")
     assert wrong_counts(ptmcad.classify(slice, tolerance="1/50"))
-
-
-def test_the_equations_are_the_energy_s_slope_along_the_loop() -> None:
-    """By differences: along the loop's tangent, with the pulls."""
-    problem = problem_of(slice_of("four-bar-free"))
-    assert problem.closing == 1 and not problem.is_gradient
-    assert all(not f.terms for cone in problem.cones for pair in cone.weights[:1] for f in pair)
-    p = {
-        "L1": 1.0,
-        "L2": 1.2,
-        "L3": 1.5,
-        "b": 2.0,
-        "k1": 1.0,
-        "k2": 1.0,
-        "F": 1.0,
-        "G": 1.5,
-        "l0": 0.5,
-    }
-    energy, step = energy_of(p), 1e-5
-
-    def place(t: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-        return np.cos(t[0]), np.sin(t[0]), 2 + 1.2 * np.cos(t[1]), 1.2 * np.sin(t[1])
-
-    def closed(t: Numbers) -> Numbers:
-        px, py, qx, qy = place(t)
-        return (qx - px) ** 2 + (qy - py) ** 2 - 1.5**2
-
-    def slopes(f: Any, t: Numbers) -> Numbers:
-        return np.array([(f(t + step * e) - f(t - step * e)) / (2 * step) for e in np.eye(2)])
-
-    counter = plain_counter(slice_of("four-bar-free")).branches[0]
-    for t in (np.array([0.3, 1.7]), np.array([-2.0, 0.9])):
-        first, second = slopes(closed, t)
-        along = np.array([-second, first]) @ slopes(lambda at: energy(*place(at)), t)
-        assert float(closed(t)) == pytest.approx(value_of(counter, 0, t), abs=1e-12)
-        assert along == pytest.approx(value_of(counter, 1, t), abs=1e-7)
-
-
-def value_of(counter: Any, equation: int, t: Numbers) -> float:
-    from ptmcad.formulas.ballarithmetic import ball, run_arb
-
-    box = [ball(Fraction(x), Fraction(x)) for x in (1.0, 1.5, *t)]
-    values = run_arb(counter.equations.tape, box, 90)
-    return float(values[int(counter.equations.equations[equation])].mid())
-
-
-@pytest.mark.slow
-def test_springs_side_by_side_in_a_loop_are_the_one_spring_that_they_are() -> None:
-    """From C to Q with k1, and to a point 3/2 as far with k1: k1 (1 + 9/4), and of the free lengths
-    l0 (1 + 3/2).
-    """
-    mechanism: dict[str, Any] = ANCHORED["mechanism"]
-    beyond = ["x + a*(b + L2*cos(th2) - x)", "y + a*(L2*sin(th2) - y)"]
-    several = mechanism | {
-        "points": mechanism["points"] | {"T": beyond},
-        "parameters": mechanism["parameters"] | {"a": {"default": "3/2"}},
-        "springs": [{"between": ["C", "T"], "k": "k1", "free": "l0"}, *mechanism["springs"]],
-    }
-    alone = mechanism | {"springs": [{"between": ["C", "Q"], "k": "13/4*k1", "free": "10/13*l0"}]}
-    window = {"axes": {"x": [1, 3], "y": [-1, 1]}, "count": "stable"}
-    one, two = (
-        ptmcad.slice_from_mapping(ANCHORED | window | {"mechanism": m}) for m in (alone, several)
-    )
-    many = certified_map(two, Options(tolerance=Fraction(1, 10), jobs=1))
-    found = plain_counter(one)
-    assert len({cell.stable for cell in many.cells}) > 2
-    for cell in many.cells:
-        assert found.at(*cell.sample, Count.STABLE).stable == cell.stable
-    told = {check.name for check in ptmcad.verify(many, boxes=2).checks if check.passed}
-    assert told >= {"counts and solutions", "random boxes"}

@@ -8,16 +8,11 @@ import random
 from fractions import Fraction as Q
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from support.dense_search import dense_search
-from support.examples import examples
 
-import ptmcad
 from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.pointcounts import BranchCounter, plain_counter
 from ptmcad.certified.plain.zeros import PointCount
-from ptmcad.formulas.ballarithmetic import ball, run_arb
 from ptmcad.model import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis, values_at
@@ -109,38 +104,6 @@ def test_agrees_with_a_dense_search() -> None:
     compare_with_dense_search(seed=5, points=6)
 
 
-@pytest.mark.slow
-def test_agrees_with_a_dense_search_at_300_points() -> None:
-    compare_with_dense_search(seed=1, points=300)
-
-
-def compare_with_exact(seed: int, points: int) -> None:
-    generator = random.Random(seed)
-    for _ in range(points):
-        x, y = Q(generator.randint(1, 2000), 1000), Q(generator.randint(1, 2000), 1000)
-        f3, f4 = Q(generator.randint(-300, 300), 1000), Q(generator.randint(-300, 300), 1000)
-        exact = ptmcad.solve(rho=x, L2=y, F3=100 * f3, F4=100 * f4)
-        kinds = [pose.index for pose in exact.equilibria]
-        for free in (Q(0), Q(1, 10**12)):
-            found = counter(F3=f3, F4=f4, l0_1=free, l0_2=free, l0_3=free).at(x, y, Count.INDEX)
-            assert found.index == (kinds.count(0), kinds.count(1), kinds.count(2)), (
-                x,
-                y,
-                f3,
-                f4,
-                free,
-            )
-
-
-def test_agrees_with_the_exact_engine_as_free_lengths_vanish() -> None:
-    compare_with_exact(seed=3, points=6)
-
-
-@pytest.mark.slow
-def test_agrees_with_the_exact_engine_at_200_points() -> None:
-    compare_with_exact(seed=4, points=200)
-
-
 def test_near_and_on_a_fold() -> None:
     # unloaded without free lengths: the count changes at 2 rho = L2 + 1
     counts = equal_springs(Q(0), Q(0))
@@ -148,18 +111,6 @@ def test_near_and_on_a_fold() -> None:
     assert on == PointCount()
     assert counts.at(Q(5, 4) - Q(1, 10**5), Q(3, 2), Count.TOTAL).total == 6
     assert counts.at(Q(5, 4) + Q(1, 10**5), Q(3, 2), Count.TOTAL).total == 4
-
-
-@pytest.mark.slow
-def test_bisection_to_a_fold_goes_beyond_floats() -> None:
-    counts = equal_springs(Q(1, 5), Q(-1, 10))
-    low, high = Q(123, 100), Q(124, 100)
-    for _ in range(56):
-        middle = (low + high) / 2
-        found = counts.at(middle, Q(3, 2), Count.STABLE)
-        assert found.decided
-        low, high = (middle, high) if found.stable == 2 else (low, middle)
-    assert high - low < Q(1, 10**18) and abs(low - Q("1.231662423294416")) < Q(1, 10**14)
 
 
 @pytest.mark.parametrize(
@@ -199,23 +150,6 @@ def test_a_circle_of_equilibria_is_undecided(free: Q) -> None:
     assert equal_springs(free, Q(0)).at(Q(0), Q(3, 2), Count.TOTAL) == PointCount()
 
 
-def test_boxes_are_disjoint_and_hold_one_zero_each() -> None:
-    counts = equal_springs(Q("1.01487"), Q("-0.1"))
-    found = counts.at(Q("1.20609"), Q(1), Count.TOTAL)
-    for number, a in enumerate(found.solutions):
-        assert a.radius > 0
-        for b in found.solutions[:number]:
-            assert any(
-                abs(u - v) > a.radius + b.radius for u, v in zip(a.center, b.center, strict=True)
-            )
-    equations = counts.branches[0].equations
-    for solution in found.solutions:
-        box = [ball(Q("1.20609"), Q("1.20609")), ball(Q(1), Q(1))]
-        box += [ball(c - solution.radius, c + solution.radius) for c in solution.center]
-        values = run_arb(equations.tape, box, 100, 1)
-        assert all(values[int(place)].contains(0) for place in equations.equations)
-
-
 def test_a_cone_appears_at_its_exact_place() -> None:
     # unloaded, L1 = L2 = 1, rho = 1/2: |g| s12 = rho^2 H (1 - l0) and l0 s12 = l0 rho H, equal at
     # l0 = 1/3
@@ -236,23 +170,3 @@ def test_without_a_free_length_of_spring_3_there_is_no_cone() -> None:
         "l0_3": Q(0),
     }
     assert peaks(given).count == 0
-
-
-fractions = st.integers(0, 40).map(lambda n: Q(3 * n, 59))
-
-
-@settings(max_examples=examples(12), deadline=None)
-@given(fractions, fractions.filter(bool), fractions, fractions, st.integers(-10, 10))
-def test_symmetries(rho: Q, l2: Q, first: Q, third: Q, load: int) -> None:
-    """Swapping the sides with their loads, turning the loads round, and scaling change no count."""
-    f3, f4 = Q(load, 20), Q(-1, 10)
-    counts = counter(F3=f3, F4=f4, l0_1=first, l0_2=Q(1, 5), l0_3=third).at(rho, l2, Count.INDEX)
-    swapped = counter(F3=f4, F4=f3, l0_1=Q(1, 5), l0_2=first, l0_3=third, L1=l2).at(
-        rho, Q(1), Count.INDEX
-    )
-    turned = counter(F3=-f3, F4=-f4, l0_1=first, l0_2=Q(1, 5), l0_3=third).at(rho, l2, Count.INDEX)
-    scaled = counter(
-        F3=f3 * 2, F4=f4 * 2, l0_1=first * 2, l0_2=Q(2, 5), l0_3=third * 2, L1=Q(2)
-    ).at(rho * 2, l2 * 2, Count.INDEX)  # fmt: skip
-    decided = [c for c in (counts, swapped, turned, scaled) if c.decided]
-    assert len({(c.index, c.cones) for c in decided}) <= 1

@@ -4,26 +4,22 @@ it.
 
 from __future__ import annotations
 
-import random
 from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from flint import arb
 from numpy.typing import NDArray
 from support.dense_search import dense_search
-from support.few import few
-from support.paper_energy import PaperEnergy, energy_at
 
 pytest.importorskip("numba")
 
+from support.places import assert_same_areas, random_points
+
 import ptmcad
 from ptmcad.certified.branchandprune import search_curve
-from ptmcad.certified.plain import criticalcurves as plain_curves
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.mirrors import mirrors
-from ptmcad.certified.plain.opening import QUARTER
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.refinement import CriticalCurve
@@ -54,12 +50,6 @@ def is_own_image(slice: Slice) -> bool:
     return EXCHANGE in mirrors(slice, problem_of(slice))
 
 
-def energy(slice: Slice, x: Fraction, y: Fraction) -> PaperEnergy:
-    return energy_at(
-        lambda n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0)
-    )
-
-
 def test_what_is_its_own_image() -> None:
     assert is_own_image(slice_of())
     assert is_own_image(slice_of(F3x="F*rho", F4x="-rho*F"))
@@ -72,107 +62,11 @@ def test_what_is_its_own_image() -> None:
     assert is_own_image(slice_of(F3="-1", F4="-1"))
 
 
-def newton(slice: Slice, x: float, z: Floats, on_the_mirror: bool) -> Floats | None:
-    """A zero (y, th1, th2) of E1, E2 and det H; or (y, s, s) of E1 and H11 - H12."""
-
-    def equations(z: Floats) -> Floats:
-        angles = (z[1], z[1]) if on_the_mirror else (z[1], z[2])
-        d = energy(slice, Fraction(x), Fraction(float(z[0])))(
-            *(arb(float(angle)) for angle in angles)
-        )
-        found = (
-            (d.e1, d.e11 - d.e12) if on_the_mirror else (d.e1, d.e2, d.e11 * d.e22 - d.e12 * d.e21)
-        )
-        return np.array([float(v.mid()) for v in found])
-
-    z = z[:2] if on_the_mirror else z
-    for _ in range(40):
-        if not -29 < z[0] < -0.1:
-            return None
-        value = equations(z)
-        jacobian = np.array(
-            [(equations(z + h) - equations(z - h)) / 2e-7 for h in 1e-7 * np.eye(len(z))]
-        ).T
-        if abs(np.linalg.det(jacobian)) < 1e-12:
-            return None
-        move = np.linalg.solve(jacobian, value)
-        z = z - np.clip(move, -1, 1)
-        if np.abs(move).max() < 1e-12:
-            return np.array([x, z[0], z[1], z[-1]])
-    return None
-
-
-def folds(slice: Slice, number: int, kind: str) -> list[Floats]:
-    """Points (x, y, th1, th2) with a Hessian that is singular and positive semidefinite:
-    pitchforks, or other folds.
-    """
-    rng, found = np.random.default_rng(6), list[Floats]()
-    while len(found) < number:
-        start = np.array([rng.uniform(-25, -1), *rng.uniform(-3, 3, 2)])
-        point = newton(slice, float(rng.uniform(0.2, 1.9)), start, kind == "pitchfork")
-        if point is not None and (kind == "off the mirror") == (halves(point)[1] > 0.01):
-            d = energy(slice, *(Fraction(float(v)) for v in point[:2]))(
-                *(arb(float(v)) for v in point[2:])
-            )
-            if d.e11 > 1e-3 and d.e22 > 1e-3:
-                found.append(point)
-    return found
-
-
-def halves(point: Floats) -> tuple[float, float]:
-    """s in its turn and d in [0, pi/2], of the configuration or its mirror image."""
-    s, d = (point[2] + point[3]) / 2, (point[2] - point[3]) / 2
-    turns = np.round(d / np.pi)
-    return float((s - turns * np.pi + 3) % (2 * np.pi) - 3), float(abs(d - turns * np.pi))
-
-
 def left_around(curve: CriticalCurve, x: float, y: float) -> Floats:
     window = np.array([[x - 0.02, y - 0.2, x + 0.011, y + 0.3]])
     return search_curve(
         curve.system.arguments(), curve.start(window), 1e-5, 50_000, curve.importance()
     ).left()
-
-
-def is_kept(found: tuple[CriticalCurve, ...], point: Floats) -> bool:
-    """Whether one of the curves' searches leaves a box that has it."""
-    s, d = halves(point)
-    here = np.array([*point[:2], s, d])
-    for curve in found:
-        boxes = left_around(curve, *map(float, point[:2]))
-        known = here[: boxes.shape[1] // 2]
-        if len(known) == 3 and d > 1e-9:
-            continue  # it is not on the mirror
-        if (
-            ((boxes[:, : len(known)] <= known + 1e-9) & (boxes[:, len(known) :] >= known - 1e-9))
-            .all(axis=1)
-            .any()
-        ):
-            return True
-    return False
-
-
-@pytest.mark.parametrize(
-    "kind", few(["pitchfork", "on the mirror", "off the mirror"], "pitchfork", "on the mirror")
-)
-@pytest.mark.slow_cases("pitchfork")
-def test_the_search_keeps_known_folds(kind: str) -> None:
-    slice = slice_of()
-    found = curves(slice, Count.STABLE)[:3]
-    assert [len(c.system.unknowns) for c in found] == [3, 3, 4]
-    assert QUARTER[0] <= 0
-    assert QUARTER[1] > np.pi / 2
-    assert all(is_kept(found, point) for point in folds(slice, 2, kind))
-
-
-@pytest.mark.slow
-def test_on_a_slice_that_is_not_its_own_image_folds_would_be_lost(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """What the hypothesis is for."""
-    slice = slice_of(F4="9*F/10")
-    points = folds(slice, 3, "off the mirror")
-    monkeypatch.setattr(plain_curves, "mirrors", lambda *_: [EXCHANGE])
-    assert not all(is_kept(curves(slice, Count.STABLE)[:3], point) for point in points)
 
 
 def test_a_minimum_that_two_springs_without_length_absorb_is_kept() -> None:
@@ -224,11 +118,7 @@ def test_maps_with_and_without_mirror_images_do_not_contradict(
         ]
         assert sum(a is not None for a, _ in told) > len(told) // 2
         assert all(a in (None, b) for a, b in told)
-    rng = random.Random(7)
-    for _ in range(points):
-        x, y = (
-            a.low + (a.high - a.low) * Fraction(rng.randrange(1, 10**6), 10**6) for a in slice.axes
-        )
+    for x, y in random_points(slice, points, 7):
         count = quick.locate(**dict(zip(slice.axis_names, (x, y), strict=True))).stable
         values = {
             name: float(expression.evaluate(x, y)) for name, expression in slice.parameters.items()
@@ -238,23 +128,24 @@ def test_maps_with_and_without_mirror_images_do_not_contradict(
         )
 
 
-def test_without_free_lengths_the_map_is_the_exact_engines() -> None:
-    """There u is linear in w, and the third equation off the mirror would be a square."""
-    parameters = {"L1": "1", "L2": "1", "k": "100", "F3": "F", "F4": "F"}
+@pytest.mark.parametrize(
+    ("loads", "axes", "tolerance"),
+    [
+        ({}, {"rho": ["1/20", "2"], "L2": ["1/20", "2"]}, "1/100"),
+        ({"L2": "1", "F3": "F", "F4": "F"}, {"rho": ["1/20", "2"], "F": ["-40", "0"]}, "1/200"),
+    ],
+    ids=["flat poses", "equal bars"],
+)
+def test_without_free_lengths_the_map_is_the_exact_engines(
+    loads: dict[str, str], axes: dict[str, list[str]], tolerance: str
+) -> None:
+    """With equal bars u is linear in w, and the third equation off the mirror would be a square."""
     slice = slice_from_mapping(
-        {"name": "s", "parameters": parameters, "axes": {"rho": ["1/20", "2"], "F": ["-40", "0"]}}
+        {"name": "s", "parameters": {"L1": "1", "k": "100", **loads}, "axes": axes}
     )
-    assert is_own_image(slice)
-    proved = ptmcad.classify(slice, engine="certified", tolerance="1/200", jobs=1)
-    true = ptmcad.classify(slice)
-    window = Fraction(39, 20) * 40
-    for count in {region.stable for region in true.regions}:
-        low = sum((r.area[0] for r in proved.regions if r.stable == count), Fraction(0))
-        known = [
-            sum((r.area[k] for r in true.regions if r.stable == count), Fraction(0)) for k in (0, 1)
-        ]
-        assert low <= known[1]
-        assert known[0] <= low + proved.undetermined * window
+    assert mirrors(slice, problem_of(slice))
+    proved = ptmcad.classify(slice, engine="certified", tolerance=tolerance, jobs=1)
+    assert_same_areas(proved, ptmcad.classify(slice))
 
 
 def test_admissible_counts_have_the_same_curves() -> None:

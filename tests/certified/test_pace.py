@@ -19,8 +19,6 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified import engine, loading, refinement
 from ptmcad.certified.pace import (
-    ALLOWANCE,
-    MAP_TIME_SHARE,
     MIN_RESERVE,
     PARTS,
     SAFETY,
@@ -75,44 +73,6 @@ def test_on_a_busy_machine_more_time_is_kept() -> None:
     work.now += 0.5
     assert long.last(10) == pytest.approx(10, rel=0.1)
     assert short.last(10) == pytest.approx(4, rel=0.1)
-
-
-def test_a_long_task_is_expected_again() -> None:
-    clock = Clock()
-    pace = Pace(clock() + 40, clock, clock)
-    assert not pace.late(10)
-    clock.now += 12
-    assert not pace.late(10)
-    clock.now += 14.5  # 13.5 are left: one more such task does not fit with the map
-    assert pace.late(10)
-    assert Pace(clock() + MIN_RESERVE / 2, clock, clock).late(10)
-    assert not Pace(None, clock, clock).late(10**7)
-
-
-def test_maps_on_the_way_take_a_small_part_of_the_time() -> None:
-    """Each takes 3 seconds whatever was foreseen, for an hour."""
-    clock = Clock()
-    pace = Pace(None, clock, clock)
-    made = 0
-    while clock.now < pace.started + 3600:
-        clock.now += 0.2
-        if pace.due(20_000):
-            clock.now += 3
-            pace.map.record(20_000, 3.0)
-            pace.spent += 3
-            made += 1
-    assert 50 <= made <= (ALLOWANCE + MAP_TIME_SHARE * (clock.now - pace.started)) / 3 + 1
-
-
-def test_what_is_not_worth_while_is_not_looked_at_all_the_time() -> None:
-    clock = Clock()
-    pace = Pace(None, clock, clock)
-    clock.now += 1000
-    assert pace.due(1000)
-    pace.looked(1.0)
-    assert not pace.due(1000)
-    clock.now += 2 / MAP_TIME_SHARE + 1
-    assert pace.due(1000)
 
 
 def window() -> ptmcad.Slice:

@@ -8,12 +8,10 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+import yaml
 
 pytest.importorskip("numba")
 
-from support.examples import examples
 
 import ptmcad
 from ptmcad.answer.poses import Poses
@@ -133,24 +131,6 @@ def test_the_checker_confirms_them_everywhere() -> None:
     assert told >= {"counts and solutions", "random boxes", "the whole free area"}
 
 
-forces = st.fractions(min_value=-2, max_value=2, max_denominator=16)
-
-
-@settings(max_examples=examples(15), deadline=None)
-@given(st.sampled_from(list(APART)), forces, forces)
-def test_they_have_the_equilibria_of_the_one_spring(
-    how: str, force: Fraction, up: Fraction
-) -> None:
-    one, many = poses(TOGETHER, force, up), poses(APART[how], force, up)
-    assert one.status is many.status
-    pairs = list(zip(one.equilibria, many.equilibria, strict=True))
-    assert [a.index for a, _ in pairs] == [b.index for _, b in pairs]
-    for a, b in pairs:
-        assert all(
-            max(p.low, q.low) <= min(p.high, q.high) for p, q in zip(a.reals, b.reals, strict=True)
-        )
-
-
 def test_apart_nothing_is_decided(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where both have no length, each direction is free."""
     monkeypatch.setattr(plain_problem, "shares", lambda *_: None)
@@ -172,25 +152,19 @@ def test_a_rational_equilibrium_has_its_exact_numbers() -> None:
     assert [Fraction(0), Fraction(1)] in forces
 
 
-SCALED: dict[str, Any] = {
-    "unknowns": {"x": "length", "y": "length"},
-    "parameters": {
-        "F": {"kind": "force"},
-        "a": {"kind": "length"},
-        "b": {"kind": "length"},
-        "c": {},
-    },
-    "points": {
-        "A": [0, 0],
-        "B": [2, 0],
-        "P": ["x", "y"],
-        "M": ["a*x", "a*y"],
-        "N": ["-b*x", "-b*y"],
-        "C": ["c*x", "c*y"],
-        "S": ["a*x", "b*y"],
-    },
-    "loads": {"P": ["F", "1/3"]},
-}
+SCALED: dict[str, Any] = yaml.safe_load("""
+unknowns: {x: length, y: length}
+parameters: {F: {kind: force}, a: {kind: length}, b: {kind: length}, c: {}}
+points:
+  A: [0, 0]
+  B: [2, 0]
+  P: [x, y]
+  M: [a*x, a*y]
+  N: [-b*x, -b*y]
+  C: [c*x, c*y]
+  S: [a*x, b*y]
+loads: {P: [F, 1/3]}
+""")
 NEAR: dict[str, Any] = {"between": ["B", "P"], "k": 1, "free": "1/3"}
 
 
@@ -217,12 +191,10 @@ OVER_A = {"F": [-3, 1], "a": [1, 2]}
     [
         # 1/2 |d| + 1/2 |a d|, with a an axis, a fixed parameter or a function of an axis
         ("PM", OVER_A, {}, "1/2 + 1/2*y", {("a",): "1/2", (): "1/2"}),
-        ("MP", OVER_A, {}, "1/2 + 1/2*y", {("a",): "1/2", (): "1/2"}),
         ("PM", {"F": [-2, 2], "b": [1, 2]}, {"a": "3/2"}, "5/4", {("a",): "1/2", (): "1/2"}),
         # the engine has half the vector
         ("NP", {"F": [-2, 2], "t": [1, 2]}, {"b": "t/2"}, "1 + 1/2*y", {("b",): "1/2", (): "1/2"}),
         # a d and -b d, of which neither is a polynomial times the other
-        ("MN", {"a": [1, 2], "b": [0, 3]}, {}, "1/2*y + 1/2*x", {("a",): "1/2", ("b",): "1/2"}),
         (
             "PMN",
             {"a": [1, 2], "b": [0, 3]},
@@ -240,7 +212,6 @@ OVER_A = {"F": [-3, 1], "a": [1, 2]}
             "1/2 + 1/2*y",
             {("a",): "1/2", (): "1/2"},
         ),
-        ("PS", {"F": [-2, 2], "c": [1, 2]}, {"a": "3/2", "b": "3/2"}, "5/4", {(): "5/4"}),
     ],
 )
 def test_the_ratio_is_a_function_of_the_axes(

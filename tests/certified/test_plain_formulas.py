@@ -9,21 +9,20 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
 import pytest
+import yaml
 from flint import arb, arb_mat
+from support.places import area_with
 from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.lines.along import certified_intervals
-from ptmcad.certified.branchandprune import search_curve
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.plain import rational
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.harmonics import Harmonics
 from ptmcad.certified.plain.pointcounts import plain_counter
-from ptmcad.certified.plain.pointcounts import plain_counter as point_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.unknownranges import ranges
@@ -35,54 +34,20 @@ from ptmcad.show.ranges.linetable import table as interval_table
 from ptmcad.text.expressions import constant
 
 VON_MISES: dict[str, Any] = {"name": "von_mises", **TRUSS}
-CHAIN: dict[str, Any] = {
-    "name": "chain",
-    "mechanism": {
-        "name": "chain",
-        "parameters": {"a": {"kind": "base", "default": 1}, "F": {"kind": "force"}},
-        "unknowns": {"s": "angle", "t": "angle"},
-        "points": {
-            "O": [0, 0],
-            "A": [0, "a"],
-            "P": ["sin(s)", "cos(s)"],
-            "Q": ["sin(s) + sin(t)", "cos(s) + cos(t)"],
-        },
-        "bars": [["O", "P"], ["P", "Q"]],
-        "springs": [{"between": ["A", "P"], "k": 1}, {"between": ["A", "Q"], "k": 1}],
-        "loads": {"P": ["1/10", 0], "Q": [0, "F"]},
-    },
-    "axes": {"a": [1, 3], "F": [-1, 2]},
-    "count": "index",
-}
-THREE_ANGLES: dict[str, Any] = {
-    "name": "three_angles",
-    "system": {
-        "unknowns": {"t0": "angle", "t1": "angle", "t2": "angle"},
-        "potential": "-F*(cos(t0)+cos(t1)+cos(t2)) - k*(cos(t0-t1)+cos(t1-t2)) - G*sin(t0)",
-    },
-    "parameters": {"G": "1/3"},
-    "axes": {"k": [0, 1], "F": [1, 2]},
-    "count": "index",
-}
-PENDULUM: dict[str, Any] = {
-    "name": "pendulum",
-    "mechanism": {
-        "name": "pendulum",
-        "parameters": {
-            "a": {"kind": "base", "default": 1},
-            "l0": {"kind": "free length", "default": 0},
-            "W": {"kind": "force"},
-        },
-        "unknowns": {"th": "angle"},
-        "points": {"O": [0, 0], "A": [0, "a"], "P": ["sin(th)", "cos(th)"]},
-        "bars": [["O", "P"]],
-        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
-        "loads": {"P": ["1/10", "W"]},
-    },
-    "parameters": {"l0": "1/2"},
-    "axes": {"a": [0, 3], "W": [-4, 4]},
-    "count": "index",
-}
+PENDULUM: dict[str, Any] = yaml.safe_load("""
+name: pendulum
+mechanism:
+  name: pendulum
+  parameters: {a: {kind: base, default: 1}, l0: {kind: free length, default: 0}, W: {kind: force}}
+  unknowns: {th: angle}
+  points: {O: [0, 0], A: [0, a], P: [sin(th), cos(th)]}
+  bars: [[O, P]]
+  springs: [{between: [A, P], k: 1, free: l0}]
+  loads: {P: [1/10, W]}
+parameters: {l0: 1/2}
+axes: {a: [0, 3], W: [-4, 4]}
+count: index
+""")
 NO_LENGTH = [
     f"{what} where spring k{n} has no length"
     for n, what in enumerate(("crease", "crease", "point"), 1)
@@ -101,30 +66,13 @@ def _slice(record: dict[str, Any], **changes: Any) -> Slice:
     return slice_from_mapping(record | changes)
 
 
-def _bounds(result: ptmcad.RegionMap, **count: Any) -> tuple[Fraction, Fraction]:
-    """The area of the regions with a count, when the undetermined part belongs to them or not."""
-    horizontal, vertical = result.slice.axes
-    window = (horizontal.high - horizontal.low) * (vertical.high - vertical.low)
-    ((name, value),) = count.items()
-    area = sum((r.area[0] for r in result.regions if getattr(r, name) == value), Fraction(0))
-    return area, area + result.undetermined * window
-
-
 def test_von_mises_truss_has_three_equilibria_inside_of_the_astroid_of_area_1_0069() -> None:
     result = ptmcad.classify(_slice(VON_MISES), tolerance="1/200")
-    low, high = _bounds(result, total=3)
+    low, high = area_with(result, "total", 3)
     assert low <= Fraction("1.0069") <= high
     assert {cell.index for cell in result.cells} == {(1, 0), (2, 1)}
     inside = result.locate(a="1/2", f="1/10")
     assert (inside.total, inside.stable) == (3, 2)
-
-
-@pytest.mark.parametrize("fixed", ["stable", "total"])
-@pytest.mark.slow_cases("stable")
-def test_other_counts_of_the_truss_agree(fixed: str) -> None:
-    result = ptmcad.classify(_slice(VON_MISES), count=fixed, tolerance="1/50")
-    at = result.locate(a="1/2", f="1/10")
-    assert (at.stable if fixed == "stable" else at.total) == (2 if fixed == "stable" else 3)
 
 
 def test_bound_of_a_length_is_proved_or_the_slice_refused() -> None:
@@ -157,114 +105,6 @@ def _minima(a: float, load: float, samples: int = 4000) -> int:
 
     values = [energy(2 * pi * k / samples) for k in range(samples)]
     return sum(values[k - 1] > values[k] < values[(k + 1) % samples] for k in range(samples))
-
-
-@pytest.mark.slow
-def test_two_angles_without_free_lengths_agree_with_the_exact_engine() -> None:
-    slice = _slice(CHAIN)
-    exact, certified = (
-        ptmcad.classify(slice),
-        ptmcad.classify(slice, engine="certified", tolerance="1/200"),
-    )
-    for index in {region.index for region in exact.regions}:
-        low, high = _bounds(certified, index=index)
-        assert low <= sum(r.area[1] for r in exact.regions if r.index == index)
-        assert sum(r.area[0] for r in exact.regions if r.index == index) <= high
-    for cell in certified.cells:
-        at = exact.locate(a=cell.sample[0], F=cell.sample[1])
-        assert (at.index, at.total) == (cell.index, cell.total)
-
-
-@pytest.mark.slow
-def test_three_angles_have_the_index_counts_of_three_dimensions() -> None:
-    result = ptmcad.classify(_slice(THREE_ANGLES), engine="certified", tolerance="1/100")
-    assert result.undetermined <= Fraction(1, 100)
-    assert {cell.index for cell in result.cells} == {(1, 3, 3, 1), (1, 3, 4, 2)}
-    for cell in result.cells:
-        exact = ptmcad.solve(
-            model=result.slice.model, G="1/3", k=cell.sample[0], F=cell.sample[1], digits=3
-        )
-        found = [pose.index for pose in exact.equilibria]
-        assert tuple(found.count(k) for k in range(4)) == cell.index
-
-
-POINTS = [
-    ("7/10", "3/2"),
-    ("11/10", "6/5"),
-    ("1/2", "1/3"),
-    ("9/10", "19/20"),
-    ("3/2", "1/2"),
-    ("1/5", "1/4"),
-]
-
-
-@pytest.mark.parametrize("l0", ["0", "1/5", "1/2"])
-@pytest.mark.slow_cases("1/2")
-def test_plain_and_refined_formulas_count_the_same_equilibria_of_the_papers_mechanism(
-    l0: str,
-) -> None:
-    plain = _slice(PLAIN_PTM, parameters={**PLAIN_PTM["parameters"], "l0": l0})
-    refined = _slice(PLAIN_PTM, mechanism="ptm", parameters={**PLAIN_PTM["parameters"], "l0": l0})
-    counters = [point_counter(plain), point_counter(refined)]
-    for x, y in POINTS:
-        first, second = (counter.at(Fraction(x), Fraction(y), Count.INDEX) for counter in counters)
-        assert first.decided and second.decided
-        assert (first.total, first.stable, first.index) == (
-            second.total,
-            second.stable,
-            second.index,
-        ), (x, y)
-        stable = counters[0].at(Fraction(x), Fraction(y), Count.STABLE)
-        assert stable.decided and stable.stable == first.stable
-
-
-def _boxes(slice: Slice, area: float) -> int:
-    """How many boxes the curves of a slice take until each box that is left projects to that share
-    of the window.
-    """
-    total = 0
-    window = np.array(
-        [[*(float(axis.low) for axis in slice.axes), *(float(axis.high) for axis in slice.axes)]]
-    )
-    share = area * float((window[0, 2] - window[0, 0]) * (window[0, 3] - window[0, 1]))
-    for curve in curves(slice, slice.count):
-        found = search_curve(
-            curve.system.arguments(), curve.start(window), share, 10**6, curve.importance()
-        )
-        assert not len(found.waiting)
-        total += found.used
-    return total
-
-
-@pytest.mark.parametrize(("count", "factor"), [("stable", 1.2), ("index", 1.6)])
-@pytest.mark.slow_cases("index-1.6")
-@pytest.mark.slow
-def test_plain_formulas_take_hardly_more_boxes_than_the_refined_ones(
-    count: str, factor: float
-) -> None:
-    plain, refined = (
-        _boxes(_slice(PLAIN_PTM, mechanism=mechanism, count=count), 4.0**-3)
-        for mechanism in (PLAIN_PTM["mechanism"], "ptm")
-    )
-    assert plain < factor * refined
-
-
-@pytest.mark.slow
-def test_map_by_plain_formulas_agrees_with_the_one_by_refined_formulas() -> None:
-    window = {"rho": ["3/5", "6/5"], "L2": ["6/5", "9/5"]}
-    maps = [
-        ptmcad.classify(
-            _slice(PLAIN_PTM, mechanism=mechanism, axes=window, count="stable"), tolerance="1/20"
-        )
-        for mechanism in (PLAIN_PTM["mechanism"], "ptm")
-    ]
-    for one, other in (maps, maps[::-1]):
-        located = [
-            (cell, other.locate(rho=cell.sample[0], L2=cell.sample[1])) for cell in one.cells
-        ]
-        assert all(at.stable in (cell.stable, None) for cell, at in located)
-    stable = [{cell.stable for cell in one.cells} for one in maps]
-    assert stable[0] == stable[1]
 
 
 def test_a_spring_that_one_angle_moves_has_a_crease_and_another_a_chart_and_a_cone() -> None:
@@ -368,17 +208,6 @@ def test_poses_of_the_truss() -> None:
         assert float(pose.eigenvalues[0].center) == pytest.approx(
             2 - 2 * 0.25 / length**3, rel=1e-9
         )
-
-
-def test_poses_by_plain_and_refined_formulas_agree() -> None:
-    at = {"L1": "1", "k": "100", "l0": "1/5", "F3": "-10", "F4": "-10", "rho": "7/10", "L2": "3/2"}
-    plain, refined = solve(PLAIN_PTM, at), ptmcad.solve(**at)
-    assert len(plain.equilibria) == len(refined.equilibria) == 6
-    for one, other in zip(plain.equilibria, refined.equilibria, strict=True):
-        for first, second in zip(
-            (*one.angles, *one.eigenvalues), (*other.angles, *other.eigenvalues), strict=True
-        ):
-            assert first.text(10) == second.text(10)
 
 
 def test_a_number_that_is_zero_without_a_reason_is_enclosed(

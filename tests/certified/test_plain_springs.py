@@ -6,11 +6,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import atan2, hypot
 from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from numpy.typing import NDArray
 from test_plain_formulas import PLAIN_PTM
 
@@ -26,30 +26,27 @@ from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import axis, constant
 
-THREE_BARS: dict[str, Any] = {
-    "name": "three_bars",
-    "mechanism": {
-        "name": "three_bars",
-        "parameters": {"a": {"kind": "length"}, "b": {"kind": "length"}},
-        "unknowns": {"r": "angle", "s": "angle", "t": "angle"},
-        "points": {
-            "O": [0, 0],
-            "A": [1, "1/2"],
-            "P": ["a*cos(r)", "a*sin(r)"],
-            "Q": ["a*cos(r) + b*cos(s)", "a*sin(r) + b*sin(s)"],
-            "R": ["a*cos(r) + b*cos(s) + cos(t)", "a*sin(r) + b*sin(s) + sin(t)"],
-        },
-        "bars": [["O", "P"], ["P", "Q"], ["Q", "R"]],
-        "springs": [
-            {"between": ["A", "P"], "k": 1, "free": "1/2"},
-            {"between": ["A", "Q"], "k": 2, "free": "1/3"},
-            {"between": ["A", "R"], "k": 3, "free": "1/4"},
-            {"between": ["P", "R"], "k": 1, "free": "1/5"},
-        ],
-    },
-    "axes": {"a": [0, 2], "b": [0, 2]},
-    "count": "index",
-}
+THREE_BARS: dict[str, Any] = yaml.safe_load("""
+name: three_bars
+mechanism:
+  name: three_bars
+  parameters: {a: {kind: length}, b: {kind: length}}
+  unknowns: {r: angle, s: angle, t: angle}
+  points:
+    O: [0, 0]
+    A: [1, 1/2]
+    P: [a*cos(r), a*sin(r)]
+    Q: [a*cos(r) + b*cos(s), a*sin(r) + b*sin(s)]
+    R: [a*cos(r) + b*cos(s) + cos(t), a*sin(r) + b*sin(s) + sin(t)]
+  bars: [[O, P], [P, Q], [Q, R]]
+  springs:
+    - {between: [A, P], k: 1, free: 1/2}
+    - {between: [A, Q], k: 2, free: 1/3}
+    - {between: [A, R], k: 3, free: 1/4}
+    - {between: [P, R], k: 1, free: 1/5}
+axes: {a: [0, 2], b: [0, 2]}
+count: index
+""")
 POINT = np.array([0.7, 1.5, 0.4, -1.1, 0.9, 0.0])
 
 
@@ -74,41 +71,11 @@ def matrix(at: SpringChart, point: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
-@pytest.mark.slow_cases("mechanism1")
-def test_determinant_with_each_spring_to_the_first_power_is_that_of_the_matrix(
-    mechanism: dict[str, Any],
-) -> None:
-    _, at = charts(mechanism)
-    assert values([at.determinant()], POINT)[0] == pytest.approx(
-        np.linalg.det(matrix(at, POINT)), rel=1e-9
-    )
-
-
-@pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
 def test_matrix_is_the_derivative_of_the_equations(mechanism: dict[str, Any]) -> None:
     problem, at = charts(mechanism)
     graph = at.equations[0].graph
     slopes = [graph.derivative(f, k) for f in at.equations for k in problem.variables]
     assert values(slopes, POINT) == pytest.approx(matrix(at, POINT).ravel(), rel=1e-9)
-
-
-@pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
-@pytest.mark.slow_cases("mechanism1")
-def test_determinant_in_a_chart_is_that_times_the_length(mechanism: dict[str, Any]) -> None:
-    problem, direct = charts(mechanism)
-    phi = 2 + len(problem.unknowns)
-    for s in range(len(problem.cones)):
-        _, turned = charts(mechanism, s)
-        x, y = values(turned.cones[s].vector, POINT)
-        point = POINT.copy()
-        point[phi] = atan2(y, x)
-        length = hypot(x, y)
-        found = values(
-            [turned.determinant(), turned.aligned, turned.cones[s].extent, *turned.equations], point
-        )
-        assert found[0] == pytest.approx(np.linalg.det(matrix(direct, POINT)) * length, rel=1e-9)
-        assert found[1:3] == pytest.approx([0, length], abs=1e-12)
-        assert found[3:] == pytest.approx(values(direct.equations, POINT), rel=1e-9)
 
 
 def equilibria(at: SpringChart, number: int) -> list[NDArray[np.float64]]:
@@ -164,28 +131,6 @@ def _open(formulas: Sequence[Formula]) -> list[Formula]:
     return [made[f.number] for f in formulas]
 
 
-@pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
-@pytest.mark.slow_cases("mechanism1")
-def test_moment_on_bodies_that_turn_is_that_of_the_equations(mechanism: dict[str, Any]) -> None:
-    problem, at = charts(mechanism)
-    scales = values(at.scales, POINT)
-    slopes, hessian = values(at.equations, POINT) * scales, matrix(at, POINT) * scales[:, None]
-    (turned,) = at.turned
-    w = np.array(turned.weights)
-    moment, stiffness, factor = values([turned.moment, turned.stiffness, turned.factor], POINT)
-    assert moment * factor == pytest.approx(w @ slopes, rel=1e-9)
-    assert stiffness * factor == pytest.approx(w @ hessian @ w, rel=1e-9)
-    for s in range(len(problem.cones)):
-        _, charted = charts(mechanism, s)
-        x, y = values(charted.cones[s].vector, POINT)
-        point = POINT.copy()
-        point[2 + len(at.equations)] = atan2(y, x)
-        again = values(
-            [charted.turned[0].moment, charted.turned[0].stiffness, *charted.along], point
-        )
-        assert again == pytest.approx([moment, stiffness, 0, 0], rel=1e-9, abs=1e-12)
-
-
 def test_bars_that_turn_by_one_angle_leave_the_base_only() -> None:
     slice = slice_from_mapping(PLAIN_PTM)
     (loaded,) = geometry(problem_of(slice), slice.axes).turns
@@ -194,18 +139,6 @@ def test_bars_that_turn_by_one_angle_leave_the_base_only() -> None:
     unloaded = slice_from_mapping({**PLAIN_PTM, "parameters": {"L1": 1, "k": 100, "l0": "1/5"}})
     (free,) = geometry(problem_of(unloaded), unloaded.axes).turns
     assert free.factor == axis(0)
-
-
-def test_determinants_by_turning_and_levelled_hold_at_equilibria() -> None:
-    _, at = charts(PLAIN_PTM)
-    (by_turning,) = at.determinants_by_turning()
-    for point in equilibria(at, 4):
-        determinant = np.linalg.det(matrix(at, point))
-        lengths, (_, second) = values(at.lengths, point), values(at.scales, point)
-        found = values(_open([by_turning, at.levelled()]), point)
-        assert found == pytest.approx(
-            [determinant * second, determinant * lengths.prod()], rel=1e-4, abs=1e-4
-        )
 
 
 def test_a_matrix_that_is_not_symmetric_has_no_determinant_by_turning() -> None:

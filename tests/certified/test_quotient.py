@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from flint import arb, ctx
+import yaml
+from flint import ctx
 from mpmath import mp, mpf
 from support.mechanisms_energy import energy
 
@@ -21,80 +22,84 @@ pytest.importorskip("numba")
 import ptmcad
 from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.certified import enclosedline
-from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.mirrors import MirrorFrame, frames, halving, mirrors
-from ptmcad.certified.plain.opening import Coordinates, coordinates, opening, stiffness
+from ptmcad.certified.plain.opening import Coordinates, coordinates, opening
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.springchart import chart
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.formulas.ballarithmetic import run_arb
-from ptmcad.formulas.graph import Formula
 from ptmcad.formulas.tape import record
 from ptmcad.model.involutions import Involution
 from ptmcad.question.config import load, slice_from_mapping
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.slice import Slice
 
 SHIPPED = Path(__file__).resolve().parents[2] / "configs"
-PENDULUM = {
-    "parameters": {"k": {"kind": "stiffness"}, "F": {"kind": "force"}, "l": {"kind": "length"}},
-    "unknowns": {"a": "angle", "b": "angle", "c": "angle"},
-    "points": {
-        "O": [0, 0], "P": ["cos(a)", "sin(a)"], "Q": ["cos(a) + cos(b)", "sin(a) + sin(b)"],
-        "R": ["cos(a) + cos(b) + cos(c)", "sin(a) + sin(b) + sin(c)"], "E": [5, 0],
-    },
-    "bars": [["O", "P"], ["P", "Q"], ["Q", "R"]],
-    "supports": {"O": "pin", "E": "pin"},
-    "springs": [
-        {"between": ["P", "E"], "k": "k", "free": "l"}, {"between": ["Q", "E"], "k": 1},
-        {"between": ["R", "E"], "k": 1, "free": "l"}, {"between": ["O", "R"], "k": "1/2"},
-    ],
-    "loads": {"R": ["F", 0]},
-}  # fmt: skip
+PENDULUM = yaml.safe_load("""
+parameters: {k: {kind: stiffness}, F: {kind: force}, l: {kind: length}}
+unknowns: {a: angle, b: angle, c: angle}
+points:
+  O: [0, 0]
+  P: [cos(a), sin(a)]
+  Q: [cos(a) + cos(b), sin(a) + sin(b)]
+  R: [cos(a) + cos(b) + cos(c), sin(a) + sin(b) + sin(c)]
+  E: [5, 0]
+bars: [[O, P], [P, Q], [Q, R]]
+supports: {O: pin, E: pin}
+springs:
+  - {between: [P, E], k: k, free: l}
+  - {between: [Q, E], k: 1}
+  - {between: [R, E], k: 1, free: l}
+  - {between: [O, R], k: 1/2}
+loads: {R: [F, 0]}
+""")
 """Three bars in a row along an axis: all angles are odd."""
-MASS = {
-    "parameters": {
-        "c": {"kind": "stiffness"}, "s0": {"kind": "free length", "default": "1/5"}, "W": {"kind": "force"}
-    },
-    "unknowns": {"x": "length", "y": "length"},
-    "points": {"A": [0, 0], "P": ["x", "y"]},
-    "supports": {"A": "pin"},
-    "springs": [{"between": ["A", "P"], "k": "c", "free": "s0"}],
-    "loads": {"P": {"weight": "W"}},
-}  # fmt: skip
+MASS = yaml.safe_load("""
+parameters: {c: {kind: stiffness}, s0: {kind: free length, default: 1/5}, W: {kind: force}}
+unknowns: {x: length, y: length}
+points: {A: [0, 0], P: [x, y]}
+supports: {A: pin}
+springs: [{between: [A, P], k: c, free: s0}]
+loads: {P: {weight: W}}
+""")
 """A weight on a spring."""
-CART = {
-    "parameters": {"k": {"kind": "stiffness"}, "l": {"kind": "length"}},
-    "unknowns": {"t": "angle", "u": "length", "v": "length"},
-    "points": {
-        "A": ["u", 0], "B": ["v", "1/2"], "C": ["cos(t)", "sin(t) + 2"], "D": [1, 0],
-        "E": [1, "1/2"], "M": [-1, 0], "N": [-1, "1/2"], "S": [0, 2],
-    },
-    "bars": [["S", "C"]],
-    "supports": {"S": "pin", "D": "pin", "E": "pin", "M": "pin", "N": "pin"},
-    "springs": [
-        {"between": ["A", "C"], "k": "k", "free": "l"}, {"between": ["B", "C"], "k": 1, "free": "l/2"},
-        {"between": ["A", "D"], "k": 1, "free": "l"}, {"between": ["A", "M"], "k": 1, "free": "l"},
-        {"between": ["B", "E"], "k": 2}, {"between": ["B", "N"], "k": 2},
-    ],
-}  # fmt: skip
+CART = yaml.safe_load("""
+parameters: {k: {kind: stiffness}, l: {kind: length}}
+unknowns: {t: angle, u: length, v: length}
+points:
+  A: [u, 0]
+  B: [v, 1/2]
+  C: [cos(t), sin(t) + 2]
+  D: [1, 0]
+  E: [1, 1/2]
+  M: [-1, 0]
+  N: [-1, 1/2]
+  S: [0, 2]
+bars: [[S, C]]
+supports: {S: pin, D: pin, E: pin, M: pin, N: pin}
+springs:
+  - {between: [A, C], k: k, free: l}
+  - {between: [B, C], k: 1, free: l/2}
+  - {between: [A, D], k: 1, free: l}
+  - {between: [A, M], k: 1, free: l}
+  - {between: [B, E], k: 2}
+  - {between: [B, N], k: 2}
+""")
 """Two sliders and a bar above them: a reflection takes each slider to its negative, and the bar's
 angle to pi less it; springs are each other's images."""
-TWINS = {
-    "parameters": {"k": {"kind": "stiffness"}, "F": {"kind": "force"}, "l": {"kind": "length"}},
-    "unknowns": {"a": "angle", "b": "angle"},
-    "points": {
-        "A": [0, 0], "B": [1, 0], "P": ["cos(a)", "sin(a)"], "Q": ["1 - cos(b)", "sin(b)"],
-    },
-    "bars": [["A", "P"], ["B", "Q"]],
-    "supports": {"A": "pin", "B": "pin"},
-    "springs": [
-        {"between": ["A", "Q"], "k": "k", "free": "l"}, {"between": ["B", "P"], "k": "k", "free": "l"},
-        {"between": ["P", "Q"], "k": 3, "free": "l/2"},
-    ],
-    "loads": {"P": [0, "F"], "Q": [0, "F"]},
-}  # fmt: skip
+TWINS = yaml.safe_load("""
+parameters: {k: {kind: stiffness}, F: {kind: force}, l: {kind: length}}
+unknowns: {a: angle, b: angle}
+points: {A: [0, 0], B: [1, 0], P: [cos(a), sin(a)], Q: [1 - cos(b), sin(b)]}
+bars: [[A, P], [B, Q]]
+supports: {A: pin, B: pin}
+springs:
+  - {between: [A, Q], k: k, free: l}
+  - {between: [B, P], k: k, free: l}
+  - {between: [P, Q], k: 3, free: l/2}
+loads: {P: [0, F], Q: [0, F]}
+""")
 """Two bars that are each other's images."""
 WINDOWS: dict[str, dict[str, list[str]]] = {
     "pendulum": {"F": ["-2", "-1"], "l": ["1/2", "1"]},
@@ -214,32 +219,6 @@ def reference(name: str, at: Coordinates, given: dict[str, mpf], point: list[mpf
     ]  # fmt: skip
 
 
-def test_the_stiffness_on_the_fixed_points_is_the_hessians() -> None:
-    slice = slice_of("twins")
-    problem = problem_of(slice)
-    (frame, _), *_ = cases("twins")
-    at = coordinates(frame, 0)
-    here = chart(geometry(problem, slice.axes), unknowns=frame.unknowns(at.evens, (), at.graph))
-    across: Formula = stiffness(at, [s.vector for s in here.cones])
-    block = frame.block(here.hessian, frame.odds, here.scales, over=False)[0][0]
-    tape = record([[across, block]])
-    with ctx.workprec(200):
-        for share in (1, 3, 4):
-            run = run_arb(
-                tape,
-                [ball_of(Fraction(-3, 2)), ball_of(Fraction(1, 3)), ball_of(Fraction(share, 2))],
-                200,
-            )
-            one, other = (run[int(k)] for k in tape.outputs[0])
-            assert abs(one - other) < arb(2) ** -150
-
-
-def test_three_odd_unknowns_have_a_chart_each_about_every_fixed_point() -> None:
-    slice = slice_of("pendulum")
-    names = [c.name.partition(" ")[0] for c in curves(slice, Count.STABLE)]
-    assert names == ["pitchfork", "fold", "fold", "fold"] * 8 + ["fold"] * 2 + ["point"] * 2
-
-
 def test_a_half_of_a_window_says_the_same_as_the_whole_of_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -347,17 +326,6 @@ def test_what_is_undecided_along_a_line_is_not_looked_at_closely_again(
     alone = certified_intervals(slice, "W", {"c": "40"}, 10)
     assert few < len(calls)
     assert (alone.intervals, alone.changes[1:]) == (found.intervals, found.changes[1:])
-
-
-@pytest.mark.slow
-def test_a_map_with_three_odd_unknowns() -> None:
-    """Its counts are those at points, which are found without the symmetry."""
-    slice = slice_of("pendulum")
-    found = ptmcad.classify(slice, engine="certified", tolerance="1/4", jobs=1)
-    counter = plain_counter(slice)
-    assert found.cells
-    for cell in found.cells:
-        assert counter.at(*cell.sample, Count.STABLE).stable == cell.stable
 
 
 def test_a_line_without_a_springs_length_parts_no_regions() -> None:

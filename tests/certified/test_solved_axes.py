@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 pytest.importorskip("numba")
 
-from ptmcad.certified.branchandprune import search_curve
 from ptmcad.certified.contraction import contract, workspace
 from ptmcad.certified.enclosedline import on_line
-from ptmcad.certified.equationsystem import EquationSystem, quotients, system
+from ptmcad.certified.equationsystem import quotients, system
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
@@ -117,72 +116,6 @@ def test_a_solution_at_which_the_slope_is_zero_is_kept() -> None:
         assert (high >= [0, 3, 0]).all()
         point = np.array([0.0, 2.5, 0.0])
         assert contract(arguments, point.copy(), point.copy(), workspace(arguments, 3))
-
-
-def equilibria_over_two_linear_axes(number: int) -> tuple[EquationSystem, list[Floats]]:
-    """The equations of equilibrium over axes F and l0, and solutions: the angles by chance, the
-    axes by Cramer's rule.
-
-    Some angles are right, where the slope of a load is zero, or zero, where a spring is short.
-    """
-    slice = slice_from_mapping(
-        {
-            "name": "s",
-            "parameters": {"L1": "1", "L2": "3/2", "rho": "2", "k": "100", "F3": "F", "F4": "F/2"},
-            "axes": {"F": ["-300", "300"], "l0": ["0", "3"]},
-        }
-    )
-    m = chart_of(slice)
-    graph = m.equations[0].graph
-    gradient = [graph.derivative(e, axis) for e in m.equations for axis in (0, 1)]
-    rng, found = random.Random(4), list[Floats]()
-    while len(found) < number:
-        angles = [
-            rng.choice([rng.uniform(-3, 3), np.pi / 2, 1e-3, rng.uniform(-0.1, 0.1)])
-            for _ in range(2)
-        ]
-        e1, e2, *j = values([*m.equations, *gradient], [0.0, 0.0, *angles])
-        determinant = j[0] * j[3] - j[1] * j[2]
-        if abs(determinant) > 1e-6:
-            x, y = (e2 * j[1] - e1 * j[3]) / determinant, (e1 * j[2] - e2 * j[0]) / determinant
-            if abs(x) < 300 and 0 < y < 3:
-                found.append(np.array([x, y, *angles]))
-    solved = quotients([*m.equations, *m.dependent], (0, 1))
-    return system(m.equations, (0, 1, 2, 3), (m.dependent, ()), solved=solved), found
-
-
-def test_contraction_keeps_equilibria_and_tells_the_axes() -> None:
-    found, points = equilibria_over_two_linear_axes(40)
-    assert set(found.solved[:, 0].tolist()) == {0, 1}
-    arguments = found.arguments()
-    rng, told = np.random.default_rng(5), 0
-    for point in points:
-        for _ in range(20):
-            size = np.array([600, 3, 1, 1]) * 10 ** rng.uniform(-8, 0, 4)
-            share = rng.uniform(0, 1, 4)
-            low, high = point - size * share - 1e-6, point + size * (1 - share) + 1e-6
-            wide = (high - low)[:2].prod()
-            assert contract(arguments, low, high, workspace(arguments, 4))
-            assert (low <= point + 1e-7 * (1 + np.abs(point))).all()
-            assert (high >= point - 1e-7 * (1 + np.abs(point))).all()
-            told += bool((high - low)[:2].prod() < 0.5 * wide)
-    assert told > 200, "no axis is told, so that nothing is tested"
-
-
-@pytest.mark.slow
-def test_the_search_takes_fewer_boxes() -> None:
-    """On a part of a slice with an axis l0, in which the curve is regular; without what is solved
-    it takes many.
-    """
-    slice = slice_of("rho", "l0", F3="-10", F4="-10")
-    curve = curves(slice, Count.STABLE)[0]
-    with_all = curve.system.arguments()
-    without = with_all._replace(solved=np.empty((0, 3), np.int64), solved_end=0)
-    window = curve.start(np.array([[0.5, 0.3, 1.5, 0.6]]))
-    used = [
-        search_curve(a, window, 1e-4, 10**6, curve.importance()).used for a in (with_all, without)
-    ]
-    assert used[0] < 0.8 * used[1]
 
 
 def test_a_value_that_is_given_is_not_narrowed() -> None:

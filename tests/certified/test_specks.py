@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ pytest.importorskip("numba")
 
 from ptmcad.certified import specks
 from ptmcad.certified.branchandprune import Boxes
-from ptmcad.certified.covering import Lattice, box_rectangles, meeting, thinning
+from ptmcad.certified.covering import Lattice, box_rectangles, thinning
 from ptmcad.certified.equationsystem import system
 from ptmcad.certified.refinement import CriticalCurve, CurveEnclosure, begin, refine
 from ptmcad.certified.specks import without_specks
@@ -70,24 +69,6 @@ def covered(cover: Cover, at: np.ndarray) -> np.ndarray:
 
 def middles(boxes: Boxes) -> np.ndarray:
     return np.asarray((boxes[:, :2] + boxes[:, 2:]) / 2)
-
-
-def test_what_meets() -> None:
-    """All intervals with ends from 0 to 3, against closed intervals by definition; a third variable
-    does not count.
-    """
-    spans = [(a, b) for a, b in product(range(4), repeat=2) if a <= b]
-    sides = np.array(list(product(spans, repeat=2)), dtype=float)  # of shape (k, axis, end)
-    rectangles = np.concatenate([sides[:, :, 0], sides[:, :, 1]], axis=1)
-    third = np.full((len(sides), 1), 7.0)
-    boxes = np.concatenate([sides[:, :, 0], third, sides[:, :, 1], third], axis=1)
-    found = meeting(rectangles, boxes)
-    for i, j in product(range(0, len(sides), 3), range(len(sides))):
-        common = [
-            range(max(a[0], b[0]), min(a[1], b[1]) + 1)
-            for a, b in zip(*sides[[i, j]].astype(int), strict=True)
-        ]
-        assert found[i, j] == all(map(len, common))
 
 
 @pytest.mark.parametrize("thin", [False, True])

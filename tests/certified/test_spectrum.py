@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction as Q
-from typing import Any
 
 import pytest
 from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
@@ -14,7 +13,6 @@ from support.examples import examples
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.answer.regionmap import Status
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction
@@ -71,35 +69,6 @@ def test_nothing_is_said_of_a_matrix_that_is_not_finite() -> None:
     assert not any(
         ball.is_finite() for ball in ordered_eigenvalues(arb_mat(2, 2, [1, 0, 0, arb.nan()]))
     )
-
-
-def sliders(number: int) -> dict[str, Any]:
-    """Sliders on guides of their own, each with one spring along its guide: the Hessian is the
-    identity everywhere.
-    """
-    return {
-        "parameters": {"F": {"kind": "force"}, "l": {"kind": "free length"}},
-        "unknowns": {f"x{n}": "length" for n in range(number)},
-        "points": {f"A{n}": [0, n] for n in range(number)}
-        | {f"S{n}": [f"x{n}", n] for n in range(number)},
-        "springs": [{"between": [f"A{n}", f"S{n}"], "k": 1, "free": "l"} for n in range(number)],
-        "loads": {f"S{n}": [f"F/{n + 3}", 0] for n in range(number)},
-    }
-
-
-@pytest.mark.parametrize("number", [2, 3])
-@pytest.mark.slow_cases("3")
-def test_a_hessian_that_is_the_identity_has_index_and_stability(number: int) -> None:
-    found = ptmcad.solve(model=ptmcad.Mechanism(sliders(number)), F="1/7", l="1/2")
-    assert found.status is Status.CERTIFIED
-    assert [pose.index for pose in found.equilibria] == [0] * 2**number
-    for pose in found.equilibria:
-        assert pose.stable
-        assert all(value.low <= 1 <= value.high for value in pose.eigenvalues)
-        assert [value.text(5) for value in pose.eigenvalues] in (
-            ["1.0000"] * number,
-            ["1"] * number,
-        )
 
 
 def test_two_pendulums_alike_have_equal_irrational_eigenvalues() -> None:

@@ -8,30 +8,19 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+import yaml
 
 import ptmcad
 from ptmcad.model import Model
 from ptmcad.text.enclosure import Enclosure
 
-PENDULUM: dict[str, Any] = {
-    "parameters": {"l0": {"kind": "free length"}, "W": {"kind": "force"}},
-    "unknowns": {"th": "angle"},
-    "points": {"O": [0, 0], "A": [0, 3], "P": ["sin(th)", "cos(th)"]},
-    "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
-    "loads": {"P": {"weight": "W"}},
-}
-JAW: dict[str, Any] = {
-    "parameters": {"l0": {"kind": "free length"}, "F": {"kind": "force"}},
-    "unknowns": {"th": "angle", "phi": "angle"},
-    "points": {"A": [-1, 1], "B": [1, 1], "P": ["sin(th)", "cos(th)"]},
-    "bodies": {"jaw": {"at": "P", "angle": "phi + pi/2", "points": {"Q": [1, 0]}}},
-    "springs": [
-        {"between": ["A", "Q"], "k": 10, "free": "l0"},
-        {"between": ["B", "Q"], "k": 10, "free": "l0"},
-    ],
-    "torsion": [{"angle": "th", "k": 2}, {"angle": "phi - th", "k": 1}],
-    "loads": {"Q": [0, "-F"]},
-}
+PENDULUM: dict[str, Any] = yaml.safe_load("""
+parameters: {l0: {kind: free length}, W: {kind: force}}
+unknowns: {th: angle}
+points: {O: [0, 0], A: [0, 3], P: [sin(th), cos(th)]}
+springs: [{between: [A, P], k: 1, free: l0}]
+loads: {P: {weight: W}}
+""")
 
 
 def with_anchor(x: object) -> Model:
@@ -77,27 +66,6 @@ def test_a_cosine_that_is_a_short_decimal_by_accident_has_digits() -> None:
     assert [pose.springs[0].length.text(8) for pose in bent] == ["1.5000000"] * 2
 
 
-def test_a_jaw_with_torsion_springs_and_free_lengths() -> None:
-    """Two mirrored stable poses, and four with both angles 0 or pi; checked by the gradient in
-    doubles elsewhere.
-    """
-    poses = ptmcad.solve(model=ptmcad.Mechanism(JAW), l0="1/2", F=2)
-    assert [pose.index for pose in poses.equilibria] == [0, 0, 1, 1, 1, 2]
-    one, other, *upright = poses.equilibria
-    assert [a.text(9) for a in one.angles] == [b.text(9).removeprefix("-") for b in other.angles]
-    assert {tuple(degree.exact for degree in pose.degrees) for pose in upright} == {
-        (0, 180), (0, 0), (180, 0), (180, 180),
-    }  # fmt: skip
-    assert all(pose.nodes["Q"][0].exact == 0 for pose in upright)
-
-
-def test_a_length_that_is_a_whole_number_by_accident_settles() -> None:
-    """1 - 2/length = 1/3 away from the axis: length 3 and force 1, with digits that are all right."""
-    poses = ptmcad.solve(model=ptmcad.Mechanism(PENDULUM), l0=2, W=1)
-    assert [pose.stable for pose in poses.equilibria] == [True, True, False, False]
-    assert [poses.equilibria[0].springs[0].length.text(d) for d in (1, 4)] == ["3", "3.000"]
-
-
 def test_poses_are_followed_from_a_symmetric_start() -> None:
     slice = ptmcad.slice_from_mapping({"mechanism": PENDULUM, "axes": {"W": [0, 4], "l0": [0, 1]}})
     paths = ptmcad.pose_paths(slice, "W", {"l0": "1/2"}, 1)
@@ -126,16 +94,13 @@ def test_a_relaxed_spring_has_nearly_its_free_length() -> None:
         assert float(pose.cosines_sines[0]) == pytest.approx((10 - 2.4**2) / 6)
 
 
-TRUSS = {
-    "parameters": {"a": {"kind": "length"}, "b": {"kind": "length"}, "f": {"kind": "force"}},
-    "unknowns": {"h": "length"},
-    "points": {"A": ["-a", 0], "B": ["b", 0], "P": [0, "h"]},
-    "springs": [
-        {"between": ["A", "P"], "k": 1, "free": 1},
-        {"between": ["B", "P"], "k": 1, "free": 1},
-    ],
-    "loads": {"P": [0, "f"]},
-}
+TRUSS = yaml.safe_load("""
+parameters: {a: {kind: length}, b: {kind: length}, f: {kind: force}}
+unknowns: {h: length}
+points: {A: [-a, 0], B: [b, 0], P: [0, h]}
+springs: [{between: [A, P], k: 1, free: 1}, {between: [B, P], k: 1, free: 1}]
+loads: {P: [0, f]}
+""")
 """Von Mises's truss, where b = a."""
 
 
@@ -210,13 +175,13 @@ def test_a_number_that_may_be_halfway_between_two_texts_has_one_digit_more(digit
     """A pendulum's eigenvalue a^2 sin^2/l^2 = 0.99474375, which nothing explains, at seven digits;
     in a file, too.
     """
-    pendulum = {
-        "parameters": {"a": {"kind": "length"}, "f": {"kind": "force"}},
-        "unknowns": {"th": "angle"},
-        "points": {"O": [0, 0], "A": ["a", 0], "P": ["cos(th)", "sin(th)"]},
-        "springs": [{"between": ["A", "P"], "k": 1, "free": 2}],
-        "loads": {"P": [0, "f"]},
-    }
+    pendulum = yaml.safe_load("""
+        parameters: {a: {kind: length}, f: {kind: force}}
+        unknowns: {th: angle}
+        points: {O: [0, 0], A: [a, 0], P: [cos(th), sin(th)]}
+        springs: [{between: [A, P], k: 1, free: 2}]
+        loads: {P: [0, f]}
+    """)
     poses = ptmcad.solve(digits=digits, model=ptmcad.Mechanism(pendulum), a="23/10", f=0)
     (eigenvalue,) = poses.equilibria[0].eigenvalues
     assert eigenvalue.text(digits) == {6: "0.994744", 7: "0.99474375", 8: "0.99474375"}[digits]
@@ -238,51 +203,13 @@ def test_a_spring_that_is_nearly_relaxed_is_not_taken_for_one_that_is(
     assert 0 < abs(float(pose.energy)) < 1e-58
 
 
-def test_springs_of_which_one_is_relaxed() -> None:
-    """Two bars: where Q's spring is relaxed, the gradient of P's is that of one unknown alone."""
-    arm = {
-        "parameters": {"l0": {"kind": "free length"}},
-        "unknowns": {"th": "angle", "phi": "angle"},
-        "points": {
-            "A": [2, 1], "B": [-1, "3/2"], "P": ["sin(th)", "cos(th)"],
-            "Q": ["sin(th) + sin(phi)", "cos(th) + cos(phi)"],
-        },
-        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}, {"between": ["B", "Q"], "k": 1, "free": "l0"}],
-    }  # fmt: skip
-    poses = ptmcad.solve(model=ptmcad.Mechanism(arm), l0="3/2").equilibria
-    relaxed = [tuple(nearly(spring.force, 0) for spring in pose.springs) for pose in poses]
-    assert (relaxed.count((True, True)), relaxed.count((False, True))) == (2, 4)
-    for pose, (first, second) in zip(poses, relaxed, strict=True):
-        assert nearly(pose.energy, 0) == (first and second)
-
-
-LEANING: dict[str, Any] = {
-    "parameters": {"l0": {"kind": "free length"}, "F": {"kind": "force"}},
-    "unknowns": {"th": "angle"},
-    "points": {
-        "O": [0, 0],
-        "A": [2, 1],
-        "P": ["cos(th)", "sin(th)"],
-        "Z": ["cos(th) - 2*sin(th)", "3*cos(th)^2"],
-    },
-    "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
-    "loads": {"P": [0, "F"]},
-}
-FOLDED: dict[str, Any] = {
-    "parameters": {"F": {"kind": "force"}},
-    "unknowns": {"th": "angle", "bend": "angle"},
-    "points": {
-        "O": [0, 0],
-        "A": ["7/5", "1/2"],
-        "B": ["cos(th)", "sin(th)"],
-        "C": ["cos(th) + cos(th + bend)", "sin(th) + sin(th + bend)"],
-    },
-    "springs": [
-        {"between": ["A", "B"], "k": 1, "free": "1/10"},
-        {"between": ["A", "C"], "k": 1, "free": "1/10"},
-    ],
-    "loads": {"C": [0, "F"]},
-}
+LEANING: dict[str, Any] = yaml.safe_load("""
+parameters: {l0: {kind: free length}, F: {kind: force}}
+unknowns: {th: angle}
+points: {O: [0, 0], A: [2, 1], P: [cos(th), sin(th)], Z: [cos(th) - 2*sin(th), 3*cos(th)^2]}
+springs: [{between: [A, P], k: 1, free: l0}]
+loads: {P: [0, F]}
+""")
 
 
 def test_what_is_zero_by_a_mirror_along_no_axis_is_enclosed() -> None:
@@ -316,19 +243,6 @@ def test_a_number_that_no_proof_tells_from_zero_is_enclosed() -> None:
     assert "|Z x| < 1e-" in poses.table()
 
 
-def test_a_chain_folded_along_a_line_ends_in_its_pivot() -> None:
-    """Two bars of length 1 from O, the second by its angle to the first; by hand, C = O at the
-    folded ones.
-    """
-    poses = ptmcad.solve(model=ptmcad.Mechanism(FOLDED), F=0)
-    assert [pose.index for pose in poses.equilibria] == [0, 0, 1, 1, 1, 2]
-    ends = [
-        tuple(nearly(coordinate, 0) for coordinate in pose.nodes["C"]) for pose in poses.equilibria
-    ]
-    assert ends == [(False, False)] * 3 + [(True, True)] * 2 + [(False, False)]
-    assert [spring.length.text(6) for spring in poses.equilibria[0].springs] == ["0.500000"] * 2
-
-
 LONG = Fraction(333333333333333333333333333340, 10**30 + 1)
 """Thirty digits above and below."""
 
@@ -352,25 +266,3 @@ def test_a_rational_equilibrium_of_thirty_digits(load: str) -> None:
         assert (pose.reals[0].exact, pose.springs[0].force.exact) == (x, Fraction(9, 2))
     else:
         assert all(z.exact is None and 0 < abs(float(z)) < 1e-130 for z in pose.nodes["Z"])
-
-
-@pytest.mark.parametrize("half", [Fraction(333333333333340, 10**15 + 1), LONG])
-def test_a_rational_angle_of_thirty_digits(half: Fraction) -> None:
-    """By the tangent of its half, or by its cosine and sine; the load takes what the spring pulls
-    across the bar.
-    """
-    c, s = (1 - half**2) / (1 + half**2), 2 * half / (1 + half**2)
-    load = Fraction(9, 2) * (Fraction(3, 5) * c - Fraction(4, 5) * s) / c
-    balanced = {
-        **PENDULUM,
-        "points": {
-            "A": [str(s - 3), str(c - 4)],
-            "P": ["sin(th)", "cos(th)"],
-            "Z": [f"cos(th) - {c}", 1],
-        },
-        "loads": {"P": ["W", 0]},
-    }
-    poses = ptmcad.solve(model=ptmcad.Mechanism(balanced), l0="1/2", W=str(load)).equilibria
-    (pose,) = (pose for pose in poses if abs(float(pose.nodes["Z"][0])) < 1e-9)
-    assert (pose.nodes["Z"][0].exact, pose.springs[0].length.exact) == (0, 5)
-    assert [number.exact for number in pose.cosines_sines] == [c, s]

@@ -15,31 +15,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from support.covers import covers
 from support.examples import examples
 
 from ptmcad.cover import components, from_boxes, union_area
 from ptmcad.cover.complement import outlines, samples, simplest_between
 from ptmcad.cover.lattice import combined, gathered
-from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
+from ptmcad.cover.rectangles import MAX_STEPS, Cover
 
 UNIT = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))
 WINDOW = ((Fraction(1, 20), Fraction(2)), (Fraction(-7, 3), Fraction(5)))
-
-
-@st.composite
-def rectangles(draw: st.DrawFn, steps: int) -> Rectangle:
-    left, bottom = draw(st.integers(0, steps - 1)), draw(st.integers(0, steps - 1))
-    # short ones mostly, so that they leave something open between them
-    width, tall = (
-        draw(st.integers(1, max(1, steps // draw(st.sampled_from((1, 2, 4)))))) for _ in range(2)
-    )
-    return left, min(left + width, steps), bottom, min(bottom + tall, steps)
-
-
-@st.composite
-def covers(draw: st.DrawFn) -> Cover:
-    steps = 2 ** draw(st.integers(0, 4))
-    return Cover(steps, tuple(sorted(set(draw(st.lists(rectangles(steps), max_size=14))))))
 
 
 @dataclass(frozen=True)
@@ -126,32 +111,6 @@ def check_against_flood(cover: Cover) -> None:
 @given(covers())
 def test_components_and_clusters_are_those_of_a_flood_fill(cover: Cover) -> None:
     check_against_flood(cover)
-
-
-@pytest.mark.slow
-@settings(deadline=None, max_examples=3000)
-@given(covers())
-def test_components_and_clusters_are_those_of_a_flood_fill_often(cover: Cover) -> None:
-    check_against_flood(cover)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(4))
-def test_components_of_many_rectangles_are_those_of_a_flood_fill(seed: int) -> None:
-    source = random.Random(seed)
-    steps, longest = 256, (4, 8, 40, 12)[seed]
-    found = set()
-    for _ in range((6000, 2500, 300, 1500)[seed]):
-        left, bottom = source.randrange(steps), source.randrange(steps)
-        found.add(
-            (
-                left,
-                min(steps, left + source.randint(1, longest)),
-                bottom,
-                min(steps, bottom + source.randint(1, 4)),
-            )
-        )
-    check_against_flood(Cover(steps, tuple(sorted(found))))
 
 
 @settings(deadline=None, max_examples=examples(50))
@@ -400,28 +359,6 @@ def test_the_simplest_fraction_has_the_least_denominator(a: Fraction, b: Fractio
     assert low <= found <= high
     for denominator in range(1, min(found.denominator, 200)):
         assert math.floor(high * denominator) < math.ceil(low * denominator)
-
-
-@pytest.mark.slow
-def test_two_hundred_thousand_overlapping_rectangles() -> None:
-    """A chain of overlapping squares along a circle, on the finest lattice: two components, whose
-    areas are known.
-    """
-    number, half = 200_000, 2**23
-    steps, radius = MAX_STEPS, MAX_STEPS // 4
-    angles = [2 * math.pi * k / number for k in range(number)]
-    centres = [
-        (steps // 2 + round(radius * math.cos(a)), steps // 2 + round(radius * math.sin(a)))
-        for a in angles
-    ]
-    found = components(
-        Cover(steps, tuple(sorted({(x - half, x + half, y - half, y + half) for x, y in centres})))
-    )
-    assert len(found.areas) == 2
-    assert len(found.cluster_areas) == 1
-    inner = found.areas[found.locate(Fraction(steps, 2), Fraction(steps, 2)) or 0]
-    assert math.pi * (radius - 1.5 * half) ** 2 < inner < math.pi * (radius - half / 2) ** 2
-    assert sum(found.areas) + found.cluster_areas[0] == steps**2
 
 
 def test_many_rectangles_need_longer_arrays() -> None:

@@ -1,5 +1,4 @@
-"""Fuzzing in the test suites: some hundred cases in the fast one, some thousand in the slow one,
-all in ``make fuzz``.
+"""Fuzzing in the test suite: some hundred cases; all are in ``make fuzz``.
 
 A case that takes longer than five seconds of processor time is a failure, since that is what is
 asked of hostile input.
@@ -24,7 +23,6 @@ from fuzz.watch import Tally, watched
 from ptmcad.errors import PtmcadError
 
 FAST = {"record": 60, "options": 50, "points": 25, "small": 4, "result": 20}
-SLOW = {"record": 5000, "options": 3000, "points": 1500, "small": 200, "result": 2000}
 
 
 KINDS = list(FAST)
@@ -40,12 +38,6 @@ def test_some_cases(kind: str, tmp_path: Path) -> None:
     tally = watched(kind, range(FAST[kind]), tmp_path)
     assert_clean(tally, FAST[kind])
     assert len(tally.outcomes) >= 2, "the cases are all refused or all accepted: they test nothing"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
-def test_more_cases(kind: str, tmp_path: Path) -> None:
-    assert_clean(watched(kind, range(FAST[kind], FAST[kind] + SLOW[kind]), tmp_path), SLOW[kind])
 
 
 @given(

@@ -24,22 +24,17 @@ from ptmcad.verification.normalform.waves import form_of
 
 # coordinates with quotients, powers and sums of three angles, which the built-in mechanism does not
 # have
-RECORD = {
-    "name": "chain",
-    "parameters": {
-        "a": {"default": 1},
-        "k": {"kind": "stiffness", "default": 1},
-        "F": {"kind": "force"},
-    },
-    "unknowns": {"u": "angle", "v": "angle", "w": "angle"},
-    "points": {
-        "O": [0, 1],
-        "P": ["a*cos(u) + 2*cos(u + v)/3", "a*sin(u) - sin(2*v - u)^2"],
-        "Q": ["-(a - cos(w + u - v))", "sin(-w)*(a + 1)^2"],
-    },
-    "springs": [{"between": ["O", "P"], "k": "2*k"}, {"between": ["Q", "P"], "k": "k"}],
-    "loads": {"Q": ["-F", "F/2"]},
-}
+RECORD = yaml.safe_load("""
+name: chain
+parameters: {a: {default: 1}, k: {kind: stiffness, default: 1}, F: {kind: force}}
+unknowns: {u: angle, v: angle, w: angle}
+points:
+  O: [0, 1]
+  P: [a*cos(u) + 2*cos(u + v)/3, a*sin(u) - sin(2*v - u)^2]
+  Q: [-(a - cos(w + u - v)), sin(-w)*(a + 1)^2]
+springs: [{between: [O, P], k: 2*k}, {between: [Q, P], k: k}]
+loads: {Q: [-F, F/2]}
+""")
 CHAIN = described(RECORD)
 POINTS = ((3, 4, 5), (-5, 12, 13), (8, -15, 17))
 """Of the circles: cosine, sine and radius."""

@@ -12,6 +12,7 @@ from functools import cache
 from typing import Any
 
 import pytest
+import yaml
 from support.maps import once_per_run
 from support.records import TRUSS
 
@@ -28,7 +29,6 @@ import numpy as np
 from ptmcad.verification.certified import freearea
 from ptmcad.verification.certified.freearea import MAX_EFFORT, check_free_area, pieces_of
 from ptmcad.verification.exclusion import running
-from ptmcad.verification.exclusion.boxsearch import look
 from ptmcad.verification.exclusion.criticalsystems import systems_of
 from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate, tape_of
 from ptmcad.verification.exclusion.holding import holds
@@ -36,25 +36,20 @@ from ptmcad.verification.exclusion.pieces import no_pieces
 from ptmcad.verification.exclusion.running import search
 from ptmcad.verification.normalform.operations import MAX_VARIABLES, Formulas
 
-ZEEMAN: dict[str, Any] = {
-    "mechanism": {
-        "name": "zeeman",
-        "parameters": {
-            "l0": {"kind": "free length", "default": 1},
-            "k": {"kind": "stiffness", "default": 1},
-            "X": {"kind": "force"},
-            "Y": {"kind": "force"},
-        },
-        "unknowns": {"th": "angle"},
-        "points": {"B": ["cos(th)", "sin(th)"], "A": [-3, 0], "P": ["X", "Y"]},
-        "springs": [
-            {"between": ["A", "B"], "k": "k", "free": "l0"},
-            {"between": ["B", "P"], "k": "k", "free": "l0"},
-        ],
-    },
-    "axes": {"X": ["3/2", 5], "Y": [-2, 2]},
-    "count": "total",
-}
+ZEEMAN: dict[str, Any] = yaml.safe_load("""
+mechanism:
+  name: zeeman
+  parameters:
+    l0: {kind: free length, default: 1}
+    k: {kind: stiffness, default: 1}
+    X: {kind: force}
+    Y: {kind: force}
+  unknowns: {th: angle}
+  points: {B: [cos(th), sin(th)], A: [-3, 0], P: [X, Y]}
+  springs: [{between: [A, B], k: k, free: l0}, {between: [B, P], k: k, free: l0}]
+axes: {X: [3/2, 5], Y: [-2, 2]}
+count: total
+""")
 
 
 def paper(count: str, free: str, rho: list[str], l2: list[str]) -> dict[str, Any]:
@@ -74,23 +69,19 @@ PAPER = {
 }
 """Windows with one curve each: of admissible counts the one where a spring has its free length."""
 LOOP = load("configs/mechanisms/four-bar-free.yaml")
-CRANK: dict[str, Any] = {
-    "name": "crank",
-    "mechanism": {
-        "name": "sprung_crank",
-        "parameters": {"F": {"kind": "force"}, "l0": {"kind": "free length"}},
-        "unknowns": {"th": "angle"},
-        "points": {"O": [0, 0], "A": [2, 0], "B": [-1, 2], "P": ["cos(th)", "sin(th)"]},
-        "bars": [["O", "P"]],
-        "springs": [
-            {"between": ["A", "P"], "k": 1, "free": "l0"},
-            {"between": ["B", "P"], "k": 1, "free": "1/2"},
-        ],
-        "loads": {"P": [0, "F"]},
-    },
-    "axes": {"F": [1, 2], "l0": [2, 3]},
-    "count": "admissible",
-}
+CRANK: dict[str, Any] = yaml.safe_load("""
+name: crank
+mechanism:
+  name: sprung_crank
+  parameters: {F: {kind: force}, l0: {kind: free length}}
+  unknowns: {th: angle}
+  points: {O: [0, 0], A: [2, 0], B: [-1, 2], P: [cos(th), sin(th)]}
+  bars: [[O, P]]
+  springs: [{between: [A, P], k: 1, free: l0}, {between: [B, P], k: 1, free: 1/2}]
+  loads: {P: [0, F]}
+axes: {F: [1, 2], l0: [2, 3]}
+count: admissible
+""")
 """One stable equilibrium, and one curve: where the first spring has its free length."""
 RECORDS = {"crank": CRANK, "zeeman": ZEEMAN, "truss": TRUSS, "loop": LOOP}
 
@@ -166,16 +157,6 @@ def test_all_of_a_map_of_the_paper_s_mechanism_is_proved(count: str) -> None:
     assert check_free_area(MAX_EFFORT, CertifiedClaims(stored)).startswith("100 % of the free area")
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("count", PAPER)
-def test_a_dropped_piece_of_the_paper_s_mechanism_is_found(count: str) -> None:
-    stored = with_one_cell(a_map(count, 0.05))
-    assert stored.cover is not None
-    middle = len(stored.cover.rectangles) // 3
-    with pytest.raises(Violation, match=f"{count} [0-9].*critical curve"):
-        check_free_area(4, CertifiedClaims(without(stored, middle)))
-
-
 OPERATIONS = (
     "add",
     "subtract",
@@ -230,24 +211,6 @@ def test_affine_forms_hold_the_values() -> None:
     assert checked > 1000
 
 
-def test_a_shortened_tape_has_the_values_of_the_whole_one() -> None:
-    rng = random.Random(3)
-    for _ in range(40):
-        f = Formulas()
-        wanted = [some_formula(f, rng) for _ in range(4)]
-        tape, first, places = tape_of(f, wanted[:1], wanted[1:])
-        kept, still, where = tape_of(f, wanted[:1], wanted[3:])
-        assert first == still <= len(kept.code) < len(tape.code)
-        at = np.array([rng.uniform(-2, 2) for _ in range(MAX_VARIABLES)])
-        box, forms = (
-            np.stack([at, at + 0.1], axis=1),
-            [np.empty((len(t.code), WIDTH)) for t in (tape, kept)],
-        )
-        for t, found in zip((tape, kept), forms, strict=True):
-            evaluate(t, box, found, 0, len(t.code))
-        assert np.array_equal(forms[0][places[::3]], forms[1][where])
-
-
 def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -264,40 +227,6 @@ def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(
     monkeypatch.setattr(running, "LEARNT_FROM", 0)
     monkeypatch.setattr(running, "WORTH", 0.0)
     assert left() == all_at_once
-
-
-def test_formulas_that_exclude_nothing_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The search looks at hardly more boxes then, and evaluates much less; what it leaves for good
-    was tried by all.
-    """
-    claims = CertifiedClaims(a_map("loop"))
-    system, pieces, tapes = (
-        systems_of(claims.lattice)[0],
-        no_pieces(claims.sweep.steps),
-        list[int](),
-    )
-    tried_by_all = set[bytes]()
-
-    def watched(*arguments: Any) -> None:
-        look(*arguments)
-        tapes.append(len(arguments[1].code))
-        if tapes[-1] == len(system.tape.code):
-            tried_by_all.update(box.tobytes() for box in arguments[3])
-
-    def done() -> tuple[Any, Any, int]:
-        return search(system, pieces, system.start[None], 50_000, 2.0**-6)
-
-    found = done()
-    monkeypatch.setattr(running, "LEARNT_FROM", 10**9)
-    by_all = done()
-    assert len(found[0]) == 0 == len(by_all[0])
-    assert found[2] < 1.2 * by_all[2]
-    monkeypatch.undo()
-    monkeypatch.setattr(running, "look", watched)
-    left = {box.tobytes() for box in done()[1]}
-    assert len(left) > 100
-    assert left <= tried_by_all
-    assert min(tapes) < 0.8 * max(tapes) == 0.8 * len(system.tape.code)
 
 
 @pytest.mark.parametrize("drawn", [1_000, pytest.param(20_000, marks=pytest.mark.slow)])

@@ -10,7 +10,6 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 pytest.importorskip("numba")
@@ -20,7 +19,6 @@ from support.maps import once_per_run
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution
-from ptmcad.ask.fields.equations import newton_step, state_at
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Point
 from ptmcad.verification.certified.cellsamples import _near
@@ -32,7 +30,6 @@ from ptmcad.verification.normalform.boxes import Unproved
 UNLOADED = {"L1": "1", "k": "1", "l0": "1/2"}
 PI = Fraction(math.pi)
 DATA = Path(__file__).resolve().parents[1] / "data" / "samples"
-DIFFERENCE = {"rho": ["49/100", "51/100"], "L2": ["149/100", "151/100"]}
 
 
 def map_of(axes: dict[str, list[str]], **parameters: str) -> RegionMap:
@@ -91,69 +88,6 @@ def flat_map() -> RegionMap:
 def test_a_true_map_without_loads_is_accepted(flat: RegionMap) -> None:
     assert len(_near(CertifiedClaims(flat), flat.cells[0])) == 4
     assert counted(flat) is True
-
-
-@pytest.mark.slow
-def test_bars_that_point_the_same_way() -> None:
-    """rho = L2 - L1 with equal loads, put into a map whose own sample is elsewhere."""
-    loads = {"F3": "-1/10", "F4": "-1/10"}
-    true = map_of(DIFFERENCE, **loads)
-    at = {"rho": Fraction(1, 2), "L2": Fraction(3, 2)}
-    number = true.locate(**at).cell
-    assert number is not None
-    solutions = tuple(
-        Solution(
-            tuple((angle.low + angle.high) / 2 for angle in pose.angles), Fraction(1, 10**9), "++"
-        )
-        for pose in ptmcad.solve(**UNLOADED, **loads, **at).equilibria
-        if pose.stable
-    )
-    sample, region = Point(("rho", "L2"), *at.values()), true.cells[number].region
-    moved = replace(
-        true,
-        cells=put(true.cells, number, sample=sample, solutions=solutions),
-        regions=put(true.regions, region, sample=sample),
-    )
-    assert counted(moved) is True
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("offset", ["1/400", "-1/400", "1/1000000"])
-def test_samples_that_are_nearly_flat(offset: str) -> None:
-    """No test in the two angles decides them in the squares that it may take: what is beside them
-    does.
-    """
-    true = map_of(DIFFERENCE)
-    e = Fraction(offset)
-    at = {"rho": Fraction(1, 2) + 3 * e / 4, "L2": Fraction(3, 2) + abs(e) / 2}
-    number = true.locate(**at).cell
-    assert number is not None
-    values = {name: float(v.evaluate(*at.values())) for name, v in true.slice.parameters.items()}
-    place = np.array(
-        [[float(x) for x in solution.center] for solution in true.cells[number].solutions]
-    ).T
-    for _ in range(
-        30
-    ):  # `solve` does not tell them apart there; Newton's method leads from the map's own sample
-        place = place - newton_step(state_at(true.slice.model, values, place))
-    solutions = tuple(
-        Solution(tuple(map(Fraction, x)), Fraction(1, 10**9), "++") for x in place.T.tolist()
-    )
-    sample, region = Point(("rho", "L2"), *at.values()), true.cells[number].region
-    moved = replace(
-        true,
-        cells=put(true.cells, number, sample=sample, solutions=solutions),
-        regions=put(true.regions, region, sample=sample),
-    )
-    assert counted(moved) is True
-    assert counted(with_one_stable_less(moved, number)) is False
-
-
-def with_one_stable_less(r: RegionMap, number: int) -> RegionMap:
-    cell = r.cells[number]
-    assert cell.stable is not None
-    cells = put(r.cells, number, stable=cell.stable - 1, solutions=cell.solutions[:-1])
-    return replace(r, cells=cells, regions=put(r.regions, cell.region, stable=cell.stable - 1))
 
 
 def one_less(r: RegionMap) -> RegionMap:

@@ -28,26 +28,17 @@ from ptmcad.verification.report import Unchecked, Violation
 
 pytest.importorskip("numba")
 
-CHAIN: dict[str, Any] = {
-    "mechanism": {
-        "name": "held",
-        "parameters": {"a": {"kind": "base", "default": 1}, "W": {"kind": "force"}},
-        "unknowns": {"s": "angle", "t": "angle"},
-        "points": {
-            "O": [0, 0],
-            "A": [0, "a"],
-            "P": ["sin(s)", "cos(s)"],
-            "Q": ["sin(s) + sin(t)", "cos(s) + cos(t)"],
-        },
-        "bars": [["O", "P"], ["P", "Q"]],
-        "springs": [
-            {"between": ["A", "P"], "k": 1, "free": "1/4"},
-            {"between": ["A", "Q"], "k": 1, "free": "1/3"},
-        ],
-        "loads": {"P": ["1/10", 0], "Q": [0, "W"]},
-    },
-    "axes": {"a": [1, 2], "W": ["1/2", 1]},
-}
+CHAIN: dict[str, Any] = yaml.safe_load("""
+mechanism:
+  name: held
+  parameters: {a: {kind: base, default: 1}, W: {kind: force}}
+  unknowns: {s: angle, t: angle}
+  points: {O: [0, 0], A: [0, a], P: [sin(s), cos(s)], Q: [sin(s) + sin(t), cos(s) + cos(t)]}
+  bars: [[O, P], [P, Q]]
+  springs: [{between: [A, P], k: 1, free: 1/4}, {between: [A, Q], k: 1, free: 1/3}]
+  loads: {P: [1/10, 0], Q: [0, W]}
+axes: {a: [1, 2], W: [1/2, 1]}
+""")
 PAPER: dict[str, Any] = {
     "name": "small", "mechanism": "ptm",
     "parameters": {"L1": "1", "k": "100", "F3": "-10", "F4": "-10", "l0": "1/5"},
@@ -133,16 +124,6 @@ def test_a_narrow_box_is_decided(name: str, count: str) -> None:
         refused(forged(name, count, radius, off))
 
 
-@pytest.mark.parametrize(
-    ("name", "width"), [("ptm", 12), ("chain", 17), ("ptm", 90), ("chain", 90), ("loop", 90)]
-)
-@pytest.mark.slow_cases("loop-90", "chain-17", "ptm-90")
-def test_boxes_of_any_narrowness(name: str, width: int) -> None:
-    radius = Fraction(1, 10**width)
-    checked(forged(name, "stable", radius, -radius / 2))
-    refused(forged(name, "stable", radius, radius * 1000))
-
-
 def checked(claims: CertifiedClaims) -> None:
     assert not isinstance(check_points(claims), Unchecked)
 
@@ -171,17 +152,6 @@ def test_a_solution_next_to_an_edge_is_told(power: int) -> None:
         found = judged(square, Solution((root + off,), radius, ""))
         assert found is not None
         assert found.holds is holds
-
-
-def test_other_signs_of_a_narrow_box_are_refused() -> None:
-    claims = forged("ptm", "index", Fraction(1, 10**30), Fraction(0))
-    number, _ = places("ptm", "index")
-    cell = claims.result.cells[number]
-    first = replace(cell.solutions[0], signs="--" if cell.solutions[0].signs == "++" else "++")
-    cells = list(claims.result.cells)
-    cells[number] = replace(cell, solutions=(first, *cell.solutions[1:]))
-    with pytest.raises(Violation, match="eigenvalues of signs"):
-        check_points(CertifiedClaims(replace(claims.result, cells=tuple(cells))))
 
 
 def judged(function: Function, solution: Solution) -> Judgement | None:

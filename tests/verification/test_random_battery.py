@@ -139,22 +139,6 @@ def test_battery_of_random_mechanisms(seed: int) -> None:
     run_battery(random_mechanism(seed), f"mechanism {seed}")
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", [seed for seed in SEEDS if seed % 3 == 2])
-def test_three_bars_at_points(seed: int) -> None:
-    """Two methods, the mirrored model and Euler's sum."""
-    system, image = (system_from(ptmcad.slice_from_mapping(r).model)
-                     for r in (random_mechanism(seed), mirrored(random_mechanism(seed))))  # fmt: skip
-    source = random.Random(seed)
-    for _ in range(2):
-        values = {"a": fmpq(source.randint(-99, 99), 50), "W": fmpq(source.randint(-99, 99), 33)}
-        counts = count_by_isolation(system, values)
-        assert count_by_signature(system, values) == counts
-        assert count_by_isolation(image, {**values, "a": -values["a"]}) == counts
-        assert counts.index is not None
-        assert sum(counts.index[::2]) == sum(counts.index[1::2])
-
-
 @pytest.mark.parametrize(
     "record", [random_system(0), random_mechanism(0)], ids=["system 0", "mechanism 0"]
 )

@@ -5,16 +5,13 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from flint import arb, ctx, fmpq, fmpz_poly
+from flint import fmpq, fmpz_poly
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import rootcounts
-from ptmcad.verification.claims import PlaneCurve
-from ptmcad.verification.wallintegrals import WallSeries
 
 
 @st.composite
@@ -61,20 +58,5 @@ def test_close_roots_ask_for_more_precision() -> None:
     assert rootcounts.roots_between(p, fmpq(1, 10**40 + 1), fmpq(1)) == 1
 
 
-@pytest.mark.parametrize("root", range(5))
-def test_a_branch_is_found_by_its_number(root: int) -> None:
-    # v (v - 1) (v - 2) (v - 2 - 1/1000) (v - 3) over every u, and a factor without real roots
-    p = fmpz_poly([1])
-    for factor in ([0, 1], [-1, 1], [-2, 1], [-2001, 1000], [-3, 1], [5, 0, 1]):
-        p *= fmpz_poly(factor)
-    plane = PlanePolynomial.of(
-        (i, j, int(c)) for j, c in enumerate(p.coeffs()) for i in (0, 1) if c
-    )
-    branch = WallSeries.of(PlaneCurve.of(0, plane, 0), root)
-    with ctx.workprec(100):
-        height = branch.height(fmpq(1, 3), fmpq(-2), fmpq(4))  # the first middle is a root
-        assert height is not None
-        expected = [arb(0), arb(1), arb(2), arb(2001) / 1000, arb(3)][root]
-        assert height.overlaps(expected)
-        assert height.rad() < 2**-60
-        assert branch.height(fmpq(1, 3), fmpq(-1), fmpq(1, 2)) is None or root == 0
+def test_a_root_in_the_middle_is_found() -> None:
+    assert rootcounts.numbered_root(fmpz_poly([0, 1, 0, 1]), fmpq(-1), fmpq(1), 0) == 0

@@ -18,14 +18,6 @@ from support.few import few
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import LimitReached
-from ptmcad.text.numerals import (
-    decimal,
-    fraction_of,
-    integer_of,
-    integer_text,
-    shortest_text,
-    text_of,
-)
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.planecurves import Terms, discriminant, resultant
 from ptmcad.verification.report import check_anew
@@ -58,44 +50,6 @@ def test_resultants_agree_with_remainder_sequences(p: Terms, q: Terms) -> None:
 def test_discriminants_agree_with_remainder_sequences(p: Terms) -> None:
     expected = in_u(PLANE.from_dict({(i, j): c for i, j, c in p}).discriminant("v"))
     assert discriminant(p) in (expected, -expected)
-
-
-long_integers = st.builds(
-    lambda head, zeros, tail: head * 10**zeros + tail,
-    st.integers(),
-    st.sampled_from([0, 3999, 4300, 9001]),
-    st.integers(),
-)  # hypothesis itself cannot print longer ones
-fractions = st.fractions() | st.builds(
-    Fraction, long_integers, st.sampled_from([1, 7, 10**12, 10**4500 + 1])
-)
-
-
-@given(fractions)
-def test_numbers_are_read_back(value: Fraction) -> None:
-    assert fraction_of(text_of(value)) == fraction_of(shortest_text(value)) == value
-
-
-@given(long_integers)
-def test_long_integers(n: int) -> None:
-    text = integer_text(abs(n))
-    assert integer_of(text) == abs(n)
-    assert text == "0" or not text.startswith("0")
-
-
-@given(st.fractions(min_value=0), st.integers(1, 20))
-def test_decimals_bound_from_the_side_asked_for(value: Fraction, digits: int) -> None:
-    low, high = (fraction_of(decimal(value, up=up, digits=digits)) for up in (False, True))
-    assert low <= value <= high
-    assert high - low <= value * Fraction(1, 10 ** (digits - 1))
-
-
-@pytest.mark.parametrize(
-    "text", ["", "1/0", "0x10", "1_0", " 1", "1e", "١", "1e9999999", "1.5/2", "--1", "nan", "+1"]
-)
-def test_other_texts_are_no_numbers(text: str) -> None:
-    with pytest.raises(ValueError, match=r"not an exact number|zero denominator|too long"):
-        fraction_of(text)
 
 
 # --------------------------------------------------------------------------------------------------- partial results

@@ -4,7 +4,7 @@ are.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import prod
@@ -16,12 +16,11 @@ from support.shipped_records import EXACT
 
 import ptmcad
 from ptmcad.answer.regionmap import HARMLESS, Component, Kind, RegionMap
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import norms
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.norms import check_norm
-from ptmcad.verification.planecurves import polynomial
 from ptmcad.verification.report import Violation
 
 Shipped = Callable[..., RegionMap]
@@ -246,45 +245,6 @@ def test_what_is_harmless_is_told_from_what_is_not(shipped: Shipped) -> None:
 
 
 # ------------------------------------------------------------------------------------------------------------- campaign
-
-SEEDS, WHOLE = 5000, 40
-"""Seeds of each slice: with norms by their formula, and with all fibres computed."""
-
-
-@dataclass(frozen=True)
-class Shortened:
-    """Claims whose norm is computed by the formula that was verified; the fibre has nothing else."""
-
-    result: RegionMap
-    exponents: Sequence[int]
-    polynomials: Sequence[fmpq_mpoly]
-
-    def values(self, x: Fraction, y: Fraction) -> list[Fraction]:
-        return [to_fraction(p(from_fraction(x), from_fraction(y))) for p in self.polynomials]
-
-    def fibre_at(self, x: Fraction, y: Fraction) -> KnownFibre:
-        norm = prod(
-            (v**e for v, e in zip(self.values(x, y), self.exponents, strict=True)),
-            start=Fraction(1),
-        )
-        return KnownFibre(norm, self.result.complex_solutions, [], [])
-
-
-def points(claims: object, seed: int) -> Iterator[norms.FibrePoint]:
-    return norms.random_points(claims, str(seed), norms.BITS)  # type: ignore[arg-type]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", [path.stem for path in EXACT])
-def test_no_seed_rejects_a_shipped_map(name: str, shipped: Shipped) -> None:
-    claims = Claims(shipped(name))
-    _, exponents = norms.check_identity(claims, points(claims, 0))
-    polynomials = [polynomial(c.polynomial.terms) for c in claims.result.components]
-    short = Shortened(claims.result, exponents, polynomials)
-    for seed in range(SEEDS):
-        assert norms.check_identity(short, points(short, seed))[1] == exponents  # type: ignore[arg-type]
-    for seed in range(SEEDS, SEEDS + WHOLE):
-        assert check_norm(claims, str(seed)).endswith(f"multiplicities {exponents}")
 
 
 @pytest.mark.slow

@@ -9,7 +9,6 @@ import random
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
 from typing import Any
 
 import pytest
@@ -34,11 +33,6 @@ LARGE = ("stiffness", "unequal-springs", "fig5-caption", "horizontal")
 def stored(result: RegionMap) -> RegionMap:
     """What a reader of the file has."""
     return RegionMap.from_json(result.to_json())
-
-
-@cache
-def stored_shipped(shipped: Callable[..., RegionMap], name: str) -> RegionMap:
-    return stored(shipped(name))
 
 
 @pytest.mark.parametrize(("name", "tolerance"), [
@@ -152,25 +146,21 @@ def test_any_changed_entry_of_the_file_is_rejected(
     assert not accepted
 
 
-LENGTHS = {
-    "parameters": {"L1": 1, "k": 100, "F3": -10, "F4": -10},
-    "axes": {"rho": [0, "1e30"], "L2": [0, "1e30"]},
-}
-LOADS = {
-    "parameters": {"L1": 1, "L2": "3/2", "rho": "3/4", "k": 100},
-    "axes": {"F3": ["-1e30", "1e30"], "F4": ["-1e30", "1e30"]},
-}
+CUBIC = {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}
+WAVES = {"unknowns": {"t": "angle"}, "potential": "a*cos(t) + b*sin(t) + cos(2*t)"}
+HUGE, UNIT = ["-1e30", "1e30"], [-1, 1]
 
 
-@pytest.mark.parametrize("record", [pytest.param(LENGTHS, marks=pytest.mark.slow, id="lengths"),
-                                    pytest.param(LOADS, id="loads")])  # fmt: skip
+@pytest.mark.parametrize(
+    ("system", "axes"),
+    [(CUBIC, {"a": HUGE, "b": HUGE}), (CUBIC, {"a": UNIT, "b": HUGE}), (WAVES, {"a": HUGE, "b": HUGE})],
+    ids=["cubic", "flat cubic", "waves"],
+)  # fmt: skip
 def test_areas_in_large_windows_are_told(
-    record: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+    system: dict[str, Any], axes: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """By some panels for each doubling; from wrong ones, of a small region beside a huge one, too."""
-    true = stored(
-        ptmcad.classify(ptmcad.slice_from_mapping({"name": "large", "mechanism": "ptm", **record}))
-    )
+    true = stored(ptmcad.classify({"name": "large", "system": system, "axes": axes}))
     tried = []
 
     def counted(*given: Any) -> Any:

@@ -6,42 +6,34 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from math import pi
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
-from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from support.counting import MIDDLE, claims_of, counted_at
+from support.counting import MIDDLE, counted_at
+from support.covers import covers
 from support.examples import examples
 from support.maps import shipped
-from support.paper_energy import NAMES, PaperEnergy
+from support.paper_energy import NAMES
 
 import ptmcad
-from ptmcad.answer.regionmap import Cell, RegionMap, Solution, Status, System
-from ptmcad.cli.verify import command
+from ptmcad.answer.regionmap import RegionMap, Solution, Status
 from ptmcad.cover import components
-from ptmcad.cover.rectangles import Cover, Rectangle
+from ptmcad.cover.rectangles import Cover
 from ptmcad.options import Options
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Point
-from ptmcad.text.balls import ball_of
 from ptmcad.verification import kinds
-from ptmcad.verification.certified.ballequations import BallEquations
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.coversweep import sweep
 from ptmcad.verification.certified.sampling import _beside, _by_area
-from ptmcad.verification.normalform.boxes import Unproved, halves
-from ptmcad.verification.normalform.waves import form_of
+from ptmcad.verification.normalform.boxes import Unproved
 
 pytest.importorskip("numba")
 
-Change = Callable[[RegionMap], RegionMap]
 BOXES = 4
 
 
@@ -84,22 +76,6 @@ def test_a_partial_map_is_checked_like_a_whole_one(stable: RegionMap) -> None:
     assert ptmcad.verify(replace(stable, status=Status.PARTIAL), boxes=1).ok
 
 
-@pytest.mark.slow
-def test_the_command_checks_a_stored_map(stable: RegionMap, tmp_path: Path) -> None:
-    """Exit status 0, and 1 for a false one, whose violated claim is named."""
-    good, bad = tmp_path / "good.json", tmp_path / "bad.json"
-    good.write_text(stable.to_json(), encoding="utf-8")
-    bad.write_text(recount(stable, 0, 2).to_json(), encoding="utf-8")
-    runner = CliRunner()
-    one = runner.invoke(command, [str(good), "--boxes", "2", "--seed", "7"], standalone_mode=False)
-    assert (one.exception, one.return_value) == (None, 0)
-    assert "2 boxes" in one.output
-    assert "seed 7" in one.output
-    two = runner.invoke(command, [str(bad), "--boxes", "0"], standalone_mode=False)
-    assert (two.exception, two.return_value) == (None, 1)
-    assert "violated: counts and solutions: cell 0, at rho=" in two.output
-
-
 def with_cell(r: RegionMap, n: int, **changes: object) -> RegionMap:
     cells = list(r.cells)
     cells[n] = replace(cells[n], **changes)  # type: ignore[arg-type]
@@ -112,206 +88,12 @@ def with_region(r: RegionMap, n: int, **changes: object) -> RegionMap:
     return replace(r, regions=tuple(regions))
 
 
-def with_solution(r: RegionMap, **changes: object) -> RegionMap:
-    solutions = list(r.cells[1].solutions)
-    solutions[0] = replace(solutions[0], **changes)  # type: ignore[arg-type]
-    return with_cell(r, 1, solutions=tuple(solutions))
-
-
-def with_cover(r: RegionMap, rectangles: list[Rectangle], steps: int | None = None) -> RegionMap:
-    assert r.cover is not None
-    return replace(r, cover=Cover(steps or r.cover.steps, tuple(rectangles)))
-
-
-def rectangles(r: RegionMap) -> list[Rectangle]:
-    assert r.cover is not None
-    return list(r.cover.rectangles)
-
-
-def without_one(items: list[Rectangle], n: int) -> list[Rectangle]:
-    return [*items[:n], *items[n + 1 :]]
-
-
 def recount(r: RegionMap, n: int, stable: int) -> RegionMap:
     return with_region(with_cell(r, n, stable=stable), n, stable=stable)
 
 
-def moved(r: RegionMap) -> Point:
-    """A sample in a rectangle."""
-    assert r.cover is not None
-    left, right, bottom, top = r.cover.rectangles[0]
-    x, y = CertifiedClaims(r).lattice.off(Fraction(left + right, 2), Fraction(bottom + top, 2))
-    return Point(("rho", "L2"), x, y)
-
-
 def at(x: str, y: str) -> Point:
     return Point(("rho", "L2"), Fraction(x), Fraction(y))
-
-
-FALSE: dict[str, tuple[Change, str]] = {
-    "one stable equilibrium more": (lambda r: recount(r, 0, 2), "counts and solutions"),
-    "one stable equilibrium less": (lambda r: recount(r, 1, 1), "counts and solutions"),
-    "no count": (lambda r: with_cell(r, 0, stable=None), "form"),
-    "a count that was not asked for": (lambda r: with_cell(r, 0, total=4), "form"),
-    "counts of a region": (lambda r: with_region(r, 0, stable=2), "regions and areas"),
-    "a rectangle removed": (lambda r: with_cover(r, rectangles(r)[1:]), "components"),
-    "a rectangle in the middle removed": (
-        lambda r: with_cover(r, without_one(rectangles(r), len(rectangles(r)) // 2)), "components",
-    ),
-    "a rectangle shifted": (
-        lambda r: with_cover(r, sorted([*rectangles(r)[1:], tuple(x + 4096 for x in rectangles(r)[0])])),  # type: ignore[list-item]
-        "components",
-    ),
-    "a rectangle twice": (lambda r: with_cover(r, [rectangles(r)[0], *rectangles(r)]), "form"),
-    "rectangles not sorted": (lambda r: with_cover(r, rectangles(r)[::-1]), "form"),
-    "a rectangle outside": (lambda r: with_cover(r, [*rectangles(r), (2**24 - 1, 2**24 + 1, 0, 1)]), "form"),
-    "steps no power of two": (lambda r: with_cover(r, rectangles(r), 2**24 + 1), "form"),
-    "a finer lattice": (lambda r: with_cover(r, rectangles(r), 2**25), "components"),
-    "a sample in a rectangle": (lambda r: with_cell(r, 0, sample=moved(r)), "components"),
-    "a sample in another cell": (lambda r: with_cell(r, 0, sample=r.cells[1].sample), "components"),
-    "a sample outside": (lambda r: with_cell(r, 0, sample=at("1/2", "1")), "components"),
-    "a sample elsewhere in the cell": (lambda r: with_cell(r, 0, sample=at("7/5", "1")), "regions and areas"),
-    "a region's sample": (lambda r: with_region(r, 0, sample=r.cells[1].sample), "regions and areas"),
-    "level": (lambda r: with_cell(r, 0, level=1), "components"),
-    "undetermined": (lambda r: replace(r, undetermined=r.undetermined * Fraction(999, 1000)), "components"),
-    "nothing undetermined": (lambda r: replace(r, undetermined=Fraction(0)), "components"),
-    "too large a lower bound": (
-        lambda r: with_region(r, 0, area=(r.regions[0].area[0] + Fraction(1, 2**60), r.regions[0].area[1])),
-        "regions and areas",
-    ),
-    "too small an upper bound": (
-        lambda r: with_region(r, 1, area=(r.regions[1].area[0], r.regions[1].area[1] - Fraction(1, 2**60))),
-        "regions and areas",
-    ),
-    "cells of a region": (lambda r: with_region(r, 0, cells=(0, 1)), "regions and areas"),
-    "a cell removed": (lambda r: replace(r, cells=r.cells[:1], regions=r.regions[:1]), "components"),
-    "a solution removed": (lambda r: with_cell(r, 1, solutions=r.cells[1].solutions[1:]), "counts and solutions"),
-    "a solution twice": (
-        lambda r: with_cell(r, 1, solutions=(r.cells[1].solutions[0],) * 2), "counts and solutions",
-    ),
-    "a solution's signs": (lambda r: with_solution(r, signs="+-"), "counts and solutions"),
-    "a solution's center": (lambda r: with_solution(r, center=(Fraction(3), Fraction(3))), "counts and solutions"),
-    "a solution's box too small": (lambda r: with_solution(r, radius=Fraction(1, 2**60)), "counts and solutions"),
-    "a solution's box too large": (lambda r: with_solution(r, radius=Fraction(1)), "counts and solutions"),
-    "a solution's radius zero": (lambda r: with_solution(r, radius=Fraction(0)), "counts and solutions"),
-    "potential": (lambda r: with_potential(r, "1/2*k1*", "1/2*k2*"), "equations"),
-    "sign of a load": (lambda r: with_potential(r, "- F3*", "+ F3*"), "equations"),
-    "a potential that is a program": (lambda r: with_potential(r, "1/2*k1*", "exit()*k1*"), "equations"),
-    "the absolute value of a load": (lambda r: with_potential(r, " - F3*", " - sqrt(F3^2)*"), "equations"),
-    "a load's 45th digit": (lambda r: with_potential(r, " - F3*", f" - (1 + 1/{10**45})*F3*"), "equations"),
-    "unknowns": (lambda r: replace(r, system=replace(r.system, unknowns=("th2", "th1"))), "equations"),
-    "another load": (lambda r: with_text(r, "F3", "-11"), "parameters as written"),
-    "status": (lambda r: replace(r, status=Status.EXACT), "form"),
-    "no cover": (lambda r: replace(r, cover=None), "form"),
-    "complex solutions": (lambda r: replace(r, complex_solutions=6), "form"),
-}  # fmt: skip
-
-
-def with_potential(r: RegionMap, old: str, new: str) -> RegionMap:
-    assert old in r.system.potential
-    system: System = replace(r.system, potential=r.system.potential.replace(old, new))
-    return replace(r, system=system)
-
-
-def with_text(r: RegionMap, name: str, text: str) -> RegionMap:
-    return replace(r, slice=replace(r.slice, text={**r.slice.text, name: text}))
-
-
-@pytest.mark.parametrize("name", FALSE)
-@pytest.mark.slow_cases(
-    "one stable equilibrium less",
-    "a solution removed",
-    "a solution twice",
-    "a solution's signs",
-    "a solution's center",
-    "a solution's box too small",
-    "a solution's box too large",
-    "a solution's radius zero",
-)
-def test_a_false_map_is_rejected(name: str, stable: RegionMap) -> None:
-    change, by = FALSE[name]
-    report = ptmcad.verify(change(stable), boxes=0)
-    assert not report.ok
-    assert report.violation is not None
-    assert report.violation.startswith(by + ":"), report.violation
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda c: {"total": c.total + 2, "index": (c.index[0], c.index[1] + 1, c.index[2] + 1)},
-        lambda c: {"index": (c.index[0] - 1, c.index[1], c.index[2] + 1)},
-        lambda c: {"solutions": c.solutions[:-1]},
-        lambda c: {"stable": c.stable + 1},
-    ],
-    ids=["two more", "a maximum for a minimum", "a solution removed", "stable"],
-)
-@pytest.mark.slow_cases("two more", "a solution removed")
-def test_a_false_index_is_rejected(
-    change: Callable[[Cell], dict[str, object]], total: RegionMap
-) -> None:
-    changes = change(total.cells[1])
-    false = with_cell(total, 1, **changes)
-    counts = {k: v for k, v in changes.items() if k != "solutions"}
-    report = ptmcad.verify(with_region(false, 1, **counts), boxes=0)
-    assert report.violation is not None
-    assert report.violation.startswith("counts and solutions:")
-
-
-def consistent(r: RegionMap, cover: Cover, cells: tuple[Cell, ...]) -> RegionMap:
-    """A map with another cover, false but with areas and samples that agree with it."""
-    changed = replace(
-        r, cover=cover, cells=cells, regions=tuple(r.regions[c.region] for c in cells)
-    )
-    claims = CertifiedClaims(changed)
-    component = {n: k for k, n in claims.cell_of.items()}
-    areas = [claims.sweep.areas[component[n]] for n in range(len(cells))]
-    levels = [sum(a > area for a in claims.sweep.areas.values()) for area in areas]
-    window = claims.square * cover.steps**2
-    return replace(
-        changed,
-        cells=tuple(
-            replace(c, level=level, region=n)
-            for n, (c, level) in enumerate(zip(cells, levels, strict=True))
-        ),
-        regions=tuple(
-            replace(g, area=(area * claims.square, window), cells=(n,))
-            for n, (g, area) in enumerate(zip(changed.regions, areas, strict=True))
-        ),
-        undetermined=1 - Fraction(sum(areas), cover.steps**2),
-    )
-
-
-@pytest.mark.parametrize("steps", [1, 2, 2**24])
-@pytest.mark.fast_cases("16777216")
-def test_random_points_find_that_a_curve_was_left_out(steps: int, stable: RegionMap) -> None:
-    """All else agrees: only what looks at the free area can tell, however coarse the lattice is."""
-    false = consistent(stable, Cover(steps, ()), stable.cells[:1])
-    assert ptmcad.verify(false, boxes=0, effort=0).ok
-    for found_by, report in (
-        ("random boxes:", ptmcad.verify(false, seed=1, boxes=20, effort=0)),
-        ("the whole free area:", ptmcad.verify(false, seed=1, boxes=0)),
-    ):
-        assert report.violation is not None
-        assert report.violation.startswith(found_by)
-
-
-@pytest.mark.slow
-def test_random_points_beside_rectangles_find_a_shifted_cover(stable: RegionMap) -> None:
-    assert stable.cover is not None
-    steps, by = stable.cover.steps, stable.cover.steps // 64
-    shifted = [
-        (left, right, bottom + by, min(top + by, steps))
-        for left, right, bottom, top in stable.cover.rectangles
-    ]
-    kept = sorted(r for r in shifted if r[2] < r[3])
-    # the curve's end at the window's edge has moved away from it
-    kept = sorted({*kept, *((a, b, 0, by + 1) for a, b, c, _ in stable.cover.rectangles if c == 0)})
-    false = consistent(stable, Cover(steps, tuple(kept)), stable.cells)
-    assert ptmcad.verify(false, boxes=0, effort=0).ok
-    report = ptmcad.verify(false, seed=3, boxes=24, effort=0)
-    assert report.violation is not None
-    assert report.violation.startswith("random boxes:")
 
 
 def certified(
@@ -327,32 +109,6 @@ def certified(
         "count": count,
     }
     return certified_map(slice_from_mapping(record), Options(tolerance=tolerance, jobs=1))
-
-
-@pytest.mark.slow
-def test_rectangles_that_tell_nothing_do_not_draw_places() -> None:
-    """A fifth of the window is false, and behind 1500 squares of no size; with this seed 40 places
-    used to miss it.
-    """
-    true = certified(
-        "stable", {"rho": ["6/5", "13/10"], "L2": ["9/10", "1"]}, Fraction(1, 50),
-        L1="3/2", k="100", F3="-10", F4="0", l0="1/5",
-    )  # fmt: skip
-    assert true.cover is not None
-    assert [c.stable for c in true.cells] == [2, 1]
-    steps, rng = true.cover.steps, random.Random(0)
-    corners = [
-        (rng.randrange(steps // 4, steps // 2), rng.randrange(steps // 4, steps // 2))
-        for _ in range(1500)
-    ]
-    wall = steps * 4 // 5
-    cover = Cover(
-        steps,
-        tuple(sorted({*((u, u + 1, v, v + 1) for u, v in corners), (wall, wall + 1, 0, steps)})),
-    )
-    report = ptmcad.verify(consistent(true, cover, true.cells), seed=167, effort=0)
-    assert report.violation is not None
-    assert report.violation.startswith("random boxes:")
 
 
 DATA = Path(__file__).resolve().parents[1] / "data" / "samples"
@@ -413,16 +169,6 @@ def test_minima_on_both_sides_of_a_crease(changes: dict[str, str]) -> None:
     )
     near = (0.0189, 0.2124) if not changes else (0.2124, 0.0189)
     assert places == [(-near[0], -near[1]), near]
-
-
-@pytest.mark.parametrize("turns", [0, 1])
-def test_a_box_next_to_a_crease_holds_one_equilibrium(turns: int) -> None:
-    """A turn away, too."""
-    claims, _, there = counted_at(creased_values(), Count.STABLE)
-    for zero in there.found:
-        center = zero.center[0], zero.center[1] + turns * 2 * pi
-        box = Solution((Fraction(center[0]), Fraction(center[1])), Fraction(1, 2**15), "++")
-        assert claims.counting.in_box(*MIDDLE, box, 0).signs == zero.signs
 
 
 def test_no_proof_of_existence_crosses_a_crease() -> None:
@@ -489,38 +235,6 @@ def test_no_equilibrium_is_lost_where_doubles_are_coarse() -> None:
     )
 
 
-@pytest.mark.parametrize(("m", "r"), [(0.3, 1e-9), (3.0322134878826974, 2.8e-15)])
-def test_halves_cover_the_box(m: float, r: float) -> None:
-    found = halves(((0.0, m), (1.0, r)), [1, 0], [0.0, 0.0])
-    assert found is not None
-    (low, half), (high, other) = (
-        (Fraction(middle[1]), Fraction(width[1])) for middle, width in found
-    )
-    assert low - half <= Fraction(m) - Fraction(r) < Fraction(m) + Fraction(r) <= high + other
-    assert high - other <= low + half
-    assert halves(((0.0, 3.0), (0.0, 2.0**-51)), [1, 0], [1.0, 0.0]) is None
-
-
-@pytest.mark.slow
-def test_a_window_as_narrow_as_rounding_beside_a_bar() -> None:
-    """Boxes of parameters in it are proved: an angle has a unit of its own where a spring is that
-    short.
-    """
-    side = [str(1 + k * Fraction(1, 10**13)) for k in (3, 4)]
-    true = certified(
-        "total",
-        {"rho": side, "L2": ["6/5", "13/10"]},
-        Fraction(1, 3),
-        L1="1",
-        l0="1/5",
-        F3="-10",
-        F4="-10",
-    )
-    report = ptmcad.verify(true, boxes=2)
-    assert report.ok, report.violation
-    assert "2 boxes" in report.table()
-
-
 def test_places_are_spread_over_the_window(stable: RegionMap) -> None:
     """One in each square of a grid, whatever the rectangles; and those beside rectangles are not
     where most are.
@@ -549,21 +263,6 @@ def test_places_are_spread_over_the_window(stable: RegionMap) -> None:
     assert len(near) <= 8
 
 
-@st.composite
-def covers(draw: st.DrawFn) -> Cover:
-    """Rectangles on a small lattice, so that they touch, overlap and enclose; corners and the
-    window's edges.
-    """
-    steps = draw(st.sampled_from([4, 8, 16]))
-    side = st.integers(0, steps)
-    found = set()
-    for _ in range(draw(st.integers(0, 14))):
-        a, b, c, d = draw(side), draw(side), draw(side), draw(side)
-        if a != b and c != d:
-            found.add((min(a, b), max(a, b), min(c, d), max(c, d)))
-    return Cover(steps, tuple(sorted(found)))
-
-
 @given(covers())
 @settings(max_examples=examples(60), deadline=None)
 def test_sweep_and_subdivision_agree(cover: Cover) -> None:
@@ -580,27 +279,6 @@ def test_sweep_and_subdivision_agree(cover: Cover) -> None:
             u, v = Fraction(i, 2), Fraction(j, 2)
             assert names.setdefault(one.locate(u, v), two.locate(u, v)) == two.locate(u, v)
     assert len(set(names.values())) == len(names)
-
-
-@pytest.mark.slow
-def test_sweep_and_subdivision_agree_where_strips_change_in_parts() -> None:
-    """Many small rectangles that touch, so that most of a strip goes on while parts of it begin and
-    end.
-    """
-    rng = random.Random(11)
-    for _ in range(300):
-        found = set()
-        for _ in range(rng.randint(1, 24)):
-            u, v = rng.randrange(8), rng.randrange(8)
-            wide = rng.choice((1, 1, 2, 3, 8))
-            found.add((u * (wide < 8), min(u + wide, 8), v, min(v + rng.randint(1, 3), 8)))
-        cover = Cover(8, tuple(sorted(found)))
-        one, two = sweep(cover), components(cover)
-        assert sorted(one.areas.values()) == sorted(two.areas)
-        assert sorted(one.cluster_areas.values()) == sorted(two.cluster_areas)
-        assert Counter((one.areas[a], one.cluster_areas[b]) for a, b in one.touching) == Counter(
-            (two.areas[a], two.cluster_areas[b]) for a, b in two.touching
-        )
 
 
 @given(covers(), st.integers(1, 15), st.integers(1, 15), st.integers(0, 5))
@@ -679,66 +357,6 @@ def test_minima_where_a_spring_has_length_zero_on_a_circle(rho: str) -> None:
     assert len({there.counts.stable for there in found}) == 1
 
 
-def random_values(rng: random.Random) -> dict[str, Fraction]:
-    def positive() -> Fraction:
-        return Fraction(rng.randint(1, 300), 100)
-
-    found = {name: positive() for name in NAMES}
-    return found | {
-        name: Fraction(rng.randint(-300, 300), 100) for name in ("F3", "F4", "F3x", "F4x")
-    }
-
-
-def potential(v: dict[str, arb]) -> arb:
-    """The energy from the coordinates of the four nodes."""
-    nodes = (
-        (arb(0), arb(0)), (v["rho"], arb(0)),
-        (v["L1"] * v["th1"].cos(), v["L1"] * v["th1"].sin()),
-        (v["rho"] - v["L2"] * v["th2"].cos(), v["L2"] * v["th2"].sin()),
-    )  # fmt: skip
-    energy = (
-        -v["F3x"] * nodes[2][0]
-        - v["F3"] * nodes[2][1]
-        - v["F4x"] * nodes[3][0]
-        - v["F4"] * nodes[3][1]
-    )
-    for number, (one, two) in enumerate(((0, 3), (1, 2), (2, 3)), 1):
-        across, up = nodes[two][0] - nodes[one][0], nodes[two][1] - nodes[one][1]
-        stretch = (across * across + up * up).sqrt() - v[f"l0_{number}"]
-        energy += v[f"k{number}"] * stretch * stretch / 2
-    return energy
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_derivatives_are_those_of_the_potential(seed: int) -> None:
-    """Divided differences of the potential from the nodes' coordinates, with 400 bits and a step of
-    2^-60.
-    """
-    rng = random.Random(seed)
-    v = random_values(rng)
-    th1, th2 = Fraction(rng.randint(-300, 300), 100), Fraction(rng.randint(-300, 300), 100)
-    with ctx.workprec(400):
-        h = arb(2) ** -60
-        point = {name: ball_of(value) for name, value in v.items()}
-
-        def u(i: int, j: int) -> arb:
-            return potential({**point, "th1": ball_of(th1) + i * h, "th2": ball_of(th2) + j * h})
-
-        at, (l1, l2) = (ball_of(th1), ball_of(th2)), (point["L1"], point["L2"])
-        jet = BallEquations(form_of(claims_of(v, Count.TOTAL).result.slice), point)(at)
-        ((u11, u12), (u21, u22)), d = jet.jacobian, PaperEnergy(point)(*at)
-        mixed = (u(1, 1) - u(1, -1) - u(-1, 1) + u(-1, -1)) / (4 * h**2)
-        pairs = [
-            (jet.values[0], (u(1, 0) - u(-1, 0)) / (2 * h)), (jet.values[0], l1 * d.e1),
-            (jet.values[1], (u(0, 1) - u(0, -1)) / (2 * h)), (jet.values[1], l2 * d.e2),
-            (u11, (u(1, 0) - 2 * u(0, 0) + u(-1, 0)) / h**2), (u11, l1 * d.e11),
-            (u22, (u(0, 1) - 2 * u(0, 0) + u(0, -1)) / h**2), (u22, l2 * d.e22),
-            (u12, mixed), (u12, l1 * d.e12), (u21, l2 * d.e21),
-        ]  # fmt: skip
-        for formula, difference in pairs:
-            assert abs(formula - difference) < 1e-25
-
-
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.slow_cases("1", "2")
 def test_a_box_of_parameters_has_the_count_of_its_points(seed: int, stable: RegionMap) -> None:
@@ -762,24 +380,6 @@ def test_nothing_is_proved_over_a_fold(stable: RegionMap) -> None:
     there = counting.at(*claims.lattice.off(Fraction(left), Fraction(bottom)))
     with pytest.raises(Unproved):
         counting.over((Fraction(left), Fraction(right)), (Fraction(bottom), Fraction(top)), there)
-
-
-@pytest.mark.slow
-def test_solutions_of_a_cell_are_where_the_check_finds_them(total: RegionMap) -> None:
-    """Center by center: the engine's boxes and the check's."""
-    for cell in total.cells:
-        point = {n: e.evaluate(*cell.sample) for n, e in total.slice.parameters.items()}
-        found = counted_at(point, Count.TOTAL)[2].found
-        assert len(found) == len(cell.solutions)
-        for solution in cell.solutions:
-            assert isinstance(solution, Solution)
-            assert any(
-                all(
-                    min(abs(float(c) - a + k * 6.283185307179586) for k in (-1, 0, 1)) < 1e-9
-                    for c, a in zip(solution.center, e.center, strict=True)
-                )
-                for e in found
-            )
 
 
 def test_a_count_that_the_checker_does_not_know_is_refused(

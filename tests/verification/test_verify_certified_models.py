@@ -5,7 +5,6 @@ rejected.
 from __future__ import annotations
 
 import random
-import re
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -15,7 +14,7 @@ from typing import Any
 
 import pytest
 import yaml
-from flint import arb, ctx
+from flint import arb
 from forger import certified
 from forger.consistency import drop, put
 from support.counting import MIDDLE, claims_of, counted_at
@@ -26,10 +25,9 @@ from support.paper_energy import NAMES
 from support.records import TRUSS
 
 import ptmcad
-from ptmcad.answer.regionmap import RegionMap, Solution, Status
+from ptmcad.answer.regionmap import RegionMap, Solution
 from ptmcad.options import Options
 from ptmcad.question.slice import Count, Point
-from ptmcad.text.balls import ball_of
 from ptmcad.text.expressions import constant
 from ptmcad.text.tree import Chain, Name, Number, Step
 from ptmcad.verification.certified import cellsamples, models
@@ -49,59 +47,78 @@ pytest.importorskip("numba")
 LONG = Fraction(10) ** 5000
 """Of more digits than Python writes by itself."""
 
-PENDULUM: dict[str, Any] = {
-    "mechanism": {
-        "name": "stretched",
-        "parameters": {
-            "a": {"kind": "base", "default": 1},
-            "l0": {"kind": "free length", "default": 0},
-            "W": {"kind": "force"},
-            "c": {"kind": "stiffness", "default": "1/5"},
-            "M": {"kind": "force"},
-        },
-        "unknowns": {"th": "angle"},
-        "points": {"O": [0, 0], "A": [0, "a"], "P": ["sin(th)", "cos(th)"]},
-        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
-        "loads": {"P": ["1/10", "W"]},
-        "torsion": [{"angle": "2*th", "k": "c", "rest": {"cos": "3/5", "sin": "4/5"}}],
-        "moments": {"th": "M"},
-    },
-    "parameters": {"l0": "1/2", "M": "1/20"},
-    "axes": {"a": ["1/2", 2], "W": [-2, 2]},
-    "count": "stable",
-}
-CHAIN: dict[str, Any] = {
-    "mechanism": {
-        "name": "chain",
-        "parameters": {"a": {"kind": "base", "default": 1}, "F": {"kind": "force"}},
-        "unknowns": {"s": "angle", "t": "angle"},
-        "points": {
-            "O": [0, 0], "A": [0, "a"],
-            "P": ["sin(s)", "cos(s)"], "Q": ["sin(s) + sin(t)", "cos(s) + cos(t)"],
-        },
-        "bars": [["O", "P"], ["P", "Q"]],
-        "springs": [
-            {"between": ["A", "P"], "k": 1, "free": "1/4"}, {"between": ["A", "Q"], "k": 1, "free": "1/3"},
-        ],
-        "loads": {"P": ["1/10", 0], "Q": [0, "F"]},
-    },
-    "axes": {"a": [1, 2], "F": ["1/2", 1]},
-    "count": "index",
-}  # fmt: skip
+PENDULUM: dict[str, Any] = yaml.safe_load("""
+mechanism:
+  name: stretched
+  parameters:
+    a: {kind: base, default: 1}
+    l0: {kind: free length, default: 0}
+    W: {kind: force}
+    c: {kind: stiffness, default: 1/5}
+    M: {kind: force}
+  unknowns: {th: angle}
+  points: {O: [0, 0], A: [0, a], P: [sin(th), cos(th)]}
+  springs: [{between: [A, P], k: 1, free: l0}]
+  loads: {P: [1/10, W]}
+  torsion: [{angle: 2*th, k: c, rest: {cos: 3/5, sin: 4/5}}]
+  moments: {th: M}
+parameters: {l0: 1/2, M: 1/20}
+axes: {a: [1/2, 2], W: [-2, 2]}
+count: stable
+""")
+CHAIN: dict[str, Any] = yaml.safe_load("""
+mechanism:
+  name: chain
+  parameters: {a: {kind: base, default: 1}, F: {kind: force}}
+  unknowns: {s: angle, t: angle}
+  points: {O: [0, 0], A: [0, a], P: [sin(s), cos(s)], Q: [sin(s) + sin(t), cos(s) + cos(t)]}
+  bars: [[O, P], [P, Q]]
+  springs: [{between: [A, P], k: 1, free: 1/4}, {between: [A, Q], k: 1, free: 1/3}]
+  loads: {P: [1/10, 0], Q: [0, F]}
+axes: {a: [1, 2], F: [1/2, 1]}
+count: index
+""")
 CRANK = yaml.safe_load((CONFIGS / "mechanisms" / "slider-crank.yaml").read_text(encoding="utf-8"))
 LOOP = yaml.safe_load((CONFIGS / "mechanisms" / "four-bar-free.yaml").read_text(encoding="utf-8"))
-RECORDS: dict[str, dict[str, Any]] = {
+RECORDS: dict[str, dict[str, Any]] = yaml.safe_load("""
+cubic: {system: {unknowns: {x: real}, equations: [x^3 - a*x + b]}, axes: {a: [-2, 2], b: [-2, 2]}}
+decimals:
+  system: {unknowns: {x: real}, equations: [0.5*x^3 - 5e-1*a*x + 1e-20*b + 0.25*b]}
+  axes: {a: [-2, 2], b: [-2, 2]}
+well:
+  system:
+    unknowns: {x: real, t: angle}
+    potential: x^4/4 - a*x^2/2 + b*x*cos(t) - cos(t) - 1/5*sin(2*t)
+  axes: {a: [1/2, 2], b: [-1, 1]}
+  count: total
+oscillators:
+  system:
+    unknowns: {u: angle, v: angle, w: angle}
+    potential: -F*(cos(u) + cos(v) + cos(w)) - k*(cos(u - v) + cos(v - w)) - 1/3*sin(u)
+  axes: {k: [0, 1], F: [1, 2]}
+  count: index
+reaction:
+  system:
+    unknowns: {x: real}
+    equations: [a*x^2 - x^3 - x + b]
+    positive: [x]
+    stable: [3*x^2 - 2*a*x + 1, 3 - x]
+  axes: {a: [0, 4], b: [0, 1]}
+  count: stable
+switch:
+  system:
+    unknowns: {x: real, y: real}
+    positive: [x, y]
+    equations: [x^2*(1 + y^2) - a*x, y*(1 + x^2) - b]
+  axes: {a: [-1, 4], b: [1, 4]}
+half of a well:
+  system: {unknowns: {x: real}, potential: x^4/4 - a*x^2/2 + b*x, positive: [x + 1/3, '2']}
+  axes: {a: [-1, 2], b: [-1, 1]}
+  count: index
+""") | {
     "truss": TRUSS,
     "pendulum": PENDULUM,
     "chain": CHAIN,
-    "cubic": {
-        "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
-        "axes": {"a": [-2, 2], "b": [-2, 2]},
-    },
-    "decimals": {
-        "system": {"unknowns": {"x": "real"}, "equations": ["0.5*x^3 - 5e-1*a*x + 1e-20*b + 0.25*b"]},
-        "axes": {"a": [-2, 2], "b": [-2, 2]},
-    },
     "slider-crank": {k: v for k, v in CRANK.items() if k != "reference"},
     "loop": {k: v for k, v in LOOP.items() if k not in ("name", "reference")} | {"count": "total"},
     "guided loop": {
@@ -111,44 +128,6 @@ RECORDS: dict[str, dict[str, Any]] = {
         },
         "axes": CRANK["axes"],
         "count": "stable",
-    },
-    "well": {
-        "system": {
-            "unknowns": {"x": "real", "t": "angle"},
-            "potential": "x^4/4 - a*x^2/2 + b*x*cos(t) - cos(t) - 1/5*sin(2*t)",
-        },
-        "axes": {"a": ["1/2", 2], "b": [-1, 1]},
-        "count": "total",
-    },
-    "oscillators": {
-        "system": {
-            "unknowns": {"u": "angle", "v": "angle", "w": "angle"},
-            "potential": "-F*(cos(u) + cos(v) + cos(w)) - k*(cos(u - v) + cos(v - w)) - 1/3*sin(u)",
-        },
-        "axes": {"k": [0, 1], "F": [1, 2]},
-        "count": "index",
-    },
-    "reaction": {
-        "system": {
-            "unknowns": {"x": "real"}, "equations": ["a*x^2 - x^3 - x + b"], "positive": ["x"],
-            "stable": ["3*x^2 - 2*a*x + 1", "3 - x"],
-        },
-        "axes": {"a": [0, 4], "b": [0, 1]},
-        "count": "stable",
-    },
-    "switch": {
-        "system": {
-            "unknowns": {"x": "real", "y": "real"}, "positive": ["x", "y"],
-            "equations": ["x^2*(1 + y^2) - a*x", "y*(1 + x^2) - b"],
-        },
-        "axes": {"a": [-1, 4], "b": [1, 4]},
-    },
-    "half of a well": {
-        "system": {
-            "unknowns": {"x": "real"}, "potential": "x^4/4 - a*x^2/2 + b*x", "positive": ["x + 1/3", "2"],
-        },
-        "axes": {"a": [-1, 2], "b": [-1, 1]},
-        "count": "index",
     },
 }  # fmt: skip
 
@@ -241,11 +220,6 @@ def with_potential(r: RegionMap, old: str, new: str) -> RegionMap:
     return replace(r, system=replace(r.system, potential=r.system.potential.replace(old, new, 1)))
 
 
-def with_window(r: RegionMap, high: Fraction) -> RegionMap:
-    one, two = r.slice.axes
-    return replace(r, slice=replace(r.slice, axes=(replace(one, high=high), two)))
-
-
 def with_model(r: RegionMap, **changes: Any) -> RegionMap:
     return replace(r, slice=replace(r.slice, model=replace(r.slice.model, **changes)))
 
@@ -265,17 +239,6 @@ def with_bars_longer(r: RegionMap) -> RegionMap:
         for c in r.slice.model.mechanism.closing
     )
     return with_model(r, mechanism=replace(r.slice.model.mechanism, closing=bars))
-
-
-def with_soft_spring(r: RegionMap) -> RegionMap:
-    """The first spring of a loop with a negative stiffness, and no free length."""
-    mechanism = r.slice.model.mechanism
-    first, *others = mechanism.springs
-    soft = first._replace(
-        stiffness=Chain(first.stiffness, (Step("-", Number(Fraction(3))),)),
-        free=Number(Fraction(0)),
-    )
-    return with_model(r, mechanism=replace(mechanism, springs=(soft, *others)))
 
 
 def with_relations(r: RegionMap, *relations: str) -> RegionMap:
@@ -326,12 +289,7 @@ ALL: dict[str, tuple[Callable[[RegionMap], RegionMap], str]] = {
     "a box beside the solution": (lambda r: with_solution(r, beside), "counts and solutions"),
     "a box too large": (lambda r: with_solution(r, lambda s: replace(s, radius=Fraction(4))), "counts and solutions"),
     "a box without width": (lambda r: with_solution(r, lambda s: replace(s, radius=Fraction(0))), "counts and sol"),
-    "a box of more unknowns": (
-        lambda r: with_solution(r, lambda s: replace(s, center=(*s.center, Fraction(0)))), "counts and solutions",
-    ),
     "signs": (lambda r: with_solution(r, other_signs), "counts and solutions"),
-    "status": (lambda r: replace(r, status=Status.EXACT), "form"),
-    "unknowns": (lambda r: replace(r, system=replace(r.system, unknowns=("q",))), "equations"),
     "a gradient": (lambda r: replace(r, system=replace(r.system, gradient=("1", "1", "1", "1"))), "equations"),
     "conditions": (lambda r: replace(r, system=replace(r.system, stability=("1",))), "equations"),
 }  # fmt: skip
@@ -344,18 +302,12 @@ SOME: dict[str, tuple[str, Callable[[RegionMap], RegionMap], str]] = {
     "a negative stiffness": ("pendulum", lambda r: with_parameter(r, "c", Fraction(-1)), "signs of parameters"),
     "a spring in the potential": ("truss", lambda r: with_potential(r, "- l0)^2", "- 2*l0)^2"), "equations"),
     "another free length in a loop": ("loop", lambda r: with_parameter(r, "l0", Fraction(1, 10)), "counts and sol"),
-    "a spring of a loop": ("loop", lambda r: with_potential(r, "- l0)^2", "- 2*l0)^2"), "equations"),
-    "a soft spring of a loop": ("loop", with_soft_spring, "signs of parameters"),
     "longer bars": ("loop", with_bars_longer, "equations"),
     "another relation": ("loop", lambda r: with_relations(r, r.system.relations[0] + " + 1"), "equations"),
     "no relation": ("loop", with_relations, "equations"),
-    "a relation of an open chain": ("truss", lambda r: with_relations(r, "a"), "equations"),
     "a guided loop's moment": ("guided loop", lambda r: with_potential(r, " - M*th", ""), "equations"),
-    "a root that is no length": ("truss", lambda r: with_potential(r, "- f*h", "- f*sqrt(h^2)"), "equations"),
     "an angle outside": ("chain", lambda r: with_potential(r, "sin(s)", "s"), "equations"),
-    "no moment": ("pendulum", lambda r: with_potential(r, " - M*th", ""), "equations"),
     "a torsion spring's rest": ("pendulum", lambda r: with_potential(r, "(4/5)*sin", "(3/5)*sin"), "equations"),
-    "an angle's multiple": ("well", lambda r: with_potential(r, "sin(2*t)", "sin(3*t)"), "equations"),
     "an equation": (
         "cubic", lambda r: replace(r, system=replace(r.system, gradient=("x^3 - a*x - b",))), "equations",
     ),
@@ -366,34 +318,21 @@ SOME: dict[str, tuple[str, Callable[[RegionMap], RegionMap], str]] = {
         "truss", lambda r: replace(r, cells=put(r.cells, 0, sample=Point(("a", "f"), LONG, Fraction(0)))),
         "components",
     ),
-    "a window of too many digits": ("truss", lambda r: with_window(r, LONG), "components"),
-    "no equation": ("cubic", lambda r: replace(r, system=replace(r.system, gradient=())), "equations"),
     "a potential for equations": (
         "cubic", lambda r: replace(r, system=replace(r.system, potential="x^4")), "equations",
-    ),
-    "a load in the description": (
-        "truss", lambda r: with_model(r, loads=(r.slice.model.loads[0]._replace(y=Number(Fraction(1))),)), "form|equat",
     ),
     "a sign condition": ("cubic", lambda r: with_model(r, inequalities=(Name("x"),)), "equations"),
     "another sign condition": (
         "reaction", lambda r: with_model(r, inequalities=(Chain(Name("x"), (Step("-", Number(Fraction(3))),)),)), "equ",
     ),
-    "no sign condition": ("reaction", lambda r: with_model(r, inequalities=()), "equations"),
     "no condition for stability": ("reaction", lambda r: with_model(r, stability=r.slice.model.stability[:1]), "equ"),
-    "an inequality for a condition": (
-        "reaction", lambda r: replace(r, system=replace(r.system, inequalities=("x",) * 2)), "equations",
-    ),
-    "an inequality as text": (
-        "half of a well", lambda r: replace(r, system=replace(r.system, inequalities=("x + 1/4", "2"))), "equations",
-    ),
     "all that solve the equations": ("reaction", lambda r: unconditional(r, "3*x^2 - 2*a*x + 1"), "counts and sol"),
-    "all that live or not": ("switch", lambda r: unconditional(r, ""), "counts and solutions"),
-    "one more equation": ("cubic", lambda r: with_model(r, equations=r.slice.model.equations * 2), "equations"),
     "admissible": ("truss", lambda r: replace(r, slice=replace(r.slice, count=Count.ADMISSIBLE)), "form"),
-    "stable roots": ("cubic", lambda r: replace(r, slice=replace(r.slice, count=Count.STABLE)), "form"),
     "a moment that turns": (
         "pendulum", lambda r: with_model(r, moments=(r.slice.model.moments[0]._replace(value=Name("th")),)), "form",
     ),
+    "one more equation": ("cubic", lambda r: with_model(r, equations=r.slice.model.equations * 2), "equations"),
+    "stable roots": ("cubic", lambda r: replace(r, slice=replace(r.slice, count=Count.STABLE)), "form"),
 }  # fmt: skip
 
 
@@ -426,52 +365,15 @@ def assert_rejected(false: RegionMap, by: str) -> None:
     assert any(report.violation.startswith(name) for name in by.split("|")), report.violation
 
 
-FOR_SLOW = {(kind, "chain") for kind in ALL} - {("more solutions", "chain")}
-"""The chain's poses take longest to prove; five other records are altered in the same ways."""
-FOR_SLOW |= {(kind, "guided loop") for kind in ALL}
-FOR_SLOW |= {(kind, "loop") for kind in ALL} - {
-    (kind, "loop") for kind in ("more solutions", "signs", "a gradient")
-}
+FAST = ("truss", "cubic", "reaction")
+"""A mechanism with cones, equations, and conditions: ten more are altered in the same ways."""
+SOME_SIGNS = {("signs", "loop"), ("signs", "switch")}
 
 
 @pytest.mark.parametrize(("kind", "name"), [
-    pytest.param(*case, marks=pytest.mark.slow if case in FOR_SLOW else ()) for case in product(ALL, RECORDS)
+    pytest.param(*case, marks=() if case[1] in FAST or case in SOME_SIGNS else pytest.mark.slow)
+    for case in product(ALL, RECORDS)
 ])  # fmt: skip
-@pytest.mark.slow_cases(
-    "more solutions-slider-crank",
-    "more solutions-well",
-    "more solutions-oscillators",
-    "fewer solutions-slider-crank",
-    "fewer solutions-well",
-    "fewer solutions-oscillators",
-    "fewer solutions-switch",
-    "counts of another cell-slider-crank",
-    "a solution too few-slider-crank",
-    "a solution too few-well",
-    "a solution too few-oscillators",
-    "a solution twice-slider-crank",
-    "a solution twice-well",
-    "a solution twice-oscillators",
-    "a box beside the solution-slider-crank",
-    "a box beside the solution-well",
-    "a box beside the solution-oscillators",
-    "a box too large-slider-crank",
-    "a box too large-well",
-    "a box too large-oscillators",
-    "a box too large-switch",
-    "a box without width-slider-crank",
-    "a box without width-well",
-    "a box without width-oscillators",
-    "a box of more unknowns-slider-crank",
-    "a box of more unknowns-well",
-    "a box of more unknowns-oscillators",
-    "signs-slider-crank",
-    "signs-well",
-    "signs-oscillators",
-    "more solutions-loop",
-    "counts of another cell-well",
-    "counts of a region-slider-crank",
-)
 def test_a_false_map_is_rejected(kind: str, name: str) -> None:
     change, by = ALL[kind]
     if name == "cubic" and kind == "signs":
@@ -486,7 +388,7 @@ def test_a_map_of_something_else_is_rejected(kind: str) -> None:
 
 
 @pytest.mark.parametrize("name", RECORDS)
-@pytest.mark.slow_cases("chain", "slider-crank", "well", "oscillators")
+@pytest.mark.fast_cases("truss", "cubic", "guided loop")
 def test_random_points_find_that_curves_were_left_out(name: str) -> None:
     """All else but the search of the free area agrees with a map that has one cell and no
     rectangles.
@@ -585,48 +487,6 @@ def test_counts_are_those_of_the_exact_engine(name: str) -> None:
         assert (found.total, found.index) == (true.total, true.index)
 
 
-@pytest.mark.parametrize("name", ["truss", "chain", "oscillators"])
-def test_derivatives_are_those_of_the_stored_potential(name: str) -> None:
-    """Divided differences of the text that a map has, with 400 bits and a step of 2^-60."""
-    r = map_of(name)
-    form, rng = form_of(r.slice), random.Random(name)
-    values = {n: e.evaluate(*r.cells[0].sample) for n, e in r.slice.parameters.items()}
-    with ctx.workprec(400):
-        balls = {n: ball_of(v) for n, v in values.items()}
-        at = [ball_of(Fraction(rng.randint(-300, 300), 100)) for _ in form.unknowns]
-        jet, h = BallEquations(form, balls)(at), arb(2) ** -60
-        exactly = re.sub(
-            r"\b(\d+)/", r"ball(\1)/", r.system.potential.replace("^", "**")
-        )  # 1/10 is no double
-        code = compile(exactly, "potential", "eval")
-
-        def energy(*steps: int) -> arb:
-            where = {u: x + n * h for u, x, n in zip(form.unknowns, at, steps, strict=True)}
-            names = {
-                "sqrt": arb.sqrt,
-                "cos": arb.cos,
-                "sin": arb.sin,
-                "ball": arb,
-                "__builtins__": {},
-            }
-            value: arb = eval(code, names, {**balls, **where})  # text of our own engine
-            return value
-
-        for i in range(form.size):
-            e = [int(k == i) for k in range(form.size)]
-            back = [-k for k in e]
-            assert abs(jet.values[i] - (energy(*e) - energy(*back)) / (2 * h)) < 1e-25
-            for j in range(form.size):
-                f = [int(k == j) for k in range(form.size)]
-                corners = [
-                    energy(*(s * a + t * b for a, b in zip(e, f, strict=True)))
-                    for s in (1, -1)
-                    for t in (1, -1)
-                ]
-                mixed = (corners[0] - corners[1] - corners[2] + corners[3]) / (4 * h**2)
-                assert abs(jet.jacobian[i][j] - mixed) < 1e-25
-
-
 def test_no_solution_is_beyond_the_bounds_of_real_unknowns() -> None:
     """x^3 - a x + b has a root beyond the square root of a; an unknown that may be anywhere has no
     bound.
@@ -670,21 +530,7 @@ def test_nothing_is_proved_of_a_double_solution() -> None:
     whole = half_widths(form, field.values)
     with pytest.raises(Unproved, match="degenerate"):
         zeros(field, [((0.0,), whole)], whole, 5_000)
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_inertia_of_matrices_with_known_eigenvalues(seed: int) -> None:
-    """V' D V has the signs of D."""
-    rng = random.Random(seed)
-    for size in (1, 2, 3):
-        values = [rng.choice((-1, 1)) * rng.uniform(0.5, 3) for _ in range(size)]
-        v = [[rng.uniform(-1, 1) + 2 * (i == j) for j in range(size)] for i in range(size)]
-        h = [[sum((arb(v[k][i]) * values[k] * v[k][j] for k in range(size)), arb(0)) for j in range(size)]
-             for i in range(size)]  # fmt: skip
-        assert inertia(h) == "".join(
-            sorted(("+" if x > 0 else "-" for x in values), key="+-".index)
-        )
-        assert inertia([[arb(0, 1)] * size for _ in range(size)]) is None
+    assert inertia([[arb(0, 1)] * 2] * 2) is None
 
 
 @pytest.mark.parametrize("exponent", [0, 1, 2, 3, 4])
@@ -697,31 +543,3 @@ def test_powers_of_balls(ball: arb, exponent: int) -> None:
     if exponent and exponent % 2 == 0:
         assert not found < 0
         assert found.abs_upper() >= float(ball.abs_upper()) ** exponent
-
-
-def test_bounds_where_an_axis_is_squared() -> None:
-    """1 + 2 a^2 over all of a wide window is seen to be positive: a ball times itself would not be."""
-    mechanism = {
-        "name": "squared",
-        "parameters": {"a": {"kind": "length"}, "F": {"kind": "force"}},
-        "unknowns": {"x": "length", "y": "length"},
-        "points": {"A": [0, 0], "B": [2, 0], "P": ["x", "y"], "M": ["a*x", "a*y"]},
-        "springs": [
-            {"between": ["A", "P"], "k": 1, "free": 1},
-            {"between": ["A", "M"], "k": 2, "free": "1/2"},
-            {"between": ["B", "P"], "k": 1, "free": "1/3"},
-        ],
-        "loads": {"P": ["F", "1/5"]},
-    }
-    record = {
-        "name": "squared",
-        "mechanism": mechanism,
-        "axes": {"a": ["1/4", 2], "F": [-2, 2]},
-        "count": "stable",
-    }
-    report = ptmcad.verify(
-        ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/50"), seed=1, boxes=2
-    )
-    assert report.ok
-    (area,) = (c for c in report.checks if c.name == "the whole free area")
-    assert "% of the free area is proved" in area.detail

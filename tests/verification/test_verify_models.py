@@ -11,6 +11,7 @@ from functools import cache, partial
 from typing import Any
 
 import pytest
+import yaml
 from forger.consistency import drop, put
 from forger.judge import judged, violation
 from support.maps import once_per_run
@@ -25,8 +26,6 @@ from ptmcad.verification.claims import Claims
 from ptmcad.verification.norms import check_norm
 from ptmcad.verification.report import Violation
 from ptmcad.verification.solutions import check_counts, check_solutions
-
-AB = {"a": [-2, 2], "b": [-2, 2]}
 
 
 def turned(moment: str) -> dict[str, Any]:
@@ -45,134 +44,93 @@ def turned(moment: str) -> dict[str, Any]:
     }
 
 
-RECORDS: dict[str, dict[str, Any]] = {
-    "cusp": {"system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}, "axes": AB},
-    "kuramoto": {
-        "system": {
-            "unknowns": {"p": "angle", "q": "angle"},
-            "equations": ["sin(p-q)+sin(p)-w1", "sin(q-p)+sin(q)-w2"],
-        },
-        "axes": {"w1": [-2, 2], "w2": [-2, 2]},
-    },
-    # one solution is zero everywhere, where the inequality's polynomial vanishes
-    "duffing": {
-        "system": {
-            "unknowns": {"z": "real"},
-            "equations": ["(((W - 1 - 3/4*z)^2 + W/100)*z - G)*z"],
-            "positive": ["z"],
-        },
-        "axes": {"W": [0, 3], "G": [0, 1]},
-        "count": "total",
-    },
-    "pendulum": {
-        "mechanism": {
-            "name": "pendulum",
-            "parameters": {
-                "L": {"kind": "length", "default": 1},
-                "a": {"kind": "base", "default": 1, "range": [0, 3]},
-                "k": {"kind": "stiffness", "default": 1, "range": [0, 4]},
-                "W": {"kind": "force", "range": [-2, 2]},
-            },
-            "unknowns": {"th": "angle"},
-            "points": {"O": [0, 0], "A": [0, "a"], "P": ["L*sin(th)", "L*cos(th)"]},
-            "springs": [{"between": ["A", "P"], "k": "k"}],
-            "loads": {"P": ["1/10", "W"]},
-        },
-        "axes": {"a": [0, 3], "W": [-4, 4]},
-    },
-    "torque": {
-        "mechanism": {
-            "name": "torque",
-            "parameters": {
-                "c": {"kind": "stiffness", "range": [0, 4]},
-                "W": {"kind": "force", "default": 1},
-                "M": {"kind": "force"},
-            },
-            "unknowns": {"th": "angle"},
-            "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
-            "torsion": [{"angle": "th", "k": "c", "rest": {"cos": "3/5", "sin": "4/5"}}],
-            "loads": {"P": [0, "-W"]},
-            "moments": {"th": "M"},
-        },
-        "axes": {"c": [0, 2], "M": [-3, 3]},
-    },
-    # the second condition is zero at the solution x = 0, and one more sign condition has a curve of
-    # its own
-    "stable where": {
-        "system": {
-            "unknowns": {"x": "real"},
-            "equations": ["x^3 - a*x"],
-            "stable": ["x + b", "x*(x + 1) + b^2*x"],
-        },
-        "axes": AB,
-        "count": "stable",
-    },
-    "potential with an inequality": {
-        "system": {
-            "unknowns": {"x": "real"},
-            "potential": "x^4 - a*x^2 + b*x",
-            "positive": ["x + 1"],
-        },
-        "axes": AB,
-        "count": "index",
-    },
-    "pole": {
-        "system": {
-            "unknowns": {"x": "real", "t": "angle"},
-            "equations": ["a*x^2 + b*x - 1", "sin(t) - x/4"],
-        },
-        "axes": AB,
-    },
-    # two roots are multiple over b = -0.88, and over its conjugate 1.41 there are others
-    "symmetric": {
-        "system": {
-            "unknowns": {"p": "angle", "q": "angle", "r": "real"},
-            "equations": ["cos(p) + cos(q) - a", "r*sin(p) - sin(q)", "r + cos(p - q) - b"],
-            "positive": ["r"],
-        },
-        "axes": AB,
-    },
-    # three angles
-    "chain": {
-        "system": {
-            "unknowns": {"u": "angle", "v": "angle", "w": "angle"},
-            "potential": "-a*cos(u) - cos(v) - b*sin(w) - cos(2*v - u)*0 - cos(w)",
-        },
-        "axes": {"a": [-2, -1], "b": [1, 2]},
-        "count": "index",
-    },
+RECORDS: dict[str, dict[str, Any]] = yaml.safe_load("""
+cusp: {system: {unknowns: {x: real}, equations: [x^3 - a*x + b]}, axes: {a: [-2, 2], b: [-2, 2]}}
+kuramoto:
+  system: {unknowns: {p: angle, q: angle}, equations: [sin(p-q)+sin(p)-w1, sin(q-p)+sin(q)-w2]}
+  axes: {w1: [-2, 2], w2: [-2, 2]}
+# one solution is zero everywhere, where the inequality's polynomial vanishes
+duffing:
+  system: {unknowns: {z: real}, equations: [(((W - 1 - 3/4*z)^2 + W/100)*z - G)*z], positive: [z]}
+  axes: {W: [0, 3], G: [0, 1]}
+  count: total
+pendulum:
+  mechanism:
+    name: pendulum
+    parameters:
+      L: {kind: length, default: 1}
+      a: {kind: base, default: 1, range: [0, 3]}
+      k: {kind: stiffness, default: 1, range: [0, 4]}
+      W: {kind: force, range: [-2, 2]}
+    unknowns: {th: angle}
+    points: {O: [0, 0], A: [0, a], P: [L*sin(th), L*cos(th)]}
+    springs: [{between: [A, P], k: k}]
+    loads: {P: [1/10, W]}
+  axes: {a: [0, 3], W: [-4, 4]}
+torque:
+  mechanism:
+    name: torque
+    parameters:
+      c: {kind: stiffness, range: [0, 4]}
+      W: {kind: force, default: 1}
+      M: {kind: force}
+    unknowns: {th: angle}
+    points: {O: [0, 0], P: [cos(th), sin(th)]}
+    torsion: [{angle: th, k: c, rest: {cos: 3/5, sin: 4/5}}]
+    loads: {P: [0, -W]}
+    moments: {th: M}
+  axes: {c: [0, 2], M: [-3, 3]}
+# the second condition is zero at the solution x = 0, and one more sign condition has a curve of
+# its own
+stable where:
+  system: {unknowns: {x: real}, equations: [x^3 - a*x], stable: [x + b, x*(x + 1) + b^2*x]}
+  axes: {a: [-2, 2], b: [-2, 2]}
+  count: stable
+potential with an inequality:
+  system: {unknowns: {x: real}, potential: x^4 - a*x^2 + b*x, positive: [x + 1]}
+  axes: {a: [-2, 2], b: [-2, 2]}
+  count: index
+pole:
+  system: {unknowns: {x: real, t: angle}, equations: [a*x^2 + b*x - 1, sin(t) - x/4]}
+  axes: {a: [-2, 2], b: [-2, 2]}
+# two roots are multiple over b = -0.88, and over its conjugate 1.41 there are others
+symmetric:
+  system:
+    unknowns: {p: angle, q: angle, r: real}
+    equations: [cos(p) + cos(q) - a, r*sin(p) - sin(q), r + cos(p - q) - b]
+    positive: [r]
+  axes: {a: [-2, 2], b: [-2, 2]}
+# three angles
+chain:
+  system:
+    unknowns: {u: angle, v: angle, w: angle}
+    potential: -a*cos(u) - cos(v) - b*sin(w) - cos(2*v - u)*0 - cos(w)
+  axes: {a: [-2, -1], b: [1, 2]}
+  count: index
+# two moments, each of which depends on the other's unknown: the matrix of derivatives is not
+# symmetric
+moments:
+  mechanism:
+    name: moments
+    parameters: {M: {}, a: {}}
+    unknowns: {th: angle, s: length}
+    points: {A: [0, a], P: [s + cos(th), sin(th)], G: [s, 0], O: [0, 0]}
+    springs: [{between: [A, P], k: 1}, {between: [O, G], k: 2}]
+    moments: {th: M*s, s: M/3*cos(th) + 1/2}
+  axes: {M: [-2, 2], a: [-2, 2]}
+moments of three unknowns:
+  mechanism:
+    name: moments_3
+    parameters: {M: {}, F: {}}
+    unknowns: {a: angle, x: length, y: length}
+    points: {O: [0, 0], P: [x, y], Q: [x + cos(a), y + sin(a)], A: [2, 1]}
+    springs: [{between: [O, P], k: 2}, {between: [A, Q], k: 1}]
+    moments: {a: M*x + F, x: M*y/2, y: F*cos(a)}
+  axes: {M: [-1, 1], F: [-1, 1]}
+""") | {
     # a moment that depends on its own angle: but for its constant part it has an energy
     "moment": turned("M*sin(2*th) + c"),
     "constant moment": turned("M + c/2"),
-    # two moments, each of which depends on the other's unknown: the matrix of derivatives is not
-    # symmetric
-    "moments": {
-        "mechanism": {
-            "name": "moments",
-            "parameters": {"M": {}, "a": {}},
-            "unknowns": {"th": "angle", "s": "length"},
-            "points": {"A": [0, "a"], "P": ["s + cos(th)", "sin(th)"], "G": ["s", 0], "O": [0, 0]},
-            "springs": [{"between": ["A", "P"], "k": 1}, {"between": ["O", "G"], "k": 2}],
-            "moments": {"th": "M*s", "s": "M/3*cos(th) + 1/2"},
-        },
-        "axes": {"M": [-2, 2], "a": [-2, 2]},
-    },
-    "moments of three unknowns": {
-        "mechanism": {
-            "name": "moments_3",
-            "parameters": {"M": {}, "F": {}},
-            "unknowns": {"a": "angle", "x": "length", "y": "length"},
-            "points": {
-                "O": [0, 0],
-                "P": ["x", "y"],
-                "Q": ["x + cos(a)", "y + sin(a)"],
-                "A": [2, 1],
-            },
-            "springs": [{"between": ["O", "P"], "k": 2}, {"between": ["A", "Q"], "k": 1}],
-            "moments": {"a": "M*x + F", "x": "M*y/2", "y": "F*cos(a)"},
-        },
-        "axes": {"M": [-1, 1], "F": [-1, 1]},
-    },
     **{f"system {seed}": random_system(seed) for seed in (0, 1, 2, 4, 7, 8)},
     **{f"mechanism {seed}": random_mechanism(seed) for seed in (0, 3, 6, 9)},
 }

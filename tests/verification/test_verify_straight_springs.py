@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import copy
-import json
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -18,7 +15,6 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.plain import criticalcurves as plain_curves
 from ptmcad.options import Options
-from ptmcad.verification.normalform.unknownbounds import _Bounds
 from ptmcad.verification.normalform.waves import form_of, sides
 
 
@@ -114,61 +110,3 @@ def test_lines_are_told_from_the_vectors() -> None:
     assert chosen("3/5, 4/5", "3/10, 1/10") == 2
     assert chosen("c, s", "1/2*c, 1/2*s") == 4
     assert chosen("c, s", "1/2, 1/2") == 2
-
-
-@pytest.mark.slow
-def test_lists_that_contradict_themselves_are_refused_where_no_bound_is_proved(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Two sliders that only springs hold: without its way to bound them the checker still sees what
-    is listed.
-    """
-    monkeypatch.setattr(_Bounds, "held", lambda *_: None)
-    record = {
-        "name": "two",
-        "mechanism": {
-            "name": "two",
-            "parameters": {
-                "F": {"kind": "force", "default": "0"},
-                "l": {"kind": "free length", "default": "1"},
-            },
-            "unknowns": {"x": "length", "y": "length"},
-            "points": {
-                "S": ["x", "0"],
-                "T": ["-5/13*y", "12/13*y"],
-                "A": ["1/2", "0"],
-                "B": ["-1/4", "3/5"],
-            },
-            "springs": [
-                {"between": ["A", "S"], "k": "3/5", "free": "l"},
-                {"between": ["B", "T"], "k": "59/20", "free": "3/10"},
-                {"between": ["S", "T"], "k": "13/20", "free": "0"},
-            ],
-            "loads": {"S": ["-9/10*F", "0"], "T": ["-7/20*F+1/20", "1/10"]},
-        },
-        "axes": {"F": ["-2", "2"], "l": ["1/10", "2"]},
-        "count": "index",
-    }
-    document = json.loads(
-        ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/20", jobs=1).to_json()
-    )
-
-    def said(change: Callable[[dict[str, Any]], None]) -> str:
-        altered = copy.deepcopy(document)
-        change(altered["cells"][0])
-        checks = {
-            check.name: check
-            for check in ptmcad.verify(ptmcad.RegionMap.from_json(json.dumps(altered))).checks
-        }
-        return str(checks["counts and solutions"])
-
-    assert "no bound of the unknown" in said(lambda cell: None)
-    assert "1 boxes of solutions for 2" in said(lambda cell: cell["solutions"].pop())
-    assert "has 0 equilibria" in said(
-        lambda cell: cell["solutions"][0].update(center=["100", "100"])
-    )
-    assert "is stored twice" in said(
-        lambda cell: cell["solutions"].__setitem__(1, cell["solutions"][0])
-    )
-    signs = "the signs of the listed solutions"
-    assert signs in said(lambda cell: cell["solutions"][0].update(signs="--"))
