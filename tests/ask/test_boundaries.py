@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -17,7 +16,6 @@ import ptmcad
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import ConfigError
-from ptmcad.exact.cad.polyline import chains
 
 SLICES = ("fig2", "fig3", "fig4", "forces")
 
@@ -81,32 +79,6 @@ def test_every_point_of_a_curve_is_as_near_as_is_said(name: str, tolerance: str)
                 assert (
                     min(distance_along_fibre(c, float(at), r) for r in roots) <= q.distance + 1e-12
                 )
-
-
-@pytest.mark.parametrize(
-    ("name", "tolerance"), [("fig2", "1/50"), pytest.param("fig4", "1/10", marks=pytest.mark.slow)]
-)
-def test_polylines_have_all_chords_of_which_the_distance_is_proved(
-    name: str, tolerance: str
-) -> None:
-    result = shipped(name)
-    base, axes = result.base, result.slice.axes
-    drawn = {
-        (b.component, *(round(float(v), 9) for end in chord for v in end))
-        for b in result.boundaries(tolerance)
-        for chord in pairwise(b.points[:, [base, 1 - base]])
-    }
-    for stack, walls in zip(result.stacks, chains(result, Fraction(tolerance)), strict=True):
-        for wall, chain in zip(stack.walls, walls, strict=True):
-            units = [
-                [
-                    round(float(axes[k].low + (axes[k].high - axes[k].low) * v), 9)
-                    for k, v in zip((base, 1 - base), at, strict=True)
-                ]
-                for at in chain.points
-            ]
-            for one, other in pairwise(units):
-                assert (wall.component, *one, *other) in drawn
 
 
 @pytest.mark.parametrize(
@@ -202,22 +174,6 @@ def test_centres_on_curves_and_critical_values_have_no_label_or_the_right_one() 
                     NONE if inside == 0 else 2 if inside < 0 else 0
                 ), (u, v)
     assert (result.grid(4).total == NONE).sum() == 4
-
-
-def test_a_line_of_the_variety_on_a_column_has_no_label() -> None:
-    result = ptmcad.classify(
-        ptmcad.slice_from_mapping(
-            {
-                "name": "line", "system": {"unknowns": {"z": "real"}, "equations": ["z^2 - x"]},
-                "axes": {"x": [-1, 1], "y": [0, 1]},
-            }
-        )
-    )  # fmt: skip
-    for n, empty in ((2, []), (3, [1])):
-        grid = result.grid(n, 2)
-        assert [c for c in range(n) if (grid.total[:, c] == NONE).all()] == empty
-        assert (grid.total[:, 0] == 0).all()
-        assert (grid.total[:, -1] == 2).all()
 
 
 @pytest.mark.parametrize(("columns", "rows"), [(24, 18), (8, 8), (STEPS, 1), (5, 40)])
