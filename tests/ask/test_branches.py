@@ -41,17 +41,6 @@ def fig4() -> Branches:
 
 
 @pytest.mark.slow
-def test_the_branches_are_all_equilibria(fig4: Branches) -> None:
-    """Four, six and four of them, as the ranges say; two are stable in the middle."""
-    folds = (0.4981306959, 1.041432630)
-    places = [sum(float(b.points[0].value) > fold for fold in folds) for b in fig4.branches]
-    assert [places.count(k) for k in range(3)] == [4, 6, 4]
-    assert [sum(bool(b.stable) for b, k in zip(fig4.branches, places, strict=True) if k == n) for n in range(3)] == [
-        1, 2, 1]  # fmt: skip
-    assert not fig4.undecided
-
-
-@pytest.mark.slow
 def test_each_point_is_what_solve_says(fig4: Branches) -> None:
     for branch in fig4.branches[::3]:
         point = branch.points[7]
@@ -95,17 +84,6 @@ def test_the_cubic() -> None:
         for point in branch.points:
             x, a = numbers(Branch(None, None, (point,)), 0)[0], float(point.value)
             assert abs(x**3 - a * x + 0.5) < 1e-4
-
-
-@pytest.mark.slow
-def test_free_lengths() -> None:
-    pytest.importorskip("numba")
-    slice = ptmcad.slice_from_options(CONFIGS / "free02.yaml", ranges=["rho=3/10:3/5"])
-    found = branch_diagram(slice, "rho", {"L2": "3/2"}, ["th1", "force:A3A4"])
-    assert len(found.branches) == 10
-    assert sum(bool(b.stable) for b in found.branches if float(b.points[0].value) < 0.4) == 1
-    for branch in found.branches:
-        assert len(branch.points) >= 24
 
 
 def test_quantities_that_there_are_not() -> None:
@@ -203,20 +181,6 @@ def test_numbers_of_a_pose() -> None:
     assert (of["energy"], of["stiffness"]) == (pose.energy, pose.eigenvalues[0])
 
 
-@pytest.mark.slow
-def test_other_spellings_are_the_same_numbers() -> None:
-    asked = ["th1", "angle:th1", "x:A1", "force:A1A4", "force:k1"]
-    slice = ptmcad.slice_from_options(FIG4, ranges=["rho=1:5/4"])
-    found = branch_diagram(slice, "rho", {"L2": Fraction(3, 2)}, [" angle:th1 ", *asked])
-    assert found.quantities == ("angle:th1", *asked)
-    assert found.units == ("degrees", "degrees", "degrees", "length", "force", "force")
-    for branch in found.branches:
-        for point in branch.points:
-            angle, alone, other, fixed, one, two = point.numbers
-            assert angle == alone == other and one == two
-            assert fixed is not None and fixed.exact == 0
-
-
 @pytest.mark.usefixtures("coarse")
 def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     common = ["range", FIG4, "--along", "rho"]
@@ -247,39 +211,6 @@ def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     )
     assert run([*common, "--over", "L2", "--quantity", "th1"]) == 2
     assert "error: --quantity: needs the value of the other axis too" in capsys.readouterr().err
-
-
-@pytest.mark.usefixtures("coarse")
-@pytest.mark.slow
-def test_a_picture_of_branches_with_free_lengths(tmp_path: Path) -> None:
-    pytest.importorskip("numba")
-    common = [
-        "range",
-        str(CONFIGS / "free02.yaml"),
-        "--along",
-        "rho",
-        "--at",
-        "L2=3/2",
-        "--range",
-        "rho=3/10:2/5",
-    ]
-    assert (
-        run(
-            [
-                *common,
-                "--quantity",
-                "energy",
-                "--format",
-                "svg",
-                "--out",
-                str(tmp_path),
-                "--name",
-                "x",
-            ]
-        )
-        == 0
-    )
-    assert [path.name for path in tmp_path.iterdir()] == ["x-branches.svg"]
 
 
 @pytest.mark.usefixtures("coarse")
