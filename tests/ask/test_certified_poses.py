@@ -11,14 +11,12 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from support.dense_search import dense_search, derivatives
 
 from ptmcad import Poses, solve
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.lines.along import certified_intervals
-from ptmcad.cli.range import command
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, slice_from_options
 from ptmcad.show.ranges.linetable import table
@@ -212,37 +210,6 @@ def test_a_coordinate_that_interval_arithmetic_knows_exactly(force: Q, tmp_path:
     (pose,) = solve(model=model, F=force, G="1/4").equilibria
     assert pose.reals[0].exact == force
     assert pose.reals[1].exact is None
-
-
-@pytest.mark.slow
-def test_the_issue_s_line() -> None:
-    slice = slice_from_options(
-        None, "rho,L2", ("l0=1/5", "F3=-10", "F4=-10"), ("rho=0:4", "L2=0:4")
-    )
-    found = certified_intervals(slice, "rho", {"L2": "3/2"}, 10)
-    stable = [interval.index[0] for interval in found.intervals if interval.index]
-    assert stable == [1, 2, 2, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2, 2, 1]
-
-
-@pytest.mark.slow
-def test_range_on_the_command_line() -> None:
-    options = [
-        "--along",
-        "l0",
-        "--at",
-        "rho=7/10,L2=3/2",
-        "--range",
-        "l0=1/3:1/2",
-        "--set",
-        "F3=-10",
-    ]
-    done = CliRunner().invoke(command, options)
-    assert done.exit_code == 0 and "min-saddle-max" in done.output
-    followed = CliRunner().invoke(command, [*options, "--path", "2/5"])
-    assert followed.exit_code == 0 and "pose 2 at l0 = 0.4: th1 = 67.34006196" in followed.output
-    assert isinstance(
-        CliRunner().invoke(command, [*options, "--format", "svg"]).exception, ConfigError
-    )
 
 
 def test_energy_has_no_free_length_unless_asked_for() -> None:
