@@ -174,25 +174,6 @@ def test_random_quadrics(quadric: tuple[int, ...], plane: tuple[int, ...]) -> No
     agree(exact, sampled(question, Fraction(1, 100)))
 
 
-@pytest.mark.slow
-def test_where_elimination_is_out_of_reach_that_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(asking, "critical_values", lambda *_: "that would take too long")
-    found = ptmcad.changes(of("u^2 - c - 1/3 + a^2 + b^2", -1, 3))
-    assert not found.complete
-    assert found.reason.startswith("found by sampling")
-    assert found.reason.endswith("not proved complete: that would take too long")
-    assert all(
-        not change.is_exact and change.value.high - change.value.low <= 4e-6 for change in found
-    )
-    low, _, high = found.table().splitlines()[1].split("enclosed")[0].partition(" to ")
-    assert (
-        Fraction(low.strip())
-        <= found.changes[0].value.low
-        < found.changes[0].value.high
-        <= Fraction(high.strip())
-    )
-
-
 def test_bad_questions_and_limits_are_told() -> None:
     with pytest.raises(ConfigError, match="is not between 0 and 1"):
         ptmcad.changes(of("u^2 - c", -1, 3), tolerance=0)
@@ -225,32 +206,6 @@ def test_the_loads_of_figure_4_change_nothing_between_0_and_40() -> None:
     assert found.complete
     assert not found.changes
     assert [number.text(6) for number in found.others] == ["-39.1565", "-15.2618", "-14.9773"]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("question", "number"),
-    [
-        (LOADS, 0),
-        (LOADS | {"count": "index"}, 0),
-        (LOADS | {"axes": {"rho": [0, 6], "L2": [0, 6]}, "free": {"F": [-100, 0]}}, 2),
-        (LOADS | {"parameters": {"F3": "F", "F4": "2*F"}}, 1),
-    ],
-)
-def test_400_members_have_the_arrangements_between_the_changes(
-    question: dict[str, Any], number: int
-) -> None:
-    found = ptmcad.changes(question)
-    assert found.complete
-    assert len(found) == number
-    members = asking.Members(in_common(family_from(question)), DEFAULTS)
-    low, high = found.free.low, found.free.high
-    for k in range(400):
-        value = low + (high - low) * Fraction(2 * k + 1, 800)
-        place = sum(change.value.compare(value) < 0 for change in found)  # type: ignore[union-attr]
-        assert (
-            correspondence(members.at(value).arrangement, found.arrangements[place]) is not None
-        ), value
 
 
 @pytest.mark.slow
