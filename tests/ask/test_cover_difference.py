@@ -9,7 +9,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from math import hypot
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,11 +20,10 @@ from support.maps import part_of_free02, shipped
 
 from ptmcad.answer.comparison import Comparison
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cli import run
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.colours import UNDETERMINED
-from ptmcad.show.render.comparing import comparison_figure, difference_words
+from ptmcad.show.render.comparing import comparison_figure
 from ptmcad.show.render.printing import settings as printing_settings
 from ptmcad.show.style import styled
 
@@ -175,21 +173,6 @@ def test_any_covers_of_two_lattices(
     check(first.compare(second), sampled(before, after, SIDE), Fraction(4, SIDE**2))
 
 
-@pytest.mark.slow
-def test_a_map_differs_from_itself_nowhere_but_where_it_is_undetermined() -> None:
-    result = part_of_free02()
-    found = result.compare(result)
-    x, y = result.slice.axes
-    assert found.changes == () and found.area[0] == 0
-    assert (
-        found.area[1]
-        == found.undetermined
-        == result.undetermined * (x.high - x.low) * (y.high - y.low)
-    )
-    (said,) = difference_words(found)
-    assert said.startswith("The maps have the same counts everywhere where both are determined; ")
-
-
 def test_the_picture_shows_the_changes_where_they_are() -> None:
     found = circle(6).compare(ellipse(6))
     style = styled(size="9x4.5in", font_size=8)
@@ -228,48 +211,3 @@ def test_what_cannot_be_compared_is_said() -> None:
     with pytest.raises(ConfigError, match="not the same units"):
         metres.compare(feet)
     assert metres.compare(own).changes == ()
-
-
-def test_the_damaged_file_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    whole = circle(5)
-    # the sample of the inner region is put into the outer one
-    outer = next(c for c in whole.cells if c.stable == 2)
-    damaged = replace(whole, cells=tuple(replace(c, sample=outer.sample) for c in whole.cells))
-    files = {"whole": whole, "damaged": damaged}
-    for name, result in files.items():
-        (tmp_path / f"{name}.json").write_text(result.to_json())
-    (tmp_path / "cut.json").write_text(whole.to_json()[:-100])
-    for other, reason in (("damaged", "contradicts itself"), ("cut", "damaged")):
-        for pair in (("whole", other), (other, "whole")):
-            one, two = (str(tmp_path / f"{name}.json") for name in pair)
-            assert run(["plot", one, "--compare", two]) == 2
-            said = capsys.readouterr().err
-            assert f"{other}.json" in said and "whole.json" not in said and reason in said
-
-
-def test_the_damaged_exact_file_is_named(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    whole = shipped("fig4")
-    number = next(k for k, s in enumerate(whole.stacks) if s.walls)
-    stack = whole.stacks[number]
-    walls = (replace(stack.walls[0], root=9), *stack.walls[1:])
-    stacks = (*whole.stacks[:number], replace(stack, walls=walls), *whole.stacks[number + 1 :])
-    (tmp_path / "whole.json").write_text(whole.to_json())
-    (tmp_path / "damaged.json").write_text(replace(whole, stacks=stacks).to_json())
-    for pair in (("whole", "damaged"), ("damaged", "whole")):
-        one, two = (str(tmp_path / f"{name}.json") for name in pair)
-        assert run(["plot", one, "--compare", two]) == 2
-        said = capsys.readouterr().err
-        assert "damaged.json" in said and "whole.json" not in said
-
-
-@pytest.mark.slow
-def test_the_command_line_compares(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for name, result in (("one", circle(6)), ("two", ellipse(6))):
-        (tmp_path / f"{name}.json").write_text(result.to_json())
-    one, two = (str(tmp_path / f"{name}.json") for name in ("one", "two"))
-    assert run(["plot", one, "--compare", two, "--format", "svg,png"]) == 0
-    said = capsys.readouterr().out
-    assert "One map or both leave" in said and "3 → 2: area" in said
-    assert {path.name for path in tmp_path.iterdir()} >= {"one-and-two.svg", "one-and-two.png"}
