@@ -373,7 +373,6 @@ def test_points_of_a_fibre_with_complex_and_fat_points() -> None:
 
 # ------------------------------------------------------------------------------------------- symmetries (theorem 5)
 
-MIRROR = (Fraction(1), Fraction(-1), Fraction(1), Fraction(-1))
 nonzero = st.fractions(min_value=Fraction(1, 9), max_value=9, max_denominator=9)
 forces = st.fractions(min_value=-200, max_value=200, max_denominator=9)
 mechanisms = st.fixed_dictionaries(
@@ -386,47 +385,6 @@ def close(a: Enclosure, b: Enclosure, factor: Fraction = Fraction(1)) -> bool:
     """Whether a may be factor times b: the enclosures meet."""
     ends = sorted((factor * b.low, factor * b.high))
     return a.low <= ends[1] and ends[0] <= a.high
-
-
-@few
-@given(mechanisms, nonzero)
-@pytest.mark.slow
-def test_stiffness_and_loads_scale_together(parameters: dict[str, Fraction], c: Fraction) -> None:
-    poses = solve(**parameters)
-    scaled = solve(**{n: c * v if n[0] in "kF" else v for n, v in parameters.items()})
-    assert len(scaled.equilibria) == len(poses.equilibria)
-    for a, b in zip(scaled.equilibria, poses.equilibria, strict=True):
-        assert all(map(close, a.angles, b.angles))
-        assert close(a.energy, b.energy, c)
-        assert all(close(x, y, c) for x, y in zip(a.eigenvalues, b.eigenvalues, strict=True))
-        assert a.index == b.index
-
-
-@few
-@given(mechanisms, nonzero)
-@pytest.mark.slow
-def test_lengths_and_loads_scale_together(parameters: dict[str, Fraction], c: Fraction) -> None:
-    poses = solve(**parameters)
-    scaled = solve(**{n: v if n[0] == "k" else c * v for n, v in parameters.items()})
-    for a, b in zip(scaled.equilibria, poses.equilibria, strict=True):
-        assert all(map(close, a.cosines_sines, b.cosines_sines))
-        assert close(a.energy, b.energy, c * c)
-        assert all(close(s.length, t.length, c) for s, t in zip(a.springs, b.springs, strict=True))
-
-
-@few
-@given(mechanisms)
-def test_vertical_loads_turned_round_mirror_the_poses(parameters: dict[str, Fraction]) -> None:
-    poses = solve(**parameters)
-    mirrored = solve(**{n: -v if n in ("F3", "F4") else v for n, v in parameters.items()})
-    assert len(mirrored.equilibria) == len(poses.equilibria)
-    for a in mirrored.equilibria:
-        assert sum(
-            all(close(x, y, f) for x, y, f in zip(a.cosines_sines, b.cosines_sines, MIRROR, strict=True))
-            and close(a.energy, b.energy)
-            and a.index == b.index
-            for b in poses.equilibria
-        ) == 1  # fmt: skip
 
 
 @few
