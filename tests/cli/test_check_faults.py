@@ -256,31 +256,6 @@ def test_a_stiffness_written_in_a_spring_is_proved_positive(
     assert f"{path}:{found[0]}" in capsys.readouterr().err
 
 
-def test_a_free_length_written_in_a_spring_is_proved_not_negative(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (fault,) = faults_of(SPRUNG % ("", "1", "L - 1", "1") + AXES, tmp_path, capsys)
-    assert fault.startswith(
-        "6: mechanism.springs.1.free: a free length must not be negative in the whole window"
-    )
-
-
-def test_a_stiffness_is_positive_at_a_single_point_too(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "sprung.yaml"
-    path.write_text(
-        SPRUNG % ("", "W - 1", "0", "1") + "axes: {L: [0, 2], W: [2, 3]}\n", encoding="utf-8"
-    )
-    assert run(["solve", str(path), "--at", "L=1,W=2"]) == 0
-    capsys.readouterr()
-    assert run(["solve", str(path), "--at", "L=1,W=1/2"]) == 2
-    err = capsys.readouterr().err
-    assert (
-        f"{path}:6: mechanism.springs.1.k: a stiffness is positive, but this is W - 1 = -1/2" in err
-    )
-
-
 PTM = "mechanism: ptm\naxes: {rho: [0, 2], L2: [0, 2]}\n"
 
 
