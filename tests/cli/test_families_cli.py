@@ -42,15 +42,6 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.slow
-def test_members_have_files_of_their_own_and_the_family_names_them(folder: Path) -> None:
-    stored = read_family((folder / "loads.json").read_text())
-    assert stored.files == ("loads-F-40.json", "loads-F-10.json")
-    for file in stored.files:
-        assert len(RegionMap.from_json((folder / file).read_text()).regions) == 2
-    assert len(list(folder.glob("loads-F*.csv"))) == 6
-
-
 def test_a_family_is_verified_member_by_member(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
