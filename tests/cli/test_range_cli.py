@@ -66,55 +66,6 @@ def test_lines_of_all_kinds(
     assert line in capsys.readouterr().out
 
 
-@pytest.mark.slow
-def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = [
-        "--along",
-        "rho",
-        "--at",
-        "L2=3/2",
-        "--over",
-        "L2",
-        "--rows",
-        "3",
-        "--path",
-        "7/10",
-        "--pose",
-        "1",
-    ]
-    assert (
-        run(
-            [
-                "range",
-                FIG4,
-                *arguments,
-                "--format",
-                "json,svg",
-                "--out",
-                str(tmp_path),
-                "--name",
-                "x",
-            ]
-        )
-        == 0
-    )
-    assert {p.name for p in tmp_path.iterdir()} == {"x.json", "x.svg", "x-over.svg", "x-path.svg"}
-    data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
-    jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
-    assert {"line", "over", "path"} <= set(data)
-    assert data["over"]["maxima"][0]["at"]["decimal"] == "1"
-    assert "Intervals of rho: 0 to 0.4981307: 1 stable of 4" in (tmp_path / "x.svg").read_text(
-        encoding="utf-8"
-    )
-    out = capsys.readouterr().out
-    assert (
-        "widest operation range: width 0.5885498309, attained at L2 = 1, a critical value of L2"
-        in out
-    )
-    assert out.endswith(f", {tmp_path / 'x-path.svg'}, {tmp_path / 'x.json'}\n")
-    assert "pose 1 at rho = 0.7" in out and "pose 2" not in out
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
