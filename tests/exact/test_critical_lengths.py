@@ -15,8 +15,6 @@ import sympy
 from support.programs import needs_msolve
 
 from ptmcad.algebra import msolve
-from ptmcad.ask.lines.along import certified_intervals
-from ptmcad.question.config import slice_from_options
 from ptmcad.studies.paper.critical import UNKNOWNS, critical_free_lengths, critical_system
 from ptmcad.studies.paper.squaring import Design, signed_solutions
 
@@ -129,21 +127,3 @@ def test_fifty_two_critical_lengths_and_the_counts_around_them() -> None:
     counts = [signed_solutions((*DESIGN[:3], str(free), *DESIGN[4:])) for free in samples]
     for critical, (before, after) in zip(positive, pairwise(counts), strict=False):
         assert abs(after.real - before.real) == 2, critical
-
-
-@needs_msolve
-@pytest.mark.slow
-def test_elimination_and_intervals_find_the_same_folds() -> None:
-    """Along l0 in (0, 2) at rho = 7/10, L2 = 3/2, F = -10: seven, to ten digits."""
-    pytest.importorskip("numba")
-    axes = {"slice": "rho,l0", "ranges": ["l0=0:2"], "sets": ["L2=3/2", "F3=-10", "F4=-10"]}
-    slice = slice_from_options(**axes)  # type: ignore[arg-type]
-    algebra = [
-        free
-        for free, signs in critical_free_lengths(DESIGN)
-        if signs == (1, 1, 1) and 0 < free.center < 2
-    ]
-    line = certified_intervals(slice, "l0", {"rho": "7/10"}, 10)
-    folds = [c.at for c in line.changes if c.names == ("fold",)]
-    assert len(algebra) == 7
-    assert [c.text(10) for c in algebra] == [c.text(10) for c in folds]
