@@ -174,44 +174,11 @@ def test_nodal_cubic(full: bool) -> None:
     assert (found.stacks, found.cells, found.lifted) == (4, 8, full)
 
 
-def test_a_critical_value_that_changes_no_wall_is_noticed() -> None:
-    """The node: on both sides are two walls of the same curve. Noticed by lifting over it, or by
-    counting stacks.
-    """
-    whole = nodal_cubic()
-    false = replace(without_critical_value(whole, 1), cells=whole.cells[:5])
-    found = compare(false, window_cad(false))
-    assert not found.lifted
-    assert (
-        (found.qepcad_stacks, found.qepcad_cells) == (4, 8) != (len(false.stacks), len(false.cells))
-    )
-    with pytest.raises(AssertionError, match="branches meet"):
-        compare(false, window_cad(false, full=True))
-
-
-def without_component(result: RegionMap) -> RegionMap:
-    return replace(
-        result,
-        components=(replace(result.components[0], left_out="dropped"), *result.components[1:]),
-    )
-
-
 def with_other_coefficient(result: RegionMap) -> RegionMap:
     first = result.components[0]
     *terms, (i, j, c) = first.polynomial.terms
     other = PlanePolynomial.of((*terms, (i, j, c + abs(c) // 100 + 1)))
     return replace(result, components=(replace(first, polynomial=other), *result.components[1:]))
-
-
-@pytest.mark.parametrize("mutation", [without_component, with_other_coefficient])
-@pytest.mark.parametrize("name", ["fig2", "fig3"])
-@pytest.mark.slow_cases("fig3-without_component", "fig3-with_other_coefficient")
-def test_a_decomposition_of_other_curves_is_noticed(
-    name: str, mutation: Callable[[RegionMap], RegionMap]
-) -> None:
-    false = mutation(shipped(name))
-    with pytest.raises(AssertionError):
-        compare(false, window_cad(false))
 
 
 # ------------------------------------------------------------------------------------- the counting formula
@@ -232,19 +199,6 @@ def test_index_at_every_sample_by_singular_and_qepcad(name: str) -> None:
     assert indices(counting_formulas(name, points(name)), expected) == [(True, True, True)] * len(
         expected
     )  # type: ignore[arg-type]
-
-
-@needs_singular
-@pytest.mark.slow
-def test_a_false_index_is_noticed() -> None:
-    cells = shipped("fig4").cells
-    formulas = counting_formulas("fig4", points("fig4"))
-    for n, change in enumerate(((1, 0, 0), (0, -1, 0), (0, 0, 1))):
-        false = [
-            tuple(a + b for a, b in zip(cell.index or (), change, strict=True)) for cell in cells
-        ]
-        truths = indices(formulas, false)  # type: ignore[arg-type]
-        assert all(truth == tuple(k != n for k in range(3)) for truth in truths)
 
 
 def at_point(terms: Terms, point: tuple[Fraction, Fraction]) -> str:
