@@ -4,11 +4,8 @@ follow scales.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
-from functools import cache
 from itertools import pairwise
-from typing import NamedTuple
 
 import pytest
 from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
@@ -16,7 +13,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.counting import system_of
 from support.examples import examples
-from support.work import work_of
 
 import ptmcad
 from ptmcad.algebra import descartes
@@ -25,13 +21,9 @@ from ptmcad.algebra.fibre_algebra import FibreAlgebra, univariate_representation
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine
 from ptmcad.algebra.resultants import balanced, discriminant, resultant
 from ptmcad.answer.regionmap import Status
-from ptmcad.exact.cad import area
-from ptmcad.exact.cad.projection import FibredCurve
 from ptmcad.exact.point_system import point_system
 from ptmcad.question.config import slice_from_mapping
-from ptmcad.studies.stress.campaign import answer
-from ptmcad.studies.stress.case import Question, chosen
-from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.verification.sturm import roots_between
 
 
@@ -149,17 +141,6 @@ def test_clusters_far_out_are_isolated(
         assert root.low == value if root.is_rational else root.low < value < root.high
 
 
-def test_a_cluster_far_out_takes_few_tests_at_any_distance(tests_made: list[int]) -> None:
-    """Bisection with steps that only follow Newton's method from the ends took 70 at 10^27."""
-    for e in (9, 18, 27):
-        tests_made.clear()
-        assert (
-            len(isolate(far_cluster(67 * 10**e, [(2, 1), (-2, 1)], [-1, 1]), fmpq(0), fmpq(10**30)))
-            == 2
-        )
-        assert len(tests_made) <= 40
-
-
 @settings(max_examples=examples(40), deadline=None)
 @given(
     st.integers(1, 60),
@@ -258,61 +239,6 @@ def test_quotients_and_polynomials_give_the_same_points(digits: int) -> None:
         assert (quotient - solved * found.slope) % modulus == 0
 
 
-@pytest.mark.slow
-def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Each fibre is isolated once; strips as wide as a window of 1e30 asks for are seen to be too
-    wide beforehand.
-    """
-    seen: list[tuple[object, ...]] = []
-    rounds: list[int] = []
-
-    class Counted(NamedTuple):
-        curve: FibredCurve
-
-        def __getattr__(self, name: str) -> object:
-            return getattr(self.curve, name)
-
-        def roots_over(self, u: fmpq, fibre: tuple[fmpq, fmpq]) -> tuple[RealRoot, ...]:
-            seen.append((self.curve.component, u, fibre))
-            return self.curve.roots_over(u, fibre)
-
-    refined, found = area._refine, area.by_component
-
-    def followed(*arguments: object) -> object:
-        rounds.append(len(seen))
-        return refined(*arguments)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(
-        area, "by_component", lambda curves: {n: Counted(c) for n, c in found(curves).items()}
-    )
-    monkeypatch.setattr(area, "_refine", followed)
-    answer(chosen(["map-window-1e30"])[0].question)
-    assert len(rounds) == 1
-    assert seen
-    assert len(seen) == len(set(seen))
-
-
-def test_multiple_roots_are_refused() -> None:
-    double = fmpz_poly([-1, 3]) ** 2 * fmpz_poly([-2, 1])
-    with pytest.raises(ValueError, match="squarefree"):
-        isolate(double, fmpq(0), fmpq(3))
-
-
-@given(st.fractions(), st.fractions())
-def test_the_simplest_rational_between_is_the_simplest(a: Fraction, b: Fraction) -> None:
-    if a == b:
-        return
-    low, high = min(a, b), max(a, b)
-    found = simplest_between(from_fraction(low), from_fraction(high))
-    value = to_fraction(found)
-    assert low < value < high
-    for q in range(1, min(value.denominator, 40)):  # no smaller denominator fits
-        p = (low * q).__floor__() + 1
-        assert not Fraction(p, q) < high
-
-
 @settings(max_examples=examples(30), deadline=None)
 @given(
     st.integers(5, 60),
@@ -362,45 +288,6 @@ def test_arcs_prove_nothing_where_a_branch_runs_through_the_tube() -> None:
         assert (
             arc_integral(in_v, branch, fmpq(0), fmpq(1), (fmpq(-2), fmpq(2)), fmpq(1, 100)) is None
         )
-
-
-def test_refinement_keeps_the_root() -> None:
-    root = isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0]
-    assert refine(root, fmpq(1, 10**60)).high ** 2 > 2
-
-
-VAST = chosen(["map-window-1e30"])[0].question
-FIG4 = replace(VAST, axes=dict.fromkeys(VAST.axes, (Fraction(0), Fraction(2))))
-
-
-@cache
-def usual_work() -> int:
-    return work_of(FIG4)
-
-
-@pytest.mark.parametrize(
-    "force", [pytest.param(Fraction(1, 10**6), marks=pytest.mark.slow), Fraction(1, 10**20)]
-)
-@pytest.mark.slow
-def test_areas_next_to_a_limit_take_little_more_work(force: Fraction) -> None:
-    """The loaded curve runs along the unloaded lines, several branches within force^(2/3) of each
-    other.
-    """
-    nearly = Question({"F3": -force, "F4": -force}, FIG4.axes)
-    assert work_of(nearly) <= 3 * usual_work()
-
-
-@pytest.mark.slow
-def test_a_vast_window_takes_at_most_five_times_the_work() -> None:
-    vast = Question(FIG4.parameters, dict.fromkeys(FIG4.axes, (Fraction(0), Fraction(10**12))))
-    assert work_of(vast) <= 5 * usual_work()
-
-
-@pytest.mark.slow
-def test_areas_next_to_a_limit_are_confirmed_by_verification() -> None:
-    """The checker integrates power series; it shares no code with arcs."""
-    nearly = Question(dict.fromkeys(FIG4.parameters, Fraction(1, 10**12)), FIG4.axes)
-    assert ptmcad.verify(answer(nearly)).ok
 
 
 @pytest.mark.parametrize("roots", [(0, 0, 1), (1, 1, 1), (-1, -1, 0), (0, 0, 0, 1, 1)], ids=str)
