@@ -97,14 +97,6 @@ def test_no_width_on_a_grid_is_larger(name: str, along: str) -> None:
     assert max(widths) > most * Fraction(9, 10)
 
 
-@pytest.mark.slow
-def test_a_cusp_at_an_irrational_value_is_enclosed() -> None:
-    (only,) = maximum("rods", "L1")
-    assert only.place is Place.ENCLOSED and only.critical is not None
-    assert only.at.low <= only.critical.high and only.critical.low <= only.at.high
-    assert only.at.high - only.at.low < Fraction(1, 10**12) and only.width.text(9) == "2.19864613"
-
-
 def by_hand(low: object, high: object, left: int, right: int) -> RangeStrip:
     """A strip between the largest root of one curve and the smallest of another, over (left,
     right).
