@@ -4,7 +4,6 @@ refused.
 
 from __future__ import annotations
 
-import json
 import math
 import random
 from fractions import Fraction
@@ -233,29 +232,6 @@ def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("mechanism", "axes", "counts"),
-    [
-        (SLIDER_CRANK, {"W": [-2, 2], "M": [-2, 2]}, {1, 2, 3}),
-        pytest.param(FOUR_BAR, {"F": [0, 1], "G": [0, 1]}, {2, 3}),
-    ],
-    ids=["slider_crank", "four_bar"],
-)
-@pytest.mark.slow
-def test_a_map_is_stored_with_its_mechanism_and_verified(
-    mechanism: dict[str, Any], axes: dict[str, Any], counts: set[int]
-) -> None:
-    slice = slice_of(mechanism, axes=axes, count="stable")
-    found = ptmcad.classify(slice)
-    assert {r.stable for r in found.regions} == counts
-    document = json.loads(found.to_json())
-    assert document["slice"]["mechanism"]["closing"] == mechanism["closing"]
-    again = ptmcad.RegionMap.from_json(found.to_json())
-    assert again == found
-    assert again.slice.model == slice.model
-    assert ptmcad.verify(again).ok
-
-
-@pytest.mark.parametrize(
     ("change", "key", "said"),
     [
         (
@@ -355,14 +331,6 @@ def test_a_tension_is_what_a_longer_bar_saves() -> None:
 def test_a_five_bar_has_44_complex_solutions() -> None:
     found = ptmcad.solve(slice_of(FIVE_BAR, axes={"F": [-3, 3], "G": [-3, 3]}), F=2, G=2)
     assert (len(found.equilibria), found.stable) == (10, 1)
-
-
-@pytest.mark.slow
-def test_a_map_with_two_degrees_of_freedom_is_verified() -> None:
-    found = ptmcad.classify(slice_of(PLATFORM, **LEG))
-    again = ptmcad.RegionMap.from_json(found.to_json())
-    assert again == found
-    assert ptmcad.verify(again).ok
 
 
 def test_a_moment_on_another_unknown_needs_one_degree_of_freedom() -> None:
