@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from fractions import Fraction
-from itertools import product
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -20,8 +19,6 @@ import ptmcad
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models.modelsystem import system_from
 from ptmcad.exact.models.system import at_point, polynomial_at
-from ptmcad.exact.point_system import solutions_at
-from ptmcad.exact.stages import problem_of
 from ptmcad.model import ClosedMechanism
 from ptmcad.model.antiparallelogram import second_bar
 from ptmcad.text.flint_numbers import from_fraction
@@ -136,13 +133,6 @@ def test_one_joint_has_the_minima_along_its_angle() -> None:
         assert sum(bool(e.stable) for e in found.equilibria) == minima, (F, G)
         seen.add(minima)
     assert seen == {1, 2}
-
-
-@pytest.mark.slow
-def test_two_joints_have_44_complex_solutions() -> None:
-    problem = problem_of(ptmcad.load(CONFIGS / "two-x-joints.yaml"))
-    values = problem.on.values((fmpq(29, 97), fmpq(-31, 89)))
-    assert solutions_at(problem.system, values, saturated=True) == (44, 44)
 
 
 def test_a_map_is_stored_with_its_joint_and_verified() -> None:
@@ -278,17 +268,3 @@ def test_two_joints_have_as_many_equilibria_as_msolve_finds() -> None:
         F, G = (Fraction(random.randrange(-300, 300), 101) for _ in range(2))
         found = ptmcad.solve({"mechanism": TWO, "axes": {"F": [-4, 4], "G": [-4, 4]}}, F=F, G=G)
         assert len(found.equilibria) == real_solutions(list(UNITS), written_out(F, G)), (F, G)
-
-
-@pytest.mark.slow
-def test_two_joints_have_the_minima_over_their_angles() -> None:
-    random = Random(13)
-    n = 500
-    th = 2 * math.pi * (np.arange(n) + 0.37) / n
-    for _ in range(4):
-        F, G = (Fraction(random.randrange(-300, 300), 101) for _ in range(2))
-        u = energy(tuple(np.meshgrid(th, th)), float(F), float(G))
-        steps = [step for step in product((-1, 0, 1), repeat=2) if step != (0, 0)]
-        minima = int(np.all([u < np.roll(u, step, (0, 1)) for step in steps], axis=0).sum())
-        found = ptmcad.solve({"mechanism": TWO, "axes": {"F": [-4, 4], "G": [-4, 4]}}, F=F, G=G)
-        assert sum(bool(e.stable) for e in found.equilibria) == minima, (F, G)
