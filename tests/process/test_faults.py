@@ -724,12 +724,6 @@ def test_killed_at_random_moments(tmp_path: Path, times: int) -> None:
     killed_at_random(tmp_path, "json", times, seed=1)
 
 
-@linux
-@pytest.mark.slow
-def test_killed_at_50_random_moments_with_pictures(tmp_path: Path) -> None:
-    killed_at_random(tmp_path, "json,svg,png", times=50, seed=3)
-
-
 def test_stale_temporary_files_go_and_live_ones_stay(tmp_path: Path) -> None:
     stale = [".fig2.0123abcd.tmp", ".probe.0123abcd.tmp"]
     others = [
@@ -843,32 +837,6 @@ def test_a_memory_limit(tmp_path: Path, allocate: str) -> None:
     assert running.files() == {"fig2.json": PARTIAL}
 
 
-@pytest.mark.slow
-@linux
-@pytest.mark.parametrize("name", ["verify", "locate"])
-def test_limits_of_the_other_commands(
-    shipped: Callable[..., Any], tmp_path: Path, name: str
-) -> None:
-    result = tmp_path / "fig2.json"
-    result.write_text(shipped("fig2").to_json())
-    options = ["--at", "rho=1,L2=1"] if name == "locate" else []
-    arguments = [sys.executable, "-m", "ptmcad", name, str(result), *options]
-    for limit in (["--max-memory", "1G"], ["--timeout", "1000"]):
-        assert (
-            subprocess.run(
-                [*arguments, *limit], cwd=ROOT, capture_output=True, check=False
-            ).returncode
-            == 0
-        )
-    done = subprocess.run(
-        [*arguments, "--timeout", "1e-9"], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-    if done.returncode != 0:  # a process that is done within the grace is not stopped any more
-        # the parent's sentence, or that of a command which looks at the clock itself
-        said = "stopped: the time limit of 1e-09 s was reached"
-        assert (done.returncode, done.stderr.partition(";")[0].strip()) == (3, said)
-
-
 @pytest.mark.parametrize(
     "size",
     [
@@ -958,32 +926,6 @@ def test_a_crash_is_not_taken_for_a_limit(
     assert errors.startswith(said)
     assert f"crashed ({number.name})" in errors
     assert running.files() == old
-
-
-@linux
-@pytest.mark.slow
-def test_a_time_limit_in_a_slice_of_high_degree(tmp_path: Path) -> None:
-    """A real computation, which has not ended by then."""
-    arguments = [
-        sys.executable,
-        "-m",
-        "ptmcad",
-        "classify",
-        *HIGH_DEGREE,
-        "--out",
-        str(tmp_path),
-        "--timeout",
-        "3",
-    ]
-    process = subprocess.run(
-        arguments, cwd=ROOT, capture_output=True, text=True, check=False, timeout=60
-    )
-    assert process.stdout == ""
-    assert process.returncode == 3
-    assert process.stderr.startswith("stopped: ")
-    assert process.stderr.count("\n") == 1
-    for path in tmp_path.iterdir():
-        assert ptmcad.RegionMap.from_json(path.read_text()).status.value == "partial"
 
 
 # Full disks and closed pipes
@@ -1100,27 +1042,6 @@ def test_a_reader_that_leaves(
     assert "Exception" not in done.stderr
     if "--out new" in arguments:
         assert ptmcad.RegionMap.from_json((tmp_path / "new" / "fig2.json").read_text()).regions
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(not Path("/dev/stdin").exists(), reason="needs a name for standard input")
-def test_a_reader_that_leaves_ends_an_endless_table(
-    shipped: Callable[..., Any], tmp_path: Path
-) -> None:
-    (tmp_path / "fig2.json").write_text(shipped("fig2").to_json())
-    program = f"'{sys.executable}' -m ptmcad locate fig2.json --csv /dev/stdin"
-    script = f"{{ echo rho,L2; yes 7/10,3/2; }} | {program} | head -1"
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(
-        ["sh", "-c", script],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=True,
-        env=environment,
-    )
-    assert done.stdout.startswith("rho,L2,status") or done.stdout.startswith("L2,rho,status")
-    assert "Traceback" not in done.stderr
 
 
 # The parts
