@@ -5,8 +5,6 @@ from __future__ import annotations
 import io
 import stat
 import sys
-from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -64,26 +62,6 @@ def test_pictures_say_what_they_show(stage: Stage, motion: Motion) -> None:
     assert said(stage, len(motion.steps) - 1)[1] == "one of exactly 4 equilibria, 1 stable"
 
 
-@pytest.mark.slow
-def test_the_key_says_whether_all_equilibria_are_in_the_energys_frame(
-    stage: Stage, motion: Motion
-) -> None:
-    low, high = stage.curve.get_ylim()
-    others = [height for step in motion.steps for height, _ in step.others]
-    assert not all(low < height < high for height in others)
-    assert (
-        stage.curve.get_title(loc="right") == "dots: equilibria within the frame, stable ones blue"
-    )
-    heights = [step.height for step in motion.steps if step.height is not None]
-    steps = [
-        replace(s, others=tuple((min(heights), stable) for _, stable in s.others))
-        for s in motion.steps
-    ]
-    with settings():
-        full = Stage(replace(motion, steps=tuple(steps)), DEFAULT, 60)
-    assert full.curve.get_title(loc="right") == "dots: all equilibria, stable ones blue"
-
-
 def test_what_is_fixed_stands_still_and_all_is_at_one_scale(stage: Stage, motion: Motion) -> None:
     nodes = [seen.nodes for seen in stage.sketches]
     assert {tuple(round(v, 9) for v in node["A1"]) for node in nodes} == {
@@ -97,22 +75,6 @@ def test_what_is_fixed_stands_still_and_all_is_at_one_scale(stage: Stage, motion
     assert {len(line) for seen in stage.sketches for line in seen.coils.values()} == {
         len(stage.sketches[0].coils["spring-1"])
     }
-
-
-@pytest.mark.slow
-def test_pictures_do_not_depend_on_their_order(stage: Stage, motion: Motion) -> None:
-    with settings():
-        once = [stage.frame(k) for k in range(len(motion.steps))]
-        again = [stage.frame(k) for k in reversed(range(len(motion.steps)))][::-1]
-    assert all(np.array_equal(a, b) for a, b in zip(once, again, strict=True))
-    assert all(not np.array_equal(a, b) for a, b in pairwise(once))
-    # the point on the map: a white disc where the step is
-    tall, wide, _ = once[0].shape
-    box = stage.chart.get_position()
-    for picture, step in zip(once, motion.steps, strict=True):
-        x = (box.x0 + box.width * float(step.at[0]) / 2) * wide
-        y = (1 - box.y0 - box.height * float(step.at[1]) / 2) * tall
-        assert picture[round(y - 0.5), round(x - 0.5)].min() > 240
 
 
 @pytest.mark.parametrize("size", ["6.5x3.4in", "6.5x8in", "12x6in"])
@@ -268,31 +230,6 @@ def test_bad_options_leave_nothing(
     assert run(["animate", FIG4, "--frames", "3", "--out", str(tmp_path), *arguments]) == 2
     assert message in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
-
-
-def test_a_stored_map_that_contradicts_itself_is_named(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    whole = shipped("fig4")
-    stacks = (replace(s, walls=tuple(replace(w, root=9) for w in s.walls)) for s in whole.stacks)
-    (tmp_path / "damaged.json").write_text(replace(whole, stacks=tuple(stacks)).to_json())
-    command = [
-        "animate",
-        str(tmp_path / "damaged.json"),
-        "--path",
-        PATH,
-        "--pose",
-        "stable:2",
-        "--frames",
-        "3",
-    ]
-    assert run([*command, "--out", str(tmp_path / "films")]) == 2
-    said = capsys.readouterr().err
-    assert (
-        "damaged.json: the map contradicts itself (" in said
-        and "); check it with ptmcad verify" in said
-    )
-    assert not list((tmp_path / "films").iterdir())
 
 
 def test_a_system_cannot_be_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
