@@ -101,19 +101,6 @@ def test_what_is_drawn_is_level_at_the_equilibria(record: dict[str, Any]) -> Non
             assert abs(rise) / 2e-5 * float(energy.unit) < 1e-5
 
 
-@pytest.mark.parametrize("record", [ANGLE, TWO, MIXED, FREE, WAVE])
-@pytest.mark.fast_cases("record0", "record4")
-def test_a_landscape_says_what_it_is_of(record: dict[str, Any]) -> None:
-    figure = draw_landscape(solved(record, M="1/2", F="1/3"))
-    title = words(figure).replace("\n", " ")
-    assert "V = U − 0.0" in title or "V = U − 0.5" in title
-    assert "cut at ±180°, not periodic" in title
-    assert "V (force · length)" in title and "U (force · length)" not in title
-    assert "less the" in figure.get_label() and "moment" in figure.get_label()
-    without = draw_landscape(solved(record, M="0", F="1/3"))
-    assert "periodic" not in words(without) and "U (force · length)" in words(without)
-
-
 def test_a_force_along_a_length_needs_no_cut() -> None:
     record = bar(
         {"s": "M"}, loads=(0, 0), unknowns={"s": "length"}, springs=[{"between": ["O", "P"], "k": 1}],
@@ -185,13 +172,6 @@ def test_the_table_says_what_the_energy_leaves_out() -> None:
     )
     untold = solved(UNTOLD, M="1/2", F="1").table()
     assert "energy  none, and nothing says which are stable" in untold and "solution" not in untold
-
-
-def test_the_picture_of_poses_says_what_the_energy_leaves_out() -> None:
-    assert "without the moment's work" in words(draw_poses(solved(ANGLE, M="1/2", F="1"))).replace(
-        "\n", " "
-    )
-    assert "without" not in words(draw_poses(solved(ANGLE, M="0", F="1")))
 
 
 def test_poses_without_an_energy_are_drawn() -> None:
@@ -318,23 +298,3 @@ def test_poses_of_any_model_are_what_the_schema_says(
     )
     jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
     assert data["equilibria"] and Poses.from_json(found.to_json()) == found
-
-
-def test_the_page_of_a_certified_map_of_lengths_alone() -> None:
-    """Its unknowns are those of a polynomial system, but its potential has roots."""
-    record = {
-        "name": "truss",
-        "mechanism": {
-            "parameters": {"a": {"kind": "base", "default": 1}, "f": {"kind": "force"}},
-            "unknowns": {"h": "length"},
-            "points": {"A": ["-a", 0], "B": ["a", 0], "P": [0, "h"]},
-            "springs": [{"between": [end, "P"], "k": 1, "free": 1} for end in ("A", "B")],
-            "loads": {"P": [0, "f"]},
-        },
-        "axes": {"a": [0, 2], "f": [-1, 1]},
-        "count": "total",
-    }
-    result = ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/5")
-    assert all(
-        not cell["potential"] for cell in pages.data_of(page(result, timings=False))["cells"]
-    )
