@@ -15,9 +15,8 @@ import ptmcad
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.chartgrid import multiples_figure
 from ptmcad.show.render.outline import shapes
-from ptmcad.show.render.printing import content, save
+from ptmcad.show.render.printing import save
 from ptmcad.show.render.solid import MAX_FLOORS, solid_figure
 from ptmcad.show.render.surfacepicture import MAX_SIDE, camera_of, halved
 from ptmcad.show.style import DEFAULT
@@ -65,14 +64,6 @@ def test_what_does_not_fit_is_refused(family: FamilyMap) -> None:
         family.plot(size="2x1in")
 
 
-@pytest.mark.slow
-def test_the_same_bytes_twice(family: FamilyMap) -> None:
-    for make in (multiples_figure, solid_figure):
-        assert content(make(family, 100, DEFAULT), "svg") == content(
-            make(family, 100, DEFAULT), "svg"
-        )
-
-
 def test_of_many_maps_a_few_are_filled_and_of_the_others_there_are_curves(
     family: FamilyMap,
 ) -> None:
@@ -96,28 +87,6 @@ def test_of_many_maps_a_few_are_filled_and_of_the_others_there_are_curves(
 def with_surface() -> tuple[FamilyMap, BoundarySurface]:
     found = ptmcad.family(RECORD | {"members": 3}, areas=False, changes=True)
     return found, found.boundary_surface("1/50")
-
-
-@pytest.mark.slow
-def test_a_boundary_surface_is_drawn_with_the_members_curves_and_says_what_it_is(
-    solid: tuple[FamilyMap, BoundarySurface], tmp_path: Path
-) -> None:
-    found, surface = solid
-    figure = found.plot(surface=surface)
-    (axes,) = figure.axes
-    (sheets,) = (each for each in axes.collections if each.get_gid() == "sheets")
-    assert len(sheets.get_facecolor()) > len(surface.faces)  # and pieces of curves
-    assert not sheets.get_rasterized()
-    texts = [text.get_text() for text in figure.texts]
-    assert {"1", "3", "between 1 and 3", "boundary of a member"} <= set(texts)
-    assert f"sheets: linear between {len(surface.members)} exact boundaries" in texts
-    assert not any("not proved" in text for text in texts)
-    # of the maps there is the lowest member's, on the floor
-    assert len(axes.patches) == len(found.members[0].regions)
-    for name in ("a.svg", "b.svg"):
-        save(solid_figure(found, 100, DEFAULT, surface), tmp_path / name)
-    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
-    assert "exact members" in (tmp_path / "a.svg").read_text()
 
 
 @pytest.mark.slow
@@ -151,35 +120,6 @@ def test_what_is_in_front_is_painted_last(solid: tuple[FamilyMap, BoundarySurfac
     screen = [proj3d.proj_transform(*point, axes.get_proj())[:2] for point in (eye, middle)]
     assert depths[0] < depths[1]
     assert screen[0] == pytest.approx(screen[1], abs=1e-9)
-
-
-@pytest.mark.slow
-def test_the_free_parameter_has_its_unit() -> None:
-    loads = {
-        "mechanism": "ptm", "parameters": {"F3": "F", "F4": "2*F"}, "axes": {"rho": [0, 2], "L2": [0, 2]},
-        "free": {"F": [-40, 0]},
-    }  # fmt: skip
-    axes = ptmcad.family(loads, values=[-10], areas=False).plot(solid=True).axes[0]
-    assert [axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()] == [
-        "ρ (length)",
-        "L₂ (length)",
-        "F (force)",
-    ]
-    mixed = {**loads, "parameters": {"F3": "F", "k": "200 + F"}}
-    assert (
-        ptmcad.family(mixed, values=[-10], areas=False).plot(solid=True).axes[0].get_zlabel()
-        == "F (force)"
-    )
-    own = {
-        "mechanism": "ptm",
-        "axes": {"rho": [0, 2], "L2": [0, 2]},
-        "free": {"L1": [1, 2]},
-        "units": {"length": "mm"},
-    }
-    assert (
-        ptmcad.family(own, values=[1], areas=False).plot(solid=True).axes[0].get_zlabel()
-        == "L₁ (mm)"
-    )
 
 
 def test_the_table_has_a_line_for_each_member(family: FamilyMap) -> None:
