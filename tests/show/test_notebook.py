@@ -47,17 +47,6 @@ def results() -> list[object]:
     ]  # fmt: skip
 
 
-@pytest.mark.slow
-def test_every_result_is_a_line_at_the_prompt() -> None:
-    for result in [*results(), shipped("fig4").components[0].polynomial]:
-        text = repr(result)
-        assert text.startswith(f"<{type(result).__name__} ") or text.startswith(
-            f"<{type(result).__name__}:"
-        ), text
-        assert len(text) < SCREEN, text
-        assert "\n" not in text
-
-
 ONE_LINE = {
     "AlgebraicNumber", "Boundary", "Change", "ClosedMechanism", "Count", "Counts", "Enclosure", "Location",
     "Mechanism", "Member", "Pose", "Slice", "System",
@@ -207,10 +196,6 @@ def test_a_map_is_a_picture_and_a_table() -> None:
     assert png.startswith(b"\x89PNG")
 
 
-def test_a_certified_map_too() -> None:
-    assert [r[1] for r in read(certified_map()._repr_html_())[1:]] == ["2", "1", "2"]
-
-
 def test_a_map_without_cells_has_no_picture() -> None:
     whole = shipped("fig2")
     empty = RegionMap(
@@ -235,12 +220,6 @@ def test_names_from_records_are_escaped() -> None:
     html = ptmcad.classify(ptmcad.slice_from_mapping(record))._repr_html_()
     assert "<script" not in html
     assert "&lt;script&gt;" in html
-
-
-def test_a_variety_is_its_text() -> None:
-    html = ptmcad.slice_variety(ptmcad.load(CONFIGS / "fig2.yaml"))._repr_html_()
-    assert html.startswith("<pre>")
-    assert "critical" in html
 
 
 def test_public_names_are_listed_before_they_are_loaded() -> None:
