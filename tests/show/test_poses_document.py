@@ -18,7 +18,6 @@ from ptmcad import AlgebraicNumber, Enclosure, Poses, solve
 from ptmcad.model import ptm
 from ptmcad.show.columns import WIDTH
 from ptmcad.show.document.posedocument import FORMAT
-from ptmcad.text.enclosure import exact_text
 from ptmcad.text.numerals import fraction_of
 
 SCHEMA = json.loads(
@@ -90,25 +89,10 @@ def test_a_narrow_enclosure_has_a_text_of_any_number_of_digits(
     )
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [("0", "0"), ("1/4", "0.25"), ("-1/3", "-0.3333"), ("99999", "1.000e5"), ("9999.5", "1.000e4"), ("12000", "12000"),
-     ("1e-9", "1e-9"), ("1/300000000", "3.333e-9"), ("1e40", "1e40"), ("-2/3", "-0.6667"), ("1/70000", "0.00001429"),
-     ("1234.5", "1234"), ("1235.5", "1236")],
-)  # fmt: skip
-def test_texts_of_four_digits(value: str, text: str) -> None:
-    assert exactly(Fraction(value)).text(4) == text
-
-
 def test_zero_is_settled_only_when_it_is_exact() -> None:
     assert not Enclosure(Fraction(-1, 10**9), Fraction(1, 10**9)).settles(1)
     assert not Enclosure(Fraction(0), Fraction(1, 10**9)).settles(1)
     assert exactly(Fraction(0)).settles(1000)
-
-
-@given(st.fractions())
-def test_exact_text_is_read_back(value: Fraction) -> None:
-    assert fraction_of(exact_text(value)) == value
 
 
 ROOT2 = AlgebraicNumber((-2, 0, 1), Fraction(1), Fraction(2))
@@ -122,17 +106,6 @@ def test_the_root_of_two() -> None:
     narrow = ROOT2.refined(Fraction(1, 10**60))
     assert narrow.high - narrow.low <= Fraction(1, 10**60)
     assert narrow.low**2 < 2 < narrow.high**2
-
-
-@given(st.fractions(max_denominator=1000), st.integers(1, 8))
-def test_a_rational_algebraic_number(value: Fraction, width: int) -> None:
-    number = AlgebraicNumber(
-        (-value.numerator, value.denominator), value - 1, value + Fraction(width)
-    )
-    assert number.exact == value
-    assert number.compare(value) == 0
-    assert number.compare(value - 1) == 1
-    assert number.text(9) == exactly(value).text(9)
 
 
 @given(st.integers(2, 10**6), st.integers(2, 7), st.integers(1, 40))
