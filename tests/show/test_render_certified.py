@@ -22,11 +22,10 @@ from support.certified_maps import certified, circle, crossing, cusp
 from support.pages import data_of
 
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.cli import run
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count, Point
-from ptmcad.show.render import coveroutline, draw, polylines
+from ptmcad.show.render import draw, polylines
 from ptmcad.show.render.colours import CORE, ONE_MAXIMUM, RIM, TWO_MAXIMA, UNDETERMINED, fill_of
 from ptmcad.show.render.coveroutline import TOLERANCE
 from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
@@ -103,14 +102,6 @@ def test_a_narrow_tube_is_seen_as_grey_between_its_rims(
         assert np.abs(row - np.array(to_rgb(UNDETERMINED.face))).max(axis=1).min() < 0.05
 
 
-@pytest.mark.parametrize("dpi", [100, 300])
-@pytest.mark.slow_cases("300")
-def test_a_wide_strip_is_as_wide_as_it_is(dpi: int, tmp_path: Path) -> None:
-    image = map_pixels(tube(0.25, 0.5), tmp_path, dpi)
-    grey = np.abs(image[len(image) // 2] - np.array(to_rgb(UNDETERMINED.face))).max(axis=1) < 0.02
-    assert abs(int(grey.sum()) - SIDE * dpi / 4) <= 3 + (CORE + 2 * RIM) * dpi / 72
-
-
 def test_the_legend_tells_the_undetermined_share(tmp_path: Path) -> None:
     result = tube(0.25, 0.25 + 2**-11)  # 1/2048 of the window
     texts = [text.get_text() for text in MapDrawing(result, dpi=100).figure().texts]
@@ -136,15 +127,6 @@ def test_the_same_map_gives_the_same_bytes(suffix: str, tmp_path: Path) -> None:
     assert (tmp_path / f"first.{suffix}").read_bytes() == (
         tmp_path / f"second.{suffix}"
     ).read_bytes()
-
-
-@pytest.mark.slow
-def test_the_svg_of_many_rectangles_is_small(tmp_path: Path) -> None:
-    result = crossing(10)
-    assert result.cover is not None
-    assert len(result.cover.rectangles) > 30_000
-    draw(result, tmp_path / "map.svg")
-    assert (tmp_path / "map.svg").stat().st_size < 500_000
 
 
 def test_a_thin_region_is_marked_and_zoomed() -> None:
@@ -262,25 +244,6 @@ def test_a_long_flight_of_stairs_is_simplified_in_few_steps(
     assert len(few) > 760 if height > 1 else len(few) < 30
 
 
-def test_outlines_are_simplified_once_for_a_view(monkeypatch: pytest.MonkeyPatch) -> None:
-    """However many regions and lines are drawn; and none of a polygon that is not in the view."""
-    sizes: list[int] = []
-    once = coveroutline.simplified_polygons
-
-    def counted(points: Floats, each: np.ndarray, tolerance: float) -> list[Floats]:
-        sizes.append(len(each))
-        return once(points, each, tolerance)
-
-    monkeypatch.setattr(coveroutline, "simplified_polygons", counted)
-    result = tube(0.25, 0.5)
-    whole = shapes(result)
-    right = whole.in_view(View((Fraction(3, 2), Fraction(2)), (Fraction(0), Fraction(2))))
-    for seen in (whole, right):
-        drawn = [len(list(seen.polygons(number))) for number in range(len(result.regions))]
-        assert sum(drawn) == len(list(seen.edges())) == (2 if seen is whole else 1)
-    assert sizes == [2, 1]
-
-
 # ------------------------------------------------------------------------------------------------------- the page
 
 
@@ -329,35 +292,6 @@ def test_a_damaged_certified_map_has_no_page(fault: str) -> None:
         damaged = replace(first, stack=0)
     with pytest.raises(ConfigError, match="contradicts itself"):
         page(replace(result, cells=(damaged, second)))
-
-
-def test_a_stored_certified_map_has_a_page_and_pictures(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "map.json"
-    path.write_text(circle(6).to_json(), encoding="utf-8")
-    assert run(["report", str(path)]) == 0
-    assert "Certified result." in (tmp_path / "map.html").read_text(encoding="utf-8")
-    assert run(["plot", str(path), "--format", "png,svg", "--dpi", "100"]) == 0
-    assert capsys.readouterr().out.splitlines()[1:] == [
-        str(tmp_path / "map.png"),
-        str(tmp_path / "map.svg"),
-    ]
-    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_a_damaged_certified_map_has_no_picture(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    made = circle(6)
-    first = replace(made.cells[0], sample=Point(made.slice.axis_names, Fraction(1, 2), Fraction(1)))
-    (tmp_path / "map.json").write_text(
-        replace(made, cells=(first, made.cells[1])).to_json(), encoding="utf-8"
-    )
-    assert run(["plot", str(tmp_path / "map.json")]) == 2
-    message = capsys.readouterr().err
-    assert "contradicts itself" in message and message.count("\n") == 1
-    assert [path.name for path in tmp_path.iterdir()] == ["map.json"]
 
 
 @pytest.mark.parametrize(
