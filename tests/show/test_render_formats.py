@@ -20,11 +20,6 @@ def drawn(folder: Path, suffix: str, **options: object) -> bytes:
 
 
 @pytest.mark.slow
-def test_the_same_bytes_twice(tmp_path: Path) -> None:
-    assert drawn(tmp_path, "eps") == drawn(tmp_path, "eps")
-
-
-@pytest.mark.slow
 def test_eps_has_its_size_and_no_date(tmp_path: Path) -> None:
     data = drawn(tmp_path, "eps", size="3x2.5in")
     assert data.startswith(b"%!PS-Adobe-3.0 EPSF")
