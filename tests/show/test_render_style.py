@@ -45,7 +45,6 @@ from ptmcad.show.render.mappicture import MapDrawing, left_out
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.slivers import told_apart
 from ptmcad.show.style import MIN_FONT, PRESETS, LegendPlace, PictureStyle, styled
-from ptmcad.show.table import area_text
 
 SLIVERS = [Fraction(k // 2 + 1, 8) + (k % 2) * Fraction(1, 10**5) for k in range(6)]
 MAPS = {
@@ -143,20 +142,6 @@ def legend_of(made: Figure) -> str:
     return " ".join(t.get_text() for t in made.texts)
 
 
-@pytest.mark.slow
-def test_insets_go_first_then_the_legend_moves_then_areas_go() -> None:
-    result = bands(SLIVERS[:2])
-    large, medium, small = (
-        figure(result, styled(size=size, font_size=8)) for size in ((7, 5), (3.5, 2.6), (2.9, 2.9))
-    )
-    assert [len(made.axes) for made in (large, medium, small)] == [2, 1, 1]
-    assert ["area" in legend_of(made) for made in (large, medium, small)] == [True, True, False]
-    arrows = [t.get_gid() for t in small.findobj(Text) if str(t.get_gid()).startswith("arrow")]
-    assert len(arrows) == 1, "what no inset shows is marked in the map"
-    tall = figure(shipped("fig4"), styled(size=(3.0, 3.8), font_size=8))
-    assert max(t.get_position()[1] for t in tall.texts[1:]) < tall.axes[0].get_position().y0 * 3.8
-
-
 def crowded(made: Figure) -> list[str]:
     """What lies on what, of labels and of arrows: in which a label's own arrow is left out."""
     canvas = FigureCanvasAgg(made)
@@ -193,15 +178,6 @@ def test_labels_that_no_inset_explains_are_apart_and_the_rest_is_told(
     assert crowded(made) == []
     hidden = re.search(r"(\d+) more regions? (?:are|is) too thin for a label", legend_of(made))
     assert hidden is not None and int(hidden[1]) + len(labels) == 13
-
-
-@pytest.mark.slow
-def test_a_title_breaks_at_no_equals_sign() -> None:
-    words = "Some words and L1 = 1, L2 = 2, F3 = F4 = -10, k = 100 " * 2
-    made = figure(shipped("fig4"), styled(size=(3.5, 3.5), title=words))
-    lines = [t.get_text().replace("\N{NO-BREAK SPACE}", " ") for t in made.texts]
-    title = lines[: next(k for k, line in enumerate(lines) if line.startswith("Stable"))]
-    assert len(title) > 1 and not any(line.startswith("=") or line.endswith("=") for line in title)
 
 
 def test_without_a_legend_there_is_none() -> None:
@@ -323,16 +299,6 @@ def test_the_command_line_draws_in_a_style(tmp_path: Path) -> None:
     assert imread(tmp_path / "slice-L2-rho.png").shape[:2] == (500, 1000)
 
 
-def test_a_map_is_plotted_as_objects_of_matplotlib(tmp_path: Path) -> None:
-    result = shipped("fig4")
-    made = result.plot(style="ieee", title="own")
-    assert isinstance(made, Figure) and tuple(made.get_size_inches()) == (3.5, 2.6)
-    made.savefig(tmp_path / "saved.png", dpi=100)
-    assert imread(tmp_path / "saved.png").shape[:2] == (260, 350)
-    with pytest.raises(ConfigError, match="no 'colour'"):
-        result.plot(colour="red")
-
-
 def test_a_map_is_drawn_into_axes_in_the_units_of_its_own(tmp_path: Path) -> None:
     result = shipped("fig4")
     page = Figure(figsize=(6, 3), dpi=100)
@@ -408,44 +374,6 @@ def test_a_line_in_the_legend_has_something_to_show_and_what_is_shown_has_a_line
     )  # fmt: skip
     tiny = seen.with_room((30.0, 30.0), 8.0)
     assert tiny.unnamed == 1 and not tiny.thin_lines and not tiny.views
-
-
-@pytest.mark.slow
-def test_what_has_no_room_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "fig4.json"
-    path.write_text(shipped("fig4").to_json())
-    assert run(["plot", str(path), "--style", "ieee", "--format", "pdf"]) == 0
-    assert "fig4.pdf has no room for 1 zoomed view" in capsys.readouterr().err
-    assert run(["plot", str(path), "--format", "pdf"]) == 0
-    assert not capsys.readouterr().err
-    with settings():
-        assert left_out(*MapDrawing(shipped("fig4"), styled(size="3x1.6in"), 100).fit()) == (
-            "1 zoomed view of parts that are too thin to be seen", "the areas in the legend"
-        )  # fmt: skip
-
-
-def test_areas_are_those_of_the_table() -> None:
-    for result in (
-        shipped("fig4"),
-        shipped("fig2"),
-        bands([Fraction(k, 40) for k in range(1, 13)]),
-    ):
-        said = legend_of(figure(result, styled(size="7x6in", font_size=9)))
-        for region in result.regions if len(result.regions) < 9 else ():
-            assert (
-                area_text(result, region.area) in said
-                and area_text(result, region.area) in result.table()
-            )
-    assert "7 regions, in all 0.85" in said
-
-
-def test_the_legend_says_of_how_many_solutions_even_where_these_differ() -> None:
-    assert "1 of 4 or 6 equilibria" in legend_of(
-        figure(shipped("fig4"), styled(size="6x4in", font_size=9))
-    )
-    assert "1 of 4 equilibria" in legend_of(
-        figure(shipped("fig2"), styled(size="6x4in", font_size=9))
-    )
 
 
 @pytest.mark.parametrize("size", ["3.5x3in", "8x5in"])
