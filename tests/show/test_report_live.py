@@ -419,42 +419,6 @@ def test_at_a_degenerate_point_it_says_so(view: Callable[..., Browser]) -> None:
     assert b.run("live.found.length") == result.cells[b.run("live.cell")].total
 
 
-def test_paper_shows_no_controls(view: Callable[..., Browser], tmp_path: Path) -> None:
-    b = view(computed("fig4"))
-    shown = "[...document.querySelectorAll('button, .axis, .hint, #readout')].filter((e) => e.checkVisibility()).length"
-    assert b.run(shown) > 10
-    b.media(media="print")
-    chips = b.run(
-        "[...document.querySelectorAll('.chip')].filter((e) => e.checkVisibility()).length"
-    )
-    assert b.run(shown) == chips == 22
-    b.printed(tmp_path / "fig4-live-print.pdf")
-    # the landscape has light colours on paper, whatever the screen has
-    b.media(prefers_color_scheme="dark")
-    b.until("document.querySelector('#live .landscape') !== null")
-    shade = "(() => { const copy = document.createElement('canvas').getContext('2d', { willReadFrequently: true });"
-    shade += "copy.drawImage(document.querySelector('#live canvas'), 0, 0); const all = copy.getImageData(0, 0, 256, 256)"
-    shade += ".data; return Math.max(...all.filter((_, k) => k % 4 === 0)); })()"
-    dark = b.run(shade)
-    b.media(prefers_color_scheme="dark", media="print")
-    b.until(f"{shade} > {dark}")
-    assert b.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
-    b.media(media="")
-    b.run("show(8)")
-    b.media(media="print")
-    assert b.run(shown) == chips + 1  # what was pointed at says something
-
-
-def test_a_system_without_points_is_listed(view: Callable[..., Browser]) -> None:
-    result = ptmcad.classify(
-        ptmcad.load(CONFIGS / "systems" / "schloegl.yaml"), area_tolerance="1/10"
-    )
-    b = view(result)
-    move(b, 0.5, 0.5)
-    cell = result.cells[b.run("live.cell")]
-    assert b.run("document.querySelectorAll('#live .live-body li').length") == cell.total
-
-
 def test_no_step_leaps_over_a_snap(view: Callable[..., Browser]) -> None:
     """However far the point is thrown: the pose is followed to the wall, found there, and falls
     once.
