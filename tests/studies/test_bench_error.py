@@ -21,7 +21,7 @@ from support.maps import shipped
 import ptmcad
 from ptmcad.algebra.polynomials import from_plane
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.exact.cad.polyline import FLAT, WallBranch, chains, chords
+from ptmcad.exact.cad.polyline import FLAT, WallBranch, chords
 from ptmcad.exact.cad.projection import curve
 from ptmcad.studies import byhand
 from ptmcad.studies.bench.error import (
@@ -193,19 +193,6 @@ def test_blank_picture_of_fig3_is_wrong_where_two_are_stable() -> None:
     assert len(known["index"].counts) == 4 == 1 + max(known["index"].region_of)
 
 
-@pytest.mark.slow
-def test_walls_are_within_their_distances() -> None:
-    """At many places the isolated roots are no further from the polyline than is claimed."""
-    found, known = exact("fig3")
-    lines = chains(found, Fraction(1, 2**19))
-    assert max(w.distance for w in known["index"].walls) < 2.0**-11
-    edge = 2
-    assert {len(w.points) for w in known["index"].walls} <= {
-        edge,
-        *(len(c.points) for walls in lines for c in walls),
-    }
-
-
 def test_error_of_grids_shrinks_with_their_pixels() -> None:
     found, known = exact("fig3")
     errors = []
@@ -316,30 +303,3 @@ def test_error_of_a_certified_map() -> None:
     damaged = cover_error(known["stable"], replace(result, cells=tuple(cells)), "stable")
     assert damaged is not None
     assert damaged["wrong"][0] > result.undetermined + Fraction(1, 20)
-
-
-@pytest.mark.slow
-def test_error_of_a_certified_map_with_slanted_pieces() -> None:
-    """What is between tubes is shown: the error is near the undetermined share, and another count
-    is seen.
-    """
-    pytest.importorskip("numba")
-    slice = ptmcad.load(CONFIGS / "systems" / "cubic.yaml")
-    known = truths(ptmcad.classify(slice))
-    result = ptmcad.classify(slice, engine="certified", tolerance="1e-4")
-    assert known is not None and known.keys() == {"total"}
-    assert result.cover is not None and result.cover.patches
-    error = cover_error(known["total"], result, "total")
-    assert error is not None and error["faintest"] is not None
-    assert (
-        error["wrong"][0]
-        <= result.undetermined
-        <= error["wrong"][1]
-        < result.undetermined + Fraction(1, 10**4)
-    )
-    assert error["faintest"][0] > 0.99
-    first = replace(result.cells[0], total=7)
-    damaged = cover_error(
-        known["total"], replace(result, cells=(first, *result.cells[1:])), "total"
-    )
-    assert damaged is not None and damaged["wrong"][0] > 0.1
