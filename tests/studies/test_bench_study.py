@@ -6,8 +6,6 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
 from io import StringIO
 from pathlib import Path
@@ -24,10 +22,8 @@ from ptmcad.errors import ConfigError
 from ptmcad.question.config import load
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.show.schemas import with_prose
-from ptmcad.studies.bench import harness
 from ptmcad.studies.bench.error import figures, outward
 from ptmcad.studies.bench.harness import Row, measurement
-from ptmcad.studies.bench.process import Usage
 from ptmcad.studies.bench.stored import (
     BAD,
     compare,
@@ -345,21 +341,6 @@ def test_one_slice_by_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     ).read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
-def test_everything_but_the_times_is_repeatable(tmp_path: Path) -> None:
-    def stripped(folder: str) -> Any:
-        arguments = ["bench", str(CONFIGS / "fig3.yaml"), "--quick", "--rounds", "1", "--seed", "5"]
-        assert run([*arguments, "--method", "certified", "--method", "multistart", "--method", "companion",
-                    "--method", "exact", "--out", str(tmp_path / folder)]) == 0  # fmt: skip
-        data = json.loads((tmp_path / folder / "fig3.bench.json").read_text(encoding="utf-8"))
-        del data["machine"], data["floor"]
-        for m in data["measurements"]:
-            del m["seconds"], m["computing"], m["peak"]
-        return data
-
-    assert stripped("first") == stripped("second")
-
-
 def test_a_zero_is_drawn_below_the_logarithms() -> None:
     figure = draw("fig4", "seconds", "share", {"": curves(STUDY)}, sentences(STUDY))
     (axes,) = figure.axes
@@ -398,59 +379,3 @@ def test_page_tells_what_is_left_out_and_what_is_claimed() -> None:
     assert ".svg" not in page(
         [{**STUDY, "measurements": STUDY["measurements"][-1:]}]
     )  # nothing to draw
-
-
-STOPPING = """
-from fractions import Fraction
-from ptmcad.certified import engine
-
-engine._MapSearch._late = lambda run: run.tolerance < Fraction(1, 100) and run.best is not None
-from ptmcad.__main__ import main
-
-raise SystemExit(main())
-"""
-"""The program, whose time is over as soon as a search for a fine tolerance has a map."""
-
-
-@pytest.mark.slow
-def test_a_certified_run_that_is_stopped_is_a_point_too(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What was left undetermined then, marked; what no time is left for is left out. No clock
-    decides which.
-    """
-    pytest.importorskip("numba")
-    taken = {"1e-1": 2.0, "1e-2": 5.0, "1e-3": 593.0}
-
-    def timed(command: Sequence[str], **_: Any) -> Usage:
-        if "ptmcad" not in command:
-            return measured(command)
-        usage = measured([command[0], "-c", STOPPING, *command[command.index("ptmcad") + 1 :]])
-        return replace(usage, seconds=taken[command[command.index("--tolerance") + 1]])
-
-    measured = harness.run
-    monkeypatch.setattr(harness, "run", timed)
-    arguments = [
-        "bench",
-        str(ROOT / "configs" / "free02.yaml"),
-        "--method",
-        "certified",
-        "--rounds",
-        "1",
-    ]
-    assert run([*arguments, "--time-limit", "600", "--out", str(tmp_path)]) == 0
-    study = study_of((tmp_path / "free02.bench.json").read_text(encoding="utf-8"))
-    told = {m["setting"].split()[-1]: m for m in study["measurements"]}
-    for tolerance, seconds in taken.items():
-        m = told.pop(tolerance)
-        assert m["seconds"]["median"] == seconds
-        share = next(iter(m["figures"].values()))["undetermined"]
-        assert (
-            (share > float(tolerance))
-            == ("stopped at the limit" in m["note"])
-            == (tolerance == "1e-3")
-        )
-        assert share < 1
-    left_out = told.pop("1e-4")
-    assert left_out["seconds"] is None and left_out["reason"].startswith("left out")
-    assert not told
