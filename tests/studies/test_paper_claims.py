@@ -496,23 +496,6 @@ def elastic_energy(
     return sum((n - free) ** 2 for n in lengths) / 2 - f3 * y3 - f4 * y4, lengths
 
 
-def test_gradient_by_difference_quotients() -> None:
-    """5.2-eq17: the shared derivation is the slope of (17)."""
-    design, (a, b), h = TWELVE, (0.7, -2.1), 1e-6
-    rho, length1, length2, free_length, f3, f4 = map(float, design)
-    values = {"rho": rho, "L1": length1, "L2": length2, "k": 1.0, "F3": f3, "F4": f4, "F3x": 0.0, "F4x": 0.0,
-              "c1": math.cos(a), "s1": math.sin(a), "c2": math.cos(b), "s2": math.sin(b)}  # fmt: skip
-    values |= {"l0": free_length} | dict(
-        zip(("l1", "l2", "l3"), elastic_energy(design, (a, b))[1], strict=True)
-    )
-    for n, slope in enumerate(statements.gradient()):
-        up, down = ((a + h * (n == 0) * e, b + h * (n == 1) * e) for e in (1, -1))
-        found = (elastic_energy(design, up)[0] - elastic_energy(design, down)[0]) / (2 * h)
-        assert float(slope.subs({s: values[s.name] for s in slope.free_symbols})) == pytest.approx(
-            found, abs=1e-8
-        )
-
-
 @pytest.mark.parametrize("design", [AT_ELIMINATED, TWELVE, TWENTY_SIX], ids=[6, 12, 26])
 def test_stable_and_tense_by_difference_quotients(design: Sequence[str]) -> None:
     """5.2-acceptable: stability and lengths at the poses, from the energy alone."""
@@ -679,15 +662,6 @@ def test_six_equilibria_would_not_refute() -> None:
     )
 
 
-@pytest.mark.slow
-def test_an_elimination_without_spurious_roots_would_not_confirm(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    found = free.elimination()
-    monkeypatch.setattr(free, "elimination", lambda: {**found, "real roots": 6})
-    assert changed("5.2-spurious").verdict is Verdict.UNDECIDED
-
-
 @pytest.mark.parametrize(("numbers", "verdict"), [
     ((12, 30, 20), Verdict.CONFIRMED), ((11, 20), Verdict.CORRECTED), ((20, 31), Verdict.CORRECTED),
     ((11, 31), Verdict.UNDECIDED),
@@ -788,28 +762,3 @@ def test_errata_page_lists_what_is_not_as_printed() -> None:
     """docs/errata.md names exactly the claims that are corrected or refuted."""
     page = (Path(__file__).resolve().parents[2] / "docs" / "errata.md").read_text(encoding="utf-8")
     assert set(re.findall(r"`([a-z0-9.]+-[a-z0-9-]+)`", page)) == {*CORRECTED, *REFUTED}
-
-
-@pytest.mark.parametrize(("figure", "at"), [
-    ("fig2", "3/2"), ("fig3", "-10"), ("fig4", "3/2"), ("fig5-text", "-20"), ("fig5-caption", "-20"),
-], ids=FIGURES)  # fmt: skip
-def test_ranges_end_on_the_curves_of_the_maps(figure: str, at: str) -> None:
-    """The operation range computes the variety of the line and not of the plane: its ends lie on
-    the plane's curves.
-    """
-    from flint import fmpz_poly
-
-    from ptmcad.algebra.polynomials import coefficients_in, from_plane, univariate
-    from ptmcad.answer.intervals import lower, upper
-    from ptmcad.text.flint_numbers import from_fraction
-
-    found = maps.operation(figure, "rho", at)
-    number = maps.slice_of(figure).axis_names.index("rho")
-    cut = fmpz_poly([1])
-    for c in region_map(figure).components:
-        cut *= univariate(
-            coefficients_in(from_plane(c.polynomial), number), from_fraction(Fraction(at))
-        )
-    for end in (found.low, found.high):
-        low, high = (cut(from_fraction(x)) for x in (lower(end), upper(end)))
-        assert low * high <= 0
