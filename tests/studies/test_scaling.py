@@ -53,12 +53,6 @@ def test_the_engine_finds_the_regions_of_folds(name: str, n: int) -> None:
     assert sum(region.stable == 2 for region in result.regions) == 1
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "n"), [("fold", 8), ("fold", 16), ("fold", 32)])
-def test_the_engine_finds_the_regions_of_many_folds(name: str, n: int) -> None:
-    assert len(folded(name, n).regions) == FAMILIES[name].regions(n)
-
-
 @settings(max_examples=examples(40))
 @given(
     st.sampled_from(FOLDED),
