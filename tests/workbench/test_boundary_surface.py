@@ -167,13 +167,6 @@ def test_faces_are_triangles_that_neighbouring_members_bound(name: str) -> None:
     assert not inner
 
 
-@pytest.mark.slow
-def test_sheets_are_told_by_the_counts_that_they_part() -> None:
-    assert {sheet.counts for sheet in surface("swallowtail").sheets} == {((0,), (2,)), ((2,), (4,))}
-    assert {sheet.counts for sheet in surface("loads").sheets} == {((1,), (2,))}
-    assert all(sheet.low < sheet.high for sheet in surface("loads").sheets)
-
-
 @pytest.mark.parametrize("base", [0, 1])
 def test_a_line_across_the_base_parts_regions_too(base: int) -> None:
     axis = "ab"[base]
@@ -232,22 +225,6 @@ def test_where_elimination_is_out_of_reach_that_is_said(monkeypatch: pytest.Monk
     assert "(not proved that nothing changes between them)" in [
         t.get_text() for t in found.plot(surface=mesh).texts
     ]
-
-
-@pytest.mark.slow
-def test_few_members_leave_a_deviation_or_gaps_that_are_told() -> None:
-    coarse = maps("loads").boundary_surface(max_members=8)
-    assert 1 / 100 < coarse.deviation < 5 / 100
-    assert not coarse.unresolved
-    assert len(coarse.members) <= 10
-    broken = maps("swallowtail").boundary_surface("1/1000", max_members=14)
-    assert broken.unresolved > 1
-    assert f"{broken.unresolved} gaps were left open" in broken.words()
-    fine = maps("bowl").boundary_surface("1/300")
-    assert fine.deviation <= 1 / 300
-    assert len(fine.members) > len(surface("bowl").members)
-    # a cone's sheets are straight, so that few members do
-    assert surface("cone").deviation < 1e-4
 
 
 def test_a_family_of_which_the_changes_are_not_known_is_refused() -> None:
