@@ -275,24 +275,3 @@ def test_no_design_of_a_grid_is_better(
 
 
 GRID = 40
-
-
-@pytest.mark.slow
-def test_a_finer_proof_holds_too() -> None:
-    found = ptmcad.design(
-        {**LOADED, "axes": {"rho": [0, 1], "L2": [0, 2]}}, "range", BOTH, tolerance="1/500"
-    )
-    assert found.proved and found.value is not None and 0.7616 < float(found.value) < 0.7619
-
-
-@pytest.mark.slow
-def test_the_area_of_two_stable_poses_is_bounded() -> None:
-    found = ptmcad.design(LOADED, "area", {"L1": ["1/2", 2]}, tolerance="1/5", evaluations=20)
-    assert found.proved and found.value is not None and 1.15 < float(found.value) < 1.17
-    for number in range(13):
-        record = {**LOADED, "parameters": {**LOADED["parameters"], "L1": Fraction(4 + number, 8)}}
-        result = ptmcad.classify(ptmcad.slice_from_mapping(record))
-        assert (
-            found.bound is not None
-            and sum(r.area[0] for r in result.regions if r.stable == 2) <= found.bound
-        )
