@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.image import imread
 from support.few import few
 from support.maps import CONFIGS, shipped
 
@@ -394,31 +393,6 @@ def test_a_difference_from_exact_poses_is_said(
     assert "do not trust this map" in capsys.readouterr().err
 
 
-def test_derivatives_of_the_equations_are_those_of_differences() -> None:
-    """Gradient and Hessian by the chain rule against central differences of the energy."""
-    result = shipped("fig4")
-    values = {
-        n: float(e.evaluate(Fraction(7, 10), Fraction(3, 2)))
-        for n, e in result.slice.parameters.items()
-    }
-    values |= {"l0_1": 0.3, "l0_2": 0.1, "l0_3": 0.7}
-    at = np.random.default_rng(1).uniform(-3, 3, (2, 5))
-    state, step = equations.state_at(result.slice.model, values, at), 1e-5
-    for k in range(2):
-        moved = [at.copy(), at.copy()]
-        moved[0][k] += step
-        moved[1][k] -= step
-        up, down = (equations.state_at(result.slice.model, values, m) for m in moved)
-        assert up.energy is not None
-        assert down.energy is not None
-        assert state.residuals[k] == pytest.approx(
-            (up.energy - down.energy) / (2 * step), rel=1e-6, abs=1e-5
-        )
-        assert state.jacobian[k] == pytest.approx(
-            (up.residuals - down.residuals) / (2 * step), rel=1e-6, abs=1e-5
-        )
-
-
 TURNED = {
     "name": "turned",
     "mechanism": {
@@ -529,40 +503,6 @@ def test_values_that_no_double_is_near_are_undecided_and_counted(
     assert np.all(field.values[~np.isnan(field.values)] == (1.0 if at_one else known))
 
 
-@pytest.mark.slow
-def test_the_command_says_at_how_many_pixels_a_value_is_beyond_doubles(
-    tmp_path: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
-    result = tmp_path / "fig4.json"
-    result.write_text(shipped("fig4").to_json(), encoding="utf-8")
-    asked = [
-        "map",
-        str(result),
-        "--pixels",
-        "7",
-        "--out",
-        str(tmp_path),
-        "--format",
-        "csv",
-        "--value",
-    ]
-    assert run([*asked, "rho^1000000"]) == 0
-    out, err = capsys.readouterr()
-    assert "rho^1000000 of stable:1: 1 to 1, at 14.3 % of the pixels" in out
-    assert err == (
-        "warning: 42 pixels are left empty, where rho^1000000 or a part of it is beyond doubles: larger than 1.8e308 "
-        "or nearer to zero than 2.2e-308\n"
-    )
-    assert run([*asked, "1e-400*rho"]) == 0
-    out, err = capsys.readouterr()
-    assert (
-        "1e-400*rho of stable:1 is beyond doubles wherever it has a value" in out
-        and "49 pixels" in err
-    )
-    assert run([*asked, "rho^2"]) == 0
-    assert capsys.readouterr().err == ""
-
-
 @pytest.mark.parametrize(
     ("value", "title", "nothing"),
     [
@@ -660,23 +600,3 @@ def test_a_pose_that_the_counts_exclude_is_refused_before_anything_is_drawn(
         == 0
     )
     assert [path.suffix for path in tmp_path.iterdir()].count(".png") == 1
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("coarse")
-def test_a_quantitys_map_is_drawn_in_a_style_at_its_size(
-    tmp_path: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
-    result = tmp_path / "fig4.json"
-    result.write_text(shipped("fig4").to_json(), encoding="utf-8")
-    asked = ["map", str(result), "--pixels", "12", "--checks", "0", "--out", str(tmp_path)]
-    assert run([*asked, "--style", "ieee", "--dpi", "100", "--pose", "stable:2"]) == 0
-    assert imread(tmp_path / "fig4-energy-stable-2.png").shape[:2] == (260, 350)
-    capsys.readouterr()
-    assert run([*asked, "--size", "1.5x1.5in"]) == 2
-    assert (
-        "error: --size: the map with its scale does not fit into 1.50x1.50in"
-        in capsys.readouterr().err
-    )
-    assert run([*asked, "--thin-lines", "dashed", "--format", "csv", "--dpi", "80"]) == 0
-    assert "--dpi has no effect here: no picture is written" in capsys.readouterr().err
