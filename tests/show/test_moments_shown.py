@@ -101,22 +101,6 @@ def test_what_is_drawn_is_level_at_the_equilibria(record: dict[str, Any]) -> Non
             assert abs(rise) / 2e-5 * float(energy.unit) < 1e-5
 
 
-def test_a_force_along_a_length_needs_no_cut() -> None:
-    record = bar(
-        {"s": "M"}, loads=(0, 0), unknowns={"s": "length"}, springs=[{"between": ["O", "P"], "k": 1}],
-        points={"O": [0, 0], "P": ["s", 1]}, bars=[],
-    )  # fmt: skip
-    del record["mechanism"]["loads"], record["mechanism"]["parameters"]["F"]
-    record["mechanism"]["parameters"]["c"] = {"kind": "stiffness", "default": 1}
-    record["mechanism"]["springs"][0]["k"] = "c"
-    record["axes"] = {"M": [-1, 1], "c": [1, 2]}
-    figure = draw_landscape(solved(record, M="1/2", c="1"))
-    assert "V = U − 0.5\N{NO-BREAK SPACE}s" in words(figure) and "periodic" not in words(figure)
-    assert "energy less the work of the force on s" in words(figure).replace("\n", " ")
-    assert "moment" not in words(figure) + solved(record, M="1/2", c="1").table()
-    assert data_of(record)["work"] == "work of the force on s"
-
-
 def test_a_force_that_depends_on_another_unknown_is_called_so() -> None:
     record = {**UNTOLD, "mechanism": {**UNTOLD["mechanism"], "moments": {"s": "cos(th) + M"}}}
     found = solved(record, M="1/2", F="1/5")
