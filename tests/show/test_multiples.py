@@ -15,7 +15,6 @@ import ptmcad
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.printing import save
 from ptmcad.show.render.solid import MAX_FLOORS, solid_figure
 from ptmcad.show.render.surfacepicture import MAX_SIDE, camera_of, halved
@@ -130,53 +129,3 @@ def test_the_table_has_a_line_for_each_member(family: FamilyMap) -> None:
     with pytest.raises(KeyError):
         family.at(Fraction(1, 3))
     assert "<pre" in replace(family, title="T")._repr_html_()
-
-
-def test_the_legend_tells_of_thin_curves_and_labels_of_regions_that_are_not_seen() -> None:
-    record = {
-        "name": "narrow",
-        "system": {
-            "unknowns": {"x": "real"},
-            "equations": ["x^2 - a*(a - e)"],
-            "parameters": {"e": {}},
-        },
-        "axes": {"a": [-1, 1], "b": [-1, 1]},
-        "parameters": {"e": "c"},
-        "free": {"c": ["1/1000", 1]},
-    }
-    drawn = ptmcad.family(record, values=["1/1000", 1], areas=False).plot()
-    arrows = [
-        [a.get_gid() for a in axes.texts if str(a.get_gid()).startswith("arrow-")]
-        for axes in drawn.axes
-    ]
-    assert [len(found) for found in arrows] == [
-        1,
-        0,
-    ]  # the strip of no solution, which is seen in the other map
-    assert "another curve" not in " ".join(text.get_text() for text in drawn.texts)
-    loads: dict[str, Any] = {
-        "mechanism": "ptm", "parameters": {"F3": "F", "F4": "F"}, "axes": {"rho": [0, 2], "L2": [0, 2]},
-        "free": {"F": [-40, 0]},
-    }  # fmt: skip
-    thin = ptmcad.family(loads, values=[-40], areas=False).plot()
-    assert "another curve of the variety, the count does not change" in [
-        text.get_text() for text in thin.texts
-    ]
-
-
-def test_legends_have_the_curve_and_members_their_values_in_three_dimensions(
-    family: FamilyMap,
-) -> None:
-    assert "the count changes" in [text.get_text() for text in family.plot().texts]
-    drawn = family.plot(solid=True)
-    told = [text.get_text() for text in drawn.texts]
-    assert {"the count changes", "paler: seen through a map above it"} <= set(told)
-    thin = any(not separates for r in family.members for _, separates, _ in shapes(r).walls())
-    assert ("other curves left out" in told) == thin
-    named = {text.get_gid(): text.get_text().strip() for text in drawn.axes[0].texts}
-    assert named == {
-        f"member-{number}": f"c = {value}"
-        for number, value in enumerate(("0", "0.5", "1", "1.5", "2", "2.5", "3"))
-    }
-    one = replace(family, values=family.values[:1], members=family.members[:1])
-    assert "paler: seen through" not in [text.get_text() for text in one.plot(solid=True).texts]
