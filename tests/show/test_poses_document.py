@@ -108,21 +108,6 @@ def test_the_root_of_two() -> None:
     assert narrow.low**2 < 2 < narrow.high**2
 
 
-@given(st.integers(2, 10**6), st.integers(2, 7), st.integers(1, 40))
-def test_integer_roots_as_algebraic_numbers(n: int, degree: int, digits: int) -> None:
-    """The text lies within half a unit of the root: its neighbours at half a unit raised to the
-    power enclose n.
-    """
-    if any(round(n ** (1 / d)) ** d == n for d in range(2, degree + 1)):
-        return
-    number = AlgebraicNumber((-n, *[0] * (degree - 1), 1), Fraction(0), Fraction(n))
-    text = Decimal(number.text(digits))
-    exponent = text.as_tuple().exponent
-    assert isinstance(exponent, int)
-    assert (Fraction(text) - Fraction(10) ** exponent / 2) ** degree < n
-    assert n < (Fraction(text) + Fraction(10) ** exponent / 2) ** degree
-
-
 # ---------------------------------------------------------------------------------------------------------------- JSON
 
 
