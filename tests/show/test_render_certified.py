@@ -25,14 +25,14 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count, Point
-from ptmcad.show.render import draw, polylines
-from ptmcad.show.render.colours import CORE, ONE_MAXIMUM, RIM, TWO_MAXIMA, UNDETERMINED, fill_of
+from ptmcad.show.render import draw
+from ptmcad.show.render.colours import CORE, ONE_MAXIMUM, RIM, TWO_MAXIMA, UNDETERMINED
 from ptmcad.show.render.coveroutline import TOLERANCE
 from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
 from ptmcad.show.render.mappicture import MapDrawing, _zoomed
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.polylines import simplified_polygons
-from ptmcad.show.render.view import Floats, View
+from ptmcad.show.render.view import View
 from ptmcad.show.report import page
 
 STEPS = 2**20
@@ -57,33 +57,6 @@ def test_what_is_undetermined_looks_like_no_count() -> None:
     grey = np.array(to_rgb(UNDETERMINED.face))
     for face in (*ONE_MAXIMUM, *TWO_MAXIMA, "#ffffff"):
         assert np.abs(np.array(to_rgb(face)) - grey).max() > 0.1
-
-
-@pytest.mark.parametrize(("result", "dpi"), [
-    pytest.param(circle(7), 100, id="100-circle"),
-    pytest.param(circle(7), 300, id="300-circle", marks=pytest.mark.slow),
-    pytest.param(crossing(7), 100, id="100-crossing"),
-    pytest.param(crossing(7), 300, id="300-crossing", marks=pytest.mark.slow),
-])  # fmt: skip
-@pytest.mark.slow_cases("100-crossing")
-def test_a_picture_shows_counts_where_they_are_and_grey_elsewhere(
-    result: RegionMap, dpi: int, tmp_path: Path
-) -> None:
-    image = map_pixels(result, tmp_path, dpi)
-    n = len(image)
-    raster = shapes(result).raster(n, n)[::-1]
-    same = np.ones_like(raster, dtype=np.bool_)
-    rim = ceil((CORE / 2 + RIM) * dpi / 72) + 1
-    for i in range(-rim, rim + 1):  # away from the rims
-        for j in range(-rim, rim + 1):
-            same &= np.roll(raster, (i, j), (0, 1)) == raster
-    same[:6] = same[-6:] = same[:, :6] = same[:, -6:] = False
-    for number in range(-1, len(result.regions)):
-        fill = UNDETERMINED if number < 0 else fill_of(result.regions[number], Count.STABLE)
-        inside = image[same & (raster == number)]
-        if len(inside):
-            assert np.abs(inside - np.array(to_rgb(fill.face))).max() < 0.01, number
-    assert (same & (raster >= 0)).sum() > 0.5 * n * n
 
 
 @pytest.mark.parametrize("dpi", [100, 150, 300])
@@ -186,62 +159,9 @@ def test_simplified_polygons_stay_near_and_keep_their_corners(
         assert np.hypot(*(p - a - share[:, None] * along).T).min() <= TOLERANCE * 1.000001
 
 
-def distance(points: np.ndarray, polygon: np.ndarray) -> float:
-    """The largest one of a point from a closed polygon."""
-    a, along = polygon, np.roll(polygon, -1, axis=0) - polygon
-    offset = points[:, None] - a
-    share = np.clip((offset * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1)
-    return float(np.linalg.norm(offset - share[:, :, None] * along, axis=2).min(axis=1).max())
-
-
-@settings(deadline=None)
-@given(
-    st.lists(
-        st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=20),
-        min_size=1,
-        max_size=6,
-    )
-)
-def test_polygons_that_are_simplified_together_are_what_each_is_by_itself(
-    corners: list[list[tuple[int, int]]],
-) -> None:
-    """Empty ones, and such as collapse to a point, too."""
-    polygons = [np.array(each, dtype=float).reshape(-1, 2) for each in corners]
-    together = simplified_polygons(
-        np.concatenate(polygons), np.array([len(p) for p in polygons]), 1.5
-    )
-    assert [p.tolist() for p in together] == [
-        simplified_polygons(p, np.array([len(p)]), 1.5)[0].tolist() for p in polygons
-    ]
-
-
 def test_a_triangle_stays_however_flat() -> None:
     flat = np.array([[0.0, 0.0], [9.0, 0.0], [4.0, 0.1]])
     assert simplified_polygons(flat, np.array([len(flat)]), 1.5)[0].tolist() == flat.tolist()
-
-
-@pytest.mark.parametrize("height", [3.0, 0.3])
-def test_a_long_flight_of_stairs_is_simplified_in_few_steps(
-    height: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Halving splits off stair by stair: so many stairs, higher than the tolerance, took half as
-    many steps.
-    """
-    steps: list[int] = []
-    measured = polylines._distances
-
-    def counted(points: Floats, a: Floats, b: Floats) -> Floats:
-        steps.append(len(points))
-        return measured(points, a, b)
-
-    monkeypatch.setattr(polylines, "_distances", counted)
-    rises = np.repeat(np.cumsum(np.linspace(1.0, 1.2, 400)), 2) * height * TOLERANCE
-    stairs = np.concatenate([np.stack([rises[1:], rises[:-1]], axis=1), [[0.0, rises[-1]]]])
-    few = simplified_polygons(stairs, np.array([len(stairs)]), TOLERANCE)[0]
-    assert len(steps) <= 70
-    assert {tuple(p) for p in few.tolist()} <= {tuple(p) for p in stairs.tolist()}
-    assert distance(stairs, few) <= TOLERANCE * 1.000001
-    assert len(few) > 760 if height > 1 else len(few) < 30
 
 
 # ------------------------------------------------------------------------------------------------------- the page
