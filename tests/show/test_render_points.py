@@ -21,7 +21,7 @@ from ptmcad.show.render.leaders import Berth, meet, routed
 from ptmcad.show.render.mappicture import MapDrawing
 from ptmcad.show.render.overlay import Agreement
 from ptmcad.show.render.printing import settings
-from ptmcad.show.style import MIN_FONT, PAGE_HEIGHT, PictureStyle, styled
+from ptmcad.show.style import MIN_FONT, PictureStyle, styled
 
 AT = ("rho=1,L2=3/2", "rho=3/2,L2=1/2", "rho=0.1,L2=1.8", "rho=1/4,L2=1/4")
 
@@ -80,17 +80,6 @@ def test_poses_without_room_are_refused_with_the_least_width(
     assert "--size: poses beside the map need a width of 3.05 inches, and there are 3.00" in said
     assert run(["plot", stored, "--at", AT[0], "--size", "5.6x4in"]) == 0
     assert imread(tmp_path / "fig4.png").shape[:2] == (600, 840)
-
-
-def test_in_a_journals_style_poses_are_as_wide_as_two_columns(
-    stored: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    points = [word for text in ("rho=1,L2=3/2", "rho=1/2,L2=1/2", "rho=3/2,L2=1/2", "rho=1/2,L2=7/4")
-              for word in ("--at", text)]  # fmt: skip
-    assert run(["plot", stored, *points, "--style", "ieee", "--dpi", "100"]) == 0
-    assert "over two columns, 7.16 inches wide" in capsys.readouterr().err
-    high, wide = imread(tmp_path / "fig4.png").shape[:2]
-    assert wide == 716 and 400 < high <= 100 * PAGE_HEIGHT
 
 
 def test_lines_are_untangled_by_the_order_beside_the_map() -> None:
