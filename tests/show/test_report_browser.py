@@ -10,7 +10,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import pi
 from pathlib import Path
-from typing import Any
 
 import pytest
 from support import browser as chromium
@@ -459,54 +458,6 @@ def test_reduced_motion_and_print(view: Callable[..., Browser], tmp_path: Path) 
     quiet(b, "fig4")
 
 
-CRANE: dict[str, Any] = {
-    "mechanism": {
-        "parameters": {
-            "a": {"kind": "length"},
-            "k": {"kind": "stiffness", "default": 10},
-            "W": {"kind": "force"},
-        },
-        "unknowns": {"th": "angle", "s": "length"},
-        "points": {
-            "O": [0, 0],
-            "B": [0, 1],
-            "S": ["s*cos(th)", "s*sin(th)"],
-            "T": ["a*cos(th)", "a*sin(th)"],
-        },
-        "bars": [["O", "T"]],
-        "springs": [{"between": ["B", "S"], "k": "k"}, {"between": ["S", "T"], "k": "k"}],
-        "loads": {"T": {"weight": "W"}},
-    },
-    "axes": {"a": ["1/2", 3], "W": [0, 20]},
-}
-
-
-def test_all_poses_of_a_cell_are_at_one_scale_however_tall_one_of_them_is(
-    one: Browser, tmp_path: Path
-) -> None:
-    """A card does not exceed a height: where a tall pose is shrunk to it, the others are shrunk
-    alike.
-    """
-    path = tmp_path / "crane.html"
-    path.write_text(page(ptmcad.classify(CRANE, areas=False)), encoding="utf-8")
-    one.media(prefers_color_scheme="light")
-    for width in (1200, 620, 380):
-        one.size(width, 900)
-        one.open(path)
-        one.run("choose(0, false)")
-        scales = one.run(
-            "[...document.querySelectorAll('#poses .pose svg')].map((one) => one.getScreenCTM().a)"
-        )
-        # the frame of a stable pose is a pixel wider
-        assert len(scales) > 2 and max(scales) < 1.03 * min(scales)
-        heads = one.run(
-            "[...document.querySelectorAll('#poses .load-head')].map((head) => head.getBoundingClientRect())"
-            ".map((box) => Math.hypot(box.width, box.height))"
-        )
-        assert len(heads) == len(scales) and max(heads) < 1.5 * min(heads) and max(heads) < 40
-    assert one.complaints() == []
-
-
 def test_a_landscape_under_a_moment_is_level_at_the_equilibria(
     one: Browser, tmp_path: Path
 ) -> None:
@@ -551,46 +502,3 @@ def test_a_landscape_under_a_moment_is_level_at_the_equilibria(
         # moments are 1 / 5 and more
         assert all(abs(rise) / (2 * step) < 5 * step for rise in rises[:2]) and abs(rises[2]) < 1e-3
     assert one.complaints() == []
-
-
-def test_torsion_springs_are_drawn_at_their_joints_and_told_in_numbers(
-    one: Browser, tmp_path: Path
-) -> None:
-    record = {
-        "name": "bent",
-        "mechanism": {
-            "parameters": {"c": {"kind": "stiffness"}, "W": {"kind": "force"}},
-            "unknowns": {"th": "angle"},
-            "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
-            "bars": [["O", "P"]],
-            "torsion": [{"angle": "th", "k": "c", "rest": "pi/2"}, {"angle": "2*th", "k": "1/9"}],
-            "loads": {"P": {"weight": "W"}},
-        },
-        "axes": {"c": ["1/10", 1], "W": [0, 2]},
-    }
-    result = ptmcad.classify(record)
-    path = tmp_path / "bent.html"
-    path.write_text(page(result), encoding="utf-8")
-    one.size(1200, 900)
-    one.open(path)
-    one.run("choose(0, false)")
-    found = one.run(
-        "(() => { const box = (part) => part.getBoundingClientRect();"
-        " const middle = ({ left, top, width, height }) => [left + width / 2, top + height / 2];"
-        " return [...document.querySelectorAll('#poses .pose')].map((pose) =>"
-        " [...pose.querySelectorAll('.torsion')].map((part) => {"
-        " const [here, frame] = [box(part), box(pose.querySelector('svg'))];"
-        " const [[x, y], [u, v]] = [here, box(pose.querySelector('.node'))].map(middle);"
-        " const inside = here.top >= frame.top && here.left >= frame.left && here.right <= frame.right"
-        " && here.bottom <= frame.bottom;"
-        " return { away: Math.hypot(x - u, y - v) / here.width, inside }; })) })()"
-    )
-    assert len(found) == result.cells[0].total
-    for springs in found:
-        assert len(springs) == 1, "the joint of the other one is not known"
-        assert springs[0]["away"] < 0.15 and springs[0]["inside"]
-    text = one.run("document.querySelector('#poses').textContent")
-    assert "spirals: torsion springs on θ at O; torsion springs on 2*θ are not drawn" in text
-    assert "deflection θmoment θdeflection 2*θmoment 2*θ" in text
-    assert one.complaints() == []
-    one.picture("torsion.png")
