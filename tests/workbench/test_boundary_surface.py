@@ -21,8 +21,7 @@ from ptmcad.answer.boundarysurface import ACCURACY, BoundarySurface
 from ptmcad.answer.family import FamilyMap, SpaceTerms
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.exact.slicearrangement import BoundaryStrips, picture_of
-from ptmcad.question.config import family_from, slice_from
+from ptmcad.question.config import family_from
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.workbench import boundarymesh as asking
 
@@ -167,27 +166,6 @@ def test_faces_are_triangles_that_neighbouring_members_bound(name: str) -> None:
     assert not inner
 
 
-@pytest.mark.parametrize("base", [0, 1])
-def test_a_line_across_the_base_parts_regions_too(base: int) -> None:
-    axis = "ab"[base]
-    slice = slice_from(
-        {
-            "system": {"unknowns": {"u": "real"}, "equations": [f"u^2 - ({axis} - 1/3)"]},
-            "axes": SQUARE,
-        }
-    )
-    found = BoundaryStrips(picture_of(slice, base=base))
-    assert [strip.keys for strip in found.strips] == [((0,),), ((2,),)]
-    (opening,) = found.openings
-    assert (opening.keys, opening.low, opening.high) == (((0,), (2,)), -1, 1)
-    assert float(opening.at) == pytest.approx(1 / 3, abs=1e-9)
-    other = BoundaryStrips(picture_of(slice, base=1 - base))
-    assert not other.openings
-    (strip,) = other.strips
-    assert strip.keys == ((0,), (2,))
-    assert float(other.at(0, 0.3)[1]) == pytest.approx(1 / 3, abs=float(2 * ACCURACY))
-
-
 @pytest.mark.parametrize("first", ["a", "b"])
 def test_a_plane_is_a_sheet_over_either_axis(first: str) -> None:
     axes = {name: [-1, 1] for name in sorted("ab", reverse=first == "b")}
@@ -198,21 +176,6 @@ def test_a_plane_is_a_sheet_over_either_axis(first: str) -> None:
     place = found.axes[0].name != "a"
     assert len(mesh.faces) >= 2
     assert mesh.vertices[:, int(place)] == pytest.approx(mesh.vertices[:, 2], abs=1e-6)
-
-
-def test_strips_end_at_corners_of_walls_and_not_at_other_curves() -> None:
-    system = {"unknowns": {"u": "real"}, "equations": ["u - 1"], "positive": ["b - a", "b + a"]}
-    corner = BoundaryStrips(picture_of(slice_from({"system": system, "axes": SQUARE}), base=0))
-    assert [strip.keys for strip in corner.strips] == [((0,), (1,))] * 2
-    wall = {
-        "unknowns": {"u": "real", "v": "real"},
-        "equations": ["u^2 - (b - a/2)", "v^3 - (b + a)^2*(a^2 + 1)"],
-    }
-    smooth = picture_of(slice_from({"system": wall, "axes": SQUARE}), base=0)
-    assert (
-        len(smooth.cut.stacks) > 1
-    )  # cut where the line on which no count changes crosses the wall
-    assert [strip.keys for strip in BoundaryStrips(smooth).strips] == [((0,), (2,))]
 
 
 @pytest.mark.slow
