@@ -14,10 +14,8 @@ from ptmcad.workbench.designs.designlines import (
     Space,
     certain,
     longest,
-    longest_on_line,
     measure,
     refined,
-    root_bound,
 )
 
 WINDOW = (fmpq(0), fmpq(1))
@@ -117,28 +115,9 @@ def _two_intervals() -> Space:
     return Space(tuple(tables), 1, WINDOW, count, 1)
 
 
-def test_the_longest_of_several_intervals() -> None:
-    space = _two_intervals()
-    found = longest_on_line(space, (fmpq(1, 3), fmpq(1, 5)))
-    assert found == ((fmpq(5, 8), fmpq(5, 8)), (fmpq(1), fmpq(1)))
-    runs = refined(space, (WINDOW, WINDOW), space.whole(), fmpq(1, 64))
-    assert [run.ends for run in runs] == [(fmpq(1, 4), fmpq(1, 2)), (fmpq(5, 8), fmpq(1))]
-    assert longest(space, runs) == fmpq(3, 8) == certain(space, runs) and measure(
-        space, runs
-    ) == fmpq(5, 8)
-
-
 def test_runs_that_are_short_enough_still_count() -> None:
     bounder = Lengths(_two_intervals(), fmpq(1, 10))
     place = (WINDOW, WINDOW)
     _, _, state = bounder.over(place, bounder.whole(), fmpq(1), fmpq(1, 10))
     for enough in (fmpq(3, 10), fmpq(1, 2)):
         assert bounder.over(place, state, fmpq(1), enough)[0] == fmpq(3, 8)
-
-
-def test_roots_are_rounded_outwards() -> None:
-    for value in (fmpq(2), fmpq(1, 3), fmpq(9, 4), fmpq(0)):
-        low, high = root_bound(value, 2, up=False), root_bound(value, 2, up=True)
-        assert low**2 <= value <= high**2 and high - low <= fmpq(1, 2**64)
-        assert (low == high) == (value in (fmpq(9, 4), fmpq(0)))
-        assert root_bound(value, 1, up=True) == value
