@@ -10,7 +10,6 @@ import signal
 import time
 from collections.abc import Iterator
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -141,29 +140,6 @@ def test_the_point_under_the_pointer_agrees_with_the_region_beside_it(view: Brow
     assert abs(view.run("view.share[0]") - 0.8) < 0.01
 
 
-def test_the_figure_is_recorded_and_saved(view: Browser, own: Explorer, tmp_path: Path) -> None:
-    view.run(f"{FIRST}.value = -123; {FIRST}.dispatchEvent(new Event('input'))")
-    view.until(SETTLED)
-    view.run("document.querySelector('#record').click()")
-    view.until(
-        "!document.querySelector('#recorded').hidden && document.querySelector('#yaml').textContent !== ''"
-    )
-    record = tmp_path / "again.yaml"
-    record.write_text(view.run("document.querySelector('#yaml').textContent"), encoding="utf-8")
-    again = ptmcad.classify(record, areas=False)
-    assert [[r.stable, r.total, len(r.cells)] for r in again.regions] == view.run(
-        "view.shown.digest"
-    )
-    assert (
-        view.run("document.querySelector('#command').textContent")
-        == "ptmcad classify equal-loads-F-123_10.yaml"
-    )
-    view.run("document.querySelector('#save button').click()")
-    view.until("document.querySelector('#saved').textContent.startsWith('Saved')")
-    view.run("document.querySelector('#save button').click()")
-    view.until("document.querySelector('#saved').textContent.includes('is there already')")
-
-
 @pytest.mark.slow
 def test_two_tabs_do_not_disturb_each_other(view: Browser, own: Explorer) -> None:
     other = view.tab()
@@ -181,26 +157,6 @@ def test_two_tabs_do_not_disturb_each_other(view: Browser, own: Explorer) -> Non
             )
     finally:
         view.switch(other)
-
-
-@pytest.mark.slow
-def test_phones_have_touch_and_dark_colours(view: Browser) -> None:
-    view.size(390, 844, phone=True)
-    view.media(prefers_color_scheme="dark")
-    try:
-        assert view.run("document.documentElement.scrollWidth <= innerWidth")
-        left, top, width, height = at(view, "#frame .frame")
-        view.swipe((left + 0.5 * width, top + 0.5 * height), (left + 0.4 * width, top + 0.5 * height),
-                   (left + 0.3 * width, top + 0.5 * height))  # fmt: skip
-        view.until(f"Math.abs(view.share[0] - 0.3) < 0.03 && {SOLVED}")
-        view.run(f"{FIRST}.scrollIntoView({{ block: 'center' }})")
-        x, y, wide, tall = at(view, "#sliders input[type=range]")
-        view.tap(x + 0.8 * wide, y + tall / 2)
-        view.until(f"{SETTLED} && Number(view.of.F) > -10")
-        view.picture("explore-phone-dark.png")
-        assert view.complaints() == []
-    finally:
-        view.size(1300, 1000)
 
 
 @pytest.mark.slow
