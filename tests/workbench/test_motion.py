@@ -74,33 +74,6 @@ def test_a_pose_that_gives_way_by_symmetry_falls_to_a_side() -> None:
     )
 
 
-def turning() -> ptmcad.RegionMap:
-    record = {
-        "name": "turned",
-        "mechanism": {
-            "parameters": {"M": {"kind": "force"}, "b": {"kind": "base"}}, "unknowns": {"th": "angle"},
-            "points": {"O": [0, 0], "B": ["b", 0], "P": ["cos(th)", "sin(th)"]},
-            "springs": [{"between": ["B", "P"], "k": 1}], "moments": {"th": "M"},
-        },
-        "axes": {"b": ["1/2", 2], "M": [-3, 3]},
-    }  # fmt: skip
-    return ptmcad.classify(record, areas=False)
-
-
-@pytest.mark.slow
-def test_a_moment_that_turns_a_bar_for_ever_ends_the_motion() -> None:
-    """b sin(th) = M has no solution from M = b on."""
-    motion = turning().animate("b=1,M=0:5/2", frames=20)
-    assert motion.end == "at b = 1, M = 1 the pose vanishes, and no other was reached from there"
-    assert not motion.falls
-    for step in motion.steps:
-        assert np.sin(step.unknowns[0]) == pytest.approx(float(step.at[1]))
-        # the energy less the moment's work, as the residuals are slopes of that
-        assert step.height == pytest.approx(
-            1 - np.cos(step.unknowns[0]) - float(step.at[1]) * step.unknowns[0]
-        )
-
-
 def test_what_was_not_stable_or_has_no_energy_does_not_fall() -> None:
     saddle = shipped("fig4").animate("rho=3/4:6/5,L2=3/2", "saddle:1", frames=12)
     assert "the pose, which was not stable, vanishes" in saddle.end
