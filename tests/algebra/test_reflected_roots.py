@@ -119,19 +119,3 @@ def test_a_multiple_root_outside_of_the_interval_is_no_matter() -> None:
     )  # a double root is within reach, and outside
     with pytest.raises(ValueError, match="not squarefree"):
         isolate_reflected(p, q, fmpq(0), 1, fmpq(-4), fmpq(2))
-
-
-def test_close_roots_are_parted_by_longer_square_roots() -> None:
-    near = [Fraction(2), 2 + Fraction(1, 2**90), 2 + Fraction(1, 2**89)]
-    q = with_roots(near)
-    p = reflected(q, fmpq(1, 3), 3)
-    found = isolate_reflected(p, q, fmpq(1, 3), 3, fmpq(-4), fmpq(4))
-    assert the_same(found, isolate(p, fmpq(-4), fmpq(4)))
-
-
-def test_close_roots_far_from_the_axis_are_parted_too() -> None:
-    """Their square roots are nearer to each other than they are, by a factor of a million."""
-    q = with_roots([Fraction(10**18 + 1), Fraction(10**18 + 2), Fraction(10**18 + 3)])
-    p = reflected(q, fmpq(0), 1)
-    window = fmpq(0), fmpq(2 * 10**9)
-    assert the_same(isolate_reflected(p, q, fmpq(0), 1, *window), isolate(p, *window))
