@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -225,29 +224,6 @@ def test_bad_requests_are_refused(call: object, message: str) -> None:
     assert callable(call)
     with pytest.raises(ConfigError, match=message):
         call(shipped("fig2"))
-
-
-@pytest.mark.parametrize(
-    ("polynomial", "low", "high"),
-    [
-        ((-1, 1), "1", "1"),
-        ((-2, 0, 1), "1", "2"),
-        ((1, 0, 1), "1/1000", "1/10"),
-        ((-1, 399), "1/400", "1/300"),
-    ],
-)
-def test_a_critical_value_that_is_elsewhere_is_said(
-    polynomial: tuple[int, ...], low: str, high: str
-) -> None:
-    """Halving an interval would never part it from a sample that is not at its side."""
-    result = shipped("fig4")
-    assert result.stacks[0].sample == Fraction(1, 399)
-    first = replace(
-        result.critical_values[0], polynomial=polynomial, low=Fraction(low), high=Fraction(high)
-    )
-    damaged = replace(result, critical_values=(first, *result.critical_values[1:]))
-    with pytest.raises(ValueError, match="not between the samples"):
-        damaged.boundaries("1/10")
 
 
 def test_a_map_without_cells_has_neither() -> None:
