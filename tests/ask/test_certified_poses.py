@@ -215,32 +215,3 @@ def test_a_coordinate_that_interval_arithmetic_knows_exactly(force: Q, tmp_path:
 def test_energy_has_no_free_length_unless_asked_for() -> None:
     plain = solve(rho=Q(1), L2=Q(3, 2))
     assert energy_of(plain.model, plain.parameters).roots == ()
-
-
-def test_a_free_length_of_zero_beside_one_that_is_a_number() -> None:
-    """One angle, two springs: the parameter is zero and the number is not, so that the point tells
-    both. The poses are those of a dense look at the energy's slope."""
-    mechanism = {
-        "parameters": {"l0": {"kind": "free length"}, "F": {"kind": "force"}},
-        "unknowns": {"th": "angle"},
-        "points": {"A": [2, 0], "B": [0, 2], "P": ["cos(th)", "sin(th)"]},
-        "springs": [
-            {"between": ["A", "P"], "k": 1, "free": "l0"},
-            {"between": ["B", "P"], "k": 1, "free": "1/2"},
-        ],
-        "loads": {"P": ["F", 0]},
-    }
-    record = {"name": "two", "mechanism": mechanism, "axes": {"F": [-1, 1], "l0": [0, 1]}}
-    poses = solve(record, F="1/3", l0=0)
-    assert poses.status is Status.CERTIFIED and poses.parameters["l0"] == 0
-    angle = np.linspace(0, 2 * np.pi, 100_001)
-    away = np.hypot(np.cos(angle), np.sin(angle) - 2)
-    energy = ((np.cos(angle) - 2) ** 2 + np.sin(angle) ** 2 + (away - 0.5) ** 2) / 2 - np.cos(
-        angle
-    ) / 3
-    slope = np.diff(energy)
-    minima = np.sum((slope[:-1] < 0) & (slope[1:] >= 0))
-    assert len(poses.equilibria) == np.sum((slope[:-1] < 0) != (slope[1:] < 0)) == 2
-    assert sum(bool(pose.stable) for pose in poses.equilibria) == minima == 1
-    found = min(float(pose.energy.center) for pose in poses.equilibria if pose.energy is not None)
-    assert abs(found - energy.min()) < 1e-8
