@@ -19,7 +19,6 @@ import ptmcad
 from ptmcad.answer.paths import Fate, PosePaths
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
-from ptmcad.show.ranges.pathtable import path_table
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
 pytest.importorskip("numba")
@@ -98,19 +97,6 @@ def test_tiny_free_lengths_make_no_difference() -> None:
     assert exact.high.target is not None
     for a, b in zip(free.high.target.angles, exact.high.target.angles, strict=True):
         assert degrees(float(a)) == pytest.approx(degrees(float(b)), abs=0.05)
-
-
-@pytest.mark.slow
-def test_of_several_stable_poses_the_one_that_steepest_descent_reaches_is_chosen() -> None:
-    """At the pitchfork two others stay stable; it is said that the choice is no proof."""
-    slice = ptmcad.slice_from_options(CONFIGS / "free-load.yaml", ranges=["rho=1/5:3/4"])
-    paths = ptmcad.pose_paths(slice, "rho", {"F": -10}, "7/10", 2)
-    end = paths.paths[0].low
-    assert (end.fate, end.meeting, end.leaving) == (Fate.SNAP, (0, 1, 1), (1,))
-    assert end.fallen
-    assert end.target is not None
-    assert [round(degrees(float(angle)), 6) for angle in end.target.angles] == [-73.868528] * 2
-    assert "of several stable ones steepest descent in floating point chose" in path_table(paths)
 
 
 @pytest.mark.parametrize(
