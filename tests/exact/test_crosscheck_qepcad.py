@@ -4,7 +4,6 @@ as a formula.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -76,62 +75,6 @@ def test_no_branches_meet_over_further_sections(name: str) -> None:
     assert compare(shipped(name), window_cad(shipped(name), full=True)).lifted
 
 
-def without_wall(result: RegionMap) -> RegionMap:
-    first = result.stacks[0]
-    return with_stacks(result, 0, replace(first, walls=first.walls[:-1], cells=first.cells[:-1]))
-
-
-def with_stacks(result: RegionMap, number: int, *stacks: object) -> RegionMap:
-    return replace(result, stacks=(*result.stacks[:number], *stacks, *result.stacks[number + 1 :]))  # type: ignore[arg-type]
-
-
-def without_critical_value(result: RegionMap, number: int = 0) -> RegionMap:
-    values = result.critical_values
-    return replace(
-        with_stacks(result, number), critical_values=(*values[:number], *values[number + 1 :])
-    )
-
-
-def with_critical_value(result: RegionMap) -> RegionMap:
-    end = CriticalValue((-3, 2), Fraction(3, 2), Fraction(3, 2), "nowhere")
-    added = with_stacks(result, len(result.stacks) - 1, result.stacks[-1], result.stacks[-1])
-    return replace(added, critical_values=(*result.critical_values, end))
-
-
-def with_moved_critical_value(result: RegionMap) -> RegionMap:
-    first, *others = result.critical_values
-    return replace(
-        result, critical_values=(replace(first, low=-first.high, high=-first.low), *others)
-    )
-
-
-def with_other_component(result: RegionMap) -> RegionMap:
-    first = result.stacks[0]
-    walls = (*first.walls[:-1], Wall(1 - first.walls[-1].component, 0))
-    return with_stacks(result, 0, replace(first, walls=walls))
-
-
-def with_other_root(result: RegionMap) -> RegionMap:
-    first = result.stacks[0]
-    return with_stacks(
-        result, 0, replace(first, walls=(Wall(first.walls[0].component, 1), *first.walls[1:]))
-    )
-
-
-def without_cell(result: RegionMap) -> RegionMap:
-    return replace(result, cells=result.cells[:-1])
-
-
-VALUES = (without_wall, without_critical_value, with_critical_value, with_moved_critical_value)
-WALLS = (with_other_component, with_other_root, without_cell)
-
-
-@pytest.mark.parametrize("mutation", VALUES + WALLS)
-def test_a_false_decomposition_is_noticed(mutation: Callable[[RegionMap], RegionMap]) -> None:
-    with pytest.raises(AssertionError):
-        compare(mutation(shipped("fig3")), cad("fig3"))
-
-
 def nodal_cubic() -> RegionMap:
     """(y-2)^2 = (x-2)^2 (x-1) over [0, 4]^2: a vertical tangent at x = 1, the node at x = 2, the
     edges at x = 3.47.
@@ -172,13 +115,6 @@ def test_nodal_cubic(full: bool) -> None:
     """Known by construction; compared are only the numbers of cells, so that any eight will do."""
     found = compare(nodal_cubic(), window_cad(nodal_cubic(), full=full))
     assert (found.stacks, found.cells, found.lifted) == (4, 8, full)
-
-
-def with_other_coefficient(result: RegionMap) -> RegionMap:
-    first = result.components[0]
-    *terms, (i, j, c) = first.polynomial.terms
-    other = PlanePolynomial.of((*terms, (i, j, c + abs(c) // 100 + 1)))
-    return replace(result, components=(replace(first, polynomial=other), *result.components[1:]))
 
 
 # ------------------------------------------------------------------------------------- the counting formula
@@ -239,11 +175,6 @@ def test_counts_at_every_sample_by_the_sextic(name: str) -> None:
     assert all(
         sextic_counts(name, [(cell.total or 0, cell.stable or 0) for cell in shipped(name).cells])
     )
-
-
-def test_false_counts_are_noticed_by_the_sextic() -> None:
-    false = [(10 - (cell.total or 0), 3 - (cell.stable or 0)) for cell in shipped("fig4").cells]
-    assert not any(sextic_counts("fig4", false))
 
 
 def swapped(name: str, task: Task) -> bool:
@@ -320,21 +251,6 @@ def quick_tasks() -> list[object]:
 @pytest.mark.slow_cases("rods-6 equilibria")
 def test_counting_formula_over_the_window(name: str, task: Task) -> None:
     check_over_the_window(shipped(name), task, counted_cells(name, task), other=swapped(name, task))
-
-
-def with_false_total(result: RegionMap) -> RegionMap:
-    cell = replace(result.cells[0], total=10 - (result.cells[0].total or 0))
-    return replace(result, cells=(cell, *result.cells[1:]))
-
-
-@pytest.mark.parametrize("mutation", [with_false_total, with_other_coefficient])
-def test_a_false_count_over_the_window_is_noticed(
-    mutation: Callable[[RegionMap], RegionMap],
-) -> None:
-    with pytest.raises(AssertionError):
-        check_over_the_window(
-            mutation(shipped("fig3")), Task.SIX, counted_cells("fig3", Task.SIX), other=False
-        )
 
 
 @pytest.mark.parametrize(
