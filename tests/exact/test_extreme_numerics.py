@@ -8,20 +8,17 @@ from fractions import Fraction
 from itertools import pairwise
 
 import pytest
-from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
+from flint import arb, ctx, fmpq, fmpq_poly, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from support.counting import system_of
 from support.examples import examples
 
 import ptmcad
 from ptmcad.algebra import descartes
 from ptmcad.algebra.arcs import arc_integral
-from ptmcad.algebra.fibre_algebra import FibreAlgebra, univariate_representation
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine
 from ptmcad.algebra.resultants import balanced, discriminant, resultant
 from ptmcad.answer.regionmap import Status
-from ptmcad.exact.point_system import point_system
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.verification.sturm import roots_between
@@ -198,47 +195,6 @@ def test_balanced_units_change_discriminants_and_resultants_by_a_factor(
     assert unit == 10**a and max(c.height_bits() for c in shorter) < 4
 
 
-def by_solving(algebra: FibreAlgebra, form: tuple[int, ...]) -> list[fmpq_poly]:
-    """The unknowns as polynomials in a form, from the linear system for its powers."""
-    size = algebra.dimension
-    step = fmpq_mat(size, size)
-    for weight, matrix in zip(form, algebra.multiplication, strict=True):
-        step = step + matrix * fmpq(weight)
-    powers = [fmpq_mat(size, 1, [fmpq(int(i == 0)) for i in range(size)])]
-    for _ in range(size - 1):
-        powers.append(step * powers[-1])
-    change = fmpq_mat(size, size, [powers[j][i, 0] for i in range(size) for j in range(size)])
-    targets = fmpq_mat(
-        size, len(form), [m[i, 0] for i in range(size) for m in algebra.multiplication]
-    )
-    solved = change.solve(targets)
-    return [fmpq_poly([solved[i, k] for i in range(size)]) for k in range(len(form))]
-
-
-@pytest.mark.parametrize("digits", [1, 40])
-def test_quotients_and_polynomials_give_the_same_points(digits: int) -> None:
-    share = fmpq(int("1234567891" * 4) % 10**digits, 10**digits)
-    forces = {"F3": -10 + share, "F4": -10 - share}
-    values = {
-        "L1": 1,
-        "L2": 1 + share,
-        "rho": 1 - share / 3,
-        "k1": 100,
-        "k2": 100 + share,
-        "k3": 100,
-        **forces,
-    }
-    system = system_of("ptm")
-    algebra = point_system(
-        system, {n: fmpq(values.get(n, 0)) for n in (*values, "F3x", "F4x")}
-    ).algebra
-    found = univariate_representation(algebra)
-    assert found is not None
-    modulus = fmpq_poly(found.minimal)
-    for quotient, solved in zip(found.coordinates, by_solving(algebra, found.form), strict=True):
-        assert (quotient - solved * found.slope) % modulus == 0
-
-
 @settings(max_examples=examples(30), deadline=None)
 @given(
     st.integers(5, 60),
@@ -288,31 +244,6 @@ def test_arcs_prove_nothing_where_a_branch_runs_through_the_tube() -> None:
         assert (
             arc_integral(in_v, branch, fmpq(0), fmpq(1), (fmpq(-2), fmpq(2)), fmpq(1, 100)) is None
         )
-
-
-@pytest.mark.parametrize("roots", [(0, 0, 1), (1, 1, 1), (-1, -1, 0), (0, 0, 0, 1, 1)], ids=str)
-def test_multiple_roots_are_refused_at_an_end_of_the_interval_too(roots: tuple[int, ...]) -> None:
-    product = fmpz_poly([-1, 3])  # and a simple root inside, at 1/3
-    for r in roots:
-        product *= fmpz_poly([-r, 1])
-    for low, high in ((-1, 1), (0, 1), (-1, 0), (0, 2), (-2, 1)):
-        inside = sorted({Fraction(1, 3), *map(Fraction, roots)})
-        simple = [r for r in inside if low < r < high]
-        if any(roots.count(int(r)) > 1 for r in simple if r != Fraction(1, 3)):
-            with pytest.raises(ValueError, match="not squarefree"):
-                isolate(product, fmpq(low), fmpq(high))
-            continue
-        try:
-            found = isolate(product, fmpq(low), fmpq(high))
-        except ValueError:
-            assert (
-                max(roots.count(low), roots.count(high)) > 1
-            )  # a multiple root at an end may be refused
-        else:
-            assert len(found) == len(simple)
-            assert all(
-                f.low <= from_fraction(r) <= f.high for f, r in zip(found, simple, strict=True)
-            )
 
 
 def test_series_beside_a_critical_abscissa_that_is_found_to_be_rational() -> None:
