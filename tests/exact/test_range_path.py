@@ -29,12 +29,10 @@ from ptmcad.formulas.continuation import (
     BranchEquations,
     Reached,
     at_value,
-    branch_equations,
     bridge,
     enclose,
     follow,
 )
-from ptmcad.formulas.graph import Graph
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.pathtable import path_table
@@ -231,19 +229,6 @@ def test_a_tube_holds_one_branch_only() -> None:
     assert enclose(mechanism, Fraction(1), Fraction(11, 10), steps[-1].point) is None
 
 
-def test_a_box_without_another_solution_reaches_as_far_as_is_asked_or_there_is_none() -> None:
-    """x^2 = p at p = 1: about 1 there is no other one within 1/2, and within 3 there is -1."""
-    graph = Graph()
-    p, x = graph.variable(0), graph.variable(1)
-    equations = branch_equations([x * x - p], 0)
-    place = at_value(equations, Fraction(1), (arb("1.001"),), Fraction(1, 2))
-    assert place is not None
-    assert place.alone(Fraction(1))[0].contains(arb(1, "0.499"))
-    assert place.at(Fraction(1))[0].contains(1)
-    wide = at_value(equations, Fraction(1), (arb("1.001"),), Fraction(3))
-    assert wide is None or not wide.alone(Fraction(1))[0].contains(-1)
-
-
 @pytest.mark.parametrize(
     ("start", "number", "message"),
     [
@@ -336,26 +321,6 @@ def test_minima_of_a_potential_in_the_plane() -> None:
         (Fate.VANISH, Fate.WINDOW),
     ]
     assert found.paths[0].high.meeting == (0, 1) and found.paths[0].high.leaving == ()
-
-
-def test_a_minimum_in_three_angles_is_followed() -> None:
-    potential = (
-        "-2*(cos(t0) + cos(t1) + cos(t2)) - a/3*(cos(t0 - t1) + cos(t1 - t2)) - (b + 3)*sin(t0)/9"
-    )
-    slice = system(unknowns=dict.fromkeys(("t0", "t1", "t2"), "angle"), potential=potential)
-    line = line_of(slice, "b", {"a": 1})
-    chain = line_system(line).branches
-    start = at_value(chain, Fraction(0), (arb("0.15"), arb(0), arb(0)))
-    assert start is not None
-    steps, done = follow(chain, Reached(Fraction(0), start, start), Fraction(2), Fraction(1, 4))
-    assert done
-    t = [float(x.mid()) for x in steps[-1].point]
-    slopes = (
-        2 * sin(t[0]) + sin(t[0] - t[1]) / 3 - 5 * cos(t[0]) / 9,
-        2 * sin(t[1]) - sin(t[0] - t[1]) / 3 + sin(t[1] - t[2]) / 3,
-        2 * sin(t[2]) - sin(t[1] - t[2]) / 3,
-    )
-    assert max(map(abs, slopes)) < 1e-12
 
 
 def test_solutions_that_may_meet_in_several_ways_are_not_told_apart() -> None:
