@@ -10,12 +10,12 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from flint import fmpq, fmpz_poly
+from flint import fmpq
 
 import ptmcad
-from ptmcad.algebra.chords import side_of_chord, slope_over
+from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.polynomials import PLANE
-from ptmcad.algebra.real_roots import RealRoot, isolate
+from ptmcad.algebra.real_roots import isolate
 from ptmcad.answer.widths import Maximum, Place
 from ptmcad.ask.lines.rangerows import operation_widths
 from ptmcad.exact.cad.projection import curve
@@ -135,21 +135,6 @@ def test_two_equal_maxima_are_both_told() -> None:
     assert [m.place for m in found] == [Place.SMOOTH] * 2
     for m, value in zip(found, (Fraction(-1, 2), Fraction(1, 2)), strict=True):
         assert m.at.low <= value <= m.at.high and m.width.low <= 1 <= m.width.high
-
-
-def test_a_chord_that_meets_the_curve_proves_nothing() -> None:
-    """The cusp v^2 = u^3 at the origin: a flat chord meets it nowhere else, one of slope 1 at
-    u = 1.
-    """
-    cusp = curve(0, Y**2 - X**3, 0).in_v
-    origin = RealRoot(fmpz_poly([0, 1]), fmpq(0), fmpq(0))
-    assert side_of_chord(cusp, fmpq(0), origin, fmpq(0), fmpq(2))
-    assert side_of_chord(cusp, fmpq(0), origin, fmpq(1), fmpq(9, 10))
-    assert not side_of_chord(cusp, fmpq(0), origin, fmpq(1), fmpq(2))
-    root = RealRoot(fmpz_poly([-2, 0, 1]), fmpq(1), fmpq(2))  # on v^2 = u + 1 at u = 1
-    parabola = curve(0, Y**2 - X - 1, 0).in_v
-    assert side_of_chord(parabola, fmpq(1), root, fmpq(1, 4), fmpq(1))
-    assert not side_of_chord(parabola, fmpq(1), root, fmpq(7, 20), fmpq(1))
 
 
 def test_slopes_enclose_those_of_a_known_branch() -> None:
