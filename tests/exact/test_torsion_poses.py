@@ -298,32 +298,3 @@ def test_documents_tell_what_torsion_springs_do_and_are_read_back() -> None:
         ["name", "stiffness", "deflection", "degrees", "moment"]
     ] * 2
     assert [entry["name"] for entry in entries] == ["th", "phi-2*th"]
-
-
-def test_documents_without_them_are_those_of_before_and_half_of_them_are_refused() -> None:
-    data = json.loads(solve(model=described(CHAIN), l0=0, W="1/7").to_json())
-    data["equilibria"][1]["torsion"].pop()
-    with pytest.raises(ValueError, match=r"equilibria\[1\]\.torsion has 1 entries, not 2"):
-        Poses.from_json(json.dumps(data))
-    del data["equilibria"][1]["torsion"]
-    with pytest.raises(ValueError, match=r"equilibria\[1\]\.torsion has 0 entries, not 2"):
-        Poses.from_json(json.dumps(data))
-    for pose in data["equilibria"]:
-        pose.pop("torsion", None)
-    assert all(pose.torsion == () for pose in Poses.from_json(json.dumps(data)).equilibria)
-    assert '"torsion"' not in solve(rho=1).to_json(), "the paper's mechanism has none"
-
-
-def test_the_table_has_columns_for_them_with_their_sign() -> None:
-    lines = solve(model=described(CHAIN), l0=0, W="1/7").table(6).splitlines()
-    columns = [line.split() for line in lines]
-    header = [
-        f"deflection {name} {unit}" for unit in ("[rad]", "[deg]") for name in ("th", "phi-2*th")
-    ]
-    assert ["#", *" ".join(header).split()] in columns
-    assert ["#", "moment", "th", "moment", "phi-2*th"] in columns
-    assert lines[-2].endswith("energies, moments and the Hessian's eigenvalues in their product")
-    assert lines[-1].startswith(
-        "torsion deflection: angle - rest; moment: k sin(deflection), positive where"
-    )
-    assert not any("moment" in line for line in solve(rho=1).table().splitlines())
