@@ -14,18 +14,13 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from flint import fmpq
 
 import ptmcad
 from ptmcad.answer.regionmap import Component, Kind, Status
 from ptmcad.errors import ConfigError, DegenerateSliceError
-from ptmcad.exact.models.modelsystem import elements_of, system_from
-from ptmcad.exact.models.system import at_point, polynomial_at
+from ptmcad.exact.models.modelsystem import elements_of
 from ptmcad.exact.stages import problem_of, variety_of
-from ptmcad.model import ClosedMechanism
 from ptmcad.model.compile import compiled
-from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.verification.derivation import coordinates_of, derivation_at
 
 FOUR_BAR: dict[str, Any] = {
     "name": "four_bar",
@@ -185,50 +180,6 @@ def test_a_slider_is_an_unknown_on_the_line() -> None:
         assert sum(bool(e.stable) for e in found.equilibria) == rising
         total = sum(int((np.sign(f) != np.sign(np.roll(f, -1))).sum()) for f in slopes)
         assert len(found.equilibria) == total
-
-
-LINE_FIRST = {**SLIDER_CRANK, "name": "line_first", "unknowns": {"x": "length", "th": "angle"}}
-
-
-@pytest.mark.parametrize(
-    "mechanism", [FOUR_BAR, SLIDER_CRANK, LINE_FIRST, PLATFORM, FIVE_BAR], ids=lambda m: m["name"]
-)
-def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
-    """The engines', of formulas, and the checker's, of polynomials."""
-    model = ptmcad.Mechanism(mechanism)
-    assert isinstance(model, ClosedMechanism)
-    values = {n: Fraction(3 + k, 5 + 2 * k) for k, n in enumerate(model.variables)}
-    theirs, system = derivation_at(model, values), system_from(model)
-    numbers = {n: from_fraction(v) for n, v in values.items()}
-    ours = [
-        *at_point(system, numbers)[0],
-        *(polynomial_at(system, p, numbers) for p in system.stability),
-    ]
-    assert not system.inequalities
-    for t in ((2, 7, 5), (-3, 4, -1)):
-        place = {}
-        for k, angle in enumerate(model.angles):
-            u = fmpq(t[k], t[2])
-            place[f"cos_{angle}"], place[f"sin_{angle}"] = (
-                (1 - u * u) / (1 + u * u),
-                2 * u / (1 + u * u),
-            )
-        place |= {name: fmpq(t[1] + n, 3) for n, name in enumerate(model.reals)}
-        at = list(place.values())
-        mine = []
-        for p in ours:
-            total = fmpq(0)
-            for powers, c in p.items():
-                term = c
-                for x, e in zip(at, powers, strict=True):
-                    term *= x**e
-                total += term
-            mine.append(total)
-        checked = [
-            p(*(place[name] for name in coordinates_of(model)))
-            for p in (*theirs.equations, *theirs.stability)
-        ]
-        assert checked == mine
 
 
 @pytest.mark.parametrize(
