@@ -653,47 +653,6 @@ def test_a_kill_of_both_between_two_steps(tmp_path: Path, step: int) -> None:
     assert running.files() == files
 
 
-def killed_at_random(folder: Path, formats: str, times: int, seed: int) -> None:
-    """Replace one result by another and kill the program meanwhile, over and over.
-
-    The span of the moments follows the run time, whatever the machine's load: longer after a run
-    that was killed too early to change anything, shorter after one that came to its end.
-    """
-    out = folder / "out"
-    kinds: dict[str, dict[str, bytes]] = {}
-    span = 0.0
-    for count in ("total", "stable"):
-        started = time.monotonic()
-        completed(out, formats, count)
-        span = time.monotonic() - started
-        kinds[count] = contents(out)
-    assert kinds["total"] != kinds["stable"]
-    moments = random.Random(seed)
-    seen = []
-    for k in range(times):
-        before = contents(out)["fig2.json"]
-        then = "total" if before == kinds["stable"]["fig2.json"] else "stable"
-        process = begun(out, formats, then)
-        time.sleep(moments.uniform(0, span))
-        (os.killpg if k % 2 else os.kill)(process.pid, signal.SIGKILL)
-        process.communicate(timeout=60)  # standard error is closed when both processes have ended
-        after = contents(out)
-        whole = {
-            name: [kind for kind, files in kinds.items() if files[name] == text]
-            for name, text in after.items()
-        }
-        assert any(after.items() <= files.items() for files in kinds.values()), (k, whole)
-        assert "fig2.json" in after
-        changed = after["fig2.json"] != before
-        span *= 0.8 if changed else 1.1
-        seen.append(changed)
-    assert set(seen) == {True, False}, (
-        "the moments were all too early or all too late to show anything"
-    )
-    completed(out, formats, "total")
-    assert sorted(os.listdir(out)) == sorted(kinds["total"])
-
-
 def begun(out: Path, formats: str, count: str) -> Started:
     """The program, which has imported all that it needs: before that it touches nothing, so that no
     kill tells much.
@@ -705,23 +664,6 @@ def begun(out: Path, formats: str, count: str) -> Started:
         ["classify", str(FIG2), *options],
         (*ALWAYS, "ptmcad.ask.classification", "ptmcad.exact.exactmap"),
     )
-
-
-def completed(out: Path, formats: str, count: str) -> None:
-    process = begun(out, formats, count)
-    process.communicate()
-    assert process.returncode == 0
-
-
-def contents(out: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in out.iterdir() if not path.name.startswith(".")}
-
-
-@linux
-@pytest.mark.parametrize("times", [10, pytest.param(50, marks=pytest.mark.slow)])
-def test_killed_at_random_moments(tmp_path: Path, times: int) -> None:
-    """The old result or the new one, whole; and a later run clears what was left."""
-    killed_at_random(tmp_path, "json", times, seed=1)
 
 
 def test_stale_temporary_files_go_and_live_ones_stay(tmp_path: Path) -> None:
