@@ -7,7 +7,6 @@ degree that was too high to be looked at once.
 
 from __future__ import annotations
 
-import pickle
 import re
 from dataclasses import replace
 from fractions import Fraction
@@ -21,13 +20,11 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError, GeometryError, PtmcadError
 from ptmcad.exact.exactmap import exact_map
 from ptmcad.model import Kind
-from ptmcad.question import domain
-from ptmcad.question.config import load, slice_from_mapping
+from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.domain import proved, sign_of
-from ptmcad.question.positivity import decide
-from ptmcad.question.signs import PROVED, Subject, Verdict
+from ptmcad.question.signs import Subject
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.text.expressions import Expression, axis, constant
+from ptmcad.text.expressions import axis, constant
 from ptmcad.text.parsing import parse
 from ptmcad.text.tree import Negative
 
@@ -175,31 +172,6 @@ def test_undecided_is_read_but_not_certified() -> None:
         engine.certified_map(slice)
     with pytest.raises(GeometryError, match="not proved that L1 is positive"):
         exact_map(slice_from_mapping(record(L1="(m^3 + n^3 - m*n - 1/7)^2 + 1e-40")))
-
-
-@pytest.mark.parametrize("name", ["fig4", "free02"])
-def test_what_a_reader_has_proved_no_engine_proves_again(
-    monkeypatch: pytest.MonkeyPatch, name: str
-) -> None:
-    slice = load(name)
-    asked: list[object] = []
-
-    def decided(function: Expression, *given: Any) -> Verdict:
-        asked.append(function)
-        return decide(function, *given)
-
-    monkeypatch.setattr(domain, "decide", decided)
-    once = proved(slice)
-    # of a parameter that is an axis the reader looks at the axis alone
-    assert all(function in (axis(0), axis(1)) for function in asked)
-    asked.clear()
-    assert proved(once) == slice
-    assert proved(pickle.loads(pickle.dumps(once))) == slice
-    assert not asked
-    assert all(sign.verdict is PROVED for sign in once.signs)
-    assert {sign.subject.text for sign in once.signs if not sign.subject.part} == {
-        *slice.parameters
-    }
 
 
 @pytest.mark.parametrize("changed", ["parameter", "window", "spring"])
