@@ -11,7 +11,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -395,27 +395,6 @@ def test_non_flat_equilibria_at_a_triangle() -> None:
     assert 13 * c1.parts[0] - (p["rho"] - 20 * c2.parts[0]) == p["rho"]
 
 
-@pytest.mark.parametrize(("length2", "rho", "stable"), [
-    (1, 2, (0, 0)), (3, Fraction(1, 2), (1, 0)), (Fraction(1, 4), Fraction(1, 4), (0, 1)), (1, Fraction(1, 2), None),
-])  # fmt: skip
-def test_flat_equilibria_one_by_one(length2: Any, rho: Any, stable: tuple[int, int] | None) -> None:
-    """3.3-three-flat: which of the four is stable, from H by hand; its determinant is not zero
-    (c-singular).
-    """
-    k, length2, rho = 1, Fraction(length2), Fraction(rho)
-    good = []
-    for a in (0, 1):
-        for b in (0, 1):
-            c1, c2 = (-1) ** a, (-1) ** b
-            h11 = 2 * k * rho * c1 - k * length2 * c1 * c2
-            h22 = length2 * (2 * k * rho * c2 - k * c1 * c2)
-            h12 = -k * length2 * c1 * c2
-            assert h11 * h22 - h12**2 != 0
-            if h11 > 0 and h11 * h22 - h12**2 > 0:
-                good.append((a, b))
-    assert good == ([] if stable is None else [stable])
-
-
 def stable_heights(at: Mapping[str, float]) -> list[tuple[float, float]]:
     """(y3, y4) of the stable equilibria, by descent from a grid in floating point."""
     length2, rho, f3, f4 = (at[n] for n in ("L2", "rho", "f3", "f4"))
@@ -482,42 +461,6 @@ def test_three_degrees_of_freedom_at_rational_points() -> None:
         by_angle = [[Fraction(0)] + [Dual.of(x).parts[n] for x in moving] for n in (1, 2)]
         rows = [[Fraction(x) for x in (1, 1, 0, 0, 0)], *by_angle]
         assert sp.Matrix(3, 5, lambda i, j: sp.Rational(*rows[i][j].as_integer_ratio())).rank() == 3  # noqa: B023
-
-
-def elastic_energy(
-    design: Sequence[str], angles: tuple[float, float]
-) -> tuple[float, tuple[float, ...]]:
-    """U/k of (17) in floating point, and the springs' lengths."""
-    rho, length1, length2, free, f3, f4 = map(float, design)
-    a, b = angles
-    x3, y3 = length1 * math.cos(a), length1 * math.sin(a)
-    x4, y4 = rho - length2 * math.cos(b), length2 * math.sin(b)
-    lengths = (math.hypot(x4, y4), math.hypot(x3 - rho, y3), math.hypot(x4 - x3, y4 - y3))
-    return sum((n - free) ** 2 for n in lengths) / 2 - f3 * y3 - f4 * y4, lengths
-
-
-@pytest.mark.parametrize("design", [AT_ELIMINATED, TWELVE, TWENTY_SIX], ids=[6, 12, 26])
-def test_stable_and_tense_by_difference_quotients(design: Sequence[str]) -> None:
-    """5.2-acceptable: stability and lengths at the poses, from the energy alone."""
-    h, found = 1e-4, [0, 0, 0]
-    for e in free.equilibria(design).equilibria:
-        a, b = (float(angle.center) for angle in e.angles)
-        u = {
-            (i, j): elastic_energy(design, (a + i * h, b + j * h))[0]
-            for i in (-1, 0, 1)
-            for j in (-1, 0, 1)
-        }
-        h11, h22 = u[1, 0] + u[-1, 0] - 2 * u[0, 0], u[0, 1] + u[0, -1] - 2 * u[0, 0]
-        h12 = (u[1, 1] + u[-1, -1] - u[1, -1] - u[-1, 1]) / 4
-        stable, tense = (
-            h11 > 0 and h11 * h22 > h12**2,
-            min(elastic_energy(design, (a, b))[1]) > float(design[3]),
-        )
-        found[0] += stable
-        found[1] += stable and not tense
-        found[2] += tense and not stable
-    expected = free.numbers(design)
-    assert found == [expected["stable"], expected["short"], expected["loose"]]
 
 
 def test_real_roots_by_isolation() -> None:
