@@ -67,30 +67,6 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     return calls
 
 
-def test_the_check_of_a_map_to_go_on_from_is_part_of_the_time_limit(
-    engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    """The check is made to take 1000 seconds by the clock that is read; of 3600 there are 2600
-    left.
-    """
-    assert run(["classify", *HAND, "--out", str(tmp_path)]) == 0
-    clock = {"ahead": 0}
-    real = time.monotonic
-    monkeypatch.setattr(time, "monotonic", lambda: real() + clock["ahead"])
-
-    def slow(result: RegionMap) -> str:
-        clock["ahead"] += 1000
-        return ""
-
-    monkeypatch.setattr("ptmcad.verification.certified.certificate.contradiction", slow)
-    options = ["--out", str(tmp_path), "--resume", str(tmp_path / SAVED), "--timeout"]
-    for limit, least, most in (("3600", 2400, 2600), ("600", 0, 1)):
-        engine.clear()
-        begun = perf_counter()
-        assert run(["classify", *HAND, *options, limit]) == 0
-        assert least <= engine["options"].deadline - begun <= most + (perf_counter() - begun)
-
-
 def test_auto_gives_free_lengths_to_the_certified_engine(engine: dict[str, Any]) -> None:
     before = perf_counter()
     result = ptmcad.classify(free_slice(), tolerance="1/50", timeout=100, jobs=2, count="total")
