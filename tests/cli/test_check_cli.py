@@ -62,27 +62,6 @@ def test_all_faults_are_printed_one_a_line(
     assert capsys.readouterr().err == f"{lines[0]} (and 8 more: ptmcad check lists them)\n"
 
 
-def test_values_are_checked_together_and_faults_do_not_follow_from_others() -> None:
-    """k2 depends on a faulty one and is not judged; the circle is named once."""
-    with pytest.raises(ConfigError) as caught:
-        slice_from_mapping({
-            "parameters": {"L1": "q", "k2": "1 - L1", "F3": "F4", "F4": "F3", "L2": -1, "rho": 1},
-            "axes": {"rho": [2, 0], "u": [0, 1]},
-        })  # fmt: skip
-    assert [fault.key for fault in caught.value.faults] == [
-        "parameters.rho", "axes.rho", "parameters.L1", "parameters.F3", "parameters.L2",
-    ]  # fmt: skip
-    with pytest.raises(ConfigError) as caught:
-        slice_from_mapping({
-            "parameters": {"L1": "q", "k2": "1 - L1", "L2": -1, "k3": 0}, "axes": {"rho": [0, 2], "u": [0, 1]},
-        })  # fmt: skip
-    assert [fault.key for fault in caught.value.faults] == [
-        "parameters.L1",
-        "parameters.L2",
-        "parameters.k3",
-    ]
-
-
 @pytest.mark.parametrize(
     ("name", "parts"),
     [
