@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import json
 import re
-from itertools import pairwise
 from pathlib import Path
 
 import jsonschema
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from ptmcad.cli import run
-from ptmcad.show.render.rangepicture import spread
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG4 = str(ROOT / "configs" / "fig4.yaml")
@@ -106,20 +102,6 @@ def test_bad_input(arguments: list[str], message: str, capsys: pytest.CaptureFix
     assert message in captured.err
     assert "Traceback" not in captured.err
     assert captured.out == ""
-
-
-@given(st.lists(st.floats(0, 1), min_size=1, max_size=14), st.floats(0.001, 0.03))
-def test_labels_keep_apart_and_inside(places: list[float], half: float) -> None:
-    """Centres are in order, two halves apart, and whole labels lie within the bar, where there is
-    room for all.
-    """
-    centers = spread(sorted(places), half)
-    if 2 * half * len(places) <= 1:
-        assert all(b - a >= 2 * half - 1e-9 for a, b in pairwise(centers))
-        assert centers[0] >= half - 1e-9 and centers[-1] <= 1 - half + 1e-9
-        for place, center in zip(sorted(places), centers, strict=True):
-            if len(places) == 1 and half <= place <= 1 - half:
-                assert center == place
 
 
 FREE02 = str(ROOT / "configs" / "free02.yaml")
