@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
-from ptmcad.algebra import reflections
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 from ptmcad.algebra.reflections import isolate_reflected
 from ptmcad.text.flint_numbers import from_fraction
@@ -85,27 +84,6 @@ def test_roots_are_those_found_without_the_reflection(
             isolate_reflected(p, q, m, d, *window)
         return
     assert the_same(isolate_reflected(p, q, m, d, *window), expected)
-
-
-def test_a_root_on_an_edge_is_outside(monkeypatch: pytest.MonkeyPatch) -> None:
-    """v = +-1, +-2 about 0, in intervals that end there; without the general way to fall back on."""
-    q = with_roots([Fraction(1), Fraction(4)])
-    p = reflected(q, fmpq(0), 1)
-    asked: list[fmpz_poly] = []
-
-    def watched(polynomial: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
-        asked.append(polynomial)
-        return isolate(polynomial, low, high)
-
-    monkeypatch.setattr(reflections, "isolate", watched)
-
-    def inside(low: int, high: int) -> int:
-        return len(isolate_reflected(p, q, fmpq(0), 1, fmpq(low), fmpq(high)))
-
-    assert [inside(-1, 2), inside(-2, 2), inside(-3, 2)] == [1, 2, 3]
-    assert [inside(1, 2), inside(0, 3), inside(-2, -1)] == [0, 2, 0]
-    assert asked
-    assert all(polynomial == q for polynomial in asked)
 
 
 def test_a_multiple_root_outside_of_the_interval_is_no_matter() -> None:
