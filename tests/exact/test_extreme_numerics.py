@@ -17,7 +17,6 @@ import ptmcad
 from ptmcad.algebra import descartes
 from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine
-from ptmcad.algebra.resultants import balanced, discriminant, resultant
 from ptmcad.answer.regionmap import Status
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -161,38 +160,6 @@ def test_long_polynomials_are_refined_to_the_same_root(
     short = refine(RealRoot(p, fmpq(0), fmpq(11)), width)
     assert short.high - short.low < width
     assert short.low == fmpq(m, n) if short.is_rational else short.low < fmpq(m, n) < short.high
-
-
-@settings(max_examples=examples(30), deadline=None)
-@given(
-    st.lists(st.lists(st.integers(-99, 99), min_size=1, max_size=4), min_size=3, max_size=5),
-    st.integers(1, 40), st.integers(0, 40),
-)  # fmt: skip
-def test_balanced_units_change_discriminants_and_resultants_by_a_factor(
-    rows: list[list[int]], a: int, b: int
-) -> None:
-    """p(10^a u, 10^b v), whose coefficients are long: with and without other units."""
-    p = tuple(
-        fmpz_poly([c * 10 ** (a * j + b * i) for j, c in enumerate(row)])
-        for i, row in enumerate(rows)
-    )
-    q = tuple(fmpz_poly([7, 10**a]) * 10 ** (b * i) for i in range(3))
-    if not p[-1] or not any(p):
-        return
-    for own, long in ((lambda f: discriminant(f[0]), [p]), (lambda f: resultant(*f), [p, q])):
-        short, unit = balanced(long)
-        left, right = own(long), own(short)
-        stretched = fmpz_poly([c * unit**j for j, c in enumerate(right.coeffs())])
-        assert (
-            left * stretched.leading_coefficient() == stretched * left.leading_coefficient()
-            if left
-            else not right
-        )
-        assert sum(int(c.height_bits()) for f in short for c in f) <= sum(
-            int(c.height_bits()) for f in long for c in f
-        )
-    ((shorter, *_), unit) = balanced([q])
-    assert unit == 10**a and max(c.height_bits() for c in shorter) < 4
 
 
 @settings(max_examples=examples(30), deadline=None)
