@@ -132,23 +132,6 @@ def check_points(numbers: Numbers, path: PosePath) -> None:
         assert max(jumps) < 0.4
 
 
-@pytest.mark.slow
-def test_unloaded_poses_merge_into_the_flat_one() -> None:
-    """At 2 rho = L2 + 1 the mirror images and the flat saddle between them become the flat stable
-    pose.
-    """
-    found = pose_paths(record("fig2"), "rho", {"L2": "3/2"}, Fraction(6, 5), 1)
-    (path,) = found.paths
-    assert path.upright and path.high.fate is Fate.MERGE
-    assert path.high.at.exact == Fraction(5, 4)  # type: ignore[union-attr]
-    assert path.high.meeting == (0, 0, 1) and path.high.leaving == (0,)
-    assert path.high.target is not None
-    assert all(a.exact == 0 for a in path.high.target.angles)
-    below = pose_paths(record("fig2"), "rho", {"L2": "3/2"}, Fraction(6, 5), 2).paths[0].low
-    assert below.fate is Fate.MERGE and below.target is not None
-    assert [a.text(6) for a in below.target.angles] == ["-3.14159", "0"]
-
-
 def test_the_pose_of_a_merger_at_an_irrational_value_is_told_by_its_symmetry() -> None:
     """V'' = b^2 - 2 at t = 0, which both minima reach at the root of two: V = -1 + 1/4 there."""
     potential = "-(b^2 - 1)*cos(t) + (2*cos(t)^2 - 1)/4 + a - a"
