@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 pytest.importorskip("numba")
 
-from ptmcad.certified.contraction import contract_curve, survives, workspace
+from ptmcad.certified.contraction import survives, workspace
 from ptmcad.certified.equationsystem import EquationSystem, quotients, system
 from ptmcad.certified.linear import contract_linear, space_for
 from ptmcad.formulas.affine import CENTER, ERROR, FIRST, LANES, frame_for, run_affine, set_frame
@@ -212,17 +212,3 @@ def test_rows_keep_every_solution(kind: str) -> None:
             kept += 1
             narrowed += bool((high - low < 0.9 * before).any())
     assert narrowed > kept / 4
-
-
-def test_boxes_without_a_solution_are_discarded_before_their_derivatives_are_small() -> None:
-    """x^2 + y^2 = 1 and its moved copy have two points in common; on the box no equation is far
-    from zero.
-    """
-    graph = Graph()
-    x, y = graph.variable(0), graph.variable(1)
-    circles = [x.squared() + y.squared() - 1, (x - Fraction(1, 10)).squared() + y.squared() - 1]
-    arguments = system(circles, (0, 1)).arguments()
-    work, space = workspace(arguments, 2), space_for(arguments, 2)
-    low, high = np.array([0.5, 0.6]), np.array([0.8, 0.9])
-    assert survives(arguments, low, high, work)
-    assert not contract_curve(arguments, low, high, work, space)
