@@ -104,63 +104,6 @@ def test_lines_on_which_the_loop_folds_flat() -> None:
     }
 
 
-def minima_along(
-    L1: float, L2: float, L3: float, b: float, F: float, G: float, steps: int = 20000
-) -> int:
-    """Minima of the energy on the loop's curve: each closed piece of it, by a fine run through th1
-    and both assemblies.
-
-    Pieces on which the coupler's two assemblies meet are run through on one and back on the other.
-    """
-    th1 = 2 * math.pi * (np.arange(steps) + 0.5) / steps
-    px, py = L1 * np.cos(th1), L1 * np.sin(th1)
-    dx, dy = px - b, py
-    far = np.hypot(dx, dy)
-    cosine = (L2**2 + far**2 - L3**2) / (2 * L2 * far)
-    real = np.abs(cosine) < 1
-    energies = []
-    for side in (1, -1):
-        th2 = np.arctan2(dy, dx) + side * np.arccos(np.clip(cosine, -1, 1))
-        qx, qy = b + L2 * np.cos(th2), L2 * np.sin(th2)
-        u = (qx**2 + qy**2) / 2 + ((px - b) ** 2 + py**2) / 2 - F * py - G * qy
-        energies.append(np.where(real, u, np.nan))
-    if real.all():
-        loops = energies
-    else:
-        start = int(np.flatnonzero(real & ~np.roll(real, 1))[0])
-        above, below = (np.roll(u, -start) for u in energies)
-        mask = np.roll(real, -start)
-        ends = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
-        loops = [np.concatenate([above[i:j], below[i:j][::-1]]) for i, j in ends.reshape(-1, 2)]
-    return sum(int(((u < np.roll(u, 1)) & (u < np.roll(u, -1))).sum()) for u in loops)
-
-
-@pytest.mark.slow
-def test_stable_poses_are_the_minima_along_the_loop() -> None:
-    random.seed(7)
-    compared, seen = 0, set()
-    while compared < 25:
-        lengths = [Fraction(random.randrange(5, 30), 10) for _ in range(4)]
-        if 2 * max(lengths) >= sum(lengths):
-            continue  # it cannot be put together
-        if any(
-            sum((n * s for n, s in zip(lengths, signs, strict=False)), Fraction(0)) == lengths[3]
-            for signs in SIGNS
-        ):
-            continue  # it can fold flat
-        loads = [Fraction(random.randrange(-40, 41), 10) for _ in range(2)]
-        names = ("L1", "L2", "L3", "b")
-        numbers = dict(zip((*names, "F", "G"), (*lengths, *loads), strict=True))
-        found = ptmcad.solve({"mechanism": FOUR_BAR, "axes": LOADS["axes"],
-                              "parameters": {n: str(numbers[n]) for n in names}},
-                             F=str(loads[0]), G=str(loads[1]))  # fmt: skip
-        stable = sum(bool(e.stable) for e in found.equilibria)
-        assert stable == minima_along(*map(float, numbers.values())), numbers
-        compared += 1
-        seen.add(stable)
-    assert len(seen) > 2
-
-
 def test_a_slider_is_an_unknown_on_the_line() -> None:
     """With x = r cos th + s (l^2 - r^2 sin^2 th)^(1/2), on one side s = 1 and on the other s = -1,
     as r < l.
