@@ -348,27 +348,6 @@ def test_bad_records_are_refused_with_their_place(
     assert "\n" not in str(error)
 
 
-def test_files_that_are_no_records(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="no such file"):
-        load(tmp_path / "missing.yaml")
-    with pytest.raises(ConfigError, match="is a folder"):
-        load(tmp_path)
-    with pytest.raises(ConfigError, match="cannot be read"):
-        load("a\0b")
-    binary = tmp_path / "picture.yaml"
-    binary.write_bytes(b"\x89PNG\r\n\x1a\n\xff\xfe")
-    with pytest.raises(ConfigError, match="not UTF-8"):
-        load(binary)
-    binary.write_bytes(b"axes: \xff\n")
-    with pytest.raises(ConfigError, match=r"picture\.yaml:1: is not UTF-8"):
-        load(binary)
-    binary.write_bytes(b"#" * 200_001)
-    with pytest.raises(ConfigError, match="larger than"):
-        load(binary)
-    binary.write_bytes("\ufeff".encode() + AXES.encode())
-    assert load(binary).axis_names == ("rho", "L2")
-
-
 @pytest.mark.parametrize("file", ["con.yaml", "Aux.v2.yaml", "COM1.yaml"])
 def test_a_record_whose_name_is_a_device_has_to_give_another(tmp_path: Path, file: str) -> None:
     """Its results would have names that Windows cannot read."""
