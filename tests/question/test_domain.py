@@ -10,13 +10,11 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from ptmcad.ask.lines.along import certified_intervals
-from ptmcad.cli import run
 from ptmcad.errors import ConfigError, GeometryError, PtmcadError
 from ptmcad.exact.exactmap import exact_map
 from ptmcad.model import Kind
@@ -57,25 +55,6 @@ def refused(**parameters: object) -> str:
     with pytest.raises(ConfigError) as caught:
         slice_from_mapping(record(**parameters))
     return str(caught.value)
-
-
-def test_the_reviewed_slice_ends_with_the_place_and_status_2(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """It gave a certified cell with 0 stable poses around a point with 2: l0_3 is negative there."""
-    path = tmp_path / "reviewed.yaml"
-    path.write_text(
-        'parameters: {L1: 1, L2: 1, k: 100, F3: -3, F4: -5, l0_1: 0, l0_2: 0, l0_3: "1/10 - m^13"}\n'
-        "axes: {rho: [1, 3/2], m: [1/2, 11/10]}\ncount: stable\n"
-    )
-    assert run(["classify", str(path), "--tolerance", "1/50", "--out", str(tmp_path)]) == 2
-    told = capsys.readouterr().err
-    assert (
-        "parameters.l0_3: a free length must not be negative in the whole window, but l0_3 is -"
-        in told
-    )
-    assert "at rho = 5/4, m = " in told
-    assert not list(tmp_path.glob("*.json"))
 
 
 @pytest.mark.parametrize("dip", DIPS)
