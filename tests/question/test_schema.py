@@ -16,7 +16,7 @@ import yaml
 from support.document_keys import changed_keys
 from support.shipped_records import EXACT
 
-from ptmcad import RegionMap, classify, load, slice_variety
+from ptmcad import RegionMap, classify, load
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.model import ptm
 from ptmcad.model.reading import MAX_BODIES, MAX_UNKNOWNS
@@ -168,7 +168,6 @@ def test_wrong_records_do_not_validate(record: dict[str, Any]) -> None:
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 RESULT = json.loads((DOCS / "region-map.schema.json").read_text(encoding="utf-8"))
-VARIETY = json.loads((DOCS / "variety.schema.json").read_text(encoding="utf-8"))
 
 
 QUICK = ("fig2", "fig4", "forces", "rods")
@@ -188,21 +187,6 @@ def test_shipped_results_validate(path: Path, shipped: Callable[..., RegionMap])
     jsonschema.validate(
         json.loads(shipped(path.stem).to_json()), RESULT, cls=jsonschema.Draft202012Validator
     )
-
-
-@pytest.mark.parametrize("name", ["systems/cubic", "systems/schloegl", "mechanisms/two-bar-chain"])
-@pytest.mark.slow_cases("mechanisms/two-bar-chain")
-def test_results_of_other_models_validate_and_hold_their_records_description(
-    name: str, shipped: Callable[..., RegionMap]
-) -> None:
-    found = shipped(name)
-    document = json.loads(found.to_json())
-    jsonschema.validate(document, RESULT, cls=jsonschema.Draft202012Validator)
-    variety = json.loads(slice_variety(found.slice).text("json"))
-    jsonschema.validate(variety, VARIETY, cls=jsonschema.Draft202012Validator)
-    (key,) = {"mechanism", "system"} & document["slice"].keys()
-    own = jsonschema.Draft202012Validator({**SCHEMA["$defs"][key], "$defs": SCHEMA["$defs"]})
-    own.validate(document["slice"][key])
 
 
 def partial_map() -> RegionMap:
