@@ -17,7 +17,6 @@ from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from random import Random
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -28,12 +27,11 @@ from support.free_length_equilibria import free_length_equilibria
 from support.maps import once_per_run
 
 from ptmcad.answer.regionmap import Merge, Status
-from ptmcad.studies.paper import claim, free, maps, statements
+from ptmcad.studies.paper import claim, free, maps
 from ptmcad.studies.paper.claim import TEXTS, Claim, Verdict, judge, texts
 from ptmcad.studies.paper.maps import FIGURES, region_map
 from ptmcad.studies.paper.squaring import squared
 from ptmcad.studies.paper.statements import expression, holds
-from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import to_fraction
 
 SECTIONS = (
@@ -605,20 +603,6 @@ def test_six_equilibria_would_not_refute() -> None:
     )
 
 
-@pytest.mark.parametrize(("numbers", "verdict"), [
-    ((12, 30, 20), Verdict.CONFIRMED), ((11, 20), Verdict.CORRECTED), ((20, 31), Verdict.CORRECTED),
-    ((11, 31), Verdict.UNDECIDED),
-])  # fmt: skip
-def test_verdict_on_real_roots_follows_the_numbers(
-    monkeypatch: pytest.MonkeyPatch, numbers: tuple[int, ...], verdict: Verdict
-) -> None:
-    given = CLAIMS["5.2-real"]["with"]
-    found = iter(numbers)
-    monkeypatch.setattr(free, "squared", lambda _design: SimpleNamespace(real_roots=next(found)))
-    some = {**given, "designs": given["designs"][: len(numbers)]}
-    assert changed("5.2-real", **{"with": some}).verdict is verdict
-
-
 def test_tense_springs_everywhere_would_not_confirm(monkeypatch: pytest.MonkeyPatch) -> None:
     """5.2-acceptable says that both conditions have to be verified: were all stable poses tense,
     one would do.
@@ -660,25 +644,6 @@ def test_a_general_count_that_is_not_general_corrects_nothing(
     seen = maps.seen_counts()
     monkeypatch.setattr(maps, "seen_counts", lambda: seen | {(5, 2)})
     assert changed("3.3-others").verdict is Verdict.UNDECIDED
-
-
-def test_a_rod_that_does_not_move_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """2-dof rests on the model's nodes."""
-    at = dict(statements.points()) | {"A3": statements.points()["A2"]}
-    monkeypatch.setattr(statements, "points", lambda: at)
-    assert statements.independent() == 2
-
-
-def test_a_place_that_is_not_one_would_not_be_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """4.3-widest: another place of the maximum decides nothing, and a wider row refutes."""
-    found = maps.over_length()
-    monkeypatch.setattr(maps, "over_length", lambda: dataclasses.replace(found, maxima=()))
-    assert changed("4.3-widest").verdict is Verdict.UNDECIDED
-    widths = maps.row_widths()
-    monkeypatch.setattr(
-        maps, "row_widths", lambda: widths | {Fraction(3, 2): Enclosure(Fraction(1), Fraction(1))}
-    )
-    assert changed("4.3-widest").verdict is Verdict.REFUTED
 
 
 def test_proven_links_keep_the_counts() -> None:
