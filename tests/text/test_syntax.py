@@ -98,27 +98,6 @@ def test_the_longest_numbers_are_printed_as_they_are_read(text: str) -> None:
     assert without_positions(parse(to_text(parse(text)))) == without_positions(parse(text))
 
 
-@pytest.mark.parametrize(
-    ("text", "tree"),
-    [
-        ("a - b + c", Chain(Name("a"), (Step("-", Name("b"), 2), Step("+", Name("c", 8), 6)))),
-        ("-x^2", Negative(Power(Name("x"), Number(Fraction(2)), 2))),
-        (
-            "2^3^2",
-            Power(Number(Fraction(2)), Power(Number(Fraction(3)), Number(Fraction(2)), 3), 1),
-        ),
-        ("cos(th2 - th1)", Call("cos", Chain(Name("th2"), (Step("-", Name("th1")),)))),
-        ("cos", Name("cos")),
-        ("+5", Number(Fraction(5))),
-        ("(a + b) + c", Chain(Chain(Name("a"), (Step("+", Name("b")),)), (Step("+", Name("c")),))),
-        ("2*a/b", Chain(Number(Fraction(2)), (Step("*", Name("a")), Step("/", Name("b"))))),
-        ("1.5e-1", Number(Fraction(3, 20))),
-    ],
-)
-def test_shapes(text: str, tree: Tree) -> None:
-    assert without_positions(parse(text)) == without_positions(tree)
-
-
 def test_positions() -> None:
     tree = parse("rho - L2*cos(th2)^2")
     match tree:
@@ -159,12 +138,6 @@ class Value:
 
     def power(self, base: Fraction, power: Power, exponent: Fraction) -> Fraction:
         return Fraction(base**exponent)
-
-
-def test_an_interpretation_is_asked_from_left_to_right() -> None:
-    value = Value()
-    assert interpret(parse("a - b*c/2 + -sin(d)^2"), value) == 97 - Fraction(98 * 99, 2) - 200**2
-    assert value.asked == ["a", "b", "c", "*", "/", "-", "d", "+"]
 
 
 def test_a_long_sum_is_shallow() -> None:
