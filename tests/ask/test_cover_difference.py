@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from math import hypot
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from support.maps import part_of_free02, shipped
 
 from ptmcad.answer.comparison import Comparison
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.cli import run
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.colours import UNDETERMINED
@@ -211,3 +213,20 @@ def test_what_cannot_be_compared_is_said() -> None:
     with pytest.raises(ConfigError, match="not the same units"):
         metres.compare(feet)
     assert metres.compare(own).changes == ()
+
+
+def test_the_damaged_file_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    whole = circle(5)
+    # the sample of the inner region is put into the outer one
+    outer = next(c for c in whole.cells if c.stable == 2)
+    damaged = replace(whole, cells=tuple(replace(c, sample=outer.sample) for c in whole.cells))
+    files = {"whole": whole, "damaged": damaged}
+    for name, result in files.items():
+        (tmp_path / f"{name}.json").write_text(result.to_json())
+    (tmp_path / "cut.json").write_text(whole.to_json()[:-100])
+    for other, reason in (("damaged", "contradicts itself"), ("cut", "damaged")):
+        for pair in (("whole", other), (other, "whole")):
+            one, two = (str(tmp_path / f"{name}.json") for name in pair)
+            assert run(["plot", one, "--compare", two]) == 2
+            said = capsys.readouterr().err
+            assert f"{other}.json" in said and "whole.json" not in said and reason in said

@@ -14,6 +14,7 @@ import sympy
 
 import ptmcad
 from ptmcad.errors import ConfigError
+from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.model import described
 
 PENDULUM: dict[str, Any] = {
@@ -119,6 +120,33 @@ def test_the_steps_one_by_one() -> None:
     assert set(points) == {cell.sample for cell in result.cells}
     for point in points:
         assert ptmcad.counts_at(system, **dict(point)).total == result.locate(**dict(point)).total
+
+
+def test_what_is_wrong_is_said() -> None:
+    with pytest.raises(ConfigError) as caught:
+        ptmcad.Mechanism(
+            {**PENDULUM, "springs": [{"between": ["O", "Q"], "k": "K"}], "bars": [["G", "P"]]}
+        )
+    assert [fault.key for fault in caught.value.faults] == [
+        "mechanism.springs.1.between", "mechanism.springs.1.k", "mechanism.bars.1",
+    ]  # fmt: skip
+    with pytest.raises(ConfigError, match=r"use ptmcad\.System"):
+        ptmcad.Mechanism(unknowns={"x": "real"}, equations=["x"])
+    with pytest.raises(ConfigError, match="expected a mapping"):
+        ptmcad.System("x^3")  # type: ignore[arg-type]
+    with pytest.raises(ConfigError, match="is not an exact number"):
+        ptmcad.Mechanism({**PENDULUM, "points": {**PENDULUM["points"], "O": [object(), 0]}})
+    with pytest.raises(
+        ConfigError,
+        match=r"system\.equations\.1: <class 'int'> of type type is not an exact number",
+    ):
+        ptmcad.System(unknowns={"x": "real"}, equations=[int])
+    with pytest.raises(ConfigError, match="unknown parameter 'K'"):
+        ptmcad.counts_at(ptmcad.Mechanism(PENDULUM), K=1)
+    with pytest.raises(ConfigError, match=r"use ptmcad\.solve"):
+        ptmcad.counts_at(ptmcad.slice_from_options(slice="rho,L2").model, l0="1/5")
+    with pytest.raises(DegeneratePoint, match="singular"):
+        ptmcad.counts_at(ptmcad.Mechanism(PENDULUM), W=1)
 
 
 def test_sympy_is_not_loaded() -> None:

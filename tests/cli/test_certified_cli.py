@@ -24,6 +24,7 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli import run
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import LimitReached
 from ptmcad.options import Options
 from ptmcad.process.handover import Own, Topic, received
@@ -65,6 +66,21 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         "ptmcad.verification.certified.certificate.contradiction", lambda result: ""
     )
     return calls
+
+
+def test_a_map_that_contradicts_itself_is_not_gone_on_from(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without its rectangles the cells of a map are not parted, and everything would pass as
+    decided.
+    """
+    false = replace(
+        certified_map(), slice=free_slice(), cover=Cover(certified_map().cover.steps, ())
+    )
+    path = tmp_path / "false.json"
+    path.write_text(false.to_json(), encoding="utf-8")
+    assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(path)]) == 2
+    assert "contradicts itself" in capsys.readouterr().err
 
 
 def test_auto_gives_free_lengths_to_the_certified_engine(engine: dict[str, Any]) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from support.maps import shipped
 
-from ptmcad.cli import COMMANDS, group
+from ptmcad.cli import COMMANDS, group, run
 from ptmcad.cli.completion import answer
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -164,3 +164,18 @@ def test_values_of_maps_and_palettes_are_proposed(
     assert told(["plot", str(stored), "--palette", "white,or"], monkeypatch, capsys) == [
         "white,orange"
     ]
+
+
+def test_options_without_effect_on_pictures_say_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stored = tmp_path / "fig2.json"
+    stored.write_text(shipped("fig2").to_json())
+    assert run(["plot", str(stored), "--format", "csv", "--size", "3x3in"]) == 0
+    assert "--size has no effect here: no picture is written" in capsys.readouterr().err
+    compare = ["plot", str(stored), "--compare", str(stored), "--samples", "--legend", "right"]
+    assert run(compare) == 0
+    said = capsys.readouterr().err
+    assert "--samples has no effect" in said and "--legend has no effect" in said
+    assert run(["classify", FIG4, "--set", "F3=F", "--free", "F=-40:0", "--members", "abc"]) == 2
+    assert "abc is neither how many members there are" in capsys.readouterr().err

@@ -63,6 +63,23 @@ def test_json_is_written_with_the_digits_asked_for(
 
 
 @pytest.mark.parametrize(
+    ("at", "status"),
+    [("rho=0", 3), ("L2=4/3,rho=2/5,F3=-320/3,F4=-60", 0)],
+    ids=["infinitely-many", "degenerate"],
+)
+@pytest.mark.slow_cases("degenerate")
+def test_special_points_are_answers(
+    at: str, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The exit status tells where there are no poses."""
+    assert run(["solve", "--at", at, "--landscape", "--out", str(tmp_path)]) == status
+    out, error = capsys.readouterr()
+    assert "infinitely many equilibria" in out or "1 degenerate, on the variety" in out
+    assert ("undecided: infinitely many equilibria" in error) is (status == 3)
+    assert [path.name for path in tmp_path.iterdir()] == ["poses-landscape.png"]
+
+
+@pytest.mark.parametrize(
     ("arguments", "message"),
     [
         ([], "error: give a point, as in --at L1=1,L2=3/2"),

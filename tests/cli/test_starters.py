@@ -106,3 +106,13 @@ def test_indices_of_one_angle_are_listed(
         == 0
     )
     assert "(2, 2)" in capsys.readouterr().out
+
+
+def test_a_missing_folder_is_made(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "new" / "folder" / "mine.yaml"
+    assert run(["init", "--out", str(path)]) == 0
+    assert path.read_text(encoding="utf-8")
+    capsys.readouterr()
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    assert run(["init", "--out", str(tmp_path / "file" / "mine.yaml")]) == 2
+    assert f"the folder {tmp_path / 'file'} cannot be made" in capsys.readouterr().err
