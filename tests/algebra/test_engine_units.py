@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 from support.counting import system_of
 from support.examples import examples
 from support.maps import CONFIGS, shipped
-from support.poles import power_trace_denominators
 from support.signatures import signature
 
 from ptmcad import load
@@ -28,12 +27,10 @@ from ptmcad.algebra.polynomials import (
     coefficients_in,
     evaluate,
     from_expression,
-    irreducible_factors,
     to_plane,
 )
 from ptmcad.algebra.quotient_algebra import (
     LINE,
-    multiplication_denominator,
     poles,
     quotient_algebra,
     trace_form,
@@ -50,7 +47,6 @@ from ptmcad.algebra.resultants import discriminant, resultant
 from ptmcad.answer.regionmap import Kind
 from ptmcad.exact.discriminant_variety import algebra_of
 from ptmcad.exact.models.system import SliceSystem, on_slice
-from ptmcad.exact.stages import problem_of
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 X, Y = PLANE.gens()
@@ -298,25 +294,6 @@ def test_basis_specialises_to_flints(name: str) -> None:
         assert {frozenset((m, str(c)) for m, c in e.items()) for e in ours} == {
             frozenset((m, str(c)) for m, c in e.items()) for e in theirs
         }
-
-
-@pytest.mark.parametrize("name", ["forces", "mechanisms/two-bar-chain", "systems/orthogonal-3r"])
-@pytest.mark.fast_cases("systems/orthogonal-3r")
-def test_poles_by_characteristic_polynomials_are_those_by_power_traces(name: str) -> None:
-    problem = problem_of(load(CONFIGS / f"{name}.yaml"))
-    equations = on_slice(problem.system, problem.on.parameters)
-    algebra = quotient_algebra(
-        groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns))))
-    )
-    assert algebra is not None
-    suspects = irreducible_factors(multiplication_denominator(algebra))
-    traces = [power_trace_denominators(algebra, k) for k in equations.unbounded]
-    found = poles(algebra, suspects, equations.unbounded)
-    assert 0 < len(found) < len(suspects)
-    assert set(map(str, found)) == {
-        str(f) for f in suspects if any((t % f).is_zero() for t in traces)
-    }
-    assert set(map(str, poles(algebra, [], equations.unbounded, suspects))) == set(map(str, found))
 
 
 def test_a_pole_that_the_line_does_not_show_is_found_in_the_plane() -> None:
