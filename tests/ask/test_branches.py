@@ -13,8 +13,7 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.branches import Branch, Branches
-from ptmcad.ask.lines import diagram as module
-from ptmcad.ask.lines.diagram import branch_diagram, solutions_on_line
+from ptmcad.ask.lines.diagram import branch_diagram
 from ptmcad.ask.quantities import OPTION, of_pose, quantities, quantity
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
@@ -146,28 +145,6 @@ def test_both_commands_say_that_there_is_no_energy(read: Callable[[Slice, str], 
 def test_a_barrier_is_no_number_of_a_pose() -> None:
     with pytest.raises(ConfigError, match="`ptmcad map --value barrier` has it"):
         quantity(load(FIG4).model, "barrier")
-
-
-def test_a_line_is_solved_once_for_several_diagrams(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[Fraction] = []
-    own = module.poses_at
-
-    def counted(model: Any, parameters: dict[str, Fraction], digits: int) -> Any:
-        asked.append(parameters["rho"])
-        return own(model, parameters, digits)
-
-    monkeypatch.setattr(module, "poses_at", counted)
-    monkeypatch.setattr(module, "SAMPLES", 8)
-    slice = ptmcad.slice_from_options(FIG4, ranges=["rho=1:5/4"])
-    line = solutions_on_line(slice, "rho", {"L2": "3/2"})
-    one, two = (
-        branch_diagram(slice, "rho", {"L2": "3/2"}, [name], line=line) for name in ("th1", "energy")
-    )
-    assert len(asked) == len(set(asked)) > 8
-    assert [[p.value for p in b.points] for b in one.branches] == [
-        [p.value for p in b.points] for b in two.branches
-    ]
-    assert two == branch_diagram(slice, "rho", {"L2": "3/2"}, ["energy"])
 
 
 def test_numbers_of_a_pose() -> None:
