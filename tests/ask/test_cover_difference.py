@@ -11,7 +11,6 @@ from fractions import Fraction
 from math import hypot
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -24,10 +23,6 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli import run
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.colours import UNDETERMINED
-from ptmcad.show.render.comparing import comparison_figure
-from ptmcad.show.render.printing import settings as printing_settings
-from ptmcad.show.style import styled
 
 Label = Callable[[Fraction, Fraction], int | None]
 """The count at a point of the unit square; None where it is undetermined."""
@@ -173,32 +168,6 @@ def test_any_covers_of_two_lattices(
     assume(all(flooded(cover) for cover in covers))  # something is outside each of them
     (first, before), (second, after) = map(random_map, covers)
     check(first.compare(second), sampled(before, after, SIDE), Fraction(4, SIDE**2))
-
-
-def test_the_picture_shows_the_changes_where_they_are() -> None:
-    found = circle(6).compare(ellipse(6))
-    style = styled(size="9x4.5in", font_size=8)
-    with printing_settings(style):
-        made = comparison_figure(found, 100, style)
-    said = [text.get_text() for text in made.texts]
-    assert {"3 → 2", "2 → 3", "by one map or both"} <= set(said)
-    ground = next(a for a in made.axes[2].get_children() if a.get_gid() == "2-undetermined")
-    assert ground.get_facecolor()[:3] == pytest.approx(
-        [int(UNDETERMINED.face[k : k + 2], 16) / 255 for k in (1, 3, 5)]
-    )
-    for change in found.changes:
-        (patch,) = [
-            a for a in made.axes[2].get_children() if a.get_gid() == f"2-region-{change.region}"
-        ]
-        path = patch.get_path()
-        inside = np.clip(path.vertices, 0, 1)  # outlines on the frame are drawn beyond it
-        parts = np.split(inside, np.flatnonzero(path.codes == path.MOVETO)[1:])
-        # polygons around holes turn the other way
-        area = sum(
-            0.5 * float(np.sum(p[:, 0] * np.roll(p[:, 1], -1) - np.roll(p[:, 0], -1) * p[:, 1]))
-            for p in parts
-        )
-        assert 4 * area == pytest.approx(float(change.area[0]), rel=0.02)
 
 
 def test_what_cannot_be_compared_is_said() -> None:
