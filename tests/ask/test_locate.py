@@ -101,23 +101,6 @@ def test_on_rational_critical_abscissae(name: str) -> None:
                     assert found.index == oracle.count(parameters)
 
 
-def test_a_rational_critical_abscissa_off_the_curves() -> None:
-    """fig2's lines meet on the edge over L2 = 1: the stacks end there, the points over it lie in
-    cells all the same.
-    """
-    result = shipped("fig2")
-    rational = [v.low for v in result.critical_values if v.low == v.high]
-    name = result.slice.axis_names[result.base]
-    other = result.slice.axis_names[1 - result.base]
-    exact = rational or [Fraction(1)]
-    for u in exact:
-        for v in ("1/7", "3/7", "13/9", "3", "7/2"):
-            found = result.locate(**{name: u, other: v})
-            length, rho = (u, Fraction(v)) if name == "L2" else (Fraction(v), u)
-            if found.status is Status.EXACT:
-                assert found.stable == (2 if abs(length - 1) < 2 * rho < length + 1 else 1)
-
-
 def test_a_float_stands_for_its_shortest_decimal() -> None:
     """fig. 2 has a wall on 2 rho = L2 + 1, which the binary value of the float 0.7, a little less
     than 7/10, misses.
