@@ -5,13 +5,11 @@ slowly, the engine.
 from __future__ import annotations
 
 import io
-import json
 import math
 import os
 import sys
 import time
 from dataclasses import replace
-from fractions import Fraction
 from pathlib import Path
 from time import perf_counter
 from types import ModuleType
@@ -83,21 +81,6 @@ def test_a_map_that_contradicts_itself_is_not_gone_on_from(
     assert "contradicts itself" in capsys.readouterr().err
 
 
-def test_auto_gives_free_lengths_to_the_certified_engine(engine: dict[str, Any]) -> None:
-    before = perf_counter()
-    result = ptmcad.classify(free_slice(), tolerance="1/50", timeout=100, jobs=2, count="total")
-    options = engine["options"]
-    assert (options.tolerance, options.jobs, options.resume) == (Fraction(1, 50), 2, None)
-    assert before + 100 <= options.deadline <= perf_counter() + 100
-    assert engine["slice"].count is ptmcad.Count.TOTAL
-    assert result.timings.keys() == {"curves", "total"}
-    engine.clear()
-    ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho", ranges=["L2=1:2", "rho=0:1/2"]))
-    assert not engine
-    ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"), engine="certified")
-    assert not engine["slice"].has_free_lengths
-
-
 def test_a_result_to_files_and_on_from_it(
     engine: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -130,24 +113,6 @@ def test_a_result_to_files_and_on_from_it(
     )
     assert engine["options"].resume.cover == certified_map().cover
     assert engine["options"].jobs == 1
-
-
-def test_compilation_is_told_apart(
-    engine: dict[str, Any],
-    monkeypatch: pytest.MonkeyPatch,
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    taken = [38.0, 0.0, 0.0, 0.0]
-    monkeypatch.setattr(
-        sys.modules["ptmcad.certified.loading"], "load", lambda progress, options: taken.pop(0)
-    )
-    assert run(["classify", *HAND, "--out", str(tmp_path)]) == 0
-    assert " s, of which 38 s compilation (once); 28 % undetermined;" in capsys.readouterr().out
-    timings = json.loads((tmp_path / SAVED).read_text(encoding="utf-8"))["timings"]
-    assert timings["compilation"] == 38 and timings["total"] < 38
-    assert run(["classify", *HAND, "--out", str(tmp_path)]) == 0
-    assert "s compilation" not in capsys.readouterr().out
 
 
 def test_the_engine_is_compiled_beforehand(
