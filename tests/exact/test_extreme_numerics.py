@@ -82,27 +82,6 @@ def tests_made(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return made
 
 
-def test_a_cluster_takes_steps_like_the_logarithm_of_its_digits(tests_made: list[int]) -> None:
-    """Bisection would take 3.3 tests for each digit that the roots have in common."""
-    taken = {}
-    for digits in (50, 100, 200, 400):
-        tests_made.clear()
-        third = Fraction(1, 3)
-        assert (
-            len(
-                isolate(
-                    polynomial([third, third + Fraction(1, 10**digits), Fraction(2)]),
-                    fmpq(0),
-                    fmpq(3),
-                )
-            )
-            == 3
-        )
-        taken[digits] = len(tests_made)
-    assert taken[400] < 100
-    assert taken[400] <= 2 * taken[50]
-
-
 def far_cluster(center: int, pairs: list[tuple[int, int]], real: list[int]) -> fmpz_poly:
     """Roots center + r and center + a +- b i, and the same mirrored, as the fibres of a map in a
     vast window have.
@@ -266,27 +245,6 @@ def test_areas_between_branches_that_part_slowly_are_those_in_other_units(
         assert count == other
         assert max(low, least) <= min(high, most)
         assert high - low <= low / 1000
-
-
-def test_a_series_whose_last_coefficients_are_nearly_nothing_is_usable() -> None:
-    """Two circles in a window that begins 10^-20 and 10^-30 before their axes: a ratio underflowed
-    in doubles.
-    """
-    equation = "z^2 - ((a^2 + b^2 - 1)*((a - 1/2)^2 + b^2 - 1/4))"
-    system = {"unknowns": {"z": "real"}, "equations": [equation]}
-    axes = {"b": ["-1e-20", 2], "a": ["-1e-30", 1]}
-    regions = ptmcad.classify(
-        slice_from_mapping({"name": "circles", "system": system, "axes": axes})
-    ).regions
-    # the quarter disk without the half disk, and the half disk: each pi/8 but for slivers of 1e-20
-    inside = sorted(r.area for r in regions if r.area and r.area[0] > Fraction(1, 100))
-    for low, high in inside[:2]:
-        assert (
-            low - Fraction(1, 10**15)
-            < Fraction(39269908169872415, 10**17)
-            < high + Fraction(1, 10**15)
-        )
-    assert len(inside) == 3
 
 
 def test_verify_reads_coefficients_of_fifty_digits() -> None:
