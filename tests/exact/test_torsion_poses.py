@@ -213,59 +213,6 @@ def test_relaxed_torsion_springs_have_hardly_a_moment() -> None:
 REST = {"cos": "3/5", "sin": "4/5"}
 
 
-@pytest.mark.parametrize(
-    ("anchor", "springs", "expected"),
-    [
-        # the spring pulls along the bar
-        (["6/5", "8/5"], [{"angle": "th", "k": 2, "rest": REST}], [("0", "0", "0")]),
-        # Q = P + (1, 0) is 1 from its anchor (13, 4)/5
-        (
-            ["13/5", "4/5"],
-            [{"angle": "th", "k": 2, "rest": REST}, {"angle": "th - phi", "k": 1, "rest": REST}],
-            [("0", "0", "0")] * 2,
-        ),
-        # phi is known first, and th by it
-        (
-            ["13/5", "4/5"],
-            [
-                {"angle": "2*phi - th", "k": 1, "rest": {"cos": "3/5", "sin": "-4/5"}},
-                {"angle": "phi", "k": 1},
-            ],
-            [("0", "0", "0")] * 2,
-        ),
-    ],
-    ids=["one", "two", "the other way around"],
-)
-def test_a_mechanism_at_rest_as_it_was_assembled_is_proved_to_be(
-    anchor: list[str], springs: list[dict[str, Any]], expected: list[tuple[str, str, str]]
-) -> None:
-    """Springs of which none pulls sideways, more than there are unknowns: no energy but that of the
-    stretched one.
-    """
-    chain = len(springs) > 1
-    record = {**CHAIN, "points": {**CHAIN["points"], "A": anchor}}
-    if not chain:
-        record |= {
-            "unknowns": {"th": "angle"},
-            "points": {"A": anchor, "O": [0, 0], "P": ["cos(th)", "sin(th)"]},
-        }
-        record |= {
-            "bars": [["O", "P"]],
-            "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
-            "loads": {},
-        }
-        record["parameters"] = {"l0": {"kind": "free length"}}
-    poses = solve(model=with_torsion(record, *springs), l0="1" if chain else "1/3")
-    assert poses.status is Status.CERTIFIED
-    held = poses.equilibria[0]
-    assert held.stable
-    assert turned(held) == expected
-    assert held.cosines_sines[0].exact == Fraction(3, 5)
-    assert held.known_energy.exact == (0 if chain else Fraction(2, 9))
-    if not chain:
-        assert turned(poses.equilibria[1]) == [("3.1415927", "180", "0")], "and half a turn from it"
-
-
 def test_a_mechanism_that_is_nearly_at_rest_is_not_taken_for_one_that_is() -> None:
     """A load of 1e-90 turns the bar by as much as a stiffness of 2 + 2 2/3 lets it, which balls of
     224 bits miss.
