@@ -120,19 +120,6 @@ def test_values_lie_within_the_error_of_their_form(what: str) -> None:
             assert excess(tape, box, [0, 1], rng) <= 1
 
 
-def test_forms_are_of_second_order() -> None:
-    """What makes them worth their time: halving the box quarters the error."""
-    graph = Graph()
-    x, y = graph.variable(0), graph.variable(1)
-    tape = record([[(x.sin() * y - y * x.cos()) / length(x, y) + direction(x, y).squared()]])
-    errors = []
-    for width in (0.02, 0.01, 0.005):
-        *_, forms = forms_of(tape, np.array([0.7, 0.9]), np.array([0.7, 0.9]) + width, [0, 1])
-        errors.append(forms[len(tape) - 1, ERROR])
-    assert 3.7 < errors[0] / errors[1] < 4.3
-    assert 3.7 < errors[1] / errors[2] < 4.3
-
-
 def test_a_length_that_may_be_zero_leaves_every_direction_and_every_inverse() -> None:
     graph = Graph()
     x, y = graph.variable(0), graph.variable(1)
