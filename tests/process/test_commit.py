@@ -204,24 +204,6 @@ def test_a_single_file_takes_one_step(tmp_path: Path) -> None:
     assert set(os.listdir(tmp_path)) == {"fig2.json", "fig2.png"}
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_folder_in_the_way_is_refused_before_anything_changes(tmp_path: Path, name: str) -> None:
-    fill(tmp_path, {other: "old" for other in NAMES if other != name})
-    before = visible(tmp_path)
-
-    def late(path: Path) -> None:
-        text_writer("new")(path)
-        (tmp_path / name).mkdir()
-
-    with pytest.raises(OutputError, match=rf"{name} is a folder, so no file can be written there"):
-        write_files(
-            tmp_path, {other: late if other == VOUCHER else text_writer("new") for other in NAMES}
-        )
-    (tmp_path / name).rmdir()
-    assert visible(tmp_path) == before
-    assert set(os.listdir(tmp_path)) == set(before)
-
-
 def test_under_new_names_what_is_saved_stays(tmp_path: Path) -> None:
     """A picture that cannot be put into place takes along neither the result nor the other picture."""
     for failing in range(1, STEPS):
@@ -385,23 +367,6 @@ def test_a_stopped_result_loses_no_other(
         assert why == ", because fig2.png shows an older result"
     else:
         assert why == ", because another process is writing fig2.json"
-
-
-def test_complete_results_do_not_pile_up(tmp_path: Path) -> None:
-    """Of runs that were interrupted while they drew the newest is kept, unless an older one has
-    less undetermined.
-    """
-    target = tmp_path / "free02.json"
-    target.write_text(WHOLE)
-    for share in ("1/10", "1/20", "1/20", "1/5", "1/50"):
-        text = json.dumps({"status": "certified", "cover": {}, "undetermined": share})
-        place, _ = save_stopped(target, text, whole=True)
-        assert place.read_text() == text
-    assert {json.loads(text).get("undetermined") for text in visible(tmp_path).values()} == {
-        None,
-        "1/5",
-        "1/50",
-    }
 
 
 @pytest.mark.parametrize(
