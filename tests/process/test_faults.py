@@ -369,15 +369,6 @@ def test_a_signal_stops_drawing(tmp_path: Path, stay: str) -> None:
 
 
 @linux
-def test_a_signal_to_the_computing_process_alone(tmp_path: Path) -> None:
-    running = Running(
-        tmp_path, "def engine(progress, partial):\n    arrived()\n    time.sleep(3600)\n"
-    )
-    os.kill(running.arrive(), signal.SIGTERM)
-    assert running.end() == (143, "terminated (SIGTERM); nothing was saved\n")
-
-
-@linux
 def test_what_is_cleaned_up_is_cleaned_up_silently_and_to_the_end(tmp_path: Path) -> None:
     """A second signal does not interrupt it; and what interrupted code has to say is nobody's
     concern.
@@ -632,16 +623,6 @@ def visible_before(step: int) -> dict[str, str]:
 
 @linux
 @pytest.mark.parametrize(
-    "step", [3, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 4, 5, 6, 7, 8))]
-)
-def test_a_killed_program_between_two_steps(tmp_path: Path, step: int) -> None:
-    """The computation completes what was begun, and ends then."""
-    running, _, _ = killed_before_step(tmp_path, step, "os.getppid(),")
-    assert running.files() == NEW
-
-
-@linux
-@pytest.mark.parametrize(
     "step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8))]
 )
 def test_a_kill_of_both_between_two_steps(tmp_path: Path, step: int) -> None:
@@ -651,19 +632,6 @@ def test_a_kill_of_both_between_two_steps(tmp_path: Path, step: int) -> None:
     assert files == visible_before(step)
     check_writable(running.out, tuple(NEW))
     assert running.files() == files
-
-
-def begun(out: Path, formats: str, count: str) -> Started:
-    """The program, which has imported all that it needs: before that it touches nothing, so that no
-    kill tells much.
-    """
-    options = ["--out", str(out), "--format", formats, "--count", count, "--no-timings"]
-    program = "from ptmcad.__main__ import main\nmain()"
-    return start(
-        program,
-        ["classify", str(FIG2), *options],
-        (*ALWAYS, "ptmcad.ask.classification", "ptmcad.exact.exactmap"),
-    )
 
 
 def test_stale_temporary_files_go_and_live_ones_stay(tmp_path: Path) -> None:
