@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable
 from copy import deepcopy
 from importlib.resources import files
@@ -13,20 +12,15 @@ from typing import Any
 import jsonschema
 import pytest
 import yaml
-from support.document_keys import changed_keys
 from support.shipped_records import EXACT
 
 from ptmcad import RegionMap, classify, load
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.model import ptm
-from ptmcad.model.reading import MAX_BODIES, MAX_UNKNOWNS
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.config.schema import record_schema
-from ptmcad.question.config.starters import NAMES, starter_mechanism, starter_text
-from ptmcad.question.slice import Count
+from ptmcad.question.config.starters import NAMES, starter_text
 from ptmcad.show.document.mapdocument import FORMAT
 from ptmcad.show.schemas import schemas, with_prose
-from ptmcad.text.node import MAX_ENTRIES
 
 SCHEMA = json.loads(files("ptmcad").joinpath("record.schema.json").read_text(encoding="utf-8"))
 VALIDATOR = jsonschema.Draft202012Validator(
@@ -42,27 +36,6 @@ def test_the_schema_is_valid() -> None:
 def test_the_published_schema_is_made_of_what_reads_records() -> None:
     """``scripts/schemas`` writes it anew."""
     assert record_schema() == SCHEMA
-
-
-def test_keys_limits_and_defaults_are_those_that_are_read() -> None:
-    properties, definitions = SCHEMA["properties"], SCHEMA["$defs"]
-    assert {
-        name: str(said["default"]) for name, said in properties["parameters"]["properties"].items()
-    } == {name: parameter.default for name, parameter in ptm().parameters.items()}
-    assert properties["count"]["enum"] == [member.value for member in Count]
-    built_in = [name for name in NAMES if starter_mechanism(name) is not None]
-    assert properties["mechanism"]["anyOf"][0]["enum"] == built_in
-    mechanism = definitions["mechanism"]
-    assert {*mechanism["properties"]} == {
-        "name", "title", "parameters", "unknowns", "points", "bodies", "bars", "supports", "springs", "torsion",
-        "loads", "moments", "symmetries", "closing", "x-joint",
-    }  # fmt: skip
-    assert mechanism["required"] == ["unknowns", "points"]
-    assert all("description" in said or "$ref" in said for said in mechanism["properties"].values())
-    text = json.dumps(definitions)
-    assert {int(found) for found in re.findall(r'"max(?:Items|Properties)": (\d+)', text)} == {
-        2, MAX_UNKNOWNS, MAX_BODIES, MAX_ENTRIES,
-    }  # fmt: skip
 
 
 def test_a_design_may_say_what_the_manual_says() -> None:
@@ -220,23 +193,6 @@ FREE_KEYS = {
     "timings",
     "sample",
 }
-
-
-def test_schema_and_reader_agree_on_the_keys(shipped: Callable[..., RegionMap]) -> None:
-    """Each key of each record is required by both (but timings and savings), and no other one is
-    allowed by either.
-    """
-    text = shipped("fig2").to_json()
-    validator = jsonschema.Draft202012Validator(RESULT)
-    for c in changed_keys(text, FREE_KEYS):
-        if c.dropped and (
-            (c.path, c.key) == ((), "timings") or (c.path[:1], c.key) == (("plan",), "saving")
-        ):
-            validator.validate(c.data)
-            continue
-        assert not validator.is_valid(c.data), c[:3]
-        with pytest.raises(ValueError, match=r"lacks|unknown|format"):
-            RegionMap.from_json(json.dumps(c.data))
 
 
 def test_one_is_not_true_to_either(shipped: Callable[..., RegionMap]) -> None:
