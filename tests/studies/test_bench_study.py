@@ -4,10 +4,8 @@ command itself.
 
 from __future__ import annotations
 
-import csv
 import json
 from fractions import Fraction
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -31,11 +29,9 @@ from ptmcad.studies.bench.stored import (
     study_of,
     study_schema,
     write_study,
-    write_table,
 )
 from ptmcad.studies.bench.study import RIVALS
-from ptmcad.studies.bench.studyreport import curve_file, curves, page, sentences, terminal
-from ptmcad.studies.picture import draw
+from ptmcad.studies.bench.studyreport import curve_file, page, sentences, terminal
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIGS = ROOT / "configs"
@@ -157,18 +153,6 @@ def test_the_published_schema_is_that_of_the_codec() -> None:
     assert with_prose(study_schema(), SCHEMA) == SCHEMA
 
 
-def test_table_has_a_row_for_each_measurement_and_count() -> None:
-    rows = list(csv.DictReader(StringIO(write_table(STUDY))))
-    assert len(rows) == len(STUDY["measurements"])
-    assert (rows[3]["setting"], rows[3]["wrong_low"], rows[3]["missed"], rows[3]["runs"]) == (
-        "N = 400",
-        "0.001",
-        "0",
-        "3",
-    )
-    assert rows[5]["seconds_median"] == "" and rows[5]["reason"].startswith("left out")
-
-
 @given(st.fractions(0, 1), st.fractions(0, 1))
 def test_rounding_keeps_bounds(a: Fraction, b: Fraction) -> None:
     low, high = outward(min(a, b), max(a, b))
@@ -256,18 +240,6 @@ def test_studies_of_different_slices_are_not_compared() -> None:
         compare(STUDY, {**STUDY, "slice": "fig3"})
 
 
-def test_comparing_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    old, new = tmp_path / "old.json", tmp_path / "new.json"
-    old.write_text(write_study(STUDY), encoding="utf-8")
-    new.write_text(write_study(changed(0, seconds=times(0.6))), encoding="utf-8")
-    assert run(["bench", "--compare", str(old), str(old)]) == 0
-    assert run(["bench", "--compare", str(old), str(new)]) == 1
-    out = capsys.readouterr().out
-    assert out.splitlines()[-1] == "1 slower"
-    assert "2.00 times the time, machine allowed for" in out
-    assert run(["bench", "--compare", str(new), str(old)]) == 0
-
-
 def test_a_record_is_there_in_any_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What ``ptmcad bench`` measures without CONFIG."""
     monkeypatch.chdir(tmp_path)
@@ -339,25 +311,6 @@ def test_one_slice_by_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert "![Error against seconds for fig2](fig2.bench.svg)" in (
         tmp_path / "error-time.md"
     ).read_text(encoding="utf-8")
-
-
-def test_a_zero_is_drawn_below_the_logarithms() -> None:
-    figure = draw("fig4", "seconds", "share", {"": curves(STUDY)}, sentences(STUDY))
-    (axes,) = figure.axes
-    marks = [line for line in axes.lines if line.get_marker() in ("o", "P", "X", "D")]
-    zeros = [y for line in marks for y in line.get_ydata() if y == 0]
-    assert len(zeros) == 2 + 1  # the exact engine's two and QEPCAD's one
-    assert axes.get_ylim()[0] < 0
-    assert (
-        len(
-            {
-                line.get_color() + line.get_marker() + str(line.get_linestyle())
-                for line in figure.legends[0].get_lines()
-            }
-        )
-        == 4
-    )
-    assert "0.3: 0, 0.4: 0." in figure.get_label()
 
 
 def test_what_is_written_for_the_report_is_positive(tmp_path: Path) -> None:
