@@ -17,6 +17,7 @@ from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from random import Random
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -32,6 +33,7 @@ from ptmcad.studies.paper.claim import TEXTS, Claim, Verdict, judge, texts
 from ptmcad.studies.paper.maps import FIGURES, region_map
 from ptmcad.studies.paper.squaring import squared
 from ptmcad.studies.paper.statements import expression, holds
+from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import to_fraction
 
 SECTIONS = (
@@ -449,18 +451,6 @@ def test_squared_equations_vanish_at_the_equilibria() -> None:
             assert abs(math.fsum(terms)) < 1e-8 * max(map(abs, terms))
 
 
-def test_three_degrees_of_freedom_at_rational_points() -> None:
-    """2-dof: the positions' derivatives by rho, th1 and th2 are independent, by dual numbers and
-    elimination.
-    """
-    for p in POINTS:
-        (c1, s1), (c2, s2) = angle(p["t1"], 1), angle(p["t2"], 2)
-        moving = (p["rho"] - p["L2"] * c2, p["L2"] * s2, p["L1"] * c1, p["L1"] * s1)
-        by_angle = [[Fraction(0)] + [Dual.of(x).parts[n] for x in moving] for n in (1, 2)]
-        rows = [[Fraction(x) for x in (1, 1, 0, 0, 0)], *by_angle]
-        assert sp.Matrix(3, 5, lambda i, j: sp.Rational(*rows[i][j].as_integer_ratio())).rank() == 3  # noqa: B023
-
-
 def test_real_roots_by_isolation() -> None:
     """5.2-real: real roots isolated on the line; they are counted among all complex ones."""
     from flint import fmpq
@@ -502,16 +492,6 @@ def test_maps_with_free_lengths_at_points() -> None:
             assert there.stable == sum(pose.index == 0 for pose in poses)
             seen.append(there.stable)
     assert set(seen) == {1, 2}
-
-
-def test_half_are_saddles_by_the_oracle() -> None:
-    """3.3-others, at points that the check does not use."""
-    draw = Random(33)
-    for _ in range(4):
-        loads = {n: draw.randint(-90, 90) for n in ("F3", "F4", "F3x", "F4x")}
-        at = {n: Fraction(draw.randint(20, 250), 100) for n in ("L2", "rho")}
-        minima, saddles, maxima = count(**at, **loads)
-        assert minima in (1, 2) and saddles == minima + maxima
 
 
 # --- verdicts follow the evidence: each check is broken once ----------------------------------------------------------
@@ -603,6 +583,20 @@ def test_six_equilibria_would_not_refute() -> None:
     )
 
 
+@pytest.mark.parametrize(("numbers", "verdict"), [
+    ((12, 30, 20), Verdict.CONFIRMED), ((11, 20), Verdict.CORRECTED), ((20, 31), Verdict.CORRECTED),
+    ((11, 31), Verdict.UNDECIDED),
+])  # fmt: skip
+def test_verdict_on_real_roots_follows_the_numbers(
+    monkeypatch: pytest.MonkeyPatch, numbers: tuple[int, ...], verdict: Verdict
+) -> None:
+    given = CLAIMS["5.2-real"]["with"]
+    found = iter(numbers)
+    monkeypatch.setattr(free, "squared", lambda _design: SimpleNamespace(real_roots=next(found)))
+    some = {**given, "designs": given["designs"][: len(numbers)]}
+    assert changed("5.2-real", **{"with": some}).verdict is verdict
+
+
 def test_tense_springs_everywhere_would_not_confirm(monkeypatch: pytest.MonkeyPatch) -> None:
     """5.2-acceptable says that both conditions have to be verified: were all stable poses tense,
     one would do.
@@ -644,6 +638,18 @@ def test_a_general_count_that_is_not_general_corrects_nothing(
     seen = maps.seen_counts()
     monkeypatch.setattr(maps, "seen_counts", lambda: seen | {(5, 2)})
     assert changed("3.3-others").verdict is Verdict.UNDECIDED
+
+
+def test_a_place_that_is_not_one_would_not_be_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """4.3-widest: another place of the maximum decides nothing, and a wider row refutes."""
+    found = maps.over_length()
+    monkeypatch.setattr(maps, "over_length", lambda: dataclasses.replace(found, maxima=()))
+    assert changed("4.3-widest").verdict is Verdict.UNDECIDED
+    widths = maps.row_widths()
+    monkeypatch.setattr(
+        maps, "row_widths", lambda: widths | {Fraction(3, 2): Enclosure(Fraction(1), Fraction(1))}
+    )
+    assert changed("4.3-widest").verdict is Verdict.REFUTED
 
 
 def test_proven_links_keep_the_counts() -> None:
