@@ -16,7 +16,6 @@ from random import Random
 import pytest
 import sympy
 from support.free_length_equilibria import free_length_equilibria
-from support.programs import needs_msolve, real_solutions
 
 from ptmcad.studies.paper import free
 from ptmcad.studies.paper.squaring import signed_solutions
@@ -96,16 +95,3 @@ def system(numbers: Numbers) -> tuple[list[str], list[str]]:
         for e in equations
     ]
     return [str(u) for u in unknowns], texts
-
-
-@needs_msolve
-@pytest.mark.parametrize("numbers", [
-    PAPER, UNLOADED, *(pytest.param(random_design(n), marks=pytest.mark.slow) for n in range(4)),
-])  # fmt: skip
-def test_real_solutions_by_msolve(numbers: Numbers) -> None:
-    """Real solutions over all signs: a Groebner basis and a rational parametrisation instead of a
-    resultant.
-    """
-    assert real_solutions(*system(numbers)) == signed_solutions(numbers).real + 8 * (
-        FLAT if numbers == UNLOADED else 0
-    )
