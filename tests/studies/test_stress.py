@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import random
@@ -24,14 +23,8 @@ from ptmcad.studies.stress import campaign as campaign_module
 from ptmcad.studies.stress.campaign import (
     KINDS,
     answer,
-    campaign,
-    changed,
-    markdown,
     random_case,
-    scaled,
     tame,
-    to_csv,
-    to_json,
 )
 from ptmcad.studies.stress.case import (
     FEW,
@@ -351,41 +344,7 @@ def test_random_cases_are_the_same_in_every_run_and_of_all_kinds() -> None:
     assert random_case(3, 0) != random_case(4, 0)
 
 
-@given(st.integers(0, 1000), st.integers(-40, 40).map(lambda e: Fraction(10) ** e))
-@settings(max_examples=examples(20), deadline=None)
-def test_symmetries_undo_each_other(seed: int, factor: Fraction) -> None:
-    p, _ = tame(random.Random(seed))
-    assert (
-        changed(changed(p, "mirrored"), "mirrored")
-        == changed(changed(p, "swapped"), "swapped")
-        == p
-    )
-    assert scaled(scaled(p, factor, 1 / factor**2), 1 / factor, factor**2) == p
-
-
 # ---------------------------------------------------------------------------------------------- record, plot, command
-
-
-def test_the_record_holds_every_figure() -> None:
-    found = campaign([case("units-force-1e12"), case("symmetry-inside-1e-20")], seed=1, repeats=1)
-    document = json.loads(to_json(found))
-    assert document["complete"] is True
-    first, second = document["cases"]
-    assert (first["expected"], first["found"], first["double"], first["right"]) == (
-        "6/2",
-        "6/2",
-        "6/2",
-        True,
-    )
-    assert second["double_error"] is None  # no pose at all
-    page = markdown(found)
-    assert "| symmetry-inside-1e-20 | 6/2 | 6/2 | none wrong | - |" in page
-    assert "double precision is wrong in 1" in page
-    rows = list(csv.DictReader(to_csv(found).splitlines()))
-    assert [row["name"] for row in rows] == ["units-force-1e12", "symmetry-inside-1e-20"]
-    assert rows[1]["double_error"] == ""
-    again = json.loads(to_json(campaign([case("units-force-1e12")], seed=1, repeats=1)))["cases"][0]
-    assert again | {"seconds": first["seconds"]} == first
 
 
 def test_the_command_lists_its_cases(capsys: pytest.CaptureFixture[str]) -> None:
