@@ -19,12 +19,10 @@ from ptmcad.answer.field import Field
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields import equations
-from ptmcad.ask.fields.equations import ModelState
 from ptmcad.cli import map as command
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.show.data import cell_rows, region_rows
-from ptmcad.workbench.fields.barrier import barriers
 from ptmcad.workbench.fields.quantityfield import centre, exact_at, field_of, request_of
 
 
@@ -436,21 +434,6 @@ def test_a_barrier_that_was_not_found_is_counted(monkeypatch: pytest.MonkeyPatch
     field = shipped("fig4").field("barrier", "stable:2", 16)
     assert field.missed == (shipped("fig4").grid(16).stable == 2).sum() > 0
     assert np.isnan(field.values).all()
-
-
-def test_a_barrier_among_more_poses_than_an_integer_has_bits() -> None:
-    """-cos 40 x has 40 wells, and all passes between them are as high."""
-    waves = 40
-
-    def evaluate(_pixels: Any, points: np.ndarray) -> ModelState:
-        angle = waves * points[0]
-        return ModelState(
-            waves * np.sin(angle)[None], waves**2 * np.cos(angle)[None, None], -np.cos(angle)
-        )
-
-    at = (np.pi * np.arange(2 * waves) / waves)[None, None]
-    for chosen in (0, 66, 78):
-        assert barriers(evaluate, at, np.array([chosen]), 1) == pytest.approx(2)
 
 
 def test_windows_beyond_doubles_are_refused() -> None:
