@@ -97,20 +97,6 @@ def test_a_member_equals_the_record_classified_alone(tmp_path: Path) -> None:
         )
 
 
-def test_members_with_one_slice_are_computed_once(tmp_path: Path) -> None:
-    sweep = mapped(SQUARES, tmp_path / "s")
-    found = list(sweep)
-    assert [member.same_as for member in found] == [None, None, 1, None, None, 1]
-    assert [member.attempts for member in found] == [1, 1, 0, 1, 0, 0]
-    assert found[2].summary == found[1].summary and found[2].file == found[1].file
-    assert len(list((tmp_path / "s" / "results").rglob("*.json"))) == 3
-    refused = found[4]
-    assert (refused.state, refused.error) == (
-        State.REFUSED,
-        "parameters.d: d is 0, but a length must be positive",
-    )
-
-
 def test_the_answer_can_be_read_in_several_ways(tmp_path: Path) -> None:
     sweep = mapped(CUSPS, tmp_path / "u")
     assert len(sweep) == 6 == len(list(sweep))
@@ -444,17 +430,3 @@ def test_a_cluster_gives_the_same_index_although_a_worker_is_killed(tmp_path: Pa
         )
     assert killed.is_set()
     assert there.to_csv() == whole(FAMILY, tmp_path / "here").to_csv()
-
-
-@pytest.mark.skipif(
-    find_spec("distributed") is None, reason="distributed is not installed (ptmcad[distributed])"
-)
-@pytest.mark.slow
-def test_a_scheduler_that_does_not_answer_is_told(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from ptmcad.workbench.sweeps import pool as cluster
-
-    monkeypatch.setattr(cluster, "CONNECT_SECONDS", 1)
-    with pytest.raises(ConfigError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:1"):
-        ptmcad.sweep(CUSPS, tmp_path / "u", scheduler="tcp://127.0.0.1:1")
