@@ -156,6 +156,7 @@ def test_bisection_encloses_what_elimination_finds(question: dict[str, Any]) -> 
 small = st.integers(-3, 3)
 
 
+@pytest.mark.slow
 @settings(max_examples=examples(12), deadline=None)
 @given(st.tuples(*[small] * 6), st.tuples(small, small, small))
 def test_random_quadrics(quadric: tuple[int, ...], plane: tuple[int, ...]) -> None:
