@@ -8,13 +8,12 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from math import hypot
 from pathlib import Path
 
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from support.certified_maps import around, certified, circle
+from support.certified_maps import certified, circle
 from support.examples import examples
 from support.maps import part_of_free02, shipped
 
@@ -64,40 +63,6 @@ def check(
     undetermined = square * sum(n for pair, n in pairs.items() if None in pair)
     assert found.undetermined == undetermined
     assert found.area == (sum(certain.values()), sum(certain.values()) + undetermined)
-
-
-def ellipse(depth: int) -> RegionMap:
-    """2 stable in an ellipse that is aside, 3 outside of it."""
-
-    def function(x: float, y: float) -> tuple[float, float]:
-        return hypot(x - 0.6, 2 * (y - 0.5)) - 0.3, 2.0
-
-    return certified(
-        around(function, depth), lambda x, y: 2 if hypot(x - 0.6, 2 * (y - 0.5)) < 0.3 else 3
-    )
-
-
-def in_circle(x: Fraction, y: Fraction) -> int:
-    return 3 if (x - Fraction(1, 2)) ** 2 + (y - Fraction(1, 2)) ** 2 < Fraction(1, 16) else 2
-
-
-def in_ellipse(x: Fraction, y: Fraction) -> int:
-    return 2 if (x - Fraction(3, 5)) ** 2 + 4 * (y - Fraction(1, 2)) ** 2 < Fraction(9, 100) else 3
-
-
-@pytest.mark.parametrize(("one", "other"), [(5, 6), pytest.param(6, 5, marks=pytest.mark.slow)])
-def test_areas_are_those_of_the_squares(one: int, other: int) -> None:
-    first, second = circle(one), ellipse(other)
-    assert first.cover is not None and second.cover is not None
-    covers = first.cover, second.cover
-    pairs = sampled(
-        lambda x, y: None if covered(covers[0], x, y) else in_circle(x, y),
-        lambda x, y: None if covered(covers[1], x, y) else in_ellipse(x, y),
-        2 ** max(one, other),
-    )
-    found = first.compare(second)
-    check(found, pairs, Fraction(4, 4 ** max(one, other)))
-    assert len(found.changes) == 2 and 0 < found.share[0] < found.share[1] < 1
 
 
 SIDE = 8
