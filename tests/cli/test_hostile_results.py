@@ -78,7 +78,7 @@ def with_text(document: dict[str, Any], place: Place, is_key: bool, more: str) -
 
 
 @pytest.mark.parametrize("kind", HIDDEN)
-@pytest.mark.slow_cases("direction", "escape")
+@pytest.mark.fast_cases("half of a pair")
 def test_no_text_of_a_result_has_a_hidden_character(stored: dict[str, Any], kind: str) -> None:
     """In a reference, which is stored and never shown, directions and separators of lines are the
     citation's affair.
