@@ -18,9 +18,6 @@ from support.maps import CONFIGS, shipped
 
 import ptmcad
 from ptmcad.answer import METHODS, Method
-from ptmcad.answer.boundaries import Grid
-from ptmcad.answer.family import FamilyMap
-from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.text.enclosure import AlgebraicNumber
 
@@ -132,20 +129,6 @@ def test_what_results_are_made_of_fits_one_screen_too(everything: list[object]) 
         assert len(repr(part)) < 24 * 80, (type(part), len(repr(part)))
         waiting += [getattr(part, field.name) for field in dataclasses.fields(part)]
     assert {"Region", "Cell"} <= {kind.__name__ for kind in done}
-
-
-def test_pixels_and_families_are_pictures(everything: list[object]) -> None:
-    by_name = {type(result).__name__: result for result in everything}
-    for name in ("Grid", "Field", "FamilyMap"):
-        result: Any = by_name[name]
-        assert result._repr_png_().startswith(b"\x89PNG")
-    grid, field, family = (by_name[name] for name in ("Grid", "Field", "FamilyMap"))
-    assert isinstance(grid, Grid) and isinstance(field, Field) and isinstance(family, FamilyMap)
-    assert "agree with exact poses" in field._repr_html_()
-    assert grid.extent == field.extent == (0.0, 2.0, 0.0, 2.0)
-    assert (
-        family.members[0].grid(4)._repr_png_().startswith(b"\x89PNG")
-    )  # of all: stability is not told
 
 
 class Reader(HTMLParser):
