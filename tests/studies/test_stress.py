@@ -228,6 +228,7 @@ def test_precision_starts_low_and_grows_by_doubling() -> None:
 @pytest.mark.parametrize(
     ("at", "multiplicity"), [(at, 3 if at.cusp else 2) for at in NAMED.values()], ids=list(NAMED)
 )
+@pytest.mark.slow_cases("other fold", "fold of maxima", "cusp of maxima")
 def test_constructed_poses_are_degenerate(at: Degenerate, multiplicity: int) -> None:
     """On the fold itself two equilibria coincide, at the cusp three: zero is recognised exactly."""
     poses = ptmcad.solve(**at.parameters)
