@@ -5,7 +5,6 @@ flooded on a grid.
 from __future__ import annotations
 
 import random
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -304,45 +303,6 @@ def test_the_command_writes_pictures_and_numbers(
     assert np.array_equal(table["value"].reshape(15, 20), expected, equal_nan=True)
 
 
-def test_the_command_takes_a_result_whose_map_is_not_made_again(
-    tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def fail(*_: object) -> None:
-        raise AssertionError("made again")
-
-    result = tmp_path / "stored.json"
-    result.write_text(shipped("fig2").to_json())
-    monkeypatch.setattr("ptmcad.ask.classification.region_map", fail)
-    wanted = [
-        "--pixels",
-        "12x9",
-        "--checks",
-        "0",
-        "--format",
-        "npz",
-        "--tolerance",
-        "1/9",
-        "--out",
-        str(tmp_path),
-    ]
-    assert run(["map", str(result), *wanted]) == 0
-    assert "--tolerance has no effect here: the map is made already" in capsys.readouterr().err
-    with np.load(tmp_path / "fig2-energy-stable-1.npz") as arrays:
-        assert np.array_equal(
-            arrays["values"], shipped("fig2").field("energy", "stable:1", 12, 9).values
-        )
-    assert run(["map", str(result), "--set", "L1=2"]) == 2
-    assert "--set: a result has its slice already" in capsys.readouterr().err
-    first = shipped("fig2").critical_values[0]
-    moved = replace(first, polynomial=(-3, 1), low=Fraction(3), high=Fraction(3))
-    result.write_text(replace(shipped("fig2"), critical_values=(moved,)).to_json())
-    assert run(["map", str(result), *wanted, "--format", "png"]) == 2
-    assert "stored.json: the map contradicts itself" in capsys.readouterr().err
-    result.write_text(shipped("fig2").to_json()[:500])
-    assert run(["map", str(result), *wanted]) == 2
-    assert "stored.json: is damaged or not a ptmcad-region-map/" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     "arguments", [["--value", "nothing"], ["--pose", "best"], ["--pixels", "0"]]
 )
@@ -465,14 +425,9 @@ def test_at_its_poles_an_expression_has_no_value(recwarn: pytest.WarningsRecorde
     [
         ("rho^1000000", 9, None),  # two columns too small or too large, and the one at 1, see below
         ("1e-400*rho", 9, None),
-        ("10^300*10^300*rho", 9, None),
-        ("rho/10^300/10^300", 9, None),
         ("cos(10^400)", 9, None),
-        ("1/(rho*1e-400)", 9, None),
         ("1 + 1e-400*rho", 0, 1.0),  # what is lost is less than rounding
         ("cos(10^-400)", 0, 1.0),
-        ("(1 + 10^-400)^2", 0, 1.0),
-        ("2/(1 + 10^-400) + 3*10^-400", 0, 2.0),
         ("0*10^300", 0, 0.0),
     ],
 )
