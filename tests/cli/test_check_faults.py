@@ -227,6 +227,22 @@ mechanism:
 """
 
 
+def test_a_stiffness_is_positive_at_a_single_point_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "sprung.yaml"
+    path.write_text(
+        SPRUNG % ("", "W - 1", "0", "1") + "axes: {L: [0, 2], W: [2, 3]}\n", encoding="utf-8"
+    )
+    assert run(["solve", str(path), "--at", "L=1,W=2"]) == 0
+    capsys.readouterr()
+    assert run(["solve", str(path), "--at", "L=1,W=1/2"]) == 2
+    err = capsys.readouterr().err
+    assert (
+        f"{path}:6: mechanism.springs.1.k: a stiffness is positive, but this is W - 1 = -1/2" in err
+    )
+
+
 PTM = "mechanism: ptm\naxes: {rho: [0, 2], L2: [0, 2]}\n"
 
 

@@ -123,6 +123,13 @@ def test_nothing_to_count_and_infinitely_many_are_shown_at_a_point(
         assert str(caught.value).endswith(f"for example at a = -2/21, {words}")
 
 
+def test_a_check_that_does_not_prove_says_what_it_saw() -> None:
+    system = {"unknowns": {"x": "real", "y": "real"}, "equations": ["(x^3-a*x+b)^2*(x-1)", "y^3-x"]}
+    found = check(slice_from_mapping({"system": system, "axes": {"a": [-2, 2], "b": [-2, 2]}}))
+    assert found.complex_solutions == 12
+    assert found.cost.startswith("not known: at 5 points that were tried some solution is multiple")
+
+
 def test_what_degenerates_at_the_checks_sample_only_is_no_fault() -> None:
     """x^2 = a - 10/21 has a double solution at the first point that is tried, and nowhere else."""
     system = {"unknowns": X, "equations": ["x^2 - a + 10/21 + 0*b"]}

@@ -19,12 +19,13 @@ from support import oracle
 from support.random_slices import drawn
 
 import ptmcad
-from ptmcad.algebra.algebraic_numbers import compare
+from ptmcad.algebra.algebraic_numbers import compare, refined
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.intervals import CountIntervals, Event, lower, upper
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError
 from ptmcad.exact.ranges.exactline import intervals
 from ptmcad.question.slice import Count, Slice
+from ptmcad.show.ranges.endtext import end_text, width_text
 from ptmcad.show.ranges.linetable import table
 from ptmcad.show.ranges.rangedocument import document, part
 from ptmcad.text.enclosure import AlgebraicNumber
@@ -252,6 +253,27 @@ def test_intervals_cover_the_window_and_neighbours_differ() -> None:
     assert [c.event for c in found.changes].count(Event.UNCHANGED) == len(found.changes) + 1 - len(
         found.intervals
     )
+
+
+def test_numbers_compare_exactly() -> None:
+    two = AlgebraicNumber((-2, 0, 1), Fraction(1), Fraction(2))
+    fine = refined(two, Fraction(1, 2**200))
+    other = AlgebraicNumber((-3, 0, 1), Fraction(1), Fraction(2))
+    assert compare(two, fine) == 0 and compare(fine, two) == 0
+    assert compare(two, other) == -1 and compare(other, two) == 1
+    assert compare(two, AlgebraicNumber((-2, 0, 1), Fraction(-2), Fraction(-1))) == 1
+    assert compare(fine, fine.low) == 1 and compare(fine, fine.high) == -1
+    third = AlgebraicNumber((-1, 3), Fraction(1, 3), Fraction(1, 3))
+    assert compare(third, Fraction(1, 3)) == 0 and compare(third, third) == 0
+
+
+def test_texts_round_to_nearest() -> None:
+    root = AlgebraicNumber((-2, 0, 1), Fraction(1), Fraction(2))
+    assert end_text(root, 30) == "1.41421356237309504880168872421"
+    found = intervals(record("fig4"), "rho", {"L2": "3/2"})
+    (only,) = found.operation
+    assert width_text(only, 40).startswith("0.54330193460501")
+    assert Fraction(width_text(only, 20)) == round(Fraction(width_text(only, 60)), 20)
 
 
 def test_the_document_follows_its_schema_and_repeats() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import stat
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -230,6 +231,31 @@ def test_bad_options_leave_nothing(
     assert run(["animate", FIG4, "--frames", "3", "--out", str(tmp_path), *arguments]) == 2
     assert message in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_a_stored_map_that_contradicts_itself_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole = shipped("fig4")
+    stacks = (replace(s, walls=tuple(replace(w, root=9) for w in s.walls)) for s in whole.stacks)
+    (tmp_path / "damaged.json").write_text(replace(whole, stacks=tuple(stacks)).to_json())
+    command = [
+        "animate",
+        str(tmp_path / "damaged.json"),
+        "--path",
+        PATH,
+        "--pose",
+        "stable:2",
+        "--frames",
+        "3",
+    ]
+    assert run([*command, "--out", str(tmp_path / "films")]) == 2
+    said = capsys.readouterr().err
+    assert (
+        "damaged.json: the map contradicts itself (" in said
+        and "); check it with ptmcad verify" in said
+    )
+    assert not list((tmp_path / "films").iterdir())
 
 
 def test_a_system_cannot_be_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -282,3 +282,23 @@ def test_poses_of_any_model_are_what_the_schema_says(
     )
     jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
     assert data["equilibria"] and Poses.from_json(found.to_json()) == found
+
+
+def test_the_page_of_a_certified_map_of_lengths_alone() -> None:
+    """Its unknowns are those of a polynomial system, but its potential has roots."""
+    record = {
+        "name": "truss",
+        "mechanism": {
+            "parameters": {"a": {"kind": "base", "default": 1}, "f": {"kind": "force"}},
+            "unknowns": {"h": "length"},
+            "points": {"A": ["-a", 0], "B": ["a", 0], "P": [0, "h"]},
+            "springs": [{"between": [end, "P"], "k": 1, "free": 1} for end in ("A", "B")],
+            "loads": {"P": [0, "f"]},
+        },
+        "axes": {"a": [0, 2], "f": [-1, 1]},
+        "count": "total",
+    }
+    result = ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/5")
+    assert all(
+        not cell["potential"] for cell in pages.data_of(page(result, timings=False))["cells"]
+    )

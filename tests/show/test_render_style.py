@@ -250,6 +250,16 @@ def test_the_command_line_draws_in_a_style(tmp_path: Path) -> None:
     assert imread(tmp_path / "slice-L2-rho.png").shape[:2] == (500, 1000)
 
 
+def test_a_map_is_plotted_as_objects_of_matplotlib(tmp_path: Path) -> None:
+    result = shipped("fig4")
+    made = result.plot(style="ieee", title="own")
+    assert isinstance(made, Figure) and tuple(made.get_size_inches()) == (3.5, 2.6)
+    made.savefig(tmp_path / "saved.png", dpi=100)
+    assert imread(tmp_path / "saved.png").shape[:2] == (260, 350)
+    with pytest.raises(ConfigError, match="no 'colour'"):
+        result.plot(colour="red")
+
+
 def test_a_map_is_drawn_into_axes_in_the_units_of_its_own(tmp_path: Path) -> None:
     result = shipped("fig4")
     page = Figure(figsize=(6, 3), dpi=100)

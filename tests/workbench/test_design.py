@@ -84,6 +84,18 @@ def test_conditions_are_kept_by_the_best_design_and_by_the_bound() -> None:
     assert found.bound is not None and found.proved and true <= found.bound
 
 
+def test_the_count_that_is_wanted_is_the_one_that_is_asked() -> None:
+    cubic = system("u^3 - a*u + b", {"b": [-1, 1], "a": [1, "3/2"]})
+    three = ptmcad.design(cubic, "range", where={"stable": 3}, evaluations=5)
+    assert three.best == {"a": Fraction(3, 2)}
+    assert (
+        three.value is not None and abs(float(three.value) - 4 * 0.5**1.5) < 1e-12 and three.proved
+    )
+    one = ptmcad.design(cubic, "range", where={"stable": 1}, tolerance="1/20", evaluations=20)
+    assert one.best == {"a": 1} and one.proved  # of two equal ranges one
+    assert one.value is not None and abs(float(one.value) - (1 - 2 * (1 / 3) ** 1.5)) < 1e-12
+
+
 def test_an_area_is_enclosed_and_bounded() -> None:
     disc = system("u^2 - c + x^2 + y^2", {"x": [-1, 1], "y": [-1, 1]}, c=1)
     found = ptmcad.design(disc, "area", {"c": ["1/4", "3/4"]}, tolerance="1/4", evaluations=6)
