@@ -16,7 +16,7 @@ from support.examples import examples
 import ptmcad
 from ptmcad.algebra import descartes
 from ptmcad.algebra.arcs import arc_integral
-from ptmcad.algebra.real_roots import RealRoot, isolate, refine
+from ptmcad.algebra.real_roots import RealRoot, isolate
 from ptmcad.answer.regionmap import Status
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -53,19 +53,6 @@ def test_clusters_are_isolated(
         assert root.low == exact if root.is_rational else root.low < exact < root.high
     for a, b in pairwise(found):
         assert a.high <= b.low
-
-
-@settings(max_examples=examples(40), deadline=None)
-@given(st.integers(1, 90), st.integers(1, 90), st.booleans(), st.integers(-99, 99))
-def test_pairs_that_are_real_or_not_are_told_apart(e: int, f: int, real: bool, n: int) -> None:
-    """((x - n/100)^2 -+ 10^-e) (x^2 -+ 10^-f / 3): two roots each, or none."""
-    sign = -1 if real else 1
-    first = fmpz_poly([-n, 100]) ** 2 * 10**e + sign * 10_000
-    second = fmpz_poly([sign, 0, 3 * 10**f])
-    p = first * second
-    if p.gcd(p.derivative()).degree() > 0:
-        return
-    assert len(isolate(p, fmpq(-10), fmpq(10))) == (4 if real else 0)
 
 
 @pytest.fixture
@@ -114,31 +101,6 @@ def test_clusters_far_out_are_isolated(
     assert len(found) == len(known) == roots_between(p, low, high)
     for root, value in zip(found, known, strict=True):
         assert root.low == value if root.is_rational else root.low < value < root.high
-
-
-@settings(max_examples=examples(40), deadline=None)
-@given(
-    st.integers(1, 60),
-    st.integers(10**299, 10**300),
-    st.integers(10**299, 10**300),
-    st.integers(0, 2),
-)
-def test_long_polynomials_are_refined_to_the_same_root(
-    digits: int, n: int, m: int, pairs: int
-) -> None:
-    """The root m/n with complex pairs beside it, for which balls are too wide: exact values have to
-    stand in.
-    """
-    line = fmpz_poly([-m, n])
-    p = (
-        line
-        * (line**2 + 1 if pairs > 0 else fmpz_poly([10**310, 1]))
-        * (line**2 + 2 if pairs > 1 else 1)
-    )
-    width = fmpq(1, 10**digits)
-    short = refine(RealRoot(p, fmpq(0), fmpq(11)), width)
-    assert short.high - short.low < width
-    assert short.low == fmpq(m, n) if short.is_rational else short.low < fmpq(m, n) < short.high
 
 
 @settings(max_examples=examples(30), deadline=None)
