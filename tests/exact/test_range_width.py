@@ -13,7 +13,6 @@ import pytest
 from flint import fmpq
 
 import ptmcad
-from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.polynomials import PLANE
 from ptmcad.algebra.real_roots import isolate
 from ptmcad.answer.widths import Maximum, Place
@@ -135,21 +134,6 @@ def test_two_equal_maxima_are_both_told() -> None:
     assert [m.place for m in found] == [Place.SMOOTH] * 2
     for m, value in zip(found, (Fraction(-1, 2), Fraction(1, 2)), strict=True):
         assert m.at.low <= value <= m.at.high and m.width.low <= 1 <= m.width.high
-
-
-def test_slopes_enclose_those_of_a_known_branch() -> None:
-    """v = sqrt(u): v' = 1/(2 sqrt u), v'' = -1/(4 u sqrt u) over [3/4, 5/4]."""
-    parabola = curve(0, Y**2 - X, 0)
-    (at,) = isolate(parabola.fibre(fmpq(1)), fmpq(0), fmpq(10))
-    found = slope_over(parabola.in_v, at, fmpq(1), fmpq(1, 8))
-    assert found is not None
-    for u in (fmpq(7, 8), fmpq(1), fmpq(9, 8)):
-        root = float(u) ** 0.5
-        assert found[0].contains(1 / (2 * root)) or abs(found[0] - 1 / (2 * root)) < 1e-9
-        assert abs(found[1] + 1 / (4 * float(u) * root)) < found[1].rad() * 2 + 1e-9
-    assert (
-        slope_over(parabola.in_v, at, fmpq(1), fmpq(1)) is None
-    )  # it would reach the turning point
 
 
 def test_table_and_document() -> None:
