@@ -4,7 +4,6 @@ were.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -272,34 +271,6 @@ def test_the_older_name_is_taken(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert run(["classify", "--help"]) == 0
     page = capsys.readouterr().out
     assert "--without" not in page and "--keep" not in page
-
-
-def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    fig2 = str(ROOT / "configs" / "fig2.yaml")
-    common = ["classify", fig2, "--format", "json", "--out", str(tmp_path)]
-    assert run([*common, "--without", "infinty"]) == 2
-    assert "--without: 'infinty' is no saving; did you mean 'infinity'?" in capsys.readouterr().err
-    assert run([*common, "--without", "mirror-images"]) == 2
-    assert "saving of the certified engine" in capsys.readouterr().err
-    assert run([*common, "--keep", "infinty"]) == 2
-    assert "--keep: 'infinty' is no saving; did you mean 'infinity'?" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-    assert run([*common, "--explain", "--without", "axis-order", "--without", "sign-curve"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].startswith("question  fig2: L2 in [0, 4], rho in [0, 4]")
-    assert lines[1] == "plan of fig2, exact engine, before it starts:"
-    at = lines.index("decided on the way:")
-    assert "computed: projection of H11 = 0 (kept, as asked for)" in lines[:at]
-    assert "left out: terms of F3, F4, F3x, F4x (they are zero on this slice)" in lines[:at]
-    assert "to be decided on the way: infinity, no-real-points, even-powers" in lines[:at]
-    assert "computed: decomposition over L2 (the first axis, as asked for)" in lines[at:]
-    assert len(lines) == len(set(lines))
-    plan = json.loads((tmp_path / "fig2.json").read_text())["plan"]
-    assert {step["saving"] for step in plan if step["done"] and "saving" in step} == {
-        "axis-order",
-        "sign-curve",
-    }
 
 
 # ------------------------------------------------------------------------------------------------- the certified engine
