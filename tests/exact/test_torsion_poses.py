@@ -144,18 +144,6 @@ def test_every_digit_is_that_of_the_angles(l0: str, digits: int) -> None:
                     )
 
 
-def test_moments_balance_the_pull_of_spring_and_loads() -> None:
-    """By hand for the chain without its spring's free length: the sum of all that turns phi alone,
-    and of th.
-    """
-    for pose in solve(model=described(CHAIN), l0=0, W="1/7").equilibria:
-        (qx, qy), (px, py) = ([float(x) for x in pose.nodes[name]] for name in "QP")
-        fx, fy = 1 / 7 - 3 * (qx - 8 / 5), -1 / 7 - 3 * (qy - 4 / 5)
-        one, two = (float(t.moment) for t in pose.torsion)
-        assert (qx - px) * fy - (qy - py) * fx == pytest.approx(two, abs=1e-9)
-        assert px * fy - py * fx == pytest.approx(one - 2 * two, abs=1e-9)
-
-
 def test_both_engines_agree() -> None:
     """On springs of free length zero, which the certified engine takes as well."""
     model = described(CHAIN)
