@@ -265,36 +265,6 @@ def test_a_loop_that_folds_flat_everywhere_is_told_with_its_branches(
     assert said in str(caught.value)
 
 
-def test_the_branches_of_a_parallelogram_by_themselves() -> None:
-    """As an open chain and as an X-joint: minima and maxima of the energy along each."""
-    without = {k: v for k, v in FOUR_BAR.items() if k not in ("closing", "bars")}
-    parameters = {k: v for k, v in FOUR_BAR["parameters"].items() if k not in ("L2", "L3")}
-    ends = {k: v for k, v in FOUR_BAR["points"].items() if k in ("A0", "B0")}
-    parallel = {**without, "name": "parallel", "parameters": parameters, "unknowns": {"th1": "angle"},
-                "points": {**FOUR_BAR["points"], "Q": ["b + L1*cos(th1)", "L1*sin(th1)"]}}  # fmt: skip
-    joint = {"base": ["A0", "B0"], "bars": "L1", "angles": ["th1", "th2"], "top": ["Q", "P"]}
-    crossed = {**without, "name": "crossed", "parameters": parameters, "unknowns": {"th1": "angle"}, "points": ends,
-               "x-joint": {"X": joint}}  # fmt: skip
-    th = 2 * math.pi * (np.arange(40000) + 0.37) / 40000
-    z = np.exp(1j * th)
-    for mechanism, w in ((parallel, z), (crossed, (z - 2) / (1 - 2 * z))):
-        p, q = z, 2 + w
-        assert np.abs(np.abs(p - q) - 2).max() < 1e-9
-        for F, G in (("17/13", "-9/11"), ("1/3", "1/5")):
-            found = ptmcad.solve(
-                slice_of(mechanism, **LOADS, parameters={"L1": 1, "b": 2}), F=F, G=G
-            )
-            u = (
-                np.abs(q) ** 2 / 2
-                + np.abs(p - 2) ** 2 / 2
-                - float(Fraction(F)) * p.imag
-                - float(Fraction(G)) * q.imag
-            )
-            minima = int(((u < np.roll(u, 1)) & (u < np.roll(u, -1))).sum())
-            maxima = int(((u > np.roll(u, 1)) & (u > np.roll(u, -1))).sum())
-            assert (found.stable, len(found.equilibria)) == (minima, minima + maxima)
-
-
 def test_a_spring_along_a_closing_bar_does_nothing() -> None:
     with pytest.raises(ConfigError, match=r"springs.3: the length of QP is constant"):
         ptmcad.Mechanism(
