@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import json
-import math
 from fractions import Fraction
 from pathlib import Path
 from random import Random
 from typing import Any
 
-import numpy as np
 import pytest
 import yaml
 
@@ -48,36 +46,6 @@ def test_the_second_bar_is_the_first_one_reflected() -> None:
         assert (b + far * cosine, far * sine) == (step * across[0], step * across[1])
         assert (end[0] - b - far * cosine) ** 2 + (end[1] - far * sine) ** 2 == b * b
         assert cosine**2 + sine**2 == 1
-
-
-def energy(unknowns: tuple[np.ndarray, ...], F: float, G: float) -> np.ndarray:
-    """Of a stack of joints with L = 2 and b = 1, with the second bars by reflections."""
-    far, b = 2.0, 1.0
-    base = [np.zeros_like(unknowns[0] + 0j), np.ones_like(unknowns[0] + 0j)]
-    springs = np.zeros_like(unknowns[0])
-    for th in unknowns:
-        ahead = (base[1] - base[0]) / b
-        right = base[0] + far * np.exp(1j * th) * ahead
-        across = right - base[1]
-        left = base[0] + across * (far * far - b * b) / np.abs(across) ** 2
-        springs = springs + (np.abs(left - base[0]) ** 2 + np.abs(right - base[1]) ** 2) / 2
-        base = [left, right]
-    force = F - 1j * G
-    return np.asarray(springs - sum((np.conj(force) * p).real for p in base))
-
-
-def test_one_joint_has_the_minima_along_its_angle() -> None:
-    random = Random(5)
-    th = 2 * math.pi * (np.arange(20001) + 0.37) / 20001
-    seen = set()
-    for _ in range(12):
-        F, G = (Fraction(random.randrange(-100, 100), 97) for _ in range(2))
-        u = energy((th,), float(F), float(G))
-        minima = int(((u < np.roll(u, 1)) & (u < np.roll(u, -1))).sum())
-        found = ptmcad.solve({"mechanism": ONE, "axes": {"F": [-2, 2], "G": [-2, 2]}}, F=F, G=G)
-        assert sum(bool(e.stable) for e in found.equilibria) == minima, (F, G)
-        seen.add(minima)
-    assert seen == {1, 2}
 
 
 def test_a_map_is_stored_with_its_joint_and_verified() -> None:
