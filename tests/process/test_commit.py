@@ -12,9 +12,6 @@ from itertools import combinations
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from support.examples import examples
 from support.faulty_disk import FaultyDisk, Killed
 
 from ptmcad.errors import OutputError
@@ -263,56 +260,6 @@ def test_no_file_in_the_folder_is_obeyed(tmp_path: Path) -> None:
         write_files(tmp_path, {"fig2.json": text_writer("newest")})
         assert visible(tmp_path) == {"fig2.json": "newest", "fig3.json": "other"}
         assert {name for name in os.listdir(tmp_path) if name.startswith(".")} == set(left)
-
-
-@settings(max_examples=examples(40))
-@given(
-    st.lists(
-        st.tuples(
-            st.lists(st.sampled_from(NAMES), min_size=1, unique=True),
-            st.sampled_from(["whole", "killed", "failing", "failing for ever"]),
-            st.integers(1, 9),
-        ),
-        min_size=1,
-        max_size=6,
-    )
-)
-def test_runs_one_after_the_other(
-    tmp_path_factory: pytest.TempPathFactory, runs: list[tuple[list[str], str, int]]
-) -> None:
-    """Every run replaces its files, or changes nothing, or loses pictures at most; it touches no
-    others.
-    """
-    folder = fill(tmp_path_factory.getbasetemp() / "sequence", {})
-    for number, (names, kind, step) in enumerate(runs):
-        failing = {"failing": (step,), "failing for ever": range(step, 1000)}.get(kind, ())
-        disk = FaultyDisk(step if kind == "killed" else None, failing)
-        text = str(number)
-        before = visible(folder)
-        said = ""
-        try:
-            with disk:
-                write_files(folder, {name: text_writer(text) for name in names})
-        except Killed:
-            said = "killed"
-        except OutputError as error:
-            said = str(error)
-        after = visible(folder)
-        new = {**before, **dict.fromkeys(names, text)}
-        if said == "":
-            assert after == new
-        elif said.endswith(UNCHANGED):
-            assert after == before
-        elif after.get(names[-1]) == text:
-            assert after.items() <= new.items()
-        else:
-            assert after.items() <= before.items()
-            assert after.get(names[-1]) == before.get(names[-1])
-        assert {name: after.get(name) for name in NAMES if name not in names} == {
-            name: before.get(name) for name in NAMES if name not in names
-        }
-    check_writable(folder, NAMES)
-    assert set(os.listdir(folder)) == set(visible(folder))
 
 
 # Where a stopped result goes
