@@ -249,28 +249,6 @@ def test_a_signal_saves_a_map_that_can_be_gone_on_from(
     assert running.files() == {**old, "fig2.partial.json": PARTIAL}
 
 
-@linux
-def test_the_map_saved_by_a_signal_replaces_the_one_it_went_on_from(tmp_path: Path) -> None:
-    """And without JSON among the formats nothing is saved, as nothing was asked for."""
-    put(tmp_path, json='{"status": "partial", "stage": "earlier"}')
-    work = f"{CERTIFIED}def engine(progress, partial):\n    arrived()\n    time.sleep(3600)\n"
-    running = Running(tmp_path, work, "--engine", "certified")
-    running.arrive()
-    running.process.send_signal(signal.SIGINT)
-    place = running.out / "fig2.json"
-    assert running.end() == (
-        130,
-        f"interrupted; partial map (25 % undetermined) saved to {place}; go on with --resume {place}\n",
-    )
-    assert running.files() == {"fig2.json": PARTIAL}
-    (tmp_path / "arrived").unlink()
-    again = Running(tmp_path, work, "--engine", "certified", formats="png")
-    again.arrive()
-    again.process.send_signal(signal.SIGINT)
-    assert again.end() == (130, "interrupted; nothing was saved\n")
-    assert again.files() == {"fig2.json": PARTIAL}
-
-
 # A command line one of whose functions never ends: it computes the same again and again.
 AGAIN_AND_AGAIN = """
 import importlib, sys
