@@ -15,7 +15,7 @@ import yaml
 from support.shipped_records import EXACT
 
 from ptmcad import RegionMap, classify, load
-from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.errors import LimitReached
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.config.schema import record_schema
 from ptmcad.question.config.starters import NAMES, starter_text
@@ -36,26 +36,6 @@ def test_the_schema_is_valid() -> None:
 def test_the_published_schema_is_made_of_what_reads_records() -> None:
     """``scripts/schemas`` writes it anew."""
     assert record_schema() == SCHEMA
-
-
-def test_a_design_may_say_what_the_manual_says() -> None:
-    axes = {"L1": [1, 2], "L2": [1, 2]}
-    design: dict[str, Any] = {
-        "maximise": "range",
-        "along": "L1",
-        "over": {"L2": [1, 2]},
-        "where": {"stable": 2},
-    }
-    for aim in ("range", "area", "barrier", "k1.length + 3"):
-        VALIDATOR.validate({"axes": axes, "design": design | {"maximise": aim}})
-    wrongs: list[dict[str, Any]] = [
-        {"maximise": 3},
-        {"over": {}},
-        {"where": {"stable": [2]}},
-        {"poses": "stable:1"},
-    ]
-    for wrong in wrongs:
-        assert not VALIDATOR.is_valid({"axes": axes, "design": design | wrong})
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -79,38 +59,6 @@ def test_whatever_a_description_may_say_validates_and_is_read() -> None:
     record["mechanism"]["springs"][0]["free"] = "1/2"
     VALIDATOR.validate(record)
     slice_from_mapping(record)
-
-
-@pytest.mark.parametrize(
-    ("path", "value"),
-    [
-        (("mechanism", "springs", 0, "free"), [1]),
-        (("mechanism", "springs", 0, "stiffness"), 1),
-        (("mechanism", "springs", 0, "between"), ["A"]),
-        (("mechanism", "bodies", "plate", "turn"), "th"),
-        (("mechanism", "torsion"), [{"angle": "th", "k": 1, "rest": "pi/3"}]),
-        (("mechanism", "torsion"), [{"angle": "th", "k": 1, "at": ["P"]}]),
-        (("mechanism", "loads", "Q"), {"mass": 1}),
-        (("mechanism", "supports", "A"), "glue"),
-        (("mechanism", "unknowns", "th"), "turn"),
-        (("mechanism", "parameters", "k", "kind"), "spring"),
-        (("mechanism", "points", "sin"), [0, 0]),
-        (("mechanism",), "platfrom"),
-        (("system",), {"unknowns": {"x": "real"}, "equations": ["x"]}),
-        (("system",), {"unknowns": {"x": "real"}}),
-    ],
-)
-def test_wrong_descriptions_neither_validate_nor_are_read(
-    path: tuple[str | int, ...], value: Any
-) -> None:
-    record = deepcopy(MECHANISM)
-    place: Any = record
-    for key in path[:-1]:
-        place = place[key]
-    place[path[-1]] = value
-    assert not VALIDATOR.is_valid(record)
-    with pytest.raises(ConfigError):
-        slice_from_mapping(record)
 
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
@@ -181,18 +129,6 @@ def test_partial_results_validate() -> None:
     jsonschema.validate(
         json.loads(partial_map().to_json()), RESULT, cls=jsonschema.Draft202012Validator
     )
-
-
-FREE_KEYS = {
-    "axes",
-    "parameters",
-    "text",
-    "reference",
-    "versions",
-    "precision",
-    "timings",
-    "sample",
-}
 
 
 def test_one_is_not_true_to_either(shipped: Callable[..., RegionMap]) -> None:
