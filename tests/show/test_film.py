@@ -19,7 +19,7 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.stage import Stage
-from ptmcad.show.style import DEFAULT, styled
+from ptmcad.show.style import DEFAULT
 
 FIG4 = str(CONFIGS / "fig4.yaml")
 PATH = "rho=3/4:6/5,L2=3/2"
@@ -76,26 +76,6 @@ def test_what_is_fixed_stands_still_and_all_is_at_one_scale(stage: Stage, motion
     assert {len(line) for seen in stage.sketches for line in seen.coils.values()} == {
         len(stage.sketches[0].coils["spring-1"])
     }
-
-
-@pytest.mark.parametrize("size", ["6.5x3.4in", "6.5x8in", "12x6in"])
-@pytest.mark.fast_cases("6.5x3.4in")
-def test_all_words_are_within_the_picture(motion: Motion, size: str) -> None:
-    style = styled("default", size=size)
-    with settings(style):
-        stage = Stage(motion, style, 100)
-        wide, tall = stage.figure.get_size_inches() * 100
-        for number in (0, next(k for k, step in enumerate(motion.steps) if step.falling)):
-            texts = list(stage._said(motion.steps[number]))
-            for text in (*texts, *stage.figure.texts):
-                box = text.get_window_extent(stage.canvas.get_renderer())
-                assert 0 <= box.x0 < box.x1 <= wide and 0 <= box.y0 < box.y1 <= tall, (
-                    text.get_text()
-                )
-                assert text.get_fontsize() >= 6
-            for text in texts:
-                text.remove()
-    assert (stage.curve is None) == (size == "6.5x3.4in")
 
 
 @pytest.mark.slow
