@@ -14,7 +14,6 @@ from xml.etree import ElementTree
 import matplotlib
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from support.maps import shipped
 
@@ -36,7 +35,6 @@ from ptmcad.show.render import draw
 from ptmcad.show.render.axes import heading_of, symbol
 from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of, fill_of_index
 from ptmcad.show.render.labels import Label, overlap, place
-from ptmcad.show.render.mappicture import MapDrawing
 from ptmcad.show.render.outline import outline
 from ptmcad.show.render.slivers import zooms
 from ptmcad.show.render.view import View
@@ -240,32 +238,6 @@ def test_labels_of_crowded_tips_are_apart() -> None:
 
 
 # ----------------------------------------------------------------------------------------------------- the picture
-
-
-def test_no_seams_between_the_cells_of_a_region(tmp_path: Path) -> None:
-    """Within a region every pixel away from walls has exactly its colour."""
-    result = classified("fig4", "stable")
-    figure = MapDrawing(result, dpi=100).figure()
-    for label in figure.axes[0].texts:
-        label.set_visible(False)
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    image = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255
-    box = figure.axes[0].get_window_extent()
-    part = image[round(box.y0) + 2 : round(box.y1) - 2, round(box.x0) + 2 : round(box.x1) - 2]
-    faces = {
-        tuple(np.round(255 * np.array(to_rgb(fill_of(r, Count.STABLE).face))).astype(int))
-        for r in result.regions
-    }
-    pixels = np.round(255 * part).astype(int)
-    known = np.zeros(pixels.shape[:2], dtype=bool)
-    for face in faces:
-        known |= (pixels == face).all(axis=2)
-    # the rest is the walls, whose anti-aliasing makes pixels darker than the lighter face, never
-    # lighter
-    lightest = max(sum(face) for face in faces)
-    assert known.mean() > 0.97
-    assert pixels.sum(axis=2).max() == lightest
 
 
 @pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
