@@ -25,7 +25,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.ask.solving import poses_at, solve
 from ptmcad.show.render import printing
 from ptmcad.show.render.labels import Label, Stroke, crosses, overlap, place, polyline
-from ptmcad.show.render.landscape import contour_levels, copies, draw_landscape, energy_of
+from ptmcad.show.render.landscape import contour_levels, draw_landscape, energy_of
 from ptmcad.show.render.mechanism import PALE, STRONG
 from ptmcad.show.render.posepicture import draw_poses, printed_number, value_text
 from ptmcad.show.render.sketch import (
@@ -255,21 +255,6 @@ def test_equilibria_on_the_same_place_stay_visible() -> None:
     }
     sizes = [found[f"equilibrium-{k}"].get_markersize() for k in (1, 2, 3)]
     assert sizes[0] > sizes[1] + 3 > sizes[2] + 6
-
-
-def test_the_edges_of_the_torus_are_one() -> None:
-    assert copies(180.0) == copies(-179.9) == (180.0, -180.0)
-    assert copies(0.0) == (0.0,)
-    figure = picture(draw_landscape, "paper, fig. 2")
-    (maximum,) = [a for a in figure.findobj() if a.get_gid() == "equilibrium-6"]
-    same = [
-        a
-        for a in figure.axes[0].lines + figure.axes[0].artists
-        if a.get_marker() == maximum.get_marker()
-    ]
-    assert {(a.get_xdata()[0], a.get_ydata()[0]) for a in same} == {
-        (x, y) for x in (180, -180) for y in (180, -180)
-    }
 
 
 # -------------------------------------------------------------------------------------------------- all of them
