@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from flint import fmpq
 
-from ptmcad.algebra.bernstein import halves, over, sign, table_of
+from ptmcad.algebra.bernstein import table_of
 from ptmcad.workbench.designs.designbounds import Lengths
 from ptmcad.workbench.designs.designlines import (
     Space,
@@ -87,22 +87,6 @@ def test_bounds_hold_and_close_in() -> None:
 
 def _float(value: fmpq) -> float:
     return int(value.p) / int(value.q)
-
-
-def test_signs_over_boxes() -> None:
-    table = table_of([((2, 0, 0), 1), ((0, 1, 1), 1)])  # x^2 + y z
-    unit = (fmpq(0), fmpq(1))
-    assert sign(over(table, (unit, unit, unit))) == 1, "zero on the box's rim alone"
-    mixed = over(table, ((fmpq(-1), fmpq(1)), (fmpq(-1), fmpq(0)), unit))
-    assert sign(mixed) == 0
-    lower, upper = halves(
-        over(table, ((fmpq(1), fmpq(3)), (fmpq(-3), fmpq(-2)), (fmpq(1), fmpq(2))))
-    )
-    assert (sign(lower), sign(upper)) == (0, 0)
-    lower, upper = halves(
-        over(table, ((fmpq(0), fmpq(4)), (fmpq(-2), fmpq(-1)), (fmpq(1), fmpq(2))))
-    )
-    assert (sign(lower), sign(upper)) == (0, 1), "x > 2 with y z > -4"
 
 
 def _two_intervals() -> Space:
