@@ -5,17 +5,13 @@ drawn again.
 from __future__ import annotations
 
 import contextlib
-import csv
 import doctest
 import io
 import re
 import shlex
 from pathlib import Path
-from typing import Any
 
 import pytest
-from numpy.lib.npyio import NpzFile
-from support.maps import CONFIGS
 
 from ptmcad.cli import run
 
@@ -85,37 +81,3 @@ def test_commands_and_python_say_what_the_page_shows(
             examples += 1
     assert commands >= least[0]
     assert examples >= least[1]
-
-
-@pytest.mark.slow
-def test_numbers_are_drawn_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """matplotlib's lines run; the columns that the others name are there."""
-    monkeypatch.chdir(tmp_path)
-    assert run(["classify", str(CONFIGS / "fig4.yaml"), "--format", "csv,npz", "--pixels", "40",
-                "--boundary-tolerance", "1/50"]) == 0  # fmt: skip
-    (python,) = re.findall(r"^```python\n(.*?)^```$", DATA, re.DOTALL | re.MULTILINE)
-    monkeypatch.setenv("MPLBACKEND", "agg")
-    names: dict[str, Any] = {}
-    exec(python, names)
-    for value in names.values():
-        if isinstance(value, NpzFile):
-            value.close()
-    assert Path("again.png").read_bytes().startswith(b"\x89PNG")
-    with (
-        Path("fig4-boundaries.csv").open() as boundaries,
-        Path("fig4-regions.csv").open() as regions,
-    ):
-        columns = set(next(csv.reader(boundaries))), set(next(csv.reader(regions)))
-    (latex,), (matlab,) = (
-        re.findall(rf"^```{name}\n(.*?)^```$", DATA, re.DOTALL | re.MULTILINE)
-        for name in ("latex", "matlab")
-    )
-    assert {
-        *re.findall(r"\b[xy]=([A-Za-z]\w*)[,\]]", latex),
-        *re.findall(r"thisrow\{(\w+)\}", latex),
-    } <= columns[0]
-    assert set(re.findall(r"\bt\.(\w+)", matlab)) <= columns[0]
-    assert set(re.findall(r"\br\.(\w+)", matlab)) <= columns[1]
-    for table, shown in re.findall(r"^\| `NAME-(\w+)\.csv` \|[^|]*\| (.*) \|$", DATA, re.MULTILINE):
-        header = Path(f"fig4-{table}.csv").read_text().splitlines()[0].split(",")
-        assert {name for name in re.findall(r"`(\w+)`", shown)} <= set(header)

@@ -15,12 +15,10 @@ from hypothesis import strategies as st
 from support.counting import system_of
 from support.examples import examples
 from support.maps import CONFIGS, shipped
-from support.poles import power_trace_denominators
 from support.signatures import signature
 
 from ptmcad import load
 from ptmcad.algebra.bernstein import nowhere_zero
-from ptmcad.algebra.fibre_algebra import evaluate as multiplication
 from ptmcad.algebra.fibre_algebra import fibre
 from ptmcad.algebra.groebner import groebner_basis
 from ptmcad.algebra.plane_determinants import determinant
@@ -29,34 +27,26 @@ from ptmcad.algebra.polynomials import (
     coefficients_in,
     evaluate,
     from_expression,
-    irreducible_factors,
     to_plane,
 )
 from ptmcad.algebra.quotient_algebra import (
     LINE,
-    multiplication_denominator,
-    norm,
     poles,
     quotient_algebra,
     trace_form,
 )
 from ptmcad.algebra.real_roots import (
-    RealRoot,
     disjoint,
     has_root_between,
     isolate,
-    order,
     refine,
     sign_at,
     squarefree_part,
 )
-from ptmcad.algebra.resultants import discriminant, interpolate, nothing, resultant
+from ptmcad.algebra.resultants import discriminant, resultant
 from ptmcad.answer.regionmap import Kind
-from ptmcad.exact.cad.criticalpoints import _discriminant
-from ptmcad.exact.cad.projection import curve
 from ptmcad.exact.discriminant_variety import algebra_of
-from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
-from ptmcad.exact.stages import problem_of
+from ptmcad.exact.models.system import SliceSystem, on_slice
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 X, Y = PLANE.gens()
@@ -138,14 +128,6 @@ def test_roots_of_wilkinson_and_mignotte() -> None:
     assert disjoint(found)[0].high < fmpq(1, 1000) < disjoint(found)[1].low
 
 
-def test_huge_coefficients() -> None:
-    big = 10**300
-    p = fmpz_poly([-big, 0, 0, 1]) * fmpz_poly([-1, big])
-    roots = disjoint(isolate(p, fmpq(-1), fmpq(10**101)))
-    assert len(roots) == 2
-    assert refine(roots[1], fmpq(1)).low <= 10**100 <= refine(roots[1], fmpq(1)).high
-
-
 @pytest.mark.parametrize("reach", [10**9, 10**400, 10**5000], ids=("1e9", "1e400", "1e5000"))
 @pytest.mark.parametrize("unit", [Fraction(1), Fraction(10**30), Fraction(1, 10**30)], ids=str)
 def test_roots_in_intervals_of_any_length(reach: int, unit: Fraction) -> None:
@@ -168,25 +150,6 @@ def test_roots_in_intervals_of_any_length(reach: int, unit: Fraction) -> None:
         assert len(found) == len(inside)
         for root, value in zip(found, inside, strict=True):
             assert to_fraction(root.low) <= value <= to_fraction(root.high)
-
-
-def test_irrational_roots_bracket_their_squares() -> None:
-    for n in (2, 3, 5, 10**40 + 1):
-        (root,) = isolate(fmpz_poly([-n, 0, 1]), fmpq(0), fmpq(n))
-        narrow = refine(root, fmpq(1, 10**50))
-        assert narrow.low**2 < n < narrow.high**2
-
-
-def test_where_numbers_lie_against_a_root() -> None:
-    """Also at the ends of its isolating interval, and where a rational root is not known as such."""
-    (root,) = isolate(fmpz_poly([-2, 0, 1]), fmpq(1), fmpq(2))
-    assert root.low < root.high
-    for number in (fmpq(0), root.low, fmpq(141, 100), fmpq(142, 100), root.high, fmpq(3)):
-        assert order(number, root) == (1 if number * number > 2 else -1)
-    plain = RealRoot(fmpz_poly([-3, 2]), fmpq(1), fmpq(2))
-    assert [order(fmpq(n, 2), plain) for n in (2, 3, 4)] == [-1, 0, 1]
-    known = RealRoot(fmpz_poly([-3, 2]), fmpq(3, 2), fmpq(3, 2))
-    assert [order(fmpq(n, 2), known) for n in (2, 3, 4)] == [-1, 0, 1]
 
 
 def test_roots_at_the_ends_of_the_interval_are_outside() -> None:
@@ -258,22 +221,6 @@ def test_resultant_is_flints(p: fmpz_mpoly, r: fmpz_mpoly) -> None:
     assert ours in (theirs, -theirs)
 
 
-@pytest.mark.parametrize(
-    "p",
-    [X * Y**3 + Y + 1, X**2 * Y**2 + X * Y + 1, (X - 1) * (X + 1) * Y**4 + Y**2 - X, X * (X - 1) * Y**3 + X * Y**2 + 1,
-     Y**2 - X**2, (Y - X) ** 2, X * Y**2, (X**3 - X) * Y**5 - X * Y**4 + (X**2 - 1) * Y + 3],
-    ids=str,
-)  # fmt: skip
-def test_leading_coefficients_that_vanish_at_evaluation_points(p: fmpz_mpoly) -> None:
-    assert discriminant(coefficients_in(p, 1)) == in_x(p.discriminant("y"))
-    for r in (Y - X, X * Y**2 + 1, X * Y + X**2 - 1, X * (X - 1) * Y**3 + Y):
-        ours, theirs = (
-            resultant(coefficients_in(p, 1), coefficients_in(r, 1)),
-            in_x(p.resultant(r, "y")),
-        )
-        assert ours in (theirs, -theirs)
-
-
 def test_common_factors_give_zero() -> None:
     assert (
         resultant(
@@ -282,12 +229,6 @@ def test_common_factors_give_zero() -> None:
         == 0
     )
     assert discriminant(coefficients_in((X + Y) ** 2 * (Y - 1), 1)) == 0
-
-
-@given(st.lists(st.integers(-(10**30), 10**30), max_size=9), st.integers(0, 4))
-def test_interpolation(coefficients: list[int], excess: int) -> None:
-    p = fmpz_poly(coefficients)
-    assert interpolate(p, max(p.degree(), 0) + excess) == p
 
 
 # ------------------------------------------------------------------------------------------- Groebner bases and fibres
@@ -355,71 +296,6 @@ def test_basis_specialises_to_flints(name: str) -> None:
         }
 
 
-@pytest.mark.parametrize("name", SLICES)
-def test_norm_is_the_product_over_the_fibre(name: str) -> None:
-    """The norm of the Hessian's determinant at rational points is the determinant of multiplication
-    by it there.
-    """
-    parameters, equations = slice_system(name)
-    algebra = quotient_algebra(
-        groebner_basis(equations.equations, tuple(range(equations.unknowns)))
-    )
-    assert algebra is not None
-    above, below = norm(algebra, equations.jacobian)
-    for x, y in POINTS:
-        over = fibre([specialised(e, x, y) for e in equations.equations], equations.unknowns)
-        assert over is not None
-        assert over.dimension == algebra.dimension
-        expected = multiplication(over, specialised(equations.jacobian, x, y)).det()
-        assert evaluate(above, q(x), q(y)) / evaluate(below, q(x), q(y)) == expected
-        # and the slice's equations are those of the mechanism at that point, up to constants
-        values = {
-            n: evaluate(a, q(x), q(y)) / evaluate(b, q(x), q(y)) for n, (a, b) in parameters.items()
-        }
-        _, hessian = at_point(SYSTEM, values)
-        h = [[multiplication(over, hessian[i][j]) for j in (0, 1)] for i in (0, 1)]
-        direct = (h[0][0] * h[1][1] - h[0][1] * h[1][0]).det()
-        assert (direct == 0) == (expected == 0)
-
-
-@pytest.mark.parametrize("axis", [X, Y], ids=["x", "y"])
-@pytest.mark.parametrize("rank", [11, 12])
-def test_determinants_of_many_rows_in_one_axis(axis: fmpz_mpoly, rank: int) -> None:
-    """A triangular matrix with its rows mixed, of known determinant, and the same with a row that
-    depends on others.
-    """
-    size = 12
-    diagonal = [(k + 2) * axis ** (k % 3) + k - 7 if k < rank else 0 * axis for k in range(size)]
-    rows = [
-        [d if i == j else (i * axis - j) ** 2 if j > i else 0 * axis for j in range(size)]
-        for i, d in enumerate(diagonal)
-    ]
-    for i in range(1, size):
-        rows[i] = [a + (axis + i) * b for a, b in zip(rows[i], rows[i - 1], strict=True)]
-    one = 0 * axis + 1
-    above, below = determinant([[(entry, 3 * axis**2 + 1) for entry in row] for row in rows])
-    assert above * (3 * axis**2 + 1) ** size == prod(diagonal, start=one) * below
-
-
-@pytest.mark.parametrize("name", ["forces", "mechanisms/two-bar-chain", "systems/orthogonal-3r"])
-@pytest.mark.fast_cases("systems/orthogonal-3r")
-def test_poles_by_characteristic_polynomials_are_those_by_power_traces(name: str) -> None:
-    problem = problem_of(load(CONFIGS / f"{name}.yaml"))
-    equations = on_slice(problem.system, problem.on.parameters)
-    algebra = quotient_algebra(
-        groebner_basis(equations.equations, tuple(range(equations.unknowns)))
-    )
-    assert algebra is not None
-    suspects = irreducible_factors(multiplication_denominator(algebra))
-    traces = [power_trace_denominators(algebra, k) for k in equations.unbounded]
-    found = poles(algebra, suspects, equations.unbounded)
-    assert 0 < len(found) < len(suspects)
-    assert set(map(str, found)) == {
-        str(f) for f in suspects if any((t % f).is_zero() for t in traces)
-    }
-    assert set(map(str, poles(algebra, [], equations.unbounded, suspects))) == set(map(str, found))
-
-
 def test_a_pole_that_the_line_does_not_show_is_found_in_the_plane() -> None:
     """The only root is (y - x - 1009)/f, and nothing on the line y = x + 1009: of f = x, so only a
     suspect is found.
@@ -475,26 +351,7 @@ def test_infinite_fibre_is_none() -> None:
 
 # ---------------------------------------------------------------------------------------------------------- the window
 
-UNIT = (fmpq(0), fmpq(1))
 BOTH = (fmpq(-1), fmpq(1))
-
-
-@pytest.mark.parametrize(
-    ("p", "x", "y", "proved"),
-    [(X**2 + Y**2 + 1, BOTH, BOTH, True), (X + Y, UNIT, UNIT, True), (X * Y, UNIT, UNIT, True), (X, UNIT, UNIT, True),
-     (X - 2, UNIT, UNIT, True), (2 * X - 1, UNIT, UNIT, False), (X + Y - 1, UNIT, UNIT, False),
-     (X - Y, UNIT, UNIT, False),
-     (X**2 + Y**2 - 1, BOTH, BOTH, False), (X**2 + Y**2 - 9, BOTH, BOTH, True), (X**2 + Y**2, BOTH, BOTH, False),
-     (-(X**2) - Y**2, BOTH, BOTH, False),
-     (1000 * (X**2 + Y**2) - 1, BOTH, BOTH, False), (X + Y - 2, UNIT, UNIT, True),
-     ((X - 1) ** 2 + Y**2, UNIT, UNIT, True),
-     (X**2 - 2, UNIT, UNIT, True), (X**2 - 2, (fmpq(1), fmpq(2)), UNIT, False), (Y * (X - 5), BOTH, UNIT, True)],
-    ids=str,
-)  # fmt: skip
-def test_nowhere_zero(
-    p: fmpz_mpoly, x: tuple[fmpq, fmpq], y: tuple[fmpq, fmpq], proved: bool
-) -> None:
-    assert nowhere_zero(p, (x, y)) == proved
 
 
 @given(degree_3_by_3)
@@ -522,15 +379,3 @@ def test_pairs_of_components_are_different() -> None:
         assert all(
             a.polynomial != b.polynomial for a, b in combinations(shipped(name).components, 2)
         )
-
-
-@pytest.mark.parametrize(
-    "p", [(X**2 + Y**2 - 3) * (X * Y**2 - 5) + 7, X**3 * Y**6 - (X + 1) * Y**3 + X - 2, Y**2 - X]
-)
-def test_discriminants_of_least_degree_have_the_roots_of_the_whole_ones(p: fmpz_mpoly) -> None:
-    seen = curve(0, p, 0)
-    least, whole = (
-        squarefree_part(_discriminant(seen, nothing)),
-        squarefree_part(discriminant(seen.in_v)),
-    )
-    assert least.degree() == whole.degree() == least.gcd(whole).degree() > 0

@@ -8,7 +8,6 @@ from itertools import pairwise
 import pytest
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
-from ptmcad.algebra import descartes
 from ptmcad.algebra.real_roots import RealRoot, isolate, newton_ball, sign_at
 
 
@@ -27,24 +26,6 @@ def _squarefree(source: random.Random) -> fmpz_poly:
                 p *= fmpz_poly([source.randint(-2 * bottom, 2 * bottom), bottom])
         if p.degree() > 0 and p.gcd(p.derivative()).degree() == 0:
             return p
-
-
-@pytest.mark.parametrize("ends", [(-2, 2), (0, 1), (fmpq(-1, 3), fmpq(5, 2)), (-(10**5), 10**5)])
-def test_bernstein_coefficients_part_the_roots_that_shifts_part(
-    ends: tuple[fmpq, fmpq], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    source = random.Random(str(ends))
-    low, high = map(fmpq, ends)
-    polynomials = [_squarefree(source) for _ in range(60)]
-    found = [isolate(p, low, high) for p in polynomials]
-    monkeypatch.setattr(descartes, "_MAX_SHORT_DEGREE", -1)
-    for p, roots in zip(polynomials, found, strict=True):
-        other = isolate(p, low, high)
-        assert len(roots) == len(other)
-        for a, b in zip(
-            roots, other, strict=True
-        ):  # near a cluster one may be shorter than the other
-            assert max(a.low, b.low) <= min(a.high, b.high)
 
 
 def _holds(ball: arb, p: fmpz_poly) -> bool:

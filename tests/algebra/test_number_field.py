@@ -15,7 +15,6 @@ from ptmcad.algebra.number_field import (
     FieldElement,
     Modulus,
     RealField,
-    RingEvaluation,
     polynomial_at,
     rational_roots,
 )
@@ -101,25 +100,6 @@ def test_zero_rational_and_enclosure_agree_with_residues_over_q(
         assert element.residue == residue
 
     check()
-
-
-def test_most_elements_are_told_without_a_residue_over_q() -> None:
-    field = RealField(
-        Modulus(fmpz_poly([-2, 0, 1])), isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0]
-    )
-    root = field.element(fmpq_poly([0, 1]))
-    asked: list[RingEvaluation] = []
-
-    def told(ring: RingEvaluation) -> object:
-        if ring is field.modulus.residues:
-            asked.append(ring)
-        return root.expression(ring)
-
-    silent = FieldElement(field, told)
-    value = (silent * silent * silent + silent).times(fmpq(1, 3)).inverse()
-    assert (value.is_zero, value.rational, asked) == (False, None, [])
-    assert (silent * silent).rational == 2
-    assert asked
 
 
 def test_zero_has_no_inverse() -> None:

@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
-from ptmcad.algebra import reflections
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 from ptmcad.algebra.reflections import isolate_reflected
 from ptmcad.text.flint_numbers import from_fraction
@@ -87,27 +86,6 @@ def test_roots_are_those_found_without_the_reflection(
     assert the_same(isolate_reflected(p, q, m, d, *window), expected)
 
 
-def test_a_root_on_an_edge_is_outside(monkeypatch: pytest.MonkeyPatch) -> None:
-    """v = +-1, +-2 about 0, in intervals that end there; without the general way to fall back on."""
-    q = with_roots([Fraction(1), Fraction(4)])
-    p = reflected(q, fmpq(0), 1)
-    asked: list[fmpz_poly] = []
-
-    def watched(polynomial: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
-        asked.append(polynomial)
-        return isolate(polynomial, low, high)
-
-    monkeypatch.setattr(reflections, "isolate", watched)
-
-    def inside(low: int, high: int) -> int:
-        return len(isolate_reflected(p, q, fmpq(0), 1, fmpq(low), fmpq(high)))
-
-    assert [inside(-1, 2), inside(-2, 2), inside(-3, 2)] == [1, 2, 3]
-    assert [inside(1, 2), inside(0, 3), inside(-2, -1)] == [0, 2, 0]
-    assert asked
-    assert all(polynomial == q for polynomial in asked)
-
-
 def test_a_multiple_root_outside_of_the_interval_is_no_matter() -> None:
     """(9 v^2 - 49)^2 (v^2 - 1), one of the double roots between the ends or none."""
     q = with_roots([Fraction(49, 9), Fraction(49, 9), Fraction(1)])
@@ -119,19 +97,3 @@ def test_a_multiple_root_outside_of_the_interval_is_no_matter() -> None:
     )  # a double root is within reach, and outside
     with pytest.raises(ValueError, match="not squarefree"):
         isolate_reflected(p, q, fmpq(0), 1, fmpq(-4), fmpq(2))
-
-
-def test_close_roots_are_parted_by_longer_square_roots() -> None:
-    near = [Fraction(2), 2 + Fraction(1, 2**90), 2 + Fraction(1, 2**89)]
-    q = with_roots(near)
-    p = reflected(q, fmpq(1, 3), 3)
-    found = isolate_reflected(p, q, fmpq(1, 3), 3, fmpq(-4), fmpq(4))
-    assert the_same(found, isolate(p, fmpq(-4), fmpq(4)))
-
-
-def test_close_roots_far_from_the_axis_are_parted_too() -> None:
-    """Their square roots are nearer to each other than they are, by a factor of a million."""
-    q = with_roots([Fraction(10**18 + 1), Fraction(10**18 + 2), Fraction(10**18 + 3)])
-    p = reflected(q, fmpq(0), 1)
-    window = fmpq(0), fmpq(2 * 10**9)
-    assert the_same(isolate_reflected(p, q, fmpq(0), 1, *window), isolate(p, *window))

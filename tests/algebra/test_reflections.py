@@ -4,16 +4,15 @@ is the same.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import pytest
-from flint import acb, arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import fmpq, fmpq_poly, fmpz_poly
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.examples import examples
 
-from ptmcad.algebra import clusters, resultants
+from ptmcad.algebra import resultants
 from ptmcad.algebra.reflections import axis_of, squared
 
 SMALL = st.integers(-9, 9)
@@ -93,40 +92,3 @@ def test_a_bent_axis_and_odd_degrees_are_left_alone() -> None:
     assert axis_of(bent) is None
     assert axis_of([fmpz_poly([0]), fmpz_poly([1]), fmpz_poly([0]), fmpz_poly([1])]) is None
     assert axis_of([fmpz_poly([1]), fmpz_poly([1])]) is None
-
-
-def test_discs_over_an_abscissa_start_from_the_squares(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of real, complex and imaginary w, at a place where two of the squares are equal, and where
-    one is zero.
-    """
-    u = fmpz_poly([0, 1])
-    q = [fmpz_poly([1])]
-    for factor in ([-u, 1], [fmpz_poly([-2]), 1], [u**2 + 3, 1], [fmpz_poly([5]), u, 1]):
-        product = [fmpz_poly([0])] * (len(q) + len(factor) - 1)
-        for i, a in enumerate(q):
-            for j, b in enumerate(factor):
-                product[i + j] += a * b
-        q = product
-    p = reflected_about(q, fmpz_poly([1, 3]), 2)
-    degrees: list[int] = []
-    approximate = clusters._approximate
-
-    def followed(coefficients: Sequence[arb]) -> list[tuple[acb, int]]:
-        degrees.append(len(coefficients) - 1)
-        return approximate(coefficients)
-
-    for place in (fmpq(1), fmpq(2), fmpq(0), fmpq(7, 3)):
-        with ctx.workprec(200):
-            abscissa = arb(place) + arb(0, 1) / 2**150
-            direct = clusters.clusters([arb_poly(row)(abscissa) for row in p])
-            with monkeypatch.context() as patch:
-                patch.setattr(clusters, "_approximate", followed)
-                found = clusters.clusters_over(p, abscissa)
-        assert degrees.pop() == len(q) - 1
-        assert not degrees
-        assert found is not None
-        assert direct is not None
-        assert sorted(c.number for c in found) == sorted(c.number for c in direct)
-        for c in found:
-            assert [d.number for d in direct if c.meets(d)] == [c.number]
-            assert [d.is_real for d in direct if c.meets(d)] == [c.is_real]

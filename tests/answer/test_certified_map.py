@@ -162,19 +162,6 @@ def test_points_are_told_exactly_or_left_undecided(rho: str, height: str, cell: 
     )
 
 
-def test_points_of_two_maps_are_not_confused() -> None:
-    one, other = (
-        certified_map(),
-        replace(certified_map(), cover=Cover(16, ((0, 16, 7, 8), (10, 11, 0, 16)))),
-    )
-    free = replace(certified_map(), cover=Cover(2, ()), cells=certified_map().cells[:1])
-    for result in (one, free, other, free, one):
-        assert result.locate(rho=1, L2="15/8").status is (
-            Status.CERTIFIED if result is free else Status.UNDECIDED
-        )
-    assert one.locate(rho=0, L2=2).status is Status.ON_EDGE
-
-
 def test_a_stopped_map_answers_too() -> None:
     assert certified_map(status=Status.PARTIAL).locate(rho=1, L2="2.1").status is Status.CERTIFIED
 
@@ -199,56 +186,7 @@ def test_the_table_tells_what_is_open() -> None:
     assert "1 stable and admissible: 2 regions; 2 stable and admissible: 1 region" in admissible
 
 
-def test_locate_prints_what_is_admissible(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "map.json"
-    made = (
-        certified_map()
-    )  # whose first cell has the box of one solution only, and is taken for damaged
-    without = replace(made, cells=tuple(replace(cell, solutions=()) for cell in made.cells))
-    path.write_text(without.to_json(), encoding="utf-8")
-    assert run(["locate", str(path), "--at", "rho=1/2,L2=5/2"]) == 0
-    assert capsys.readouterr().out.splitlines()[-2:] == [
-        "index       2-3-0 (minima-saddles-maxima)",
-        "admissible  1",
-    ]
-    points = tmp_path / "points.csv"
-    points.write_text("L2,rho\n5/2,1/2\n15/8,1\n", encoding="utf-8")
-    assert run(["locate", str(path), "--csv", str(points)]) == 0
-    assert capsys.readouterr().out.splitlines() == [
-        "rho,L2,status,region,cell,total,stable,index,admissible",
-        "1/2,5/2,certified,0,0,5,2,2-3-0,1",
-        "1,15/8,undecided,,,,,,",
-    ]
-
-
 # --------------------------------------------------------------------------------------------------- what is refused
-
-
-@pytest.mark.parametrize(
-    ("options", "key", "part"),
-    [
-        (
-            {"engine": "exact"},
-            "engine",
-            "an exact map is not computed for springs with a free length",
-        ),
-        ({"engine": "certifed"}, "engine", "did you mean 'certified'?"),
-        ({"tolerance": 0}, "tolerance", "0 is not between 0 and 1"),
-        ({"tolerance": "x"}, "tolerance", "unknown name 'x'"),
-        ({"tolerance": float("nan")}, "tolerance", "is not a number"),
-        ({"area_tolerance": "1e-3"}, "area_tolerance", "give tolerance instead"),
-        ({"without": frozenset(("axis-order",))}, "without", "a saving of the exact engine"),
-        ({"count": "most"}, "count", "most"),
-    ],
-    ids=str,
-)
-def test_options_that_do_not_fit_are_refused(options: dict[str, Any], key: str, part: str) -> None:
-    with pytest.raises(ConfigError) as caught:
-        ptmcad.classify(free_slice(), **options)
-    assert caught.value.key == key
-    assert part in caught.value.message
 
 
 @pytest.mark.parametrize("engine", ["auto", "exact", "certified"])
@@ -324,16 +262,3 @@ def test_a_line_on_which_the_free_lengths_are_zero_is_answered() -> None:
         ptmcad.slice_from_options(slice="rho,L2", sets=["F3=-10", "F4=-10"]), "rho", {"L2": 1}
     )
     assert free.intervals == fig4.intervals
-
-
-def test_resume_names_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "map.json"
-    path.write_text(certified_map().to_json(), encoding="utf-8")
-    words = ["classify", "--slice", "rho,L2", "--set", "l0=1/5", "--out", str(tmp_path), "--resume"]
-    assert run([*words, str(path)]) == 2
-    assert (
-        f"error: {path}: --resume: this map is of another slice: axes, F3, F4 differ"
-        in capsys.readouterr().err
-    )
-    assert run([*words, str(tmp_path / "none.json")]) == 2
-    assert "none.json: there is no such file" in capsys.readouterr().err

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import random
-from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -17,7 +15,6 @@ import ptmcad
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import ConfigError
-from ptmcad.exact.cad.polyline import chains
 
 SLICES = ("fig2", "fig3", "fig4", "forces")
 
@@ -81,32 +78,6 @@ def test_every_point_of_a_curve_is_as_near_as_is_said(name: str, tolerance: str)
                 assert (
                     min(distance_along_fibre(c, float(at), r) for r in roots) <= q.distance + 1e-12
                 )
-
-
-@pytest.mark.parametrize(
-    ("name", "tolerance"), [("fig2", "1/50"), pytest.param("fig4", "1/10", marks=pytest.mark.slow)]
-)
-def test_polylines_have_all_chords_of_which_the_distance_is_proved(
-    name: str, tolerance: str
-) -> None:
-    result = shipped(name)
-    base, axes = result.base, result.slice.axes
-    drawn = {
-        (b.component, *(round(float(v), 9) for end in chord for v in end))
-        for b in result.boundaries(tolerance)
-        for chord in pairwise(b.points[:, [base, 1 - base]])
-    }
-    for stack, walls in zip(result.stacks, chains(result, Fraction(tolerance)), strict=True):
-        for wall, chain in zip(stack.walls, walls, strict=True):
-            units = [
-                [
-                    round(float(axes[k].low + (axes[k].high - axes[k].low) * v), 9)
-                    for k, v in zip((base, 1 - base), at, strict=True)
-                ]
-                for at in chain.points
-            ]
-            for one, other in pairwise(units):
-                assert (wall.component, *one, *other) in drawn
 
 
 @pytest.mark.parametrize(
@@ -204,22 +175,6 @@ def test_centres_on_curves_and_critical_values_have_no_label_or_the_right_one() 
     assert (result.grid(4).total == NONE).sum() == 4
 
 
-def test_a_line_of_the_variety_on_a_column_has_no_label() -> None:
-    result = ptmcad.classify(
-        ptmcad.slice_from_mapping(
-            {
-                "name": "line", "system": {"unknowns": {"z": "real"}, "equations": ["z^2 - x"]},
-                "axes": {"x": [-1, 1], "y": [0, 1]},
-            }
-        )
-    )  # fmt: skip
-    for n, empty in ((2, []), (3, [1])):
-        grid = result.grid(n, 2)
-        assert [c for c in range(n) if (grid.total[:, c] == NONE).all()] == empty
-        assert (grid.total[:, 0] == 0).all()
-        assert (grid.total[:, -1] == 2).all()
-
-
 @pytest.mark.parametrize(("columns", "rows"), [(24, 18), (8, 8), (STEPS, 1), (5, 40)])
 def test_a_grid_over_a_certified_map(columns: int, rows: int) -> None:
     """Of 8 x 8 centres each lies on a line of the lattice both ways, and touches closed rectangles
@@ -269,29 +224,6 @@ def test_bad_requests_are_refused(call: object, message: str) -> None:
     assert callable(call)
     with pytest.raises(ConfigError, match=message):
         call(shipped("fig2"))
-
-
-@pytest.mark.parametrize(
-    ("polynomial", "low", "high"),
-    [
-        ((-1, 1), "1", "1"),
-        ((-2, 0, 1), "1", "2"),
-        ((1, 0, 1), "1/1000", "1/10"),
-        ((-1, 399), "1/400", "1/300"),
-    ],
-)
-def test_a_critical_value_that_is_elsewhere_is_said(
-    polynomial: tuple[int, ...], low: str, high: str
-) -> None:
-    """Halving an interval would never part it from a sample that is not at its side."""
-    result = shipped("fig4")
-    assert result.stacks[0].sample == Fraction(1, 399)
-    first = replace(
-        result.critical_values[0], polynomial=polynomial, low=Fraction(low), high=Fraction(high)
-    )
-    damaged = replace(result, critical_values=(first, *result.critical_values[1:]))
-    with pytest.raises(ValueError, match="not between the samples"):
-        damaged.boundaries("1/10")
 
 
 def test_a_map_without_cells_has_neither() -> None:

@@ -13,8 +13,7 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.branches import Branch, Branches
-from ptmcad.ask.lines import diagram as module
-from ptmcad.ask.lines.diagram import branch_diagram, solutions_on_line
+from ptmcad.ask.lines.diagram import branch_diagram
 from ptmcad.ask.quantities import OPTION, of_pose, quantities, quantity
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
@@ -38,17 +37,6 @@ def numbers(branch: Branch, k: int) -> list[float]:
 def fig4() -> Branches:
     names = ("th1", "energy", "stiffness", "force:A1A4", "length:A1A4", "y:A3")
     return branch_diagram(load(FIG4), "rho", {"L2": "3/2"}, names)
-
-
-@pytest.mark.slow
-def test_the_branches_are_all_equilibria(fig4: Branches) -> None:
-    """Four, six and four of them, as the ranges say; two are stable in the middle."""
-    folds = (0.4981306959, 1.041432630)
-    places = [sum(float(b.points[0].value) > fold for fold in folds) for b in fig4.branches]
-    assert [places.count(k) for k in range(3)] == [4, 6, 4]
-    assert [sum(bool(b.stable) for b, k in zip(fig4.branches, places, strict=True) if k == n) for n in range(3)] == [
-        1, 2, 1]  # fmt: skip
-    assert not fig4.undecided
 
 
 @pytest.mark.slow
@@ -95,17 +83,6 @@ def test_the_cubic() -> None:
         for point in branch.points:
             x, a = numbers(Branch(None, None, (point,)), 0)[0], float(point.value)
             assert abs(x**3 - a * x + 0.5) < 1e-4
-
-
-@pytest.mark.slow
-def test_free_lengths() -> None:
-    pytest.importorskip("numba")
-    slice = ptmcad.slice_from_options(CONFIGS / "free02.yaml", ranges=["rho=3/10:3/5"])
-    found = branch_diagram(slice, "rho", {"L2": "3/2"}, ["th1", "force:A3A4"])
-    assert len(found.branches) == 10
-    assert sum(bool(b.stable) for b in found.branches if float(b.points[0].value) < 0.4) == 1
-    for branch in found.branches:
-        assert len(branch.points) >= 24
 
 
 def test_quantities_that_there_are_not() -> None:
@@ -170,28 +147,6 @@ def test_a_barrier_is_no_number_of_a_pose() -> None:
         quantity(load(FIG4).model, "barrier")
 
 
-def test_a_line_is_solved_once_for_several_diagrams(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[Fraction] = []
-    own = module.poses_at
-
-    def counted(model: Any, parameters: dict[str, Fraction], digits: int) -> Any:
-        asked.append(parameters["rho"])
-        return own(model, parameters, digits)
-
-    monkeypatch.setattr(module, "poses_at", counted)
-    monkeypatch.setattr(module, "SAMPLES", 8)
-    slice = ptmcad.slice_from_options(FIG4, ranges=["rho=1:5/4"])
-    line = solutions_on_line(slice, "rho", {"L2": "3/2"})
-    one, two = (
-        branch_diagram(slice, "rho", {"L2": "3/2"}, [name], line=line) for name in ("th1", "energy")
-    )
-    assert len(asked) == len(set(asked)) > 8
-    assert [[p.value for p in b.points] for b in one.branches] == [
-        [p.value for p in b.points] for b in two.branches
-    ]
-    assert two == branch_diagram(slice, "rho", {"L2": "3/2"}, ["energy"])
-
-
 def test_numbers_of_a_pose() -> None:
     model = load(FIG4).model
     pose = ptmcad.solve(rho="7/10", L2="3/2", F3=-10).equilibria[0]
@@ -201,20 +156,6 @@ def test_numbers_of_a_pose() -> None:
     assert (of["th1"], of["th2"]) == pose.degrees and of["angle:th2"] == of["th2"]
     assert (of["x:A4"], of["y:A4"]) == pose.nodes["A4"]
     assert (of["energy"], of["stiffness"]) == (pose.energy, pose.eigenvalues[0])
-
-
-@pytest.mark.slow
-def test_other_spellings_are_the_same_numbers() -> None:
-    asked = ["th1", "angle:th1", "x:A1", "force:A1A4", "force:k1"]
-    slice = ptmcad.slice_from_options(FIG4, ranges=["rho=1:5/4"])
-    found = branch_diagram(slice, "rho", {"L2": Fraction(3, 2)}, [" angle:th1 ", *asked])
-    assert found.quantities == ("angle:th1", *asked)
-    assert found.units == ("degrees", "degrees", "degrees", "length", "force", "force")
-    for branch in found.branches:
-        for point in branch.points:
-            angle, alone, other, fixed, one, two = point.numbers
-            assert angle == alone == other and one == two
-            assert fixed is not None and fixed.exact == 0
 
 
 @pytest.mark.usefixtures("coarse")
@@ -247,39 +188,6 @@ def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     )
     assert run([*common, "--over", "L2", "--quantity", "th1"]) == 2
     assert "error: --quantity: needs the value of the other axis too" in capsys.readouterr().err
-
-
-@pytest.mark.usefixtures("coarse")
-@pytest.mark.slow
-def test_a_picture_of_branches_with_free_lengths(tmp_path: Path) -> None:
-    pytest.importorskip("numba")
-    common = [
-        "range",
-        str(CONFIGS / "free02.yaml"),
-        "--along",
-        "rho",
-        "--at",
-        "L2=3/2",
-        "--range",
-        "rho=3/10:2/5",
-    ]
-    assert (
-        run(
-            [
-                *common,
-                "--quantity",
-                "energy",
-                "--format",
-                "svg",
-                "--out",
-                str(tmp_path),
-                "--name",
-                "x",
-            ]
-        )
-        == 0
-    )
-    assert [path.name for path in tmp_path.iterdir()] == ["x-branches.svg"]
 
 
 @pytest.mark.usefixtures("coarse")

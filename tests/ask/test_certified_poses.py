@@ -11,14 +11,12 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from support.dense_search import dense_search, derivatives
 
 from ptmcad import Poses, solve
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.lines.along import certified_intervals
-from ptmcad.cli.range import command
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, slice_from_options
 from ptmcad.show.ranges.linetable import table
@@ -214,61 +212,6 @@ def test_a_coordinate_that_interval_arithmetic_knows_exactly(force: Q, tmp_path:
     assert pose.reals[1].exact is None
 
 
-@pytest.mark.slow
-def test_the_issue_s_line() -> None:
-    slice = slice_from_options(
-        None, "rho,L2", ("l0=1/5", "F3=-10", "F4=-10"), ("rho=0:4", "L2=0:4")
-    )
-    found = certified_intervals(slice, "rho", {"L2": "3/2"}, 10)
-    stable = [interval.index[0] for interval in found.intervals if interval.index]
-    assert stable == [1, 2, 2, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2, 2, 1]
-
-
-@pytest.mark.slow
-def test_range_on_the_command_line() -> None:
-    options = [
-        "--along",
-        "l0",
-        "--at",
-        "rho=7/10,L2=3/2",
-        "--range",
-        "l0=1/3:1/2",
-        "--set",
-        "F3=-10",
-    ]
-    done = CliRunner().invoke(command, options)
-    assert done.exit_code == 0 and "min-saddle-max" in done.output
-    followed = CliRunner().invoke(command, [*options, "--path", "2/5"])
-    assert followed.exit_code == 0 and "pose 2 at l0 = 0.4: th1 = 67.34006196" in followed.output
-    assert isinstance(
-        CliRunner().invoke(command, [*options, "--format", "svg"]).exception, ConfigError
-    )
-
-
-def test_a_free_length_of_zero_beside_one_that_is_a_number() -> None:
-    """One angle, two springs: the parameter is zero and the number is not, so that the point tells
-    both. The poses are those of a dense look at the energy's slope."""
-    mechanism = {
-        "parameters": {"l0": {"kind": "free length"}, "F": {"kind": "force"}},
-        "unknowns": {"th": "angle"},
-        "points": {"A": [2, 0], "B": [0, 2], "P": ["cos(th)", "sin(th)"]},
-        "springs": [
-            {"between": ["A", "P"], "k": 1, "free": "l0"},
-            {"between": ["B", "P"], "k": 1, "free": "1/2"},
-        ],
-        "loads": {"P": ["F", 0]},
-    }
-    record = {"name": "two", "mechanism": mechanism, "axes": {"F": [-1, 1], "l0": [0, 1]}}
-    poses = solve(record, F="1/3", l0=0)
-    assert poses.status is Status.CERTIFIED and poses.parameters["l0"] == 0
-    angle = np.linspace(0, 2 * np.pi, 100_001)
-    away = np.hypot(np.cos(angle), np.sin(angle) - 2)
-    energy = ((np.cos(angle) - 2) ** 2 + np.sin(angle) ** 2 + (away - 0.5) ** 2) / 2 - np.cos(
-        angle
-    ) / 3
-    slope = np.diff(energy)
-    minima = np.sum((slope[:-1] < 0) & (slope[1:] >= 0))
-    assert len(poses.equilibria) == np.sum((slope[:-1] < 0) != (slope[1:] < 0)) == 2
-    assert sum(bool(pose.stable) for pose in poses.equilibria) == minima == 1
-    found = min(float(pose.energy.center) for pose in poses.equilibria if pose.energy is not None)
-    assert abs(found - energy.min()) < 1e-8
+def test_energy_has_no_free_length_unless_asked_for() -> None:
+    plain = solve(rho=Q(1), L2=Q(3, 2))
+    assert energy_of(plain.model, plain.parameters).roots == ()

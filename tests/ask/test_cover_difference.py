@@ -8,14 +8,12 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from math import hypot
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from support.certified_maps import around, certified, circle
+from support.certified_maps import certified, circle
 from support.examples import examples
 from support.maps import part_of_free02, shipped
 
@@ -24,10 +22,6 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli import run
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.colours import UNDETERMINED
-from ptmcad.show.render.comparing import comparison_figure, difference_words
-from ptmcad.show.render.printing import settings as printing_settings
-from ptmcad.show.style import styled
 
 Label = Callable[[Fraction, Fraction], int | None]
 """The count at a point of the unit square; None where it is undetermined."""
@@ -69,40 +63,6 @@ def check(
     undetermined = square * sum(n for pair, n in pairs.items() if None in pair)
     assert found.undetermined == undetermined
     assert found.area == (sum(certain.values()), sum(certain.values()) + undetermined)
-
-
-def ellipse(depth: int) -> RegionMap:
-    """2 stable in an ellipse that is aside, 3 outside of it."""
-
-    def function(x: float, y: float) -> tuple[float, float]:
-        return hypot(x - 0.6, 2 * (y - 0.5)) - 0.3, 2.0
-
-    return certified(
-        around(function, depth), lambda x, y: 2 if hypot(x - 0.6, 2 * (y - 0.5)) < 0.3 else 3
-    )
-
-
-def in_circle(x: Fraction, y: Fraction) -> int:
-    return 3 if (x - Fraction(1, 2)) ** 2 + (y - Fraction(1, 2)) ** 2 < Fraction(1, 16) else 2
-
-
-def in_ellipse(x: Fraction, y: Fraction) -> int:
-    return 2 if (x - Fraction(3, 5)) ** 2 + 4 * (y - Fraction(1, 2)) ** 2 < Fraction(9, 100) else 3
-
-
-@pytest.mark.parametrize(("one", "other"), [(5, 6), pytest.param(6, 5, marks=pytest.mark.slow)])
-def test_areas_are_those_of_the_squares(one: int, other: int) -> None:
-    first, second = circle(one), ellipse(other)
-    assert first.cover is not None and second.cover is not None
-    covers = first.cover, second.cover
-    pairs = sampled(
-        lambda x, y: None if covered(covers[0], x, y) else in_circle(x, y),
-        lambda x, y: None if covered(covers[1], x, y) else in_ellipse(x, y),
-        2 ** max(one, other),
-    )
-    found = first.compare(second)
-    check(found, pairs, Fraction(4, 4 ** max(one, other)))
-    assert len(found.changes) == 2 and 0 < found.share[0] < found.share[1] < 1
 
 
 SIDE = 8
@@ -175,47 +135,6 @@ def test_any_covers_of_two_lattices(
     check(first.compare(second), sampled(before, after, SIDE), Fraction(4, SIDE**2))
 
 
-@pytest.mark.slow
-def test_a_map_differs_from_itself_nowhere_but_where_it_is_undetermined() -> None:
-    result = part_of_free02()
-    found = result.compare(result)
-    x, y = result.slice.axes
-    assert found.changes == () and found.area[0] == 0
-    assert (
-        found.area[1]
-        == found.undetermined
-        == result.undetermined * (x.high - x.low) * (y.high - y.low)
-    )
-    (said,) = difference_words(found)
-    assert said.startswith("The maps have the same counts everywhere where both are determined; ")
-
-
-def test_the_picture_shows_the_changes_where_they_are() -> None:
-    found = circle(6).compare(ellipse(6))
-    style = styled(size="9x4.5in", font_size=8)
-    with printing_settings(style):
-        made = comparison_figure(found, 100, style)
-    said = [text.get_text() for text in made.texts]
-    assert {"3 → 2", "2 → 3", "by one map or both"} <= set(said)
-    ground = next(a for a in made.axes[2].get_children() if a.get_gid() == "2-undetermined")
-    assert ground.get_facecolor()[:3] == pytest.approx(
-        [int(UNDETERMINED.face[k : k + 2], 16) / 255 for k in (1, 3, 5)]
-    )
-    for change in found.changes:
-        (patch,) = [
-            a for a in made.axes[2].get_children() if a.get_gid() == f"2-region-{change.region}"
-        ]
-        path = patch.get_path()
-        inside = np.clip(path.vertices, 0, 1)  # outlines on the frame are drawn beyond it
-        parts = np.split(inside, np.flatnonzero(path.codes == path.MOVETO)[1:])
-        # polygons around holes turn the other way
-        area = sum(
-            0.5 * float(np.sum(p[:, 0] * np.roll(p[:, 1], -1) - np.roll(p[:, 0], -1) * p[:, 1]))
-            for p in parts
-        )
-        assert 4 * area == pytest.approx(float(change.area[0]), rel=0.02)
-
-
 def test_what_cannot_be_compared_is_said() -> None:
     with pytest.raises(ConfigError, match="one map is exact and the other certified"):
         shipped("fig4").compare(circle(5))
@@ -245,31 +164,3 @@ def test_the_damaged_file_is_named(tmp_path: Path, capsys: pytest.CaptureFixture
             assert run(["plot", one, "--compare", two]) == 2
             said = capsys.readouterr().err
             assert f"{other}.json" in said and "whole.json" not in said and reason in said
-
-
-def test_the_damaged_exact_file_is_named(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    whole = shipped("fig4")
-    number = next(k for k, s in enumerate(whole.stacks) if s.walls)
-    stack = whole.stacks[number]
-    walls = (replace(stack.walls[0], root=9), *stack.walls[1:])
-    stacks = (*whole.stacks[:number], replace(stack, walls=walls), *whole.stacks[number + 1 :])
-    (tmp_path / "whole.json").write_text(whole.to_json())
-    (tmp_path / "damaged.json").write_text(replace(whole, stacks=stacks).to_json())
-    for pair in (("whole", "damaged"), ("damaged", "whole")):
-        one, two = (str(tmp_path / f"{name}.json") for name in pair)
-        assert run(["plot", one, "--compare", two]) == 2
-        said = capsys.readouterr().err
-        assert "damaged.json" in said and "whole.json" not in said
-
-
-@pytest.mark.slow
-def test_the_command_line_compares(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for name, result in (("one", circle(6)), ("two", ellipse(6))):
-        (tmp_path / f"{name}.json").write_text(result.to_json())
-    one, two = (str(tmp_path / f"{name}.json") for name in ("one", "two"))
-    assert run(["plot", one, "--compare", two, "--format", "svg,png"]) == 0
-    said = capsys.readouterr().out
-    assert "One map or both leave" in said and "3 → 2: area" in said
-    assert {path.name for path in tmp_path.iterdir()} >= {"one-and-two.svg", "one-and-two.png"}

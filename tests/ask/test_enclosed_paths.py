@@ -19,7 +19,6 @@ import ptmcad
 from ptmcad.answer.paths import Fate, PosePaths
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
-from ptmcad.show.ranges.pathtable import path_table
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
 pytest.importorskip("numba")
@@ -62,30 +61,6 @@ def test_it_snaps_at_the_fold_to_the_pose_that_is_left(found: PosePaths) -> None
 
 
 @pytest.mark.slow
-def test_what_holds_at_a_fold_is_told_there_wherever_the_path_began(found: PosePaths) -> None:
-    """The energy of the fold itself, by poses before it: it changes as distance, and their square
-    roots cancel.
-    """
-    ends = [
-        found.paths[1].high,
-        ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, "23/20", 2).paths[0].high,
-    ]
-    (one, two) = (
-        tuple(e.text(10) for e in (*end.target.angles, end.energy, end.target_energy))  # type: ignore[misc, union-attr]
-        for end in ends
-    )
-    assert one == two
-    assert isinstance(ends[0].at, Enclosure)
-    assert ends[0].energy is not None
-    before = ptmcad.solve(
-        rho=ends[0].at.center - Fraction(1, 10**6), L2="3/2", F3=-10, F4=-10, l0="1/5"
-    ).equilibria
-    folding = [p.known_energy for p in before if p.index in (0, 1)]
-    assert min(abs(float(e) - float(ends[0].energy)) for e in folding) < 1e-3
-    assert ends[0].energy.radius < Fraction(1, 10**14)
-
-
-@pytest.mark.slow
 def test_every_point_is_a_proved_stable_pose_and_neighbours_are_near(found: PosePaths) -> None:
     for path in found.paths:
         assert [p.value for p in path.points] == sorted({p.value for p in path.points})
@@ -122,31 +97,6 @@ def test_tiny_free_lengths_make_no_difference() -> None:
     assert exact.high.target is not None
     for a, b in zip(free.high.target.angles, exact.high.target.angles, strict=True):
         assert degrees(float(a)) == pytest.approx(degrees(float(b)), abs=0.05)
-
-
-@pytest.mark.slow
-def test_a_film_falls_at_the_same_place(found: PosePaths) -> None:
-    slice = ptmcad.slice_from_options(FREE02, ranges=["rho=11/10:13/10", "L2=7/5:8/5"])
-    motion = ptmcad.classify(slice, tolerance="1/5", jobs=1).animate(
-        "rho=6/5:5/4,L2=3/2", "stable:2", frames=6
-    )
-    (fall,) = motion.falls
-    end = found.paths[1].high
-    assert isinstance(end.at, Enclosure)
-    assert fall.at[0] == pytest.approx(float(end.at), abs=1e-7)
-
-
-@pytest.mark.slow
-def test_of_several_stable_poses_the_one_that_steepest_descent_reaches_is_chosen() -> None:
-    """At the pitchfork two others stay stable; it is said that the choice is no proof."""
-    slice = ptmcad.slice_from_options(CONFIGS / "free-load.yaml", ranges=["rho=1/5:3/4"])
-    paths = ptmcad.pose_paths(slice, "rho", {"F": -10}, "7/10", 2)
-    end = paths.paths[0].low
-    assert (end.fate, end.meeting, end.leaving) == (Fate.SNAP, (0, 1, 1), (1,))
-    assert end.fallen
-    assert end.target is not None
-    assert [round(degrees(float(angle)), 6) for angle in end.target.angles] == [-73.868528] * 2
-    assert "of several stable ones steepest descent in floating point chose" in path_table(paths)
 
 
 @pytest.mark.parametrize(
@@ -205,32 +155,3 @@ def test_the_command_draws_and_tells_them(
     assert data["path"]["paths"][0]["high"]["at"]["decimal"].startswith("1.23166242")
     picture = (tmp_path / "x-path.svg").read_text(encoding="utf-8")
     assert "saddle, not followed" in picture
-
-
-@pytest.mark.slow
-def test_a_slider_on_a_level_is_none_of_the_points_that_rise() -> None:
-    """y of P lies between 0.2 and 0.8 on both paths; the slider's height is always 0."""
-    slider = ptmcad.slice_from_mapping({
-        "mechanism": {
-            "parameters": {"c": {"kind": "stiffness"}, "F": {"kind": "force"}},
-            "unknowns": {"th": "angle", "x": "length"},
-            "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"], "S": ["x", 0]},
-            "supports": {"O": "pin", "S": "slider x"},
-            "springs": [{"between": ["P", "S"], "k": 1, "free": "1/10"}, {"between": ["O", "S"], "k": 1}],
-            "torsion": [{"angle": "th", "k": "c", "rest": "pi/2"}],
-            "loads": {"S": ["F", 0]},
-        },
-        "axes": {"F": ["-1/8", "1/8"], "c": ["1/10", 1]},
-    })  # fmt: skip
-    found = ptmcad.pose_paths(slider, "F", {"c": "1/5"}, 0)
-    assert [
-        (len(point.sides), path.upright) for path in found.paths for point in path.points[:1]
-    ] == [(1, True)] * 2
-
-
-@pytest.mark.slow
-def test_a_pose_that_is_jumped_to_has_angles_within_half_a_turn() -> None:
-    """The way down leads th1 on to 272 degrees, which is -88."""
-    end = ptmcad.pose_paths(slice_of(window="9/20:1"), "rho", {"L2": "3/2"}, "3/4").paths[1].low
-    assert end.fate is Fate.SNAP and end.target is not None
-    assert [round(degrees(float(angle)), 4) for angle in end.target.angles] == [-87.9555, -48.4477]

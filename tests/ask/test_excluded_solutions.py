@@ -190,19 +190,3 @@ def test_what_counts_is_taken_with_its_multiplicity() -> None:
     values = problem.on.values((fmpq(5, 2), fmpq(9, 2)))
     assert solutions_at(problem.system, values) == (4, 7)
     assert solutions_at(problem.system, values, saturated=True) == (3, 4)
-
-
-@pytest.mark.slow
-def test_check_does_not_count_where_a_basis_gets_large() -> None:
-    """Four angles with dense equations: no basis is computed to its end, though the degrees are
-    small.
-    """
-    terms = [f"{f}({x})" for x in "wxyz" for f in ("cos", "sin")]
-    squares = " + ".join(f"{(7 * k + 3 * n) % 11 + 1}*{p}*{q}"
-                         for k, p in enumerate(terms) for n, q in enumerate(terms[k:], 2))  # fmt: skip
-    equations = [f"{squares} - a", f"({squares})/2 + {terms[0]}*{terms[3]} + b*{terms[2]}",
-                 " + ".join(f"{k}*{p}" for k, p in enumerate(terms, 1)),
-                 " - ".join(f"{k}*{p}" for k, p in enumerate(reversed(terms), 3)) + " - 1"]  # fmt: skip
-    found = check(slice_from({"system": {"unknowns": dict.fromkeys("wxyz", "angle"), "equations": equations},
-                              "axes": {"a": [0, 1], "b": [0, 1]}}))  # fmt: skip
-    assert (found.complex_solutions, found.bound) == (None, 64)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from ptmcad.ask.checking import check as checked
-from ptmcad.ask.checking import cost_text, foretold
+from ptmcad.ask.checking import cost_text
 from ptmcad.ask.forecast import WITHIN, forecast
 from ptmcad.exact.curvesizes import CurveSizes, Survey
 from ptmcad.question.config import load
@@ -28,16 +28,6 @@ def test_a_component_that_is_an_axis_is_told() -> None:
     assert lines[1].endswith(
         "critical of degree 6, 6 in a, 6 in f: up to 10 terms; and the line a = 0"
     )
-
-
-@pytest.mark.slow
-def test_the_way_of_the_projection_is_told() -> None:
-    small, large = (
-        list(foretold(load(CONFIGS / f"{name}.yaml"))) for name in ("fig4", "systems/kuramoto-4")
-    )
-    assert "the curve's discriminant from 121 values in integers" in small
-    assert "14 complex solutions" in large
-    assert "the curve's discriminant from 1985 values in integers" in large
 
 
 def test_a_curve_out_of_reach_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:

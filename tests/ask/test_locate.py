@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import pytest
 from support import oracle
-from support.certified_maps import circle
 from support.few import few
 from support.maps import CONFIGS, shipped
 from support.shipped_records import EXACT
@@ -20,7 +17,6 @@ from ptmcad import RegionMap, load
 from ptmcad.algebra.polynomials import from_plane
 from ptmcad.algebra.real_roots import isolate, refine
 from ptmcad.answer.regionmap import Status
-from ptmcad.ask import location
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.projection import curve
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -105,23 +101,6 @@ def test_on_rational_critical_abscissae(name: str) -> None:
                     assert found.index == oracle.count(parameters)
 
 
-def test_a_rational_critical_abscissa_off_the_curves() -> None:
-    """fig2's lines meet on the edge over L2 = 1: the stacks end there, the points over it lie in
-    cells all the same.
-    """
-    result = shipped("fig2")
-    rational = [v.low for v in result.critical_values if v.low == v.high]
-    name = result.slice.axis_names[result.base]
-    other = result.slice.axis_names[1 - result.base]
-    exact = rational or [Fraction(1)]
-    for u in exact:
-        for v in ("1/7", "3/7", "13/9", "3", "7/2"):
-            found = result.locate(**{name: u, other: v})
-            length, rho = (u, Fraction(v)) if name == "L2" else (Fraction(v), u)
-            if found.status is Status.EXACT:
-                assert found.stable == (2 if abs(length - 1) < 2 * rho < length + 1 else 1)
-
-
 def test_a_float_stands_for_its_shortest_decimal() -> None:
     """fig. 2 has a wall on 2 rho = L2 + 1, which the binary value of the float 0.7, a little less
     than 7/10, misses.
@@ -197,29 +176,3 @@ def test_equal_bytes_in_other_processes() -> None:
             for f in load(path).__dataclass_fields__
         }
     )
-
-
-def test_maps_that_are_asked_in_turn_are_prepared_once_each(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Exact and certified ones; what prepares them takes seconds for a large one."""
-    made: list[str] = []
-
-    def counted(name: str, own: Callable[..., Any]) -> Callable[..., Any]:
-        def prepare(*of: Any) -> Any:
-            made.append(name)
-            return own(*of)
-
-        return prepare
-
-    for name in ("components", "curves_of"):
-        monkeypatch.setattr(location, name, counted(name, getattr(location, name)))
-    known = (circle(4), circle(5), circle(6), shipped("fig4"), shipped("fig3"), shipped("fig2"))
-    maps = [RegionMap.from_json(result.to_json()) for result in known]
-    for k in range(1, 6):
-        for result in maps:
-            x, y = (
-                axis.low + (axis.high - axis.low) * Fraction(k, 17) for axis in result.slice.axes
-            )
-            result.locate(**dict(zip(result.slice.axis_names, (x, y), strict=True)))
-    assert len(made) == len(maps)

@@ -4,11 +4,9 @@ both answer.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import pytest
-from support.programs import needs_msolve
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
@@ -98,22 +96,3 @@ def test_more_angles_than_are_searched_are_refused(monkeypatch: pytest.MonkeyPat
         LimitReached, match=r"takes up to 3 unknowns there; .*pip install 'ptmcad\[large\]'"
     ):
         ptmcad.counts_at(chain(), a="1/3", F="1/2")
-
-
-@needs_msolve
-@pytest.mark.slow
-def test_what_the_search_does_not_tell_is_solved_with_a_basis_by_msolve(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    searched = ptmcad.solve(digits=6, model=chain(), a="1/3", F="1/2")
-    assert searched.status is Status.CERTIFIED
-    monkeypatch.setattr("ptmcad.certified.plain.problem.MAX_UNKNOWNS_AT_POINTS", 3)
-    found = ptmcad.counts_at(chain(), a="1/3", F="1/2")
-    assert (found.total, found.stable, found.index) == (24, 2, (2, 7, 9, 5, 1))
-    undecided = replace(searched, equilibria=(), status=Status.UNDECIDED)
-    monkeypatch.setattr("ptmcad.ask.solving.poses_by_search", lambda *_: undecided)
-    exact = ptmcad.solve(digits=6, model=chain(), a="1/3", F="1/2")
-    assert exact.status is Status.EXACT
-    assert "computed by msolve and proved" in exact.remark
-    angles = [[a.text(6) for a in pose.angles] for pose in exact.equilibria]
-    assert angles == [[a.text(6) for a in pose.angles] for pose in searched.equilibria]

@@ -109,13 +109,6 @@ def test_functions_in_place_of_symbols_are_refused() -> None:
         ptmcad.System(unknowns={"q": "real"}, equations=[sympy.cos(q) - q])
 
 
-def test_the_built_in_mechanism_as_an_object() -> None:
-    ptm = ptmcad.slice_from_options(slice="rho,L2").model
-    question = {"mechanism": ptm, "axes": {"rho": [0, 2], "L2": [0, 2]}}
-    assert ptmcad.slice_from_mapping(question).model is ptm
-    assert ptmcad.counts_at(ptm, rho=1, L2="3/2").index == (2, 3, 1)
-
-
 def test_the_steps_one_by_one() -> None:
     """Every part of the window has a point, and counts there are the map's."""
     system = ptmcad.System(unknowns={"x": "real"}, equations=["x^3 - a*x + b"])

@@ -6,7 +6,6 @@ What each figure rests on is said in the record itself, under ``reference``.
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Iterator
 from fractions import Fraction
@@ -14,7 +13,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import jsonschema
 import pytest
 import yaml
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
@@ -31,9 +29,6 @@ from ptmcad.question.slice import Count
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 ROOT = Path(__file__).resolve().parents[2]
-VALIDATOR = jsonschema.Draft202012Validator(
-    json.loads((ROOT / "ptmcad" / "record.schema.json").read_text(encoding="utf-8"))
-)
 RECORDS = list(OTHER)
 SPURIOUS = {"two-x-joints"}
 """Its equations have two solutions more, which inequalities exclude; signatures of its forms take a
@@ -88,17 +83,6 @@ def counts_at(slice: Slice, at: dict[str, Any], signature: bool) -> Counts:
 def test_all_are_shipped() -> None:
     assert {path.stem for path in RECORDS if path.parent.name == "mechanisms"} == MECHANISMS
     assert {path.stem for path in RECORDS if path.parent.name == "systems"} == SYSTEMS
-
-
-@pytest.mark.parametrize("path", RECORDS, ids=lambda path: path.stem)
-def test_records_load_and_validate(path: Path) -> None:
-    text = path.read_text(encoding="utf-8")
-    assert text.startswith("# yaml-language-server: $schema=../../ptmcad/record.schema.json\n")
-    VALIDATOR.validate(yaml.safe_load(text))
-    slice = load(path)
-    assert slice.name == path.stem
-    assert slice.title
-    assert slice.reference["source"]
 
 
 @pytest.mark.parametrize(

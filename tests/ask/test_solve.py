@@ -11,7 +11,6 @@ from fractions import Fraction
 
 import mpmath
 import pytest
-from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
@@ -21,8 +20,6 @@ from support.newton import DIGITS, Found, equilibria, improved
 from support.oracle import count
 
 from ptmcad import Enclosure, Pose, Poses, slice_from_mapping, solve
-from ptmcad.algebra.fibre_algebra import fibre
-from ptmcad.algebra.fibre_points import points
 from ptmcad.answer.regionmap import Status
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import point_from_mapping
@@ -352,101 +349,15 @@ def test_infinitely_many_equilibria_are_said(parameters: dict[str, object]) -> N
     assert "infinitely many equilibria" in poses.table()
 
 
-def test_points_of_a_fibre_with_complex_and_fat_points() -> None:
-    """x^2 (x - 1) (x^2 + 1)^2 with y = x + 1; and the fat point x^2 = x y = y^2 = 0, which no
-    single root counts.
-    """
-    one = fmpq(1)
-    p = {(7, 0): one, (6, 0): -one, (5, 0): 2 * one, (4, 0): -2 * one, (3, 0): one, (2, 0): -one}
-    curve = fibre([p, {(0, 1): one, (1, 0): -one, (0, 0): -one}], 2)  # type: ignore[list-item]
-    assert curve is not None
-    real, different = points(curve, bound=2)
-    assert (different, curve.dimension) == (4, 7)
-    assert [(tuple(u.rational for u in x.unknowns), x.multiplicity) for x in real] == [
-        ((0, 1), 2),
-        ((1, 2), 1),
-    ]
-    fat = fibre([{(2, 0): one}, {(1, 1): one}, {(0, 2): one}], 2)
-    assert fat is not None
-    assert [x.multiplicity for x in points(fat)[0]] == [3]
-
-
 # ------------------------------------------------------------------------------------------- symmetries (theorem 5)
 
-MIRROR = (Fraction(1), Fraction(-1), Fraction(1), Fraction(-1))
-nonzero = st.fractions(min_value=Fraction(1, 9), max_value=9, max_denominator=9)
 forces = st.fractions(min_value=-200, max_value=200, max_denominator=9)
-mechanisms = st.fixed_dictionaries(
-    {"L1": nonzero, "L2": nonzero, "rho": nonzero, "k1": nonzero, "k2": nonzero, "k3": nonzero}
-    | {name: forces for name in ("F3", "F4", "F3x", "F4x")}
-)
 
 
 def close(a: Enclosure, b: Enclosure, factor: Fraction = Fraction(1)) -> bool:
     """Whether a may be factor times b: the enclosures meet."""
     ends = sorted((factor * b.low, factor * b.high))
     return a.low <= ends[1] and ends[0] <= a.high
-
-
-@few
-@given(mechanisms, nonzero)
-@pytest.mark.slow
-def test_stiffness_and_loads_scale_together(parameters: dict[str, Fraction], c: Fraction) -> None:
-    poses = solve(**parameters)
-    scaled = solve(**{n: c * v if n[0] in "kF" else v for n, v in parameters.items()})
-    assert len(scaled.equilibria) == len(poses.equilibria)
-    for a, b in zip(scaled.equilibria, poses.equilibria, strict=True):
-        assert all(map(close, a.angles, b.angles))
-        assert close(a.energy, b.energy, c)
-        assert all(close(x, y, c) for x, y in zip(a.eigenvalues, b.eigenvalues, strict=True))
-        assert a.index == b.index
-
-
-@few
-@given(mechanisms, nonzero)
-@pytest.mark.slow
-def test_lengths_and_loads_scale_together(parameters: dict[str, Fraction], c: Fraction) -> None:
-    poses = solve(**parameters)
-    scaled = solve(**{n: v if n[0] == "k" else c * v for n, v in parameters.items()})
-    for a, b in zip(scaled.equilibria, poses.equilibria, strict=True):
-        assert all(map(close, a.cosines_sines, b.cosines_sines))
-        assert close(a.energy, b.energy, c * c)
-        assert all(close(s.length, t.length, c) for s, t in zip(a.springs, b.springs, strict=True))
-
-
-@few
-@given(mechanisms)
-def test_vertical_loads_turned_round_mirror_the_poses(parameters: dict[str, Fraction]) -> None:
-    poses = solve(**parameters)
-    mirrored = solve(**{n: -v if n in ("F3", "F4") else v for n, v in parameters.items()})
-    assert len(mirrored.equilibria) == len(poses.equilibria)
-    for a in mirrored.equilibria:
-        assert sum(
-            all(close(x, y, f) for x, y, f in zip(a.cosines_sines, b.cosines_sines, MIRROR, strict=True))
-            and close(a.energy, b.energy)
-            and a.index == b.index
-            for b in poses.equilibria
-        ) == 1  # fmt: skip
-
-
-@few
-@given(mechanisms)
-def test_the_rods_can_be_exchanged(parameters: dict[str, Fraction]) -> None:
-    names = {"L1": "L2", "k1": "k2", "F3": "F4", "F3x": "F4x"}
-    names |= {b: a for a, b in names.items()}
-    poses = solve(**parameters)
-    exchanged = solve(
-        **{
-            n: -parameters[names.get(n, n)] if n in ("F3x", "F4x") else parameters[names.get(n, n)]
-            for n in parameters
-        }
-    )
-    assert len(exchanged.equilibria) == len(poses.equilibria)
-    for a in exchanged.equilibria:
-        assert sum(
-            close(a.angles[0], b.angles[1]) and close(a.angles[1], b.angles[0]) and a.index == b.index
-            for b in poses.equilibria
-        ) == 1  # fmt: skip
 
 
 # ------------------------------------------------------------------------------------------------------ extreme values

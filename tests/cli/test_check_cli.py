@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import Any
 
@@ -63,27 +62,6 @@ def test_all_faults_are_printed_one_a_line(
     assert capsys.readouterr().err == f"{lines[0]} (and 8 more: ptmcad check lists them)\n"
 
 
-def test_values_are_checked_together_and_faults_do_not_follow_from_others() -> None:
-    """k2 depends on a faulty one and is not judged; the circle is named once."""
-    with pytest.raises(ConfigError) as caught:
-        slice_from_mapping({
-            "parameters": {"L1": "q", "k2": "1 - L1", "F3": "F4", "F4": "F3", "L2": -1, "rho": 1},
-            "axes": {"rho": [2, 0], "u": [0, 1]},
-        })  # fmt: skip
-    assert [fault.key for fault in caught.value.faults] == [
-        "parameters.rho", "axes.rho", "parameters.L1", "parameters.F3", "parameters.L2",
-    ]  # fmt: skip
-    with pytest.raises(ConfigError) as caught:
-        slice_from_mapping({
-            "parameters": {"L1": "q", "k2": "1 - L1", "L2": -1, "k3": 0}, "axes": {"rho": [0, 2], "u": [0, 1]},
-        })  # fmt: skip
-    assert [fault.key for fault in caught.value.faults] == [
-        "parameters.L1",
-        "parameters.L2",
-        "parameters.k3",
-    ]
-
-
 @pytest.mark.parametrize(
     ("name", "parts"),
     [
@@ -135,22 +113,6 @@ def chain(**further: Any) -> dict[str, Any]:
     return {**record, "mechanism": record["mechanism"] | further}
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "record", [chain(), chain(moments={"th1": "1/3"})], ids=["loaded", "turned"]
-)
-def test_an_exact_map_that_takes_long_is_foretold(record: dict[str, Any]) -> None:
-    """Three bars have 20 complex solutions, with a constant moment too; the certified engine takes
-    both.
-    """
-    slice = slice_from_mapping(record)
-    text = warning(slice)
-    assert (
-        text.startswith("the equations have 20 complex solutions") and "--engine certified" in text
-    )
-    assert text.endswith(check(slice).cost)
-
-
 def test_what_is_soon_done_is_not_warned_of() -> None:
     for name in ("fig4", "free02", "systems/duffing", "mechanisms/two-bar-chain"):
         assert not warning(load(CONFIGS / f"{name}.yaml"))
@@ -180,27 +142,6 @@ def test_classify_says_at_once_that_it_will_take_long(
     assert "note" not in capsys.readouterr().err
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "equations",
-    [
-        [
-            "(a+sin(t)+cos(u)+sin(v)+b)^10",
-            "(a+sin(t)+cos(u)+cos(v)+b)^10",
-            "(a+cos(t)+cos(u)+cos(v)+b)^10",
-        ],
-        ["sin(60*t + u) - a", "cos(u + v) - a*b", "sin(v) - b"],
-    ],
-    ids=["many terms", "a high degree"],
-)
-def test_other_angles_are_not_searched_for_where_that_takes_long(equations: list[str]) -> None:
-    system = {"unknowns": {"t": "angle", "u": "angle", "v": "angle"}, "equations": equations}
-    started = time.process_time()
-    found = check(slice_from_mapping({"system": system, "axes": {"a": [0, 2], "b": [0, 3]}}))
-    assert time.process_time() - started < 4
-    assert found.complex_solutions is None and found.cost.startswith("not known")
-
-
 def test_equations_with_long_parameters_are_not_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
     """The certified engine's, in which parameters are functions of the axes."""
     monkeypatch.setattr(checking, "MAX_EXPANDING", 0.5)
@@ -218,20 +159,6 @@ def test_equations_with_long_parameters_are_not_waited_for(monkeypatch: pytest.M
     assert found.engine == "certified" and found.cost.startswith(
         "not known: with such long expressions"
     )
-
-
-def test_long_numbers_are_shown_short(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "long.yaml"
-    path.write_text(
-        'system: {unknowns: {x: real}, equations: ["x^3 - a*x + b + c"]}\nparameters: {c: 1/3e50 + b}\n'
-        "axes: {a: [1.23456789e-200, 7.7777777777777777e-100], b: [0, 2]}\n",
-        encoding="utf-8",
-    )
-    assert run(["check", str(path)]) == 0
-    out = capsys.readouterr().out
-    assert max(map(len, out.splitlines())) < 120
-    assert "axes        a from about 1.23456789e-200 to about 7.77777777e-100, b from 0 to 2" in out
-    assert "solutions   3 complex ones at a = about 3.7037037e-100, b = 38/35" in out
 
 
 def test_what_is_known_is_printed_before_the_rest_is_stopped(

@@ -129,20 +129,6 @@ def test_values(
     assert found[: len(values)] == values and (values or not found)
 
 
-@pytest.mark.slow
-def test_files(tmp_path: Path) -> None:
-    (tmp_path / "map.json").write_text(shipped("fig4").to_json(), encoding="utf-8")
-    (tmp_path / "mine.yaml").touch()
-    (tmp_path / "maps").mkdir()
-    (tmp_path / "maps" / "other.json").touch()
-    assert plain("verify", "ma", cwd=tmp_path) == ["map.json", "maps/"]
-    assert plain("classify", "--resume", "maps/", cwd=tmp_path) == ["maps/other.json"]
-    assert plain("classify", "m", cwd=tmp_path) == ["mine.yaml", "maps/"]
-    assert asked("bash", "verify", "mi", cwd=tmp_path) == ["file,mi"]
-    assert plain("locate", "map.json", "--at", "", cwd=tmp_path) == ["rho=", "L2="]
-    assert plain("locate", "maps/other.json", "--at", "", cwd=tmp_path) == []
-
-
 @pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
 def test_bash_itself(tmp_path: Path) -> None:
     """The script as bash runs it: what it would put at the cursor, and whether a space would

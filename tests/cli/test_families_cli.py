@@ -42,15 +42,6 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.slow
-def test_members_have_files_of_their_own_and_the_family_names_them(folder: Path) -> None:
-    stored = read_family((folder / "loads.json").read_text())
-    assert stored.files == ("loads-F-40.json", "loads-F-10.json")
-    for file in stored.files:
-        assert len(RegionMap.from_json((folder / file).read_text()).regions) == 2
-    assert len(list(folder.glob("loads-F*.csv"))) == 6
-
-
 def test_a_family_is_verified_member_by_member(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -234,47 +225,6 @@ def test_changes_are_told_with_their_kind(
     assert "changes, compared with members" in capsys.readouterr().out
     assert run(["classify", "--slice", "L2,rho", "--changes", *common]) == 0
     assert "--changes has no effect here" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_a_boundary_surface_is_drawn_and_written_as_a_mesh(
-    disc: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    record = str(disc / "disc.yaml")
-    wanted = ["--surface", "--format", "json,svg,ply,obj", "--no-areas", "--members", "-1,1/2,3/2"]
-    assert run(["classify", record, "--out", str(tmp_path), *wanted]) == 0
-    out = capsys.readouterr().out
-    assert "boundary surface: sheets interpolated linearly between " in out
-    assert "changes of the arrangement for c between -1 and 3: 3" in out
-    assert "disc.svg, " in out
-    assert "disc.ply, " in out
-    own = {"disc.json", "disc.svg", "disc-3d.svg", "disc.ply", "disc.obj"}
-    assert own == {path.name for path in tmp_path.iterdir() if not path.name.startswith("disc-c")}
-    assert "between 0 and 2" in (tmp_path / "disc-3d.svg").read_text()
-    ply = (tmp_path / "disc.ply").read_text()
-    assert (
-        run(
-            [
-                "plot",
-                str(tmp_path / "disc.json"),
-                "--format",
-                "ply",
-                "--out",
-                str(tmp_path / "again"),
-            ]
-        )
-        == 0
-    )
-    assert (tmp_path / "again" / "disc.ply").read_text() == ply
-    assert (
-        run(["plot", str(tmp_path / "disc.json"), "--surface", "--out", str(tmp_path / "again")])
-        == 0
-    )
-    assert {path.name for path in (tmp_path / "again").iterdir()} == {
-        "disc.ply",
-        "disc.png",
-        "disc-3d.png",
-    }
 
 
 def test_without_a_surface_the_picture_is_a_stack_and_a_mesh_needs_no_option(

@@ -78,7 +78,7 @@ def with_text(document: dict[str, Any], place: Place, is_key: bool, more: str) -
 
 
 @pytest.mark.parametrize("kind", HIDDEN)
-@pytest.mark.slow_cases("direction", "escape")
+@pytest.mark.fast_cases("half of a pair")
 def test_no_text_of_a_result_has_a_hidden_character(stored: dict[str, Any], kind: str) -> None:
     """In a reference, which is stored and never shown, directions and separators of lines are the
     citation's affair.
@@ -90,34 +90,6 @@ def test_no_text_of_a_result_has_a_hidden_character(stored: dict[str, Any], kind
             continue
         with pytest.raises(ValueError):
             RegionMap.from_json(json.dumps(with_text(stored, place, is_key, HIDDEN[kind])))
-
-
-@pytest.mark.parametrize("command", [
-    ["report"], ["verify"], ["plot", "--format", "svg"], ["locate", "--at", "rho=1/2,L2=4/5"], ["classify", "--resume"],
-], ids=lambda command: command[0])  # fmt: skip
-@pytest.mark.parametrize("place", [
-    ("slice", "name"), ("slice", "title"), ("slice", "text", "F3"), ("slice", "reference", "source"),
-    ("system", "potential"), ("plan", 0, "reason"), ("versions", "python"),
-], ids=lambda place: place[1] if place[0] == "slice" else place[0])  # fmt: skip
-def test_commands_refuse_half_of_a_pair(
-    stored: dict[str, Any],
-    tmp_path: Path,
-    capfd: pytest.CaptureFixture[str],
-    command: list[str],
-    place: Place,
-) -> None:
-    result, record = tmp_path / "r.json", tmp_path / "record.yaml"
-    result.write_text(json.dumps(with_text(stored, place, False, "\ud800")), encoding="utf-8")
-    record.write_text(RECORD, encoding="utf-8")
-    arguments = [*command[:1], str(result), *command[1:]]
-    if command[0] == "classify":
-        arguments = ["classify", str(record), "--resume", str(result), "--out", str(tmp_path)]
-    assert run(arguments) == 2
-    out, message = capfd.readouterr()
-    assert not out
-    assert message.startswith(f"error: {result}: ")
-    assert message[:-1].isprintable()
-    assert sorted(tmp_path.iterdir()) == [result, record]
 
 
 def test_unusual_texts_stay(stored: dict[str, Any]) -> None:

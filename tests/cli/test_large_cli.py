@@ -5,9 +5,7 @@ the program.
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -65,29 +63,3 @@ def test_check_and_explain_say_whose_bases_are_used(
 ) -> None:
     assert cli.run(["check", record(tmp_path, LARGE)]) == 0
     assert "bases       up to 216 solutions: by ptmcad while small, then" in capsys.readouterr().out
-
-
-@pytest.mark.skipif(not hasattr(os, "O_ASYNC"), reason="pipes of this system send no signals")
-def test_msolve_ends_with_the_process_that_asks_it_even_if_that_is_killed(tmp_path: Path) -> None:
-    noted = tmp_path / "pid"
-    path = fake(tmp_path, f"open({str(noted)!r}, 'w').write(str(os.getpid()))\ntime.sleep(600)")
-    program = (
-        "from ptmcad.algebra.proved import quotient_by_msolve; from flint import fmpq; "
-        "quotient_by_msolve([{(1,): fmpq(1)}], 1, 60)"
-    )
-    with subprocess.Popen(
-        [sys.executable, "-c", program], env={**os.environ, "PATH": path}
-    ) as process:
-        while not (noted.exists() and noted.read_text()):
-            assert process.poll() is None
-            time.sleep(0.02)
-        process.kill()
-    pid = int(noted.read_text())
-    for _ in range(100):
-        try:
-            os.kill(pid, 0)
-        except ProcessLookupError:
-            return
-        time.sleep(0.05)
-    os.kill(pid, 9)
-    pytest.fail("msolve goes on")

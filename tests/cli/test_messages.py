@@ -15,8 +15,6 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.timings import COMPILATION
 from ptmcad.cli import run
 from ptmcad.show.table import table
-from ptmcad.verification import verify
-from ptmcad.verification.report import CheckProgress
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FIG2 = str(CONFIGS / "fig2.yaml")
@@ -131,17 +129,6 @@ def test_verify_shows_progress_on_a_terminal(
         monkeypatch.setattr(sys, "stderr", terminal)
         assert run(["verify", str(path)]) == 0
         assert ("] check 20 of 20: areas ..., " in terminal.getvalue()) == watched
-
-
-def test_the_bar_of_a_verification_only_grows(shipped: Shipped) -> None:
-    told: list[tuple[str, int, int]] = []
-    verify(shipped("fig2"), progress=lambda *what: told.append(what))
-    assert [done for _, done, _ in told] == [100 * k for k in range(20)]
-    assert told[0] == ("check 1 of 20: shape ...", 0, 2000)
-    headway = CheckProgress(lambda *what: told.append(what), 8)
-    headway.begins("form")
-    headway.within(1, 3)
-    assert told[-1] == ("check 1 of 8: form, 33 %", 33, 800)
 
 
 def test_ranges_in_words(capsys: pytest.CaptureFixture[str]) -> None:

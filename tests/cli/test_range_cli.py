@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import json
 import re
-from itertools import pairwise
 from pathlib import Path
 
 import jsonschema
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from ptmcad.cli import run
-from ptmcad.show.render.rangepicture import spread
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG4 = str(ROOT / "configs" / "fig4.yaml")
@@ -66,55 +62,6 @@ def test_lines_of_all_kinds(
     assert line in capsys.readouterr().out
 
 
-@pytest.mark.slow
-def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = [
-        "--along",
-        "rho",
-        "--at",
-        "L2=3/2",
-        "--over",
-        "L2",
-        "--rows",
-        "3",
-        "--path",
-        "7/10",
-        "--pose",
-        "1",
-    ]
-    assert (
-        run(
-            [
-                "range",
-                FIG4,
-                *arguments,
-                "--format",
-                "json,svg",
-                "--out",
-                str(tmp_path),
-                "--name",
-                "x",
-            ]
-        )
-        == 0
-    )
-    assert {p.name for p in tmp_path.iterdir()} == {"x.json", "x.svg", "x-over.svg", "x-path.svg"}
-    data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
-    jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
-    assert {"line", "over", "path"} <= set(data)
-    assert data["over"]["maxima"][0]["at"]["decimal"] == "1"
-    assert "Intervals of rho: 0 to 0.4981307: 1 stable of 4" in (tmp_path / "x.svg").read_text(
-        encoding="utf-8"
-    )
-    out = capsys.readouterr().out
-    assert (
-        "widest operation range: width 0.5885498309, attained at L2 = 1, a critical value of L2"
-        in out
-    )
-    assert out.endswith(f", {tmp_path / 'x-path.svg'}, {tmp_path / 'x.json'}\n")
-    assert "pose 1 at rho = 0.7" in out and "pose 2" not in out
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -155,20 +102,6 @@ def test_bad_input(arguments: list[str], message: str, capsys: pytest.CaptureFix
     assert message in captured.err
     assert "Traceback" not in captured.err
     assert captured.out == ""
-
-
-@given(st.lists(st.floats(0, 1), min_size=1, max_size=14), st.floats(0.001, 0.03))
-def test_labels_keep_apart_and_inside(places: list[float], half: float) -> None:
-    """Centres are in order, two halves apart, and whole labels lie within the bar, where there is
-    room for all.
-    """
-    centers = spread(sorted(places), half)
-    if 2 * half * len(places) <= 1:
-        assert all(b - a >= 2 * half - 1e-9 for a, b in pairwise(centers))
-        assert centers[0] >= half - 1e-9 and centers[-1] <= 1 - half + 1e-9
-        for place, center in zip(sorted(places), centers, strict=True):
-            if len(places) == 1 and half <= place <= 1 - half:
-                assert center == place
 
 
 FREE02 = str(ROOT / "configs" / "free02.yaml")

@@ -4,35 +4,23 @@ follow scales.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
-from functools import cache
 from itertools import pairwise
-from typing import NamedTuple
 
 import pytest
-from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
+from flint import arb, ctx, fmpq, fmpq_poly, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from support.counting import system_of
 from support.examples import examples
-from support.work import work_of
 
 import ptmcad
 from ptmcad.algebra import descartes
 from ptmcad.algebra.arcs import arc_integral
-from ptmcad.algebra.fibre_algebra import FibreAlgebra, univariate_representation
-from ptmcad.algebra.real_roots import RealRoot, isolate, refine
-from ptmcad.algebra.resultants import balanced, discriminant, resultant
+from ptmcad.algebra.real_roots import RealRoot, isolate
 from ptmcad.answer.regionmap import Status
-from ptmcad.exact.cad import area
-from ptmcad.exact.cad.projection import FibredCurve
-from ptmcad.exact.point_system import point_system
 from ptmcad.question.config import slice_from_mapping
-from ptmcad.studies.stress.campaign import answer
-from ptmcad.studies.stress.case import Question, chosen
-from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
-from ptmcad.verification.rootcounts import roots_between
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.verification.sturm import roots_between
 
 
 def polynomial(roots: list[Fraction]) -> fmpz_poly:
@@ -67,19 +55,6 @@ def test_clusters_are_isolated(
         assert a.high <= b.low
 
 
-@settings(max_examples=examples(40), deadline=None)
-@given(st.integers(1, 90), st.integers(1, 90), st.booleans(), st.integers(-99, 99))
-def test_pairs_that_are_real_or_not_are_told_apart(e: int, f: int, real: bool, n: int) -> None:
-    """((x - n/100)^2 -+ 10^-e) (x^2 -+ 10^-f / 3): two roots each, or none."""
-    sign = -1 if real else 1
-    first = fmpz_poly([-n, 100]) ** 2 * 10**e + sign * 10_000
-    second = fmpz_poly([sign, 0, 3 * 10**f])
-    p = first * second
-    if p.gcd(p.derivative()).degree() > 0:
-        return
-    assert len(isolate(p, fmpq(-10), fmpq(10))) == (4 if real else 0)
-
-
 @pytest.fixture
 def tests_made(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The degree of the polynomial in each test by Descartes' rule."""
@@ -92,27 +67,6 @@ def tests_made(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
     monkeypatch.setattr(descartes, "descartes_bound", counted)
     return made
-
-
-def test_a_cluster_takes_steps_like_the_logarithm_of_its_digits(tests_made: list[int]) -> None:
-    """Bisection would take 3.3 tests for each digit that the roots have in common."""
-    taken = {}
-    for digits in (50, 100, 200, 400):
-        tests_made.clear()
-        third = Fraction(1, 3)
-        assert (
-            len(
-                isolate(
-                    polynomial([third, third + Fraction(1, 10**digits), Fraction(2)]),
-                    fmpq(0),
-                    fmpq(3),
-                )
-            )
-            == 3
-        )
-        taken[digits] = len(tests_made)
-    assert taken[400] < 100
-    assert taken[400] <= 2 * taken[50]
 
 
 def far_cluster(center: int, pairs: list[tuple[int, int]], real: list[int]) -> fmpz_poly:
@@ -147,170 +101,6 @@ def test_clusters_far_out_are_isolated(
     assert len(found) == len(known) == roots_between(p, low, high)
     for root, value in zip(found, known, strict=True):
         assert root.low == value if root.is_rational else root.low < value < root.high
-
-
-def test_a_cluster_far_out_takes_few_tests_at_any_distance(tests_made: list[int]) -> None:
-    """Bisection with steps that only follow Newton's method from the ends took 70 at 10^27."""
-    for e in (9, 18, 27):
-        tests_made.clear()
-        assert (
-            len(isolate(far_cluster(67 * 10**e, [(2, 1), (-2, 1)], [-1, 1]), fmpq(0), fmpq(10**30)))
-            == 2
-        )
-        assert len(tests_made) <= 40
-
-
-@settings(max_examples=examples(40), deadline=None)
-@given(
-    st.integers(1, 60),
-    st.integers(10**299, 10**300),
-    st.integers(10**299, 10**300),
-    st.integers(0, 2),
-)
-def test_long_polynomials_are_refined_to_the_same_root(
-    digits: int, n: int, m: int, pairs: int
-) -> None:
-    """The root m/n with complex pairs beside it, for which balls are too wide: exact values have to
-    stand in.
-    """
-    line = fmpz_poly([-m, n])
-    p = (
-        line
-        * (line**2 + 1 if pairs > 0 else fmpz_poly([10**310, 1]))
-        * (line**2 + 2 if pairs > 1 else 1)
-    )
-    width = fmpq(1, 10**digits)
-    short = refine(RealRoot(p, fmpq(0), fmpq(11)), width)
-    assert short.high - short.low < width
-    assert short.low == fmpq(m, n) if short.is_rational else short.low < fmpq(m, n) < short.high
-
-
-@settings(max_examples=examples(30), deadline=None)
-@given(
-    st.lists(st.lists(st.integers(-99, 99), min_size=1, max_size=4), min_size=3, max_size=5),
-    st.integers(1, 40), st.integers(0, 40),
-)  # fmt: skip
-def test_balanced_units_change_discriminants_and_resultants_by_a_factor(
-    rows: list[list[int]], a: int, b: int
-) -> None:
-    """p(10^a u, 10^b v), whose coefficients are long: with and without other units."""
-    p = tuple(
-        fmpz_poly([c * 10 ** (a * j + b * i) for j, c in enumerate(row)])
-        for i, row in enumerate(rows)
-    )
-    q = tuple(fmpz_poly([7, 10**a]) * 10 ** (b * i) for i in range(3))
-    if not p[-1] or not any(p):
-        return
-    for own, long in ((lambda f: discriminant(f[0]), [p]), (lambda f: resultant(*f), [p, q])):
-        short, unit = balanced(long)
-        left, right = own(long), own(short)
-        stretched = fmpz_poly([c * unit**j for j, c in enumerate(right.coeffs())])
-        assert (
-            left * stretched.leading_coefficient() == stretched * left.leading_coefficient()
-            if left
-            else not right
-        )
-        assert sum(int(c.height_bits()) for f in short for c in f) <= sum(
-            int(c.height_bits()) for f in long for c in f
-        )
-    ((shorter, *_), unit) = balanced([q])
-    assert unit == 10**a and max(c.height_bits() for c in shorter) < 4
-
-
-def by_solving(algebra: FibreAlgebra, form: tuple[int, ...]) -> list[fmpq_poly]:
-    """The unknowns as polynomials in a form, from the linear system for its powers."""
-    size = algebra.dimension
-    step = fmpq_mat(size, size)
-    for weight, matrix in zip(form, algebra.multiplication, strict=True):
-        step = step + matrix * fmpq(weight)
-    powers = [fmpq_mat(size, 1, [fmpq(int(i == 0)) for i in range(size)])]
-    for _ in range(size - 1):
-        powers.append(step * powers[-1])
-    change = fmpq_mat(size, size, [powers[j][i, 0] for i in range(size) for j in range(size)])
-    targets = fmpq_mat(
-        size, len(form), [m[i, 0] for i in range(size) for m in algebra.multiplication]
-    )
-    solved = change.solve(targets)
-    return [fmpq_poly([solved[i, k] for i in range(size)]) for k in range(len(form))]
-
-
-@pytest.mark.parametrize("digits", [1, 40])
-def test_quotients_and_polynomials_give_the_same_points(digits: int) -> None:
-    share = fmpq(int("1234567891" * 4) % 10**digits, 10**digits)
-    forces = {"F3": -10 + share, "F4": -10 - share}
-    values = {
-        "L1": 1,
-        "L2": 1 + share,
-        "rho": 1 - share / 3,
-        "k1": 100,
-        "k2": 100 + share,
-        "k3": 100,
-        **forces,
-    }
-    system = system_of("ptm")
-    algebra = point_system(
-        system, {n: fmpq(values.get(n, 0)) for n in (*values, "F3x", "F4x")}
-    ).algebra
-    found = univariate_representation(algebra)
-    assert found is not None
-    modulus = fmpq_poly(found.minimal)
-    for quotient, solved in zip(found.coordinates, by_solving(algebra, found.form), strict=True):
-        assert (quotient - solved * found.slope) % modulus == 0
-
-
-@pytest.mark.slow
-def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Each fibre is isolated once; strips as wide as a window of 1e30 asks for are seen to be too
-    wide beforehand.
-    """
-    seen: list[tuple[object, ...]] = []
-    rounds: list[int] = []
-
-    class Counted(NamedTuple):
-        curve: FibredCurve
-
-        def __getattr__(self, name: str) -> object:
-            return getattr(self.curve, name)
-
-        def roots_over(self, u: fmpq, fibre: tuple[fmpq, fmpq]) -> tuple[RealRoot, ...]:
-            seen.append((self.curve.component, u, fibre))
-            return self.curve.roots_over(u, fibre)
-
-    refined, found = area._refine, area.by_component
-
-    def followed(*arguments: object) -> object:
-        rounds.append(len(seen))
-        return refined(*arguments)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(
-        area, "by_component", lambda curves: {n: Counted(c) for n, c in found(curves).items()}
-    )
-    monkeypatch.setattr(area, "_refine", followed)
-    answer(chosen(["map-window-1e30"])[0].question)
-    assert len(rounds) == 1
-    assert seen
-    assert len(seen) == len(set(seen))
-
-
-def test_multiple_roots_are_refused() -> None:
-    double = fmpz_poly([-1, 3]) ** 2 * fmpz_poly([-2, 1])
-    with pytest.raises(ValueError, match="squarefree"):
-        isolate(double, fmpq(0), fmpq(3))
-
-
-@given(st.fractions(), st.fractions())
-def test_the_simplest_rational_between_is_the_simplest(a: Fraction, b: Fraction) -> None:
-    if a == b:
-        return
-    low, high = min(a, b), max(a, b)
-    found = simplest_between(from_fraction(low), from_fraction(high))
-    value = to_fraction(found)
-    assert low < value < high
-    for q in range(1, min(value.denominator, 40)):  # no smaller denominator fits
-        p = (low * q).__floor__() + 1
-        assert not Fraction(p, q) < high
 
 
 @settings(max_examples=examples(30), deadline=None)
@@ -362,70 +152,6 @@ def test_arcs_prove_nothing_where_a_branch_runs_through_the_tube() -> None:
         assert (
             arc_integral(in_v, branch, fmpq(0), fmpq(1), (fmpq(-2), fmpq(2)), fmpq(1, 100)) is None
         )
-
-
-def test_refinement_keeps_the_root() -> None:
-    root = isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0]
-    assert refine(root, fmpq(1, 10**60)).high ** 2 > 2
-
-
-VAST = chosen(["map-window-1e30"])[0].question
-FIG4 = replace(VAST, axes=dict.fromkeys(VAST.axes, (Fraction(0), Fraction(2))))
-
-
-@cache
-def usual_work() -> int:
-    return work_of(FIG4)
-
-
-@pytest.mark.parametrize(
-    "force", [pytest.param(Fraction(1, 10**6), marks=pytest.mark.slow), Fraction(1, 10**20)]
-)
-@pytest.mark.slow
-def test_areas_next_to_a_limit_take_little_more_work(force: Fraction) -> None:
-    """The loaded curve runs along the unloaded lines, several branches within force^(2/3) of each
-    other.
-    """
-    nearly = Question({"F3": -force, "F4": -force}, FIG4.axes)
-    assert work_of(nearly) <= 3 * usual_work()
-
-
-@pytest.mark.slow
-def test_a_vast_window_takes_at_most_five_times_the_work() -> None:
-    vast = Question(FIG4.parameters, dict.fromkeys(FIG4.axes, (Fraction(0), Fraction(10**12))))
-    assert work_of(vast) <= 5 * usual_work()
-
-
-@pytest.mark.slow
-def test_areas_next_to_a_limit_are_confirmed_by_verification() -> None:
-    """The checker integrates power series; it shares no code with arcs."""
-    nearly = Question(dict.fromkeys(FIG4.parameters, Fraction(1, 10**12)), FIG4.axes)
-    assert ptmcad.verify(answer(nearly)).ok
-
-
-@pytest.mark.parametrize("roots", [(0, 0, 1), (1, 1, 1), (-1, -1, 0), (0, 0, 0, 1, 1)], ids=str)
-def test_multiple_roots_are_refused_at_an_end_of_the_interval_too(roots: tuple[int, ...]) -> None:
-    product = fmpz_poly([-1, 3])  # and a simple root inside, at 1/3
-    for r in roots:
-        product *= fmpz_poly([-r, 1])
-    for low, high in ((-1, 1), (0, 1), (-1, 0), (0, 2), (-2, 1)):
-        inside = sorted({Fraction(1, 3), *map(Fraction, roots)})
-        simple = [r for r in inside if low < r < high]
-        if any(roots.count(int(r)) > 1 for r in simple if r != Fraction(1, 3)):
-            with pytest.raises(ValueError, match="not squarefree"):
-                isolate(product, fmpq(low), fmpq(high))
-            continue
-        try:
-            found = isolate(product, fmpq(low), fmpq(high))
-        except ValueError:
-            assert (
-                max(roots.count(low), roots.count(high)) > 1
-            )  # a multiple root at an end may be refused
-        else:
-            assert len(found) == len(simple)
-            assert all(
-                f.low <= from_fraction(r) <= f.high for f, r in zip(found, simple, strict=True)
-            )
 
 
 def test_series_beside_a_critical_abscissa_that_is_found_to_be_rational() -> None:
@@ -481,27 +207,6 @@ def test_areas_between_branches_that_part_slowly_are_those_in_other_units(
         assert count == other
         assert max(low, least) <= min(high, most)
         assert high - low <= low / 1000
-
-
-def test_a_series_whose_last_coefficients_are_nearly_nothing_is_usable() -> None:
-    """Two circles in a window that begins 10^-20 and 10^-30 before their axes: a ratio underflowed
-    in doubles.
-    """
-    equation = "z^2 - ((a^2 + b^2 - 1)*((a - 1/2)^2 + b^2 - 1/4))"
-    system = {"unknowns": {"z": "real"}, "equations": [equation]}
-    axes = {"b": ["-1e-20", 2], "a": ["-1e-30", 1]}
-    regions = ptmcad.classify(
-        slice_from_mapping({"name": "circles", "system": system, "axes": axes})
-    ).regions
-    # the quarter disk without the half disk, and the half disk: each pi/8 but for slivers of 1e-20
-    inside = sorted(r.area for r in regions if r.area and r.area[0] > Fraction(1, 100))
-    for low, high in inside[:2]:
-        assert (
-            low - Fraction(1, 10**15)
-            < Fraction(39269908169872415, 10**17)
-            < high + Fraction(1, 10**15)
-        )
-    assert len(inside) == 3
 
 
 def test_verify_reads_coefficients_of_fifty_digits() -> None:

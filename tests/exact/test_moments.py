@@ -152,13 +152,6 @@ def test_description_and_equations_agree_on_what_has_a_potential(moment: str, kn
     assert (not model.coupled, system_from(model).potential is not None) == (known, known)
 
 
-@pytest.mark.slow
-def test_solutions_without_a_potential_are_not_called_minima() -> None:
-    found = pose_paths(arm("M*cos(s)", {"s": "angle"}), "G", {"M": 1}, "1/2")
-    text = path_table(found)
-    assert "equilibrium" in text and "minimum" not in text and "maximum" not in text
-
-
 def test_moments_at_a_point() -> None:
     model = arm("2*M").model
     assert moments_at(model, {"M": Fraction("1/4")}) == {"th": Fraction("1/2")}

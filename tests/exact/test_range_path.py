@@ -5,7 +5,6 @@ paper's reverse pose.
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from math import cos, pi, sin
@@ -14,7 +13,7 @@ from typing import Any
 
 import jsonschema
 import pytest
-from flint import arb, arb_mat, ctx
+from flint import arb, ctx
 from support.maps import CONFIGS
 
 import ptmcad
@@ -30,17 +29,14 @@ from ptmcad.formulas.continuation import (
     BranchEquations,
     Reached,
     at_value,
-    branch_equations,
     bridge,
     enclose,
     follow,
 )
-from ptmcad.formulas.graph import Graph
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.pathtable import path_table
 from ptmcad.show.ranges.rangedocument import document, part
-from ptmcad.text.parsing import parse
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -136,48 +132,6 @@ def check_points(numbers: Numbers, path: PosePath) -> None:
         assert max(jumps) < 0.4
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("start", ["3/4", "26/25"])
-def test_what_holds_at_a_fold_is_told_there_wherever_the_path_began(start: str) -> None:
-    """Against all poses 1e-20 before the fold, by an exact solution: what differs is less than
-    1e-9.
-    """
-    found = pose_paths(record("fig4"), "rho", {"L2": "3/2"}, Fraction(start), 2)
-    (path,), text = found.paths, path_table(found, 10)
-    snap = "snaps to th1 = -47.52436435°, th2 = -30.75412820° (reverse: y3 < 0, y4 < 0), where the energy is "
-    assert snap in text and text.endswith("lower by 26.173")
-    end, last = path.high, path.high.at.refined(Fraction(1, 10**30))  # type: ignore[union-attr]
-    beside = ptmcad.solve(rho=last.low - Fraction(1, 10**20), L2="3/2", F3=-10, F4=-10)
-    folding, landed = sorted(
-        (p for p in beside.equilibria if p.stable), key=lambda p: -float(p.angles[0])
-    )
-    assert end.target is not None and end.energy is not None and end.target_energy is not None
-    for got, want in zip(end.target.angles, landed.angles, strict=True):
-        assert got.radius < Fraction(1, 10**25) and abs(got.center - want.center) < Fraction(
-            1, 10**9
-        )
-    assert abs(end.target_energy.center - landed.known_energy.center) < Fraction(1, 10**8)
-    assert abs(end.energy.center - folding.known_energy.center) < Fraction(1, 10**8)
-    assert end.energy.radius < Fraction(1, 10**12)
-
-
-@pytest.mark.slow
-def test_unloaded_poses_merge_into_the_flat_one() -> None:
-    """At 2 rho = L2 + 1 the mirror images and the flat saddle between them become the flat stable
-    pose.
-    """
-    found = pose_paths(record("fig2"), "rho", {"L2": "3/2"}, Fraction(6, 5), 1)
-    (path,) = found.paths
-    assert path.upright and path.high.fate is Fate.MERGE
-    assert path.high.at.exact == Fraction(5, 4)  # type: ignore[union-attr]
-    assert path.high.meeting == (0, 0, 1) and path.high.leaving == (0,)
-    assert path.high.target is not None
-    assert all(a.exact == 0 for a in path.high.target.angles)
-    below = pose_paths(record("fig2"), "rho", {"L2": "3/2"}, Fraction(6, 5), 2).paths[0].low
-    assert below.fate is Fate.MERGE and below.target is not None
-    assert [a.text(6) for a in below.target.angles] == ["-3.14159", "0"]
-
-
 def test_the_pose_of_a_merger_at_an_irrational_value_is_told_by_its_symmetry() -> None:
     """V'' = b^2 - 2 at t = 0, which both minima reach at the root of two: V = -1 + 1/4 there."""
     potential = "-(b^2 - 1)*cos(t) + (2*cos(t)^2 - 1)/4 + a - a"
@@ -192,27 +146,6 @@ def test_the_pose_of_a_merger_at_an_irrational_value_is_told_by_its_symmetry() -
     assert end.fate is Fate.MERGE and end.target is not None and end.energy is not None
     assert end.target.angles[0].exact == 0
     assert end.energy == end.target_energy and end.energy.text(5) == "-0.75000"
-
-
-@pytest.mark.slow
-def test_a_merger_is_told_by_a_mirror_line_that_turns_with_the_axis() -> None:
-    """At F = 0 the mirror line is OA. With |OA| = r both poses have B and C at 1/2 from A and merge
-    at r = 3/2, where the chain is straight; at a = 0, r = 1/2, they cross, so that steps are in
-    proportion to a, not to its square."""
-    found = pose_paths(
-        ptmcad.load(CONFIGS / "mechanisms" / "two-bar-chain.yaml"), "a", {"F": 0}, Fraction(1, 2)
-    )
-    assert len(found.paths) == 2
-    for path in found.paths:
-        assert path.low.fate is Fate.WINDOW and path.low.last.value < Fraction(1, 10**5)
-        end = path.high
-        assert end.fate is Fate.MERGE and end.at.polynomial == (-2, 0, 1)  # type: ignore[union-attr]
-        assert end.meeting == (0, 0, 1) and end.leaving == (0,)
-        assert end.target is not None and end.energy is not None
-        for angle in end.target.angles:
-            assert angle.radius < Fraction(1, 10**9) and abs(sin(float(angle)) - 1 / 3) < 1e-9
-        assert end.energy.text(5) == "0.25000"
-        assert len(path.points) < 400
 
 
 def test_the_mirror_line_of_equations() -> None:
@@ -237,46 +170,6 @@ def test_the_mirror_line_of_equations() -> None:
             found.angle(a + Fraction(1, 200), a + Fraction(1, 200)),
         )
         assert wide is not None and inner is not None and (wide - inner).sin().contains(0)
-
-
-def test_derivatives_of_second_order() -> None:
-    """Against differences of those of first order, of a line on which parameters are rational
-    functions.
-    """
-    slice = ptmcad.load(CONFIGS / "mechanisms" / "two-bar-chain.yaml")
-    line = line_of(slice, "a", {"F": "1/3"})
-    stiffness = parse("(1 + 2*a^2)/(3 - a)", {"a": line.parameters["a"]})
-    parameters = dict.fromkeys(line.parameters, stiffness) | {"a": line.parameters["a"]}
-    chain = line_system(replace(line, parameters=parameters)).branches
-    at, h = arb("0.5"), arb("1e-9")
-    with ctx.workprec(BITS):
-        point, velocity = (
-            arb_mat(2, 1, [arb("0.3"), arb("1.1")]),
-            arb_mat(2, 1, [arb("0.7"), arb("-0.4")]),
-        )
-
-        def rise(low: arb, high: arb) -> float:
-            return float((high - low).mid()) / float(2 * h)
-
-        mixed, by, _ = chain.second(at, point)
-        places = [(at + side * h, point + velocity * (side * h)) for side in (-1, 1)]
-        along = [chain.slope(*place) + chain.jacobian(*place) * velocity for place in places]
-        before, after = (chain.jacobian(at + side * h, point) for side in (-1, 1))
-        bend = chain.bend(at, point, velocity)
-        for k in range(2):
-            assert rise(along[0][k, 0], along[1][k, 0]) == pytest.approx(
-                float(bend[k, 0].mid()), abs=1e-6
-            )
-            for j in range(2):
-                assert rise(before[k, j], after[k, j]) == pytest.approx(
-                    float(mixed[k, j].mid()), abs=1e-6
-                )
-                for n in range(2):
-                    unit = arb_mat(2, 1, [arb(int(i == n)) for i in range(2)])
-                    low, high = (
-                        chain.jacobian(at, point + unit * (side * h))[k, j] for side in (-1, 1)
-                    )
-                    assert rise(low, high) == pytest.approx(float(by[n][k, j].mid()), abs=1e-6)
 
 
 def test_a_pair_that_meets_elsewhere_does_not_stop_a_path() -> None:
@@ -319,19 +212,6 @@ def test_a_tube_holds_one_branch_only() -> None:
     assert enclose(mechanism, Fraction(1), Fraction(11, 10), steps[-1].point) is None
 
 
-def test_a_box_without_another_solution_reaches_as_far_as_is_asked_or_there_is_none() -> None:
-    """x^2 = p at p = 1: about 1 there is no other one within 1/2, and within 3 there is -1."""
-    graph = Graph()
-    p, x = graph.variable(0), graph.variable(1)
-    equations = branch_equations([x * x - p], 0)
-    place = at_value(equations, Fraction(1), (arb("1.001"),), Fraction(1, 2))
-    assert place is not None
-    assert place.alone(Fraction(1))[0].contains(arb(1, "0.499"))
-    assert place.at(Fraction(1))[0].contains(1)
-    wide = at_value(equations, Fraction(1), (arb("1.001"),), Fraction(3))
-    assert wide is None or not wide.alone(Fraction(1))[0].contains(-1)
-
-
 @pytest.mark.parametrize(
     ("start", "number", "message"),
     [
@@ -349,24 +229,6 @@ def test_bad_starts(start: str, number: int | None, message: str) -> None:
 def test_a_critical_start_is_refused() -> None:
     with pytest.raises(ConfigError, match="critical value"):
         pose_paths(record("fig2"), "rho", {"L2": "3/2"}, Fraction(5, 4))
-
-
-@pytest.mark.slow
-def test_text_and_document() -> None:
-    schema: dict[str, Any] = json.loads(
-        (ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8")
-    )
-    found = pose_paths(record("fig4"), "rho", {"L2": "3/2"}, Fraction(7, 10), 2)
-    text = path_table(found)
-    assert (
-        "pose 2 at rho = 0.7: th1 = 75.907444" in text and "y3 > 0 and y4 > 0 on the path" in text
-    )
-    fold = "fold: the stable pose merges with a saddle and both vanish; the mechanism snaps to th1 = -47.524364"
-    assert f"up: rho = 1.041432630: {fold}" in text
-    assert "(reverse: y3 < 0, y4 < 0)" in text
-    data = json.loads(document("x", "ptm", part(found, 12)))
-    jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
-    assert data["path"]["paths"][0]["high"]["fate"] == "snap"
 
 
 def test_a_path_towards_infinitely_many_equilibria_ends(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -442,81 +304,6 @@ def test_minima_of_a_potential_in_the_plane() -> None:
         (Fate.VANISH, Fate.WINDOW),
     ]
     assert found.paths[0].high.meeting == (0, 1) and found.paths[0].high.leaving == ()
-
-
-def test_a_minimum_in_three_angles_is_followed() -> None:
-    potential = (
-        "-2*(cos(t0) + cos(t1) + cos(t2)) - a/3*(cos(t0 - t1) + cos(t1 - t2)) - (b + 3)*sin(t0)/9"
-    )
-    slice = system(unknowns=dict.fromkeys(("t0", "t1", "t2"), "angle"), potential=potential)
-    line = line_of(slice, "b", {"a": 1})
-    chain = line_system(line).branches
-    start = at_value(chain, Fraction(0), (arb("0.15"), arb(0), arb(0)))
-    assert start is not None
-    steps, done = follow(chain, Reached(Fraction(0), start, start), Fraction(2), Fraction(1, 4))
-    assert done
-    t = [float(x.mid()) for x in steps[-1].point]
-    slopes = (
-        2 * sin(t[0]) + sin(t[0] - t[1]) / 3 - 5 * cos(t[0]) / 9,
-        2 * sin(t[1]) - sin(t[0] - t[1]) / 3 + sin(t[1] - t[2]) / 3,
-        2 * sin(t[2]) - sin(t[1] - t[2]) / 3,
-    )
-    assert max(map(abs, slopes)) < 1e-12
-
-
-PENDULUMS: dict[str, Any] = {
-    "name": "pendulums",
-    "mechanism": {
-        "parameters": {
-            "k": {"kind": "stiffness", "default": 1},
-            "W": {"kind": "force"},
-            "H": {"kind": "force"},
-            "k2": {"kind": "stiffness", "default": "1.00001"},
-        },
-        "unknowns": {"th": "angle", "phi": "angle"},
-        "points": {
-            "O": [0, 0],
-            "P": ["sin(th)", "cos(th)"],
-            "G": [0, "cos(th)"],
-            "Q": ["sin(phi)", "cos(phi)"],
-            "G2": [0, "cos(phi)"],
-        },
-        "springs": [{"between": ["G", "P"], "k": "k"}, {"between": ["G2", "Q"], "k": "k2"}],
-        "loads": {"P": ["H", "-W"], "Q": ["H", "-W"]},
-    },
-    "axes": {"H": ["-3/2", "3/2"], "W": [0, 1]},
-}
-"""Two pendulums that do not act upon each other, each upright between springs: folds at H = +-0.65
-for W = 1/8.
-"""
-
-
-@pytest.mark.slow
-def test_a_pose_goes_on_between_two_critical_values_near_each_other() -> None:
-    """The hanging pendulums fold nowhere, whatever the upright ones do at 0.649519 and 0.649528."""
-    slice = ptmcad.slice_from_mapping(PENDULUMS)
-    found = pose_paths(slice, "H", {"W": "1/8"}, 0).paths
-    assert [(p.low.fate, p.high.fate) for p in found] == [
-        (Fate.WINDOW, Fate.WINDOW),
-        (Fate.SNAP, Fate.SNAP),
-        (Fate.VANISH, Fate.VANISH),
-        (Fate.VANISH, Fate.VANISH),
-    ]
-    assert all(e.meeting == (0, 1) and not e.leaving for p in found[1:] for e in (p.low, p.high))
-    assert float(found[1].high.at) > float(found[2].high.at) > 0.6495  # type: ignore[arg-type]
-
-
-@pytest.mark.slow
-def test_equal_pendulums_fold_together() -> None:
-    """That all four poses of two upright pendulums meet is told by exchanging the two."""
-    parameters = {**PENDULUMS["mechanism"]["parameters"], "k2": {"kind": "stiffness", "default": 1}}
-    slice = ptmcad.slice_from_mapping(
-        {**PENDULUMS, "mechanism": {**PENDULUMS["mechanism"], "parameters": parameters}}
-    )
-    hanging, *_, upright = pose_paths(slice, "H", {"W": "1/8"}, 0).paths
-    assert (hanging.low.fate, hanging.high.fate) == (Fate.WINDOW, Fate.WINDOW)
-    assert upright.high.fate is Fate.SNAP and not upright.high.among
-    assert upright.high.meeting == (0, 1, 1, 2) and upright.high.leaving == ()
 
 
 def test_solutions_that_may_meet_in_several_ways_are_not_told_apart() -> None:

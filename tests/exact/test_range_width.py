@@ -10,12 +10,11 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from flint import fmpq, fmpz_poly
+from flint import fmpq
 
 import ptmcad
-from ptmcad.algebra.chords import side_of_chord, slope_over
 from ptmcad.algebra.polynomials import PLANE
-from ptmcad.algebra.real_roots import RealRoot, isolate
+from ptmcad.algebra.real_roots import isolate
 from ptmcad.answer.widths import Maximum, Place
 from ptmcad.ask.lines.rangerows import operation_widths
 from ptmcad.exact.cad.projection import curve
@@ -97,14 +96,6 @@ def test_no_width_on_a_grid_is_larger(name: str, along: str) -> None:
     assert max(widths) > most * Fraction(9, 10)
 
 
-@pytest.mark.slow
-def test_a_cusp_at_an_irrational_value_is_enclosed() -> None:
-    (only,) = maximum("rods", "L1")
-    assert only.place is Place.ENCLOSED and only.critical is not None
-    assert only.at.low <= only.critical.high and only.critical.low <= only.at.high
-    assert only.at.high - only.at.low < Fraction(1, 10**12) and only.width.text(9) == "2.19864613"
-
-
 def by_hand(low: object, high: object, left: int, right: int) -> RangeStrip:
     """A strip between the largest root of one curve and the smallest of another, over (left,
     right).
@@ -143,36 +134,6 @@ def test_two_equal_maxima_are_both_told() -> None:
     assert [m.place for m in found] == [Place.SMOOTH] * 2
     for m, value in zip(found, (Fraction(-1, 2), Fraction(1, 2)), strict=True):
         assert m.at.low <= value <= m.at.high and m.width.low <= 1 <= m.width.high
-
-
-def test_a_chord_that_meets_the_curve_proves_nothing() -> None:
-    """The cusp v^2 = u^3 at the origin: a flat chord meets it nowhere else, one of slope 1 at
-    u = 1.
-    """
-    cusp = curve(0, Y**2 - X**3, 0).in_v
-    origin = RealRoot(fmpz_poly([0, 1]), fmpq(0), fmpq(0))
-    assert side_of_chord(cusp, fmpq(0), origin, fmpq(0), fmpq(2))
-    assert side_of_chord(cusp, fmpq(0), origin, fmpq(1), fmpq(9, 10))
-    assert not side_of_chord(cusp, fmpq(0), origin, fmpq(1), fmpq(2))
-    root = RealRoot(fmpz_poly([-2, 0, 1]), fmpq(1), fmpq(2))  # on v^2 = u + 1 at u = 1
-    parabola = curve(0, Y**2 - X - 1, 0).in_v
-    assert side_of_chord(parabola, fmpq(1), root, fmpq(1, 4), fmpq(1))
-    assert not side_of_chord(parabola, fmpq(1), root, fmpq(7, 20), fmpq(1))
-
-
-def test_slopes_enclose_those_of_a_known_branch() -> None:
-    """v = sqrt(u): v' = 1/(2 sqrt u), v'' = -1/(4 u sqrt u) over [3/4, 5/4]."""
-    parabola = curve(0, Y**2 - X, 0)
-    (at,) = isolate(parabola.fibre(fmpq(1)), fmpq(0), fmpq(10))
-    found = slope_over(parabola.in_v, at, fmpq(1), fmpq(1, 8))
-    assert found is not None
-    for u in (fmpq(7, 8), fmpq(1), fmpq(9, 8)):
-        root = float(u) ** 0.5
-        assert found[0].contains(1 / (2 * root)) or abs(found[0] - 1 / (2 * root)) < 1e-9
-        assert abs(found[1] + 1 / (4 * float(u) * root)) < found[1].rad() * 2 + 1e-9
-    assert (
-        slope_over(parabola.in_v, at, fmpq(1), fmpq(1)) is None
-    )  # it would reach the turning point
 
 
 def test_table_and_document() -> None:

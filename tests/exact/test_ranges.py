@@ -193,12 +193,6 @@ def test_random_slices_against_a_count_that_shares_no_code(number: int) -> None:
             assert oracle.count(parameters) == interval.index
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("number", range(0, 140, 3))
-def test_more_random_slices(number: int) -> None:
-    test_random_slices_against_a_count_that_shares_no_code(number)
-
-
 def test_the_unloaded_ends_are_rational() -> None:
     """|L2 - 1| < 2 rho < L2 + 1 (the paper's section 4.1)."""
     for text in ("1/3", "1", "8/5", "3"):

@@ -4,7 +4,6 @@ were.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -14,12 +13,10 @@ import pytest
 from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from support.counting import system_of
 from support.examples import examples
 from support.few import few
-from support.poles import power_trace_denominators
 from support.random_slices import drawn
-from support.same_maps import difference, exchanged
+from support.same_maps import difference
 from support.shipped_records import EXACT
 
 import ptmcad
@@ -29,31 +26,24 @@ from ptmcad.algebra.polynomials import (
     PLANE,
     Coefficient,
     UnivariatePolynomial,
-    from_expression,
-    irreducible_factors,
 )
 from ptmcad.algebra.quotient_algebra import (
-    QuotientAlgebra,
     bounded_away_from_zero,
     multiples,
-    multiplication_denominator,
     multiplicity,
     norm,
-    poles,
     quotient_algebra,
 )
 from ptmcad.answer.regionmap import HARMLESS, Kind, RegionMap
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError, HypothesisError
 from ptmcad.exact.cad.stacks import heights_between
-from ptmcad.exact.models.system import on_slice
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.savings import ALL, SAVINGS, Engine, switched_off
 from ptmcad.question.slice import Slice
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = tuple(s.name for s in SAVINGS if s.engine is Engine.EXACT)
-CERTIFIED = tuple(s.name for s in SAVINGS if s.engine is Engine.CERTIFIED)
 Shipped = Callable[..., RegionMap]
 
 
@@ -90,15 +80,6 @@ def test_without_a_saving_every_shipped_map_says_the_same(
 ) -> None:
     result = ptmcad.classify(ptmcad.load(path), without=[without])
     assert difference(shipped(path.stem), result) == ""
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("path", EXACT, ids=lambda p: p.stem)
-def test_the_first_axis_serves_as_well_when_the_axes_are_exchanged(
-    path: Path, tmp_path: Path
-) -> None:
-    slice = ptmcad.load(exchanged(path, tmp_path))
-    assert difference(ptmcad.classify(slice), ptmcad.classify(slice, without=["axis-order"])) == ""
 
 
 SMALL = st.fractions(Fraction(1, 4), Fraction(2), max_denominator=6)
@@ -141,44 +122,7 @@ def test_the_plain_pipeline_says_the_same_on_random_slices(slice: Slice) -> None
     both_ways(slice)
 
 
-@pytest.mark.slow
-@given(slices())
-@settings(max_examples=examples(60))
-def test_the_plain_pipeline_says_the_same_on_many_random_slices(slice: Slice) -> None:
-    both_ways(slice)
-
-
-def test_maps_that_differ_are_told_apart(shipped: Shipped) -> None:
-    one = shipped("fig2")
-    region = one.regions[0]
-    larger = replace(region, area=(region.area[1] * 2, region.area[1] * 2))
-    assert "area" in difference(one, replace(one, regions=(larger, *one.regions[1:])))
-    assert "regions" in difference(shipped("fig3"), shipped("fig3", "index"))
-    cell = replace(one.cells[0], stable=2, index=(2, 3, 1))
-    assert "counts" in difference(one, replace(one, cells=(cell, *one.cells[1:])))
-    joined = tuple(a for a in one.adjacencies if {a.first, a.second} != {0, 1})
-    assert "neighbours" in difference(one, replace(one, adjacencies=joined))
-
-
 # --------------------------------------------------------------------------------------------------- curves at infinity
-
-
-def algebra_of(slice: Slice) -> QuotientAlgebra:
-    system = system_of("ptm")
-    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
-    found = quotient_algebra(groebner_basis(on_slice(system, parameters).equations, (0, 1, 2, 3)))
-    assert found is not None
-    return found
-
-
-@pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "horizontal"])
-@pytest.mark.slow_cases("horizontal")
-def test_poles_are_those_of_power_traces(name: str) -> None:
-    algebra = algebra_of(record(name))
-    every = irreducible_factors(multiplication_denominator(algebra))
-    traces = [power_trace_denominators(algebra, k) for k in (0, 2)]
-    found = poles(algebra, every, (0, 2))
-    assert set(map(str, found)) == {str(f) for f in every if any((t % f).is_zero() for t in traces)}
 
 
 X, Y = PLANE.gens()
@@ -329,80 +273,4 @@ def test_the_older_name_is_taken(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "--without" not in page and "--keep" not in page
 
 
-def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    fig2 = str(ROOT / "configs" / "fig2.yaml")
-    common = ["classify", fig2, "--format", "json", "--out", str(tmp_path)]
-    assert run([*common, "--without", "infinty"]) == 2
-    assert "--without: 'infinty' is no saving; did you mean 'infinity'?" in capsys.readouterr().err
-    assert run([*common, "--without", "mirror-images"]) == 2
-    assert "saving of the certified engine" in capsys.readouterr().err
-    assert run([*common, "--keep", "infinty"]) == 2
-    assert "--keep: 'infinty' is no saving; did you mean 'infinity'?" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-    assert run([*common, "--explain", "--without", "axis-order", "--without", "sign-curve"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].startswith("question  fig2: L2 in [0, 4], rho in [0, 4]")
-    assert lines[1] == "plan of fig2, exact engine, before it starts:"
-    at = lines.index("decided on the way:")
-    assert "computed: projection of H11 = 0 (kept, as asked for)" in lines[:at]
-    assert "left out: terms of F3, F4, F3x, F4x (they are zero on this slice)" in lines[:at]
-    assert "to be decided on the way: infinity, no-real-points, even-powers" in lines[:at]
-    assert "computed: decomposition over L2 (the first axis, as asked for)" in lines[at:]
-    assert len(lines) == len(set(lines))
-    plan = json.loads((tmp_path / "fig2.json").read_text())["plan"]
-    assert {step["saving"] for step in plan if step["done"] and "saving" in step} == {
-        "axis-order",
-        "sign-curve",
-    }
-
-
 # ------------------------------------------------------------------------------------------------- the certified engine
-
-
-@pytest.mark.slow
-def test_curves_of_the_certified_engine() -> None:
-    pytest.importorskip("numba")
-    from ptmcad.certified.plain.criticalcurves import curves
-
-    def found(slice: Slice, *without: str) -> dict[str, tuple[int, ...]]:
-        """Names of the curves, with the number of formulas beside the equations that vanish."""
-        return {
-            c.name: tuple(len(v) for v in c.system.vanishing)
-            for c in curves(slice, slice.count, frozenset(without))
-        }
-
-    slice = record("free02")
-    assert list(found(slice)) == [
-        "fold of a stable equilibrium",
-        "fold of a stable equilibrium with spring A3A4 short",
-    ]
-    assert {"fold", "fold with spring A3A4 short"} <= found(slice, "folds-of-saddles").keys()
-    assert {
-        "point where spring A3A4 has no length",
-        "point where spring A1A4 has no length",
-    } <= found(slice, "cones-and-creases").keys() - found(slice).keys()
-    assert {v[2] for name, v in found(slice, *CERTIFIED).items() if name.startswith("fold")} == {0}
-    assert all(v[2] > 0 for v in found(slice).values())
-    unloaded = record("free02-unloaded")
-    # a pitchfork at each flat configuration, a search beside it from either side, and one far from
-    # all of them
-    symmetric = [c.name.partition(" ")[0] for c in curves(unloaded, unloaded.count)]
-    assert symmetric == ["pitchfork", "fold", "fold"] * 4 + ["fold"] * 2 + ["point"] * 3
-    assert len(found(unloaded, "mirror-images")) == 2
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("without", [*CERTIFIED, ALL])
-def test_certified_maps_without_a_saving_do_not_contradict(without: str) -> None:
-    """A window that is easy, so that every variant decides most of it."""
-    pytest.importorskip("numba")
-    slice = ptmcad.slice_from_options(
-        slice="rho,L2", ranges=["rho=1/2:1", "L2=3/2:2"], sets=["l0=1/5", "F3=-10", "F4=-10"]
-    )
-    result = ptmcad.classify(slice, tolerance="1/10", jobs=1)
-    plain = ptmcad.classify(slice, tolerance="1/2", jobs=1, without=without, timeout=200)
-    assert difference(result, plain) == ""
-    assert {step.saving for step in plain.plan if step.saving and step.done} <= switched_off(
-        [without], certified=True
-    )

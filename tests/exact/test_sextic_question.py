@@ -7,11 +7,9 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from support.programs import QEPCAD, needs_qepcad, qepcad_script
 from support.sextic_question import Question, Task, Terms, formulas, question
 
 from ptmcad.question import config
-from ptmcad.studies.bench.process import run
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 
@@ -88,13 +86,3 @@ def test_qepcad_that_ends_without_an_answer_has_none() -> None:
     assert formulas("Failure occurred in: GCSI") == []
     one = "\nAn equivalent quantifier-free formula:\n\nx > 0 /\\\ny < 0\n\n\n"
     assert formulas(one + "QEPCAD" + one) == ["x > 0 /\\ y < 0"] * 2
-
-
-@pytest.mark.slow
-@needs_qepcad
-def test_qepcad_answers() -> None:
-    asked = question(config.load(CONFIGS / "fig3.yaml"))
-    assert isinstance(asked, Question) and QEPCAD is not None
-    problems = [asked.problem(task) for task in (Task.SIX, Task.FOUR)]
-    usage = run(QEPCAD, text=qepcad_script(problems), timeout=60)
-    assert len(formulas(usage.output)) == 2, usage.fault

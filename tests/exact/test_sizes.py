@@ -5,18 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from flint import nmod_poly
 
 import ptmcad
-from ptmcad.algebra.groebner import shifted
-from ptmcad.algebra.quotient_algebra import multiplication_denominator, quotient_algebra
-from ptmcad.algebra.ratios import Numerator, degree, numerator
-from ptmcad.algebra.resultants import primes
 from ptmcad.answer.regionmap import Kind
 from ptmcad.exact import curvesizes as module
 from ptmcad.exact.curvesizes import CurveSizes, sizes, survey
-from ptmcad.exact.discriminant_variety import basis_of
-from ptmcad.exact.models.system import on_slice
 from ptmcad.exact.stages import problem_of, variety_of
 from ptmcad.question.config import load
 
@@ -101,22 +94,6 @@ def test_axes_are_told_where_solutions_meet_over_them(
     assert tuple(name in critical for name in ("a", "b")) == known.lines
 
 
-@pytest.mark.parametrize(("name", "solutions"), [("forces", 6), ("systems/kuramoto", 6)])
-def test_the_degrees_of_the_tables_are_those_of_the_computed_ones(
-    name: str, solutions: int
-) -> None:
-    problem = problem_of(load(CONFIGS / f"{name}.yaml"))
-    algebra = quotient_algebra(basis_of(on_slice(problem.system, problem.on.parameters)))
-    assert algebra is not None
-    scale = multiplication_denominator(algebra)
-    rows = [algebra.table[shifted(m, k)] for m in algebra.basis for k in range(len(m))]
-    parts = [scale, *(c * (scale / below) for row, below in rows for c in row if c)]
-    across, up = (max(int(p.degrees()[k]) for p in parts) for k in (0, 1))
-    found = sizes(problem, solutions, 60.0)
-    assert found is not None
-    assert found.tables == (across, up, max(int(p.total_degree()) for p in parts))
-
-
 @pytest.mark.parametrize("name", ["fig5-text", "systems/duffing"])
 @pytest.mark.slow_cases("fig5-text")
 def test_the_cells_of_a_survey_are_those_of_the_map(name: str) -> None:
@@ -143,18 +120,3 @@ def test_a_curve_that_is_too_large_has_no_size(monkeypatch: pytest.MonkeyPatch) 
     assert sizes(problem, 7, 60.0) is None
     monkeypatch.setattr(module, "MAX_POINTS", 30)
     assert sizes(problem, 6, 60.0) is None
-
-
-def test_numerators_are_found_from_values_that_suffice() -> None:
-    prime = next(primes())
-
-    def value(x: int) -> int:  # x (x^4 + 5 x^2 + 3)^2 / (2 x + 1)
-        return x * (x**4 + 5 * x**2 + 3) ** 2 * pow(2 * x + 1, -1, prime) % prime
-
-    points = [(x, value(x)) for x in range(20)]
-    assert numerator(points, prime) == Numerator(4, True, 2)
-    assert numerator(
-        points, prime, [nmod_poly([0, 1], prime), nmod_poly([7, 1], prime)]
-    ) == Numerator(4, False, 2)
-    assert numerator(points[:14], prime) is None
-    assert (degree(points, prime), degree(points[:14], prime)) == (9, None)

@@ -51,18 +51,6 @@ def test_members_of_a_family_too() -> None:
         )
 
 
-@pytest.mark.slow
-def test_forty_members_of_each_family() -> None:
-    for name in ("equal-loads", "two-loads", "chain"):
-        family = family_from(CONFIGS / "families" / f"{name}.yaml")
-        common = in_common(family, WITHOUT_AREAS)
-        for k in range(40):
-            value = family.free.low + (family.free.high - family.free.low) * Fraction(2 * k + 1, 80)
-            _same_but_solutions(
-                member_map(common, value, SPARING), member_map(common, value, WITHOUT_AREAS)
-            )
-
-
 def test_only_what_is_proved_to_be_joined_shares_a_count(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fig. 4 has regions that a curve parts although counts are equal: these are counted apart."""
     found: list[tuple[int, ...]] = []

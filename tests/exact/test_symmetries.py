@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
-from support.examples import examples
 from support.structure import check_structure
 
 from ptmcad import RegionMap, classify, slice_from_mapping
@@ -90,7 +89,6 @@ def scaled(record: Record, factors: dict[str, Fraction]) -> Record:
     return {**record, "parameters": parameters, "axes": axes}
 
 
-Point = tuple[Fraction, Fraction]
 Image = tuple[Record, Callable[[dict[str, Fraction]], dict[str, Fraction]]]
 
 
@@ -189,16 +187,6 @@ factors = st.sampled_from([Fraction(f) for f in ("2", "1/3", "7/5", "1000", "1/1
 @settings(max_examples=2, phases=[Phase.generate])
 @pytest.mark.slow_cases("axes_swapped", "lengths_scaled", "stiffness_and_force_scaled")
 def test_symmetry(
-    symmetry: Callable[[Record, Fraction], Image], record: Record, factor: Fraction
-) -> None:
-    check_same(record, symmetry, factor)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("symmetry", SYMMETRIES, ids=lambda s: s.__name__)
-@given(record=records(), factor=factors)
-@settings(max_examples=examples(25), phases=[Phase.generate])
-def test_symmetry_of_many_slices(
     symmetry: Callable[[Record, Fraction], Image], record: Record, factor: Fraction
 ) -> None:
     check_same(record, symmetry, factor)

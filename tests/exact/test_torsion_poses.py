@@ -144,18 +144,6 @@ def test_every_digit_is_that_of_the_angles(l0: str, digits: int) -> None:
                     )
 
 
-def test_moments_balance_the_pull_of_spring_and_loads() -> None:
-    """By hand for the chain without its spring's free length: the sum of all that turns phi alone,
-    and of th.
-    """
-    for pose in solve(model=described(CHAIN), l0=0, W="1/7").equilibria:
-        (qx, qy), (px, py) = ([float(x) for x in pose.nodes[name]] for name in "QP")
-        fx, fy = 1 / 7 - 3 * (qx - 8 / 5), -1 / 7 - 3 * (qy - 4 / 5)
-        one, two = (float(t.moment) for t in pose.torsion)
-        assert (qx - px) * fy - (qy - py) * fx == pytest.approx(two, abs=1e-9)
-        assert px * fy - py * fx == pytest.approx(one - 2 * two, abs=1e-9)
-
-
 def test_both_engines_agree() -> None:
     """On springs of free length zero, which the certified engine takes as well."""
     model = described(CHAIN)
@@ -213,59 +201,6 @@ def test_relaxed_torsion_springs_have_hardly_a_moment() -> None:
 REST = {"cos": "3/5", "sin": "4/5"}
 
 
-@pytest.mark.parametrize(
-    ("anchor", "springs", "expected"),
-    [
-        # the spring pulls along the bar
-        (["6/5", "8/5"], [{"angle": "th", "k": 2, "rest": REST}], [("0", "0", "0")]),
-        # Q = P + (1, 0) is 1 from its anchor (13, 4)/5
-        (
-            ["13/5", "4/5"],
-            [{"angle": "th", "k": 2, "rest": REST}, {"angle": "th - phi", "k": 1, "rest": REST}],
-            [("0", "0", "0")] * 2,
-        ),
-        # phi is known first, and th by it
-        (
-            ["13/5", "4/5"],
-            [
-                {"angle": "2*phi - th", "k": 1, "rest": {"cos": "3/5", "sin": "-4/5"}},
-                {"angle": "phi", "k": 1},
-            ],
-            [("0", "0", "0")] * 2,
-        ),
-    ],
-    ids=["one", "two", "the other way around"],
-)
-def test_a_mechanism_at_rest_as_it_was_assembled_is_proved_to_be(
-    anchor: list[str], springs: list[dict[str, Any]], expected: list[tuple[str, str, str]]
-) -> None:
-    """Springs of which none pulls sideways, more than there are unknowns: no energy but that of the
-    stretched one.
-    """
-    chain = len(springs) > 1
-    record = {**CHAIN, "points": {**CHAIN["points"], "A": anchor}}
-    if not chain:
-        record |= {
-            "unknowns": {"th": "angle"},
-            "points": {"A": anchor, "O": [0, 0], "P": ["cos(th)", "sin(th)"]},
-        }
-        record |= {
-            "bars": [["O", "P"]],
-            "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
-            "loads": {},
-        }
-        record["parameters"] = {"l0": {"kind": "free length"}}
-    poses = solve(model=with_torsion(record, *springs), l0="1" if chain else "1/3")
-    assert poses.status is Status.CERTIFIED
-    held = poses.equilibria[0]
-    assert held.stable
-    assert turned(held) == expected
-    assert held.cosines_sines[0].exact == Fraction(3, 5)
-    assert held.known_energy.exact == (0 if chain else Fraction(2, 9))
-    if not chain:
-        assert turned(poses.equilibria[1]) == [("3.1415927", "180", "0")], "and half a turn from it"
-
-
 def test_a_mechanism_that_is_nearly_at_rest_is_not_taken_for_one_that_is() -> None:
     """A load of 1e-90 turns the bar by as much as a stiffness of 2 + 2 2/3 lets it, which balls of
     224 bits miss.
@@ -298,32 +233,3 @@ def test_documents_tell_what_torsion_springs_do_and_are_read_back() -> None:
         ["name", "stiffness", "deflection", "degrees", "moment"]
     ] * 2
     assert [entry["name"] for entry in entries] == ["th", "phi-2*th"]
-
-
-def test_documents_without_them_are_those_of_before_and_half_of_them_are_refused() -> None:
-    data = json.loads(solve(model=described(CHAIN), l0=0, W="1/7").to_json())
-    data["equilibria"][1]["torsion"].pop()
-    with pytest.raises(ValueError, match=r"equilibria\[1\]\.torsion has 1 entries, not 2"):
-        Poses.from_json(json.dumps(data))
-    del data["equilibria"][1]["torsion"]
-    with pytest.raises(ValueError, match=r"equilibria\[1\]\.torsion has 0 entries, not 2"):
-        Poses.from_json(json.dumps(data))
-    for pose in data["equilibria"]:
-        pose.pop("torsion", None)
-    assert all(pose.torsion == () for pose in Poses.from_json(json.dumps(data)).equilibria)
-    assert '"torsion"' not in solve(rho=1).to_json(), "the paper's mechanism has none"
-
-
-def test_the_table_has_columns_for_them_with_their_sign() -> None:
-    lines = solve(model=described(CHAIN), l0=0, W="1/7").table(6).splitlines()
-    columns = [line.split() for line in lines]
-    header = [
-        f"deflection {name} {unit}" for unit in ("[rad]", "[deg]") for name in ("th", "phi-2*th")
-    ]
-    assert ["#", *" ".join(header).split()] in columns
-    assert ["#", "moment", "th", "moment", "phi-2*th"] in columns
-    assert lines[-2].endswith("energies, moments and the Hessian's eigenvalues in their product")
-    assert lines[-1].startswith(
-        "torsion deflection: angle - rest; moment: k sin(deflection), positive where"
-    )
-    assert not any("moment" in line for line in solve(rho=1).table().splitlines())

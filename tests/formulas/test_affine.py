@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 pytest.importorskip("numba")
 
-from ptmcad.certified.contraction import contract_curve, survives, workspace
+from ptmcad.certified.contraction import survives, workspace
 from ptmcad.certified.equationsystem import EquationSystem, quotients, system
 from ptmcad.certified.linear import contract_linear, space_for
 from ptmcad.formulas.affine import CENTER, ERROR, FIRST, LANES, frame_for, run_affine, set_frame
@@ -120,19 +120,6 @@ def test_values_lie_within_the_error_of_their_form(what: str) -> None:
             assert excess(tape, box, [0, 1], rng) <= 1
 
 
-def test_forms_are_of_second_order() -> None:
-    """What makes them worth their time: halving the box quarters the error."""
-    graph = Graph()
-    x, y = graph.variable(0), graph.variable(1)
-    tape = record([[(x.sin() * y - y * x.cos()) / length(x, y) + direction(x, y).squared()]])
-    errors = []
-    for width in (0.02, 0.01, 0.005):
-        *_, forms = forms_of(tape, np.array([0.7, 0.9]), np.array([0.7, 0.9]) + width, [0, 1])
-        errors.append(forms[len(tape) - 1, ERROR])
-    assert 3.7 < errors[0] / errors[1] < 4.3
-    assert 3.7 < errors[1] / errors[2] < 4.3
-
-
 def test_a_length_that_may_be_zero_leaves_every_direction_and_every_inverse() -> None:
     graph = Graph()
     x, y = graph.variable(0), graph.variable(1)
@@ -212,17 +199,3 @@ def test_rows_keep_every_solution(kind: str) -> None:
             kept += 1
             narrowed += bool((high - low < 0.9 * before).any())
     assert narrowed > kept / 4
-
-
-def test_boxes_without_a_solution_are_discarded_before_their_derivatives_are_small() -> None:
-    """x^2 + y^2 = 1 and its moved copy have two points in common; on the box no equation is far
-    from zero.
-    """
-    graph = Graph()
-    x, y = graph.variable(0), graph.variable(1)
-    circles = [x.squared() + y.squared() - 1, (x - Fraction(1, 10)).squared() + y.squared() - 1]
-    arguments = system(circles, (0, 1)).arguments()
-    work, space = workspace(arguments, 2), space_for(arguments, 2)
-    low, high = np.array([0.5, 0.6]), np.array([0.8, 0.9])
-    assert survives(arguments, low, high, work)
-    assert not contract_curve(arguments, low, high, work, space)

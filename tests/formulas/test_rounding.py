@@ -263,27 +263,6 @@ def test_nothing_is_claimed_of_angles_that_are_unknown_or_large(a: float, b: flo
     assert arithmetic.sine(a, b, 0) == arithmetic.sine(a, b, 1) == (-1, 1)
 
 
-def _error(x: float) -> tuple[arb, arb]:
-    s, c = arithmetic.sine_cosine(x)
-    p, q = arb(x).sin_cos()
-    return abs(p - s), abs(q - c)
-
-
-def test_error_of_sine_and_cosine_is_a_quarter_of_what_is_claimed() -> None:
-    """The lemma proves 2^-51 and a half; this looks for the worst near the ends of a quarter turn's
-    halves.
-    """
-    rng = np.random.default_rng(7)
-    corners = (rng.integers(-76, 77, 4000) + rng.uniform(-1e-9, 1e-9, 4000)) * math.pi / 4
-    places = np.concatenate([rng.uniform(-60, 60, 4000), corners])
-    with ctx.workprec(120):
-        worst = max(float(e.upper()) for x in places.tolist() for e in _error(x))
-    assert worst < arithmetic.SINE_ERROR / 4
-    assert worst > arithmetic.SINE_ERROR / 64, (
-        "a bound this loose, or a test this blind, is a mistake"
-    )
-
-
 def copied(into: Path) -> Path:
     """The modules of the package as far as the digest is of them, and one that it is not of."""
     for room in (*compilation.ROOMS, "cover"):

@@ -12,8 +12,8 @@ from types import MappingProxyType
 import pytest
 
 import ptmcad
-from ptmcad.formulas.evaluation import Substitution, nodes_of, substituted, values
-from ptmcad.formulas.graph import Formula, Graph
+from ptmcad.formulas.evaluation import nodes_of, substituted, values
+from ptmcad.formulas.graph import Graph
 from ptmcad.model import ClosedMechanism, Mechanism, System
 from ptmcad.model.compile import compiled, compiled_with
 
@@ -46,52 +46,6 @@ def test_all_that_a_description_has_is_compiled(kind: type, known: set[str]) -> 
     that says nothing.
     """
     assert {f.name for f in fields(kind)} == known
-
-
-def at_rest(formula: Formula) -> Fraction:
-    """The value of a formula with numbers for parameters where the pendulum stands upright."""
-    graph = formula.graph
-    turned = values([formula], _Upright(graph, {}))[0]
-    assert turned.value is not None
-    return Fraction(turned.value)
-
-
-class _Upright(Substitution):
-    """With the pendulum's angle at zero, and lengths along the axis."""
-
-    def cos(self, number: int) -> Formula:
-        return self.graph.constant(1)
-
-    def sin(self, number: int) -> Formula:
-        return self.graph.constant(0)
-
-    def length(self, x: Formula, y: Formula) -> Formula:  # type: ignore[override]
-        assert x.value == 0 and y.value is not None
-        return self.graph.constant(abs(y.value))
-
-
-def test_an_upright_pendulum_by_hand() -> None:
-    """At th = 0 the spring has length 2: E = (2 - 1/2)^2/2 + W, as the torsion spring is at rest."""
-    graph = Graph()
-    numbers = {"l0": Fraction(1, 2), "W": Fraction(3), "c": Fraction(2)}
-    system = compiled_with(
-        PENDULUM,
-        {"th": graph.variable(2)}
-        | {name: graph.constant(value) for name, value in numbers.items()},
-    )
-    energy = system.energy()
-    assert energy is not None
-    assert at_rest(energy) == Fraction(9, 8) + 3
-    relaxed = system.energy(relaxed=())
-    assert relaxed is not None
-    assert at_rest(relaxed) == 2 + 3, "no free length counts"
-    found = {name: at_rest(formula) for name, formula in system.quantities.items()}
-    spring, turned = system.springs[0].name, system.torsion[0].name
-    assert found == {
-        "O.x": 0, "O.y": 0, "A.x": 0, "A.y": 3, "P.x": 0, "P.y": 1,
-        f"{spring}.length": 2, f"{spring}.force": Fraction(3, 2),
-        f"{turned}.deflection.cos": 1, f"{turned}.deflection.sin": 0, f"{turned}.moment": 0,
-    }  # fmt: skip
 
 
 class _Place:

@@ -5,10 +5,8 @@ inside refuses.
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
 from itertools import pairwise
 from math import comb
-from typing import Any
 
 import pytest
 from flint import fmpq
@@ -20,11 +18,9 @@ from ptmcad.algebra.trigonometric_ring import TrigonometricRing
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Kind
 from ptmcad.exact.discriminant_variety import discriminant_variety
-from ptmcad.exact.exactposes import exact_poses
-from ptmcad.exact.models import ParametricSystem, system_from
+from ptmcad.exact.models import ParametricSystem
 from ptmcad.exact.models.system import SystemOnAxes, from_equations
 from ptmcad.exact.point_system import solutions_at
-from ptmcad.model import described
 from ptmcad.model.criterion import by_hessian
 
 VALUES = {"k": fmpq(1, 100), "F": fmpq(1)}
@@ -111,42 +107,3 @@ def test_the_variety_of_three_angles() -> None:
 
 def test_the_mechanism_has_two_angles() -> None:
     assert system_of("ptm").dimension == 2
-
-
-def bars(first: str, second: str, third: str) -> dict[str, Any]:
-    """Three bars in a chain on springs from their ends to one point, with these directions."""
-    x, y = "cos({})", "sin({})"
-    points: dict[str, list[str]] = {"O": ["0", "0"], "A": ["2", "1/2"]}
-    for k, sums in enumerate(([first], [first, second], [first, second, third]), 1):
-        points[f"P{k}"] = [" + ".join(f.format(angle) for angle in sums) for f in (x, y)]
-    return {
-        "name": "chain",
-        "parameters": {"k": {"kind": "stiffness", "default": 1}, "W": {"kind": "force"}},
-        "unknowns": dict.fromkeys(("a", "b", "c"), "angle"),
-        "points": points,
-        "springs": [{"between": ["A", f"P{k}"], "k": "k"} for k in (1, 2, 3)],
-        "loads": {"P3": ["1/3", "W"]},
-    }
-
-
-@pytest.mark.filterwarnings("ignore:the basis of the equations")
-def test_angles_against_the_bar_before_are_counted_as_directions_are() -> None:
-    values = {"k": fmpq(1), "W": fmpq(2, 3)}
-    relative = system_from(described(bars("a", "a + b", "a + b + c")))
-    absolute = system_from(described(bars("a", "b", "c")))
-    found = count_by_isolation(relative, values)
-    assert found == count_by_isolation(absolute, values)
-    assert found.index is not None
-    assert sum(found.index[::2]) == sum(found.index[1::2])
-    poses = [
-        exact_poses(described(record), {"k": Fraction(1), "W": Fraction(2, 3)}, 8)
-        for record in (bars("a", "a + b", "a + b + c"), bars("a", "b", "c"))
-    ]
-    ends = [
-        [
-            [p.nodes["P3"][i].text(8) for i in (0, 1)] + [p.known_energy.text(8)]
-            for p in q.equilibria
-        ]
-        for q in poses
-    ]
-    assert ends[0] == ends[1]

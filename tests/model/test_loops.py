@@ -4,7 +4,6 @@ refused.
 
 from __future__ import annotations
 
-import json
 import math
 import random
 from fractions import Fraction
@@ -15,18 +14,13 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from flint import fmpq
 
 import ptmcad
 from ptmcad.answer.regionmap import Component, Kind, Status
 from ptmcad.errors import ConfigError, DegenerateSliceError
-from ptmcad.exact.models.modelsystem import elements_of, system_from
-from ptmcad.exact.models.system import at_point, polynomial_at
+from ptmcad.exact.models.modelsystem import elements_of
 from ptmcad.exact.stages import problem_of, variety_of
-from ptmcad.model import ClosedMechanism
 from ptmcad.model.compile import compiled
-from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.verification.derivation import coordinates_of, derivation_at
 
 FOUR_BAR: dict[str, Any] = {
     "name": "four_bar",
@@ -110,63 +104,6 @@ def test_lines_on_which_the_loop_folds_flat() -> None:
     }
 
 
-def minima_along(
-    L1: float, L2: float, L3: float, b: float, F: float, G: float, steps: int = 20000
-) -> int:
-    """Minima of the energy on the loop's curve: each closed piece of it, by a fine run through th1
-    and both assemblies.
-
-    Pieces on which the coupler's two assemblies meet are run through on one and back on the other.
-    """
-    th1 = 2 * math.pi * (np.arange(steps) + 0.5) / steps
-    px, py = L1 * np.cos(th1), L1 * np.sin(th1)
-    dx, dy = px - b, py
-    far = np.hypot(dx, dy)
-    cosine = (L2**2 + far**2 - L3**2) / (2 * L2 * far)
-    real = np.abs(cosine) < 1
-    energies = []
-    for side in (1, -1):
-        th2 = np.arctan2(dy, dx) + side * np.arccos(np.clip(cosine, -1, 1))
-        qx, qy = b + L2 * np.cos(th2), L2 * np.sin(th2)
-        u = (qx**2 + qy**2) / 2 + ((px - b) ** 2 + py**2) / 2 - F * py - G * qy
-        energies.append(np.where(real, u, np.nan))
-    if real.all():
-        loops = energies
-    else:
-        start = int(np.flatnonzero(real & ~np.roll(real, 1))[0])
-        above, below = (np.roll(u, -start) for u in energies)
-        mask = np.roll(real, -start)
-        ends = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
-        loops = [np.concatenate([above[i:j], below[i:j][::-1]]) for i, j in ends.reshape(-1, 2)]
-    return sum(int(((u < np.roll(u, 1)) & (u < np.roll(u, -1))).sum()) for u in loops)
-
-
-@pytest.mark.slow
-def test_stable_poses_are_the_minima_along_the_loop() -> None:
-    random.seed(7)
-    compared, seen = 0, set()
-    while compared < 25:
-        lengths = [Fraction(random.randrange(5, 30), 10) for _ in range(4)]
-        if 2 * max(lengths) >= sum(lengths):
-            continue  # it cannot be put together
-        if any(
-            sum((n * s for n, s in zip(lengths, signs, strict=False)), Fraction(0)) == lengths[3]
-            for signs in SIGNS
-        ):
-            continue  # it can fold flat
-        loads = [Fraction(random.randrange(-40, 41), 10) for _ in range(2)]
-        names = ("L1", "L2", "L3", "b")
-        numbers = dict(zip((*names, "F", "G"), (*lengths, *loads), strict=True))
-        found = ptmcad.solve({"mechanism": FOUR_BAR, "axes": LOADS["axes"],
-                              "parameters": {n: str(numbers[n]) for n in names}},
-                             F=str(loads[0]), G=str(loads[1]))  # fmt: skip
-        stable = sum(bool(e.stable) for e in found.equilibria)
-        assert stable == minima_along(*map(float, numbers.values())), numbers
-        compared += 1
-        seen.add(stable)
-    assert len(seen) > 2
-
-
 def test_a_slider_is_an_unknown_on_the_line() -> None:
     """With x = r cos th + s (l^2 - r^2 sin^2 th)^(1/2), on one side s = 1 and on the other s = -1,
     as r < l.
@@ -186,73 +123,6 @@ def test_a_slider_is_an_unknown_on_the_line() -> None:
         assert sum(bool(e.stable) for e in found.equilibria) == rising
         total = sum(int((np.sign(f) != np.sign(np.roll(f, -1))).sum()) for f in slopes)
         assert len(found.equilibria) == total
-
-
-LINE_FIRST = {**SLIDER_CRANK, "name": "line_first", "unknowns": {"x": "length", "th": "angle"}}
-
-
-@pytest.mark.parametrize(
-    "mechanism", [FOUR_BAR, SLIDER_CRANK, LINE_FIRST, PLATFORM, FIVE_BAR], ids=lambda m: m["name"]
-)
-def test_two_derivations_are_equal(mechanism: dict[str, Any]) -> None:
-    """The engines', of formulas, and the checker's, of polynomials."""
-    model = ptmcad.Mechanism(mechanism)
-    assert isinstance(model, ClosedMechanism)
-    values = {n: Fraction(3 + k, 5 + 2 * k) for k, n in enumerate(model.variables)}
-    theirs, system = derivation_at(model, values), system_from(model)
-    numbers = {n: from_fraction(v) for n, v in values.items()}
-    ours = [
-        *at_point(system, numbers)[0],
-        *(polynomial_at(system, p, numbers) for p in system.stability),
-    ]
-    assert not system.inequalities
-    for t in ((2, 7, 5), (-3, 4, -1)):
-        place = {}
-        for k, angle in enumerate(model.angles):
-            u = fmpq(t[k], t[2])
-            place[f"cos_{angle}"], place[f"sin_{angle}"] = (
-                (1 - u * u) / (1 + u * u),
-                2 * u / (1 + u * u),
-            )
-        place |= {name: fmpq(t[1] + n, 3) for n, name in enumerate(model.reals)}
-        at = list(place.values())
-        mine = []
-        for p in ours:
-            total = fmpq(0)
-            for powers, c in p.items():
-                term = c
-                for x, e in zip(at, powers, strict=True):
-                    term *= x**e
-                total += term
-            mine.append(total)
-        checked = [
-            p(*(place[name] for name in coordinates_of(model)))
-            for p in (*theirs.equations, *theirs.stability)
-        ]
-        assert checked == mine
-
-
-@pytest.mark.parametrize(
-    ("mechanism", "axes", "counts"),
-    [
-        (SLIDER_CRANK, {"W": [-2, 2], "M": [-2, 2]}, {1, 2, 3}),
-        pytest.param(FOUR_BAR, {"F": [0, 1], "G": [0, 1]}, {2, 3}),
-    ],
-    ids=["slider_crank", "four_bar"],
-)
-@pytest.mark.slow
-def test_a_map_is_stored_with_its_mechanism_and_verified(
-    mechanism: dict[str, Any], axes: dict[str, Any], counts: set[int]
-) -> None:
-    slice = slice_of(mechanism, axes=axes, count="stable")
-    found = ptmcad.classify(slice)
-    assert {r.stable for r in found.regions} == counts
-    document = json.loads(found.to_json())
-    assert document["slice"]["mechanism"]["closing"] == mechanism["closing"]
-    again = ptmcad.RegionMap.from_json(found.to_json())
-    assert again == found
-    assert again.slice.model == slice.model
-    assert ptmcad.verify(again).ok
 
 
 @pytest.mark.parametrize(
@@ -357,14 +227,6 @@ def test_a_five_bar_has_44_complex_solutions() -> None:
     assert (len(found.equilibria), found.stable) == (10, 1)
 
 
-@pytest.mark.slow
-def test_a_map_with_two_degrees_of_freedom_is_verified() -> None:
-    found = ptmcad.classify(slice_of(PLATFORM, **LEG))
-    again = ptmcad.RegionMap.from_json(found.to_json())
-    assert again == found
-    assert ptmcad.verify(again).ok
-
-
 def test_a_moment_on_another_unknown_needs_one_degree_of_freedom() -> None:
     with pytest.raises(ConfigError, match="one degree of freedom, not 2"):
         ptmcad.Mechanism({**FIVE_BAR, "moments": {"a": "sin(b)"}})
@@ -401,36 +263,6 @@ def test_a_loop_that_folds_flat_everywhere_is_told_with_its_branches(
         components(slice_of(FOUR_BAR, **LOADS, parameters=numbers))
     assert "the loop that PQ closes can fold flat" in str(caught.value)
     assert said in str(caught.value)
-
-
-def test_the_branches_of_a_parallelogram_by_themselves() -> None:
-    """As an open chain and as an X-joint: minima and maxima of the energy along each."""
-    without = {k: v for k, v in FOUR_BAR.items() if k not in ("closing", "bars")}
-    parameters = {k: v for k, v in FOUR_BAR["parameters"].items() if k not in ("L2", "L3")}
-    ends = {k: v for k, v in FOUR_BAR["points"].items() if k in ("A0", "B0")}
-    parallel = {**without, "name": "parallel", "parameters": parameters, "unknowns": {"th1": "angle"},
-                "points": {**FOUR_BAR["points"], "Q": ["b + L1*cos(th1)", "L1*sin(th1)"]}}  # fmt: skip
-    joint = {"base": ["A0", "B0"], "bars": "L1", "angles": ["th1", "th2"], "top": ["Q", "P"]}
-    crossed = {**without, "name": "crossed", "parameters": parameters, "unknowns": {"th1": "angle"}, "points": ends,
-               "x-joint": {"X": joint}}  # fmt: skip
-    th = 2 * math.pi * (np.arange(40000) + 0.37) / 40000
-    z = np.exp(1j * th)
-    for mechanism, w in ((parallel, z), (crossed, (z - 2) / (1 - 2 * z))):
-        p, q = z, 2 + w
-        assert np.abs(np.abs(p - q) - 2).max() < 1e-9
-        for F, G in (("17/13", "-9/11"), ("1/3", "1/5")):
-            found = ptmcad.solve(
-                slice_of(mechanism, **LOADS, parameters={"L1": 1, "b": 2}), F=F, G=G
-            )
-            u = (
-                np.abs(q) ** 2 / 2
-                + np.abs(p - 2) ** 2 / 2
-                - float(Fraction(F)) * p.imag
-                - float(Fraction(G)) * q.imag
-            )
-            minima = int(((u < np.roll(u, 1)) & (u < np.roll(u, -1))).sum())
-            maxima = int(((u > np.roll(u, 1)) & (u > np.roll(u, -1))).sum())
-            assert (found.stable, len(found.equilibria)) == (minima, minima + maxima)
 
 
 def test_a_spring_along_a_closing_bar_does_nothing() -> None:

@@ -6,14 +6,12 @@ import time
 from collections.abc import Callable
 from copy import deepcopy
 from fractions import Fraction
-from typing import Any, ClassVar
+from typing import Any
 
 import pytest
 import yaml
-from hypothesis import given
-from hypothesis import strategies as st
 
-from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.errors import ConfigError
 from ptmcad.exact.models.modelsystem import elements_of, system_from
 from ptmcad.model import Kind, Mechanism, described, mechanism_of, ptm
 from ptmcad.model.builtinmechanisms import RECORD
@@ -21,7 +19,6 @@ from ptmcad.model.compile import compiled
 from ptmcad.model.evaluate import evaluate, value_at
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.syntax import parse
-from ptmcad.text.tree import Tree, to_text
 
 PAPER = """
 name: ptm
@@ -131,36 +128,6 @@ def test_bars_have_the_lengths_of_their_parameters() -> None:
         assert square == system_from(ptm()).ring.parameter(length) ** 2
 
 
-@pytest.mark.parametrize("symmetry", ptm().symmetries, ids=["across", "along"])
-def test_the_gradient_has_the_symmetries(symmetry: dict[str, Tree]) -> None:
-    """Substituted, the energy differs from itself by what no angle is in."""
-    m = ptm()
-    text = EQUATION_1.replace("\n", " ")
-    substituted = InRing().ring.reduce(evaluate(_substituted(parse(text), symmetry), InRing()))
-    difference = substituted - InRing().value(text)
-    count = len(m.without_free_lengths)
-    assert all(not any(exponents[count:]) for exponents, _ in difference.terms())
-
-
-def _substituted(tree: Tree, images: dict[str, Tree]) -> Tree:
-    text = to_text(tree)
-    marked = "".join(f"<{part}>" if part in images else part for part in _words(text))
-    for name, image in images.items():
-        marked = marked.replace(f"<{name}>", f"({to_text(image)})")
-    return parse(marked)
-
-
-def _words(text: str) -> list[str]:
-    words, word = [], ""
-    for character in f"{text} ":
-        if character.isalnum() or character == "_":
-            word += character
-        else:
-            words += [word, character]
-            word = ""
-    return words
-
-
 # ------------------------------------------------------------------------------------------------------- other ones
 
 
@@ -188,45 +155,6 @@ def test_another_mechanism() -> None:
     assert [spring.name for spring in m.springs] == ["OP", "c1", "PO"]
     assert m.parameters["a"].window is None
     assert value_at(m.springs[0].stiffness, {"c": Fraction(1, 3)}) == Fraction(2, 3)
-
-
-class Angle:
-    """The ring of rational functions at a rational point of each circle."""
-
-    points: ClassVar = {
-        "a": (Fraction(3, 5), Fraction(4, 5)),
-        "b": (Fraction(-5, 13), Fraction(12, 13)),
-    }
-
-    def constant(self, value: Fraction) -> Fraction:
-        return value
-
-    def parameter(self, name: str) -> Fraction:
-        raise ExpressionError(f"unknown name '{name}'")
-
-    def cos(self, angle: str) -> Fraction:
-        return self.points[angle][0]
-
-    def sin(self, angle: str) -> Fraction:
-        return self.points[angle][1]
-
-
-@given(st.integers(-6, 6), st.integers(-6, 6))
-def test_addition_theorems(m: int, n: int) -> None:
-    """A multiple of an angle is a power on the unit circle."""
-    expected = _power("a", m)
-    c, s = _power("b", n)
-    expected = (expected[0] * c - expected[1] * s, expected[1] * c + expected[0] * s)
-    found = tuple(evaluate(parse(f"{f}({m}*a + b*2*({n})/2)"), Angle()) for f in ("cos", "sin"))
-    assert found == expected
-
-
-def _power(angle: str, n: int) -> tuple[Fraction, Fraction]:
-    c, s = Fraction(1), Fraction(0)
-    x, y = Angle.points[angle]
-    for _ in range(abs(n)):
-        c, s = c * x - s * (y if n > 0 else -y), s * x + c * (y if n > 0 else -y)
-    return c, s
 
 
 Change = Callable[[dict[str, Any]], object]

@@ -8,7 +8,6 @@ from copy import deepcopy
 from fractions import Fraction
 from math import cos, pi, sin
 from pathlib import Path
-from random import Random
 from typing import Any
 
 import pytest
@@ -80,23 +79,6 @@ def value(p: Any, at: dict[str, float]) -> float:
             term *= values[name] ** int(e)
         total += term
     return total
-
-
-def test_bodies_torsion_loads_and_moments_are_those_written_out_by_hand() -> None:
-    m = described(PLATFORM)
-    assert m.bodies == {"plate": ("P", "Q", "R"), "tip": ("R", "T")}
-    random = Random(1)
-    system = system_from(m)
-    for _ in range(5):
-        at = {name: random.uniform(0.5, 2) for name in (*m.parameters, *m.unknowns)}
-        assert value(system.potential, at) == pytest.approx(energy(at))
-        for unknown, equation in zip(("th", "phi", "x"), system.equations, strict=True):
-            h = 1e-5
-            slope = (
-                energy({**at, unknown: at[unknown] + h}) - energy({**at, unknown: at[unknown] - h})
-            ) / (2 * h)
-            moment = {"th": at["M"], "phi": 0.0, "x": 2 * at["W"]}[unknown]
-            assert value(equation, at) == pytest.approx(slope - moment, rel=1e-6, abs=1e-6)
 
 
 PENDULUM: dict[str, Any] = {

@@ -3,29 +3,17 @@
 from __future__ import annotations
 
 import json
-import math
 from fractions import Fraction
-from itertools import product
 from pathlib import Path
 from random import Random
 from typing import Any
 
-import numpy as np
 import pytest
 import yaml
-from flint import fmpq
-from support.programs import needs_msolve, real_solutions
 
 import ptmcad
 from ptmcad.errors import ConfigError
-from ptmcad.exact.models.modelsystem import system_from
-from ptmcad.exact.models.system import at_point, polynomial_at
-from ptmcad.exact.point_system import solutions_at
-from ptmcad.exact.stages import problem_of
-from ptmcad.model import ClosedMechanism
-from ptmcad.model.crossed import second_bar
-from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.verification.derivation import coordinates_of, derivation_at
+from ptmcad.model.antiparallelogram import second_bar
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
 
@@ -35,7 +23,6 @@ def description(name: str) -> dict[str, Any]:
 
 
 ONE = description("x-joint")
-TWO = description("two-x-joints")
 
 
 def rational_circle(t: Fraction) -> tuple[Fraction, Fraction]:
@@ -59,90 +46,6 @@ def test_the_second_bar_is_the_first_one_reflected() -> None:
         assert (b + far * cosine, far * sine) == (step * across[0], step * across[1])
         assert (end[0] - b - far * cosine) ** 2 + (end[1] - far * sine) ** 2 == b * b
         assert cosine**2 + sine**2 == 1
-
-
-PLATE: dict[str, Any] = {
-    "parameters": {"k": {"kind": "stiffness", "default": 1},
-                   "W": {"kind": "force"}, "c": {"kind": "stiffness", "default": 1}, "T": {}},
-    "unknowns": {"u": "angle", "x": "length", "v": "angle"},
-    "points": {"A": [0, 0], "B": ["1/2", 0], "S": ["x", 2]},
-    "x-joint": {"X": {"base": ["A", "B"], "bars": 2, "angles": ["u", "p"], "top": ["C", "D"]},
-                "Y": {"base": ["C", "D"], "bars": "5/3", "angles": ["v", "q"], "top": ["P", "Q"]}},
-    "bodies": {"plate": {"at": "P", "angle": "u + p + v + q", "points": {"R": ["1/4", 1]}}},
-    "springs": [{"between": ["A", "C"], "k": "k"}, {"between": ["S", "R"], "k": "2*k"}],
-    "torsion": [{"angle": "q - v", "k": "c"}],
-    "loads": {"Q": [0, "-W"]},
-    "moments": {"u": "T"},
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("mechanism", [ONE, PLATE], ids=["one", "two with a slider"])
-@pytest.mark.slow_cases("two with a slider")
-def test_two_derivations_agree(mechanism: dict[str, Any]) -> None:
-    """The engine's, by quotients of cosines and sines, and the checker's, by complex units."""
-    model = ptmcad.Mechanism(mechanism)
-    assert isinstance(model, ClosedMechanism)
-    values = {n: Fraction(30 + 7 * k, 5 + 2 * k) for k, n in enumerate(model.variables)}
-    theirs, system = derivation_at(model, values), system_from(model)
-    numbers = {n: from_fraction(v) for n, v in values.items()}
-    ours = [*at_point(system, numbers)[0]]
-    ours += [
-        polynomial_at(system, p, numbers) for p in (*system.inequalities, *system.stability[:2])
-    ]
-    for t in ((2, 7, 5), (-3, 4, -1)):
-        place: dict[str, fmpq] = {}
-        for k, angle in enumerate(model.angles):
-            c, s = rational_circle(Fraction(t[k], t[2]))
-            place[f"cos_{angle}"], place[f"sin_{angle}"] = (from_fraction(v) for v in (c, s))
-        place |= {name: fmpq(t[1], 3) for name in model.reals}
-        mine = []
-        for p in ours:
-            total = fmpq(0)
-            for powers, coefficient in p.items():
-                term = coefficient
-                for x, e in zip(place.values(), powers, strict=True):
-                    term *= x**e
-                total += term
-            mine.append(total)
-        given = (*theirs.equations, *theirs.inequalities, *theirs.stability[:2])
-        assert [p(*(place[name] for name in coordinates_of(model))) for p in given] == mine
-
-
-def energy(unknowns: tuple[np.ndarray, ...], F: float, G: float) -> np.ndarray:
-    """Of a stack of joints with L = 2 and b = 1, with the second bars by reflections."""
-    far, b = 2.0, 1.0
-    base = [np.zeros_like(unknowns[0] + 0j), np.ones_like(unknowns[0] + 0j)]
-    springs = np.zeros_like(unknowns[0])
-    for th in unknowns:
-        ahead = (base[1] - base[0]) / b
-        right = base[0] + far * np.exp(1j * th) * ahead
-        across = right - base[1]
-        left = base[0] + across * (far * far - b * b) / np.abs(across) ** 2
-        springs = springs + (np.abs(left - base[0]) ** 2 + np.abs(right - base[1]) ** 2) / 2
-        base = [left, right]
-    force = F - 1j * G
-    return np.asarray(springs - sum((np.conj(force) * p).real for p in base))
-
-
-def test_one_joint_has_the_minima_along_its_angle() -> None:
-    random = Random(5)
-    th = 2 * math.pi * (np.arange(20001) + 0.37) / 20001
-    seen = set()
-    for _ in range(12):
-        F, G = (Fraction(random.randrange(-100, 100), 97) for _ in range(2))
-        u = energy((th,), float(F), float(G))
-        minima = int(((u < np.roll(u, 1)) & (u < np.roll(u, -1))).sum())
-        found = ptmcad.solve({"mechanism": ONE, "axes": {"F": [-2, 2], "G": [-2, 2]}}, F=F, G=G)
-        assert sum(bool(e.stable) for e in found.equilibria) == minima, (F, G)
-        seen.add(minima)
-    assert seen == {1, 2}
-
-
-@pytest.mark.slow
-def test_two_joints_have_44_complex_solutions() -> None:
-    problem = problem_of(ptmcad.load(CONFIGS / "two-x-joints.yaml"))
-    values = problem.on.values((fmpq(29, 97), fmpq(-31, 89)))
-    assert solutions_at(problem.system, values, saturated=True) == (44, 44)
 
 
 def test_a_map_is_stored_with_its_joint_and_verified() -> None:
@@ -233,62 +136,3 @@ def test_bars_are_not_as_long_as_the_base_all_over_the_window() -> None:
         ConfigError, match=r"x-joint.X.bars: a length must be positive in the whole window"
     ):
         ptmcad.classify({"mechanism": ONE, "axes": {"F": [-1, 1], "b": [1, 3]}})
-
-
-UNITS = ("x1", "y1", "u1", "v1", "x2", "y2", "u2", "v2")
-"""Cosine and sine of both bars of the two joints."""
-
-
-def written_out(F: Fraction, G: Fraction) -> list[str]:
-    """Equations of the stack for msolve, with the second bars as further unknowns, and their rates
-    of turning.
-    """
-    import sympy
-
-    x1, y1, u1, v1, x2, y2, u2, v2 = (sympy.Symbol(n) for n in UNITS)
-    far, b = sympy.Integer(2), sympy.Integer(1)
-    joints = ((x1, y1, u1, v1), (x2, y2, u2, v2))
-    middle = [sympy.Matrix([far * (x + u) / 2, far * (y + v) / 2]) for x, y, u, v in joints]
-    c, s = -(x1 * u1 - y1 * v1), -(y1 * u1 + x1 * v1)
-    top = middle[0] + sympy.Matrix([[c, -s], [s, c]]) * middle[1]
-    across, down = (sympy.Rational(v.numerator, v.denominator) for v in (F, G))
-    work = 2 * (across * top[0] - down * top[1])
-    total = far * b * (u1 - x1 + u2 - x2) - work
-    equations = []
-    for x, y, u, v in joints:
-        rate = (far**2 + b**2 + 2 * far * b * u) / (far**2 - b**2)
-        slope = x * sympy.diff(total, y) - y * sympy.diff(total, x)
-        equations.append(slope + rate * (u * sympy.diff(total, v) - v * sympy.diff(total, u)))
-        equations += [x**2 + y**2 - 1, u**2 + v**2 - 1]
-        equations += [
-            far * u - b * (x * u - y * v) - far * x + b,
-            far * v - b * (y * u + x * v) - far * y,
-        ]
-    gens = [sympy.Symbol(n) for n in UNITS]
-    return [
-        str(sympy.Poly(e, *gens).clear_denoms()[1].as_expr()).replace("**", "^") for e in equations
-    ]
-
-
-@pytest.mark.slow
-@needs_msolve
-def test_two_joints_have_as_many_equilibria_as_msolve_finds() -> None:
-    random = Random(11)
-    for _ in range(12):
-        F, G = (Fraction(random.randrange(-300, 300), 101) for _ in range(2))
-        found = ptmcad.solve({"mechanism": TWO, "axes": {"F": [-4, 4], "G": [-4, 4]}}, F=F, G=G)
-        assert len(found.equilibria) == real_solutions(list(UNITS), written_out(F, G)), (F, G)
-
-
-@pytest.mark.slow
-def test_two_joints_have_the_minima_over_their_angles() -> None:
-    random = Random(13)
-    n = 500
-    th = 2 * math.pi * (np.arange(n) + 0.37) / n
-    for _ in range(4):
-        F, G = (Fraction(random.randrange(-300, 300), 101) for _ in range(2))
-        u = energy(tuple(np.meshgrid(th, th)), float(F), float(G))
-        steps = [step for step in product((-1, 0, 1), repeat=2) if step != (0, 0)]
-        minima = int(np.all([u < np.roll(u, step, (0, 1)) for step in steps], axis=0).sum())
-        found = ptmcad.solve({"mechanism": TWO, "axes": {"F": [-4, 4], "G": [-4, 4]}}, F=F, G=G)
-        assert sum(bool(e.stable) for e in found.equilibria) == minima, (F, G)

@@ -12,9 +12,6 @@ from itertools import combinations
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from support.examples import examples
 from support.faulty_disk import FaultyDisk, Killed
 
 from ptmcad.errors import OutputError
@@ -204,24 +201,6 @@ def test_a_single_file_takes_one_step(tmp_path: Path) -> None:
     assert set(os.listdir(tmp_path)) == {"fig2.json", "fig2.png"}
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_folder_in_the_way_is_refused_before_anything_changes(tmp_path: Path, name: str) -> None:
-    fill(tmp_path, {other: "old" for other in NAMES if other != name})
-    before = visible(tmp_path)
-
-    def late(path: Path) -> None:
-        text_writer("new")(path)
-        (tmp_path / name).mkdir()
-
-    with pytest.raises(OutputError, match=rf"{name} is a folder, so no file can be written there"):
-        write_files(
-            tmp_path, {other: late if other == VOUCHER else text_writer("new") for other in NAMES}
-        )
-    (tmp_path / name).rmdir()
-    assert visible(tmp_path) == before
-    assert set(os.listdir(tmp_path)) == set(before)
-
-
 def test_under_new_names_what_is_saved_stays(tmp_path: Path) -> None:
     """A picture that cannot be put into place takes along neither the result nor the other picture."""
     for failing in range(1, STEPS):
@@ -283,56 +262,6 @@ def test_no_file_in_the_folder_is_obeyed(tmp_path: Path) -> None:
         assert {name for name in os.listdir(tmp_path) if name.startswith(".")} == set(left)
 
 
-@settings(max_examples=examples(40))
-@given(
-    st.lists(
-        st.tuples(
-            st.lists(st.sampled_from(NAMES), min_size=1, unique=True),
-            st.sampled_from(["whole", "killed", "failing", "failing for ever"]),
-            st.integers(1, 9),
-        ),
-        min_size=1,
-        max_size=6,
-    )
-)
-def test_runs_one_after_the_other(
-    tmp_path_factory: pytest.TempPathFactory, runs: list[tuple[list[str], str, int]]
-) -> None:
-    """Every run replaces its files, or changes nothing, or loses pictures at most; it touches no
-    others.
-    """
-    folder = fill(tmp_path_factory.getbasetemp() / "sequence", {})
-    for number, (names, kind, step) in enumerate(runs):
-        failing = {"failing": (step,), "failing for ever": range(step, 1000)}.get(kind, ())
-        disk = FaultyDisk(step if kind == "killed" else None, failing)
-        text = str(number)
-        before = visible(folder)
-        said = ""
-        try:
-            with disk:
-                write_files(folder, {name: text_writer(text) for name in names})
-        except Killed:
-            said = "killed"
-        except OutputError as error:
-            said = str(error)
-        after = visible(folder)
-        new = {**before, **dict.fromkeys(names, text)}
-        if said == "":
-            assert after == new
-        elif said.endswith(UNCHANGED):
-            assert after == before
-        elif after.get(names[-1]) == text:
-            assert after.items() <= new.items()
-        else:
-            assert after.items() <= before.items()
-            assert after.get(names[-1]) == before.get(names[-1])
-        assert {name: after.get(name) for name in NAMES if name not in names} == {
-            name: before.get(name) for name in NAMES if name not in names
-        }
-    check_writable(folder, NAMES)
-    assert set(os.listdir(folder)) == set(visible(folder))
-
-
 # Where a stopped result goes
 
 PARTIAL, WHOLE = json.dumps({"status": "partial"}), json.dumps({"status": "exact"})
@@ -385,23 +314,6 @@ def test_a_stopped_result_loses_no_other(
         assert why == ", because fig2.png shows an older result"
     else:
         assert why == ", because another process is writing fig2.json"
-
-
-def test_complete_results_do_not_pile_up(tmp_path: Path) -> None:
-    """Of runs that were interrupted while they drew the newest is kept, unless an older one has
-    less undetermined.
-    """
-    target = tmp_path / "free02.json"
-    target.write_text(WHOLE)
-    for share in ("1/10", "1/20", "1/20", "1/5", "1/50"):
-        text = json.dumps({"status": "certified", "cover": {}, "undetermined": share})
-        place, _ = save_stopped(target, text, whole=True)
-        assert place.read_text() == text
-    assert {json.loads(text).get("undetermined") for text in visible(tmp_path).values()} == {
-        None,
-        "1/5",
-        "1/50",
-    }
 
 
 @pytest.mark.parametrize(

@@ -249,28 +249,6 @@ def test_a_signal_saves_a_map_that_can_be_gone_on_from(
     assert running.files() == {**old, "fig2.partial.json": PARTIAL}
 
 
-@linux
-def test_the_map_saved_by_a_signal_replaces_the_one_it_went_on_from(tmp_path: Path) -> None:
-    """And without JSON among the formats nothing is saved, as nothing was asked for."""
-    put(tmp_path, json='{"status": "partial", "stage": "earlier"}')
-    work = f"{CERTIFIED}def engine(progress, partial):\n    arrived()\n    time.sleep(3600)\n"
-    running = Running(tmp_path, work, "--engine", "certified")
-    running.arrive()
-    running.process.send_signal(signal.SIGINT)
-    place = running.out / "fig2.json"
-    assert running.end() == (
-        130,
-        f"interrupted; partial map (25 % undetermined) saved to {place}; go on with --resume {place}\n",
-    )
-    assert running.files() == {"fig2.json": PARTIAL}
-    (tmp_path / "arrived").unlink()
-    again = Running(tmp_path, work, "--engine", "certified", formats="png")
-    again.arrive()
-    again.process.send_signal(signal.SIGINT)
-    assert again.end() == (130, "interrupted; nothing was saved\n")
-    assert again.files() == {"fig2.json": PARTIAL}
-
-
 # A command line one of whose functions never ends: it computes the same again and again.
 AGAIN_AND_AGAIN = """
 import importlib, sys
@@ -366,15 +344,6 @@ def test_a_signal_stops_drawing(tmp_path: Path, stay: str) -> None:
     assert errors.startswith("terminated (SIGTERM); complete map saved to ")
     assert not lives(computing)
     assert running.files() == {**old, "fig2.complete.json": NEW["fig2.json"]}
-
-
-@linux
-def test_a_signal_to_the_computing_process_alone(tmp_path: Path) -> None:
-    running = Running(
-        tmp_path, "def engine(progress, partial):\n    arrived()\n    time.sleep(3600)\n"
-    )
-    os.kill(running.arrive(), signal.SIGTERM)
-    assert running.end() == (143, "terminated (SIGTERM); nothing was saved\n")
 
 
 @linux
@@ -632,16 +601,6 @@ def visible_before(step: int) -> dict[str, str]:
 
 @linux
 @pytest.mark.parametrize(
-    "step", [3, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 4, 5, 6, 7, 8))]
-)
-def test_a_killed_program_between_two_steps(tmp_path: Path, step: int) -> None:
-    """The computation completes what was begun, and ends then."""
-    running, _, _ = killed_before_step(tmp_path, step, "os.getppid(),")
-    assert running.files() == NEW
-
-
-@linux
-@pytest.mark.parametrize(
     "step", [2, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 3, 5, 6, 7, 8))]
 )
 def test_a_kill_of_both_between_two_steps(tmp_path: Path, step: int) -> None:
@@ -651,83 +610,6 @@ def test_a_kill_of_both_between_two_steps(tmp_path: Path, step: int) -> None:
     assert files == visible_before(step)
     check_writable(running.out, tuple(NEW))
     assert running.files() == files
-
-
-def killed_at_random(folder: Path, formats: str, times: int, seed: int) -> None:
-    """Replace one result by another and kill the program meanwhile, over and over.
-
-    The span of the moments follows the run time, whatever the machine's load: longer after a run
-    that was killed too early to change anything, shorter after one that came to its end.
-    """
-    out = folder / "out"
-    kinds: dict[str, dict[str, bytes]] = {}
-    span = 0.0
-    for count in ("total", "stable"):
-        started = time.monotonic()
-        completed(out, formats, count)
-        span = time.monotonic() - started
-        kinds[count] = contents(out)
-    assert kinds["total"] != kinds["stable"]
-    moments = random.Random(seed)
-    seen = []
-    for k in range(times):
-        before = contents(out)["fig2.json"]
-        then = "total" if before == kinds["stable"]["fig2.json"] else "stable"
-        process = begun(out, formats, then)
-        time.sleep(moments.uniform(0, span))
-        (os.killpg if k % 2 else os.kill)(process.pid, signal.SIGKILL)
-        process.communicate(timeout=60)  # standard error is closed when both processes have ended
-        after = contents(out)
-        whole = {
-            name: [kind for kind, files in kinds.items() if files[name] == text]
-            for name, text in after.items()
-        }
-        assert any(after.items() <= files.items() for files in kinds.values()), (k, whole)
-        assert "fig2.json" in after
-        changed = after["fig2.json"] != before
-        span *= 0.8 if changed else 1.1
-        seen.append(changed)
-    assert set(seen) == {True, False}, (
-        "the moments were all too early or all too late to show anything"
-    )
-    completed(out, formats, "total")
-    assert sorted(os.listdir(out)) == sorted(kinds["total"])
-
-
-def begun(out: Path, formats: str, count: str) -> Started:
-    """The program, which has imported all that it needs: before that it touches nothing, so that no
-    kill tells much.
-    """
-    options = ["--out", str(out), "--format", formats, "--count", count, "--no-timings"]
-    program = "from ptmcad.__main__ import main\nmain()"
-    return start(
-        program,
-        ["classify", str(FIG2), *options],
-        (*ALWAYS, "ptmcad.ask.classification", "ptmcad.exact.exactmap"),
-    )
-
-
-def completed(out: Path, formats: str, count: str) -> None:
-    process = begun(out, formats, count)
-    process.communicate()
-    assert process.returncode == 0
-
-
-def contents(out: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in out.iterdir() if not path.name.startswith(".")}
-
-
-@linux
-@pytest.mark.parametrize("times", [10, pytest.param(50, marks=pytest.mark.slow)])
-def test_killed_at_random_moments(tmp_path: Path, times: int) -> None:
-    """The old result or the new one, whole; and a later run clears what was left."""
-    killed_at_random(tmp_path, "json", times, seed=1)
-
-
-@linux
-@pytest.mark.slow
-def test_killed_at_50_random_moments_with_pictures(tmp_path: Path) -> None:
-    killed_at_random(tmp_path, "json,svg,png", times=50, seed=3)
 
 
 def test_stale_temporary_files_go_and_live_ones_stay(tmp_path: Path) -> None:
@@ -843,32 +725,6 @@ def test_a_memory_limit(tmp_path: Path, allocate: str) -> None:
     assert running.files() == {"fig2.json": PARTIAL}
 
 
-@pytest.mark.slow
-@linux
-@pytest.mark.parametrize("name", ["verify", "locate"])
-def test_limits_of_the_other_commands(
-    shipped: Callable[..., Any], tmp_path: Path, name: str
-) -> None:
-    result = tmp_path / "fig2.json"
-    result.write_text(shipped("fig2").to_json())
-    options = ["--at", "rho=1,L2=1"] if name == "locate" else []
-    arguments = [sys.executable, "-m", "ptmcad", name, str(result), *options]
-    for limit in (["--max-memory", "1G"], ["--timeout", "1000"]):
-        assert (
-            subprocess.run(
-                [*arguments, *limit], cwd=ROOT, capture_output=True, check=False
-            ).returncode
-            == 0
-        )
-    done = subprocess.run(
-        [*arguments, "--timeout", "1e-9"], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-    if done.returncode != 0:  # a process that is done within the grace is not stopped any more
-        # the parent's sentence, or that of a command which looks at the clock itself
-        said = "stopped: the time limit of 1e-09 s was reached"
-        assert (done.returncode, done.stderr.partition(";")[0].strip()) == (3, said)
-
-
 @pytest.mark.parametrize(
     "size",
     [
@@ -958,32 +814,6 @@ def test_a_crash_is_not_taken_for_a_limit(
     assert errors.startswith(said)
     assert f"crashed ({number.name})" in errors
     assert running.files() == old
-
-
-@linux
-@pytest.mark.slow
-def test_a_time_limit_in_a_slice_of_high_degree(tmp_path: Path) -> None:
-    """A real computation, which has not ended by then."""
-    arguments = [
-        sys.executable,
-        "-m",
-        "ptmcad",
-        "classify",
-        *HIGH_DEGREE,
-        "--out",
-        str(tmp_path),
-        "--timeout",
-        "3",
-    ]
-    process = subprocess.run(
-        arguments, cwd=ROOT, capture_output=True, text=True, check=False, timeout=60
-    )
-    assert process.stdout == ""
-    assert process.returncode == 3
-    assert process.stderr.startswith("stopped: ")
-    assert process.stderr.count("\n") == 1
-    for path in tmp_path.iterdir():
-        assert ptmcad.RegionMap.from_json(path.read_text()).status.value == "partial"
 
 
 # Full disks and closed pipes
@@ -1100,27 +930,6 @@ def test_a_reader_that_leaves(
     assert "Exception" not in done.stderr
     if "--out new" in arguments:
         assert ptmcad.RegionMap.from_json((tmp_path / "new" / "fig2.json").read_text()).regions
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(not Path("/dev/stdin").exists(), reason="needs a name for standard input")
-def test_a_reader_that_leaves_ends_an_endless_table(
-    shipped: Callable[..., Any], tmp_path: Path
-) -> None:
-    (tmp_path / "fig2.json").write_text(shipped("fig2").to_json())
-    program = f"'{sys.executable}' -m ptmcad locate fig2.json --csv /dev/stdin"
-    script = f"{{ echo rho,L2; yes 7/10,3/2; }} | {program} | head -1"
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(
-        ["sh", "-c", script],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=True,
-        env=environment,
-    )
-    assert done.stdout.startswith("rho,L2,status") or done.stdout.startswith("L2,rho,status")
-    assert "Traceback" not in done.stderr
 
 
 # The parts

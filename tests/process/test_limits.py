@@ -307,16 +307,6 @@ def campaign(
         yield size, status, judge(folder, status, errors, f"{size}M"), seconds
 
 
-def callers(
-    folder: Path, engine: str, which: int, sizes: list[int]
-) -> Iterator[tuple[int, int, str, float]]:
-    for size in sizes:
-        status, errors, seconds = ended(
-            folder, engine, True, [], preexec_fn=limited(which, size * MIB)
-        )
-        yield size, status, judge(folder, status, errors, "that the caller has set"), seconds
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("scipy", [True, False], ids=["scipy", "no-scipy"])
 @pytest.mark.parametrize("engine", ["exact", "certified"])
@@ -327,28 +317,6 @@ def test_every_size_of_memory(tmp_path: Path, engine: str, scipy: bool) -> None:
     assert kinds[-1] == 0
     order = [kinds.index(status) for status in (2, 3, 0) if status in kinds]
     assert order == sorted(order)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("engine", "which"),
-    [
-        ("exact", resource.RLIMIT_AS),
-        ("exact", resource.RLIMIT_DATA),
-        ("certified", resource.RLIMIT_DATA),
-    ],
-)  # under a low limit on address space OpenBLAS, which the certified engine loads, may try again and again, for ever
-def test_every_size_of_a_callers_limit(tmp_path: Path, engine: str, which: int) -> None:
-    sizes = [20, 30, 45, 60, 80, 100, 130, 160, 200, 260, 350, 500, 700, 1000]
-    assert [status for _, status, _, _ in callers(tmp_path, engine, which, sizes)][-1] == 0
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("size", [180, 260])
-def test_memory_for_compilation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int) -> None:
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
-    status, errors, _ = ended(tmp_path, "certified", True, ["--max-memory", f"{size}M"])
-    judge(tmp_path, status, errors, f"{size}M")
 
 
 # Signals and descriptors

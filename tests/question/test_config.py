@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.model import ptm
-from ptmcad.question.config import load, point_from_mapping, slice_from_mapping, slice_from_options
+from ptmcad.question.config import load, point_from_mapping, slice_from_options
 from ptmcad.question.config.designkey import design_from
 from ptmcad.question.shipped import record_tree
 from ptmcad.question.slice import Count
@@ -348,27 +346,6 @@ def test_bad_records_are_refused_with_their_place(
     assert "\n" not in str(error)
 
 
-def test_files_that_are_no_records(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="no such file"):
-        load(tmp_path / "missing.yaml")
-    with pytest.raises(ConfigError, match="is a folder"):
-        load(tmp_path)
-    with pytest.raises(ConfigError, match="cannot be read"):
-        load("a\0b")
-    binary = tmp_path / "picture.yaml"
-    binary.write_bytes(b"\x89PNG\r\n\x1a\n\xff\xfe")
-    with pytest.raises(ConfigError, match="not UTF-8"):
-        load(binary)
-    binary.write_bytes(b"axes: \xff\n")
-    with pytest.raises(ConfigError, match=r"picture\.yaml:1: is not UTF-8"):
-        load(binary)
-    binary.write_bytes(b"#" * 200_001)
-    with pytest.raises(ConfigError, match="larger than"):
-        load(binary)
-    binary.write_bytes("\ufeff".encode() + AXES.encode())
-    assert load(binary).axis_names == ("rho", "L2")
-
-
 @pytest.mark.parametrize("file", ["con.yaml", "Aux.v2.yaml", "COM1.yaml"])
 def test_a_record_whose_name_is_a_device_has_to_give_another(tmp_path: Path, file: str) -> None:
     """Its results would have names that Windows cannot read."""
@@ -460,26 +437,6 @@ def test_bad_options_name_the_option(
         slice_from_options(**options)  # type: ignore[arg-type]
     assert caught.value.key == key
     assert part in caught.value.message
-
-
-def test_mappings() -> None:
-    slice = slice_from_mapping(
-        {"axes": {"rho": [0, 2], "L2": ["1/2", Fraction(3, 2)]}, "reference": {"regions": 2}}
-    )
-    assert slice.axes[1].low == Fraction(1, 2)
-    assert slice.reference == {"regions": 2}
-    for number in (0.1, np.float64(0.1), np.float32(0.1), Fraction(1, 10)):
-        assert slice_from_mapping({"axes": {"rho": [0, number], "L2": [0, 2]}}).axes[
-            0
-        ].high == Fraction(1, 10)
-    assert slice_from_mapping({"axes": {"rho": [0, Decimal("0.1")], "L2": [0, 2]}}).axes[
-        0
-    ].high == Fraction(1, 10)
-    assert slice_from_mapping({"axes": {"rho": [0, np.int64(2)], "L2": [0, 2]}}).axes[0].high == 2
-    with pytest.raises(
-        ConfigError, match=r"axes\.rho\.2: 1j of type complex is not an exact number"
-    ):
-        slice_from_mapping({"axes": {"rho": [0, 1j], "L2": [0, 2]}})
 
 
 def test_every_parameter_can_be_an_axis() -> None:

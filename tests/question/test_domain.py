@@ -7,27 +7,22 @@ degree that was too high to be looked at once.
 
 from __future__ import annotations
 
-import pickle
 import re
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from ptmcad.ask.lines.along import certified_intervals
-from ptmcad.cli import run
 from ptmcad.errors import ConfigError, GeometryError, PtmcadError
 from ptmcad.exact.exactmap import exact_map
 from ptmcad.model import Kind
-from ptmcad.question import domain
-from ptmcad.question.config import load, slice_from_mapping
+from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.domain import proved, sign_of
-from ptmcad.question.positivity import decide
-from ptmcad.question.signs import PROVED, Subject, Verdict
+from ptmcad.question.signs import Subject
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.text.expressions import Expression, axis, constant
+from ptmcad.text.expressions import axis, constant
 from ptmcad.text.parsing import parse
 from ptmcad.text.tree import Negative
 
@@ -60,25 +55,6 @@ def refused(**parameters: object) -> str:
     with pytest.raises(ConfigError) as caught:
         slice_from_mapping(record(**parameters))
     return str(caught.value)
-
-
-def test_the_reviewed_slice_ends_with_the_place_and_status_2(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """It gave a certified cell with 0 stable poses around a point with 2: l0_3 is negative there."""
-    path = tmp_path / "reviewed.yaml"
-    path.write_text(
-        'parameters: {L1: 1, L2: 1, k: 100, F3: -3, F4: -5, l0_1: 0, l0_2: 0, l0_3: "1/10 - m^13"}\n'
-        "axes: {rho: [1, 3/2], m: [1/2, 11/10]}\ncount: stable\n"
-    )
-    assert run(["classify", str(path), "--tolerance", "1/50", "--out", str(tmp_path)]) == 2
-    told = capsys.readouterr().err
-    assert (
-        "parameters.l0_3: a free length must not be negative in the whole window, but l0_3 is -"
-        in told
-    )
-    assert "at rho = 5/4, m = " in told
-    assert not list(tmp_path.glob("*.json"))
 
 
 @pytest.mark.parametrize("dip", DIPS)
@@ -179,31 +155,6 @@ def test_undecided_is_read_but_not_certified() -> None:
         engine.certified_map(slice)
     with pytest.raises(GeometryError, match="not proved that L1 is positive"):
         exact_map(slice_from_mapping(record(L1="(m^3 + n^3 - m*n - 1/7)^2 + 1e-40")))
-
-
-@pytest.mark.parametrize("name", ["fig4", "free02"])
-def test_what_a_reader_has_proved_no_engine_proves_again(
-    monkeypatch: pytest.MonkeyPatch, name: str
-) -> None:
-    slice = load(name)
-    asked: list[object] = []
-
-    def decided(function: Expression, *given: Any) -> Verdict:
-        asked.append(function)
-        return decide(function, *given)
-
-    monkeypatch.setattr(domain, "decide", decided)
-    once = proved(slice)
-    # of a parameter that is an axis the reader looks at the axis alone
-    assert all(function in (axis(0), axis(1)) for function in asked)
-    asked.clear()
-    assert proved(once) == slice
-    assert proved(pickle.loads(pickle.dumps(once))) == slice
-    assert not asked
-    assert all(sign.verdict is PROVED for sign in once.signs)
-    assert {sign.subject.text for sign in once.signs if not sign.subject.part} == {
-        *slice.parameters
-    }
 
 
 @pytest.mark.parametrize("changed", ["parameter", "window", "spring"])

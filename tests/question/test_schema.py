@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable
 from copy import deepcopy
 from importlib.resources import files
@@ -13,20 +12,15 @@ from typing import Any
 import jsonschema
 import pytest
 import yaml
-from support.document_keys import changed_keys
 from support.shipped_records import EXACT
 
-from ptmcad import RegionMap, classify, load, slice_variety
-from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.model import ptm
-from ptmcad.model.reading import MAX_BODIES, MAX_UNKNOWNS
+from ptmcad import RegionMap, classify, load
+from ptmcad.errors import LimitReached
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.config.schema import record_schema
-from ptmcad.question.config.starters import NAMES, starter_mechanism, starter_text
-from ptmcad.question.slice import Count
+from ptmcad.question.config.starters import NAMES, starter_text
 from ptmcad.show.document.mapdocument import FORMAT
 from ptmcad.show.schemas import schemas, with_prose
-from ptmcad.text.node import MAX_ENTRIES
 
 SCHEMA = json.loads(files("ptmcad").joinpath("record.schema.json").read_text(encoding="utf-8"))
 VALIDATOR = jsonschema.Draft202012Validator(
@@ -42,47 +36,6 @@ def test_the_schema_is_valid() -> None:
 def test_the_published_schema_is_made_of_what_reads_records() -> None:
     """``scripts/schemas`` writes it anew."""
     assert record_schema() == SCHEMA
-
-
-def test_keys_limits_and_defaults_are_those_that_are_read() -> None:
-    properties, definitions = SCHEMA["properties"], SCHEMA["$defs"]
-    assert {
-        name: str(said["default"]) for name, said in properties["parameters"]["properties"].items()
-    } == {name: parameter.default for name, parameter in ptm().parameters.items()}
-    assert properties["count"]["enum"] == [member.value for member in Count]
-    built_in = [name for name in NAMES if starter_mechanism(name) is not None]
-    assert properties["mechanism"]["anyOf"][0]["enum"] == built_in
-    mechanism = definitions["mechanism"]
-    assert {*mechanism["properties"]} == {
-        "name", "title", "parameters", "unknowns", "points", "bodies", "bars", "supports", "springs", "torsion",
-        "loads", "moments", "symmetries", "closing", "x-joint",
-    }  # fmt: skip
-    assert mechanism["required"] == ["unknowns", "points"]
-    assert all("description" in said or "$ref" in said for said in mechanism["properties"].values())
-    text = json.dumps(definitions)
-    assert {int(found) for found in re.findall(r'"max(?:Items|Properties)": (\d+)', text)} == {
-        2, MAX_UNKNOWNS, MAX_BODIES, MAX_ENTRIES,
-    }  # fmt: skip
-
-
-def test_a_design_may_say_what_the_manual_says() -> None:
-    axes = {"L1": [1, 2], "L2": [1, 2]}
-    design: dict[str, Any] = {
-        "maximise": "range",
-        "along": "L1",
-        "over": {"L2": [1, 2]},
-        "where": {"stable": 2},
-    }
-    for aim in ("range", "area", "barrier", "k1.length + 3"):
-        VALIDATOR.validate({"axes": axes, "design": design | {"maximise": aim}})
-    wrongs: list[dict[str, Any]] = [
-        {"maximise": 3},
-        {"over": {}},
-        {"where": {"stable": [2]}},
-        {"poses": "stable:1"},
-    ]
-    for wrong in wrongs:
-        assert not VALIDATOR.is_valid({"axes": axes, "design": design | wrong})
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -106,38 +59,6 @@ def test_whatever_a_description_may_say_validates_and_is_read() -> None:
     record["mechanism"]["springs"][0]["free"] = "1/2"
     VALIDATOR.validate(record)
     slice_from_mapping(record)
-
-
-@pytest.mark.parametrize(
-    ("path", "value"),
-    [
-        (("mechanism", "springs", 0, "free"), [1]),
-        (("mechanism", "springs", 0, "stiffness"), 1),
-        (("mechanism", "springs", 0, "between"), ["A"]),
-        (("mechanism", "bodies", "plate", "turn"), "th"),
-        (("mechanism", "torsion"), [{"angle": "th", "k": 1, "rest": "pi/3"}]),
-        (("mechanism", "torsion"), [{"angle": "th", "k": 1, "at": ["P"]}]),
-        (("mechanism", "loads", "Q"), {"mass": 1}),
-        (("mechanism", "supports", "A"), "glue"),
-        (("mechanism", "unknowns", "th"), "turn"),
-        (("mechanism", "parameters", "k", "kind"), "spring"),
-        (("mechanism", "points", "sin"), [0, 0]),
-        (("mechanism",), "platfrom"),
-        (("system",), {"unknowns": {"x": "real"}, "equations": ["x"]}),
-        (("system",), {"unknowns": {"x": "real"}}),
-    ],
-)
-def test_wrong_descriptions_neither_validate_nor_are_read(
-    path: tuple[str | int, ...], value: Any
-) -> None:
-    record = deepcopy(MECHANISM)
-    place: Any = record
-    for key in path[:-1]:
-        place = place[key]
-    place[path[-1]] = value
-    assert not VALIDATOR.is_valid(record)
-    with pytest.raises(ConfigError):
-        slice_from_mapping(record)
 
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
@@ -168,7 +89,6 @@ def test_wrong_records_do_not_validate(record: dict[str, Any]) -> None:
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 RESULT = json.loads((DOCS / "region-map.schema.json").read_text(encoding="utf-8"))
-VARIETY = json.loads((DOCS / "variety.schema.json").read_text(encoding="utf-8"))
 
 
 QUICK = ("fig2", "fig4", "forces", "rods")
@@ -190,21 +110,6 @@ def test_shipped_results_validate(path: Path, shipped: Callable[..., RegionMap])
     )
 
 
-@pytest.mark.parametrize("name", ["systems/cubic", "systems/schloegl", "mechanisms/two-bar-chain"])
-@pytest.mark.slow_cases("mechanisms/two-bar-chain")
-def test_results_of_other_models_validate_and_hold_their_records_description(
-    name: str, shipped: Callable[..., RegionMap]
-) -> None:
-    found = shipped(name)
-    document = json.loads(found.to_json())
-    jsonschema.validate(document, RESULT, cls=jsonschema.Draft202012Validator)
-    variety = json.loads(slice_variety(found.slice).text("json"))
-    jsonschema.validate(variety, VARIETY, cls=jsonschema.Draft202012Validator)
-    (key,) = {"mechanism", "system"} & document["slice"].keys()
-    own = jsonschema.Draft202012Validator({**SCHEMA["$defs"][key], "$defs": SCHEMA["$defs"]})
-    own.validate(document["slice"][key])
-
-
 def partial_map() -> RegionMap:
     with pytest.raises(LimitReached) as stopped:
         classify(load(EXACT[0]), progress=_stop_at("areas"))
@@ -224,35 +129,6 @@ def test_partial_results_validate() -> None:
     jsonschema.validate(
         json.loads(partial_map().to_json()), RESULT, cls=jsonschema.Draft202012Validator
     )
-
-
-FREE_KEYS = {
-    "axes",
-    "parameters",
-    "text",
-    "reference",
-    "versions",
-    "precision",
-    "timings",
-    "sample",
-}
-
-
-def test_schema_and_reader_agree_on_the_keys(shipped: Callable[..., RegionMap]) -> None:
-    """Each key of each record is required by both (but timings and savings), and no other one is
-    allowed by either.
-    """
-    text = shipped("fig2").to_json()
-    validator = jsonschema.Draft202012Validator(RESULT)
-    for c in changed_keys(text, FREE_KEYS):
-        if c.dropped and (
-            (c.path, c.key) == ((), "timings") or (c.path[:1], c.key) == (("plan",), "saving")
-        ):
-            validator.validate(c.data)
-            continue
-        assert not validator.is_valid(c.data), c[:3]
-        with pytest.raises(ValueError, match=r"lacks|unknown|format"):
-            RegionMap.from_json(json.dumps(c.data))
 
 
 def test_one_is_not_true_to_either(shipped: Callable[..., RegionMap]) -> None:

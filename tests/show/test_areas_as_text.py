@@ -14,15 +14,11 @@ from support.maps import CONFIGS, shipped
 import ptmcad
 from ptmcad.answer.comparison import Change, Comparison
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.show.notebook import map_html
 from ptmcad.show.render.comparing import comparison_figure, difference_words
 from ptmcad.show.render.legend import Entry, entries
-from ptmcad.show.render.mappicture import description
 from ptmcad.show.render.printing import settings
-from ptmcad.show.report import page
-from ptmcad.show.report.sections import regions
 from ptmcad.show.style import DEFAULT
-from ptmcad.show.table import areas_are_known, in_order, region_area, table
+from ptmcad.show.table import in_order, region_area, table
 from ptmcad.text.numerals import percent, share_text
 
 
@@ -38,21 +34,6 @@ def certified() -> RegionMap:
 
 def words(legend: Iterable[Entry]) -> str:
     return "\n".join(line for entry in legend for line in entry.lines)
-
-
-@pytest.mark.slow
-def test_areas_that_were_not_computed_are_nowhere(bare: RegionMap) -> None:
-    assert not areas_are_known(bare)
-    assert areas_are_known(shipped("fig4"))
-    assert "areas     not computed" in table(bare)
-    assert "area" in words(entries(shipped("fig4"), False))
-    assert "area" not in words(entries(bare, False))
-    assert "area" not in description(bare)
-    assert "area in brackets" in description(shipped("fig4"))
-    assert regions(bare).count("not computed") == len(bare.regions)
-    assert "apart" not in regions(bare)
-    assert "0 to 4" not in page(bare)
-    assert map_html(bare).count("<td>not computed</td>") == len(bare.regions)
 
 
 def test_a_comparison_tells_its_own_areas_only(bare: RegionMap) -> None:

@@ -22,14 +22,12 @@ from ptmcad.cli import run
 from ptmcad.show.render.colours import Fill
 from ptmcad.show.render.polylines import GRID
 from ptmcad.show.report.atlas import (
-    MAX_CHARACTERS,
     MAX_MAPS,
     SIDE,
     SheetFrame,
     Thumbnail,
     atlas,
     chosen,
-    frame_of,
     sketch,
 )
 
@@ -95,21 +93,6 @@ def test_a_large_sweep_is_shown_in_part() -> None:
     assert len(numbers) <= MAX_MAPS and numbers[1] == 11
     members = [Member(n, {"F": str(n)}, State.WAITING) for n in numbers]
     assert f"one of 11 members; the index has all {len(sweep)}" in atlas(sweep, FRAME, members, {})
-
-
-def test_the_page_of_441_maps_is_below_a_megabyte() -> None:
-    """With drawings of the loaded mechanism's size."""
-    result = ptmcad.classify(
-        {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": -10, "F4": -10}}, areas=False
-    )
-    drawn = sketch(result)
-    assert 200 < sum(len(data) for _, data in drawn.paths) < MAX_CHARACTERS
-    sweep, members, sketches = family(21, 21)
-    text = atlas(
-        sweep, frame_of(sweep, result.slice, [drawn]), members, dict.fromkeys(sketches, drawn)
-    )
-    assert len(text.encode()) < 1_000_000
-    assert text.count('<button type="button" class="small"') == 440
 
 
 def test_a_drawing_is_the_map() -> None:

@@ -4,7 +4,6 @@ Machado et al., 2009.
 
 from __future__ import annotations
 
-from importlib.resources import files
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -69,14 +68,3 @@ def test_any_two_totals_up_to_twelve_are_told_apart(eye: Floats, least: float) -
     assert min(apart(a, UNDETERMINED.face, eye) for a in faces) >= 15
     new = faces[4::2]
     assert min(apart(a, b, eye) for a in new for b in faces if a != b) >= 20
-
-
-def test_the_matrix_makes_red_and_green_alike() -> None:
-    """As a check of the check: a red and a green that differ by much are near each other."""
-    assert apart("#b07040", "#78882c", NORMAL) > 35
-    assert apart("#b07040", "#78882c", DEUTERANOPIA) < 12
-
-
-def test_the_page_has_the_same_grey() -> None:
-    style = (files("ptmcad.show.report") / "page.css").read_text(encoding="utf-8")
-    assert f".undetermined {{ fill: {UNDETERMINED.face}; }}" in style

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import sys
 from fractions import Fraction
@@ -55,24 +54,6 @@ def test_a_grid_as_a_frame() -> None:
     assert (table.stable.to_numpy().reshape(4, 6) == grid.stable).all()
     assert (table.rho.to_numpy().reshape(4, 6) == grid.x).all()
     assert (table.L2.to_numpy().reshape(4, 6) == grid.y[:, None]).all()
-
-
-@pytest.mark.slow
-def test_the_same_text_as_csv() -> None:
-    result = shipped("fig4")
-    rows = list(csv.DictReader(io.StringIO(data.csv_text(data.region_rows(result)))))
-    assert [row["stable"] for row in rows] == ["1", "2"]
-    assert [row["total"] for row in rows] == ["", "6"]
-    pieces = result.boundaries("1/20")
-    text = data.csv_text(data.boundary_rows(result, pieces))
-    table = np.genfromtxt(
-        io.StringIO(text), delimiter=",", names=True, usecols=("piece", "rho", "L2")
-    )
-    assert np.isnan(table["rho"]).sum() == len(pieces) - 1
-    assert set(np.genfromtxt(io.StringIO(text), delimiter=",", names=True)["separates"]) == {
-        0.0,
-        1.0,
-    }
 
 
 def test_axes_named_like_columns_keep_apart() -> None:

@@ -6,8 +6,6 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import cache
@@ -20,7 +18,6 @@ import sympy
 from support.few import few
 from support.maps import CONFIGS, shipped
 from support.programs import (
-    ProgramError,
     eliminated,
     monomials,
     needs_msolve,
@@ -31,8 +28,7 @@ from support.programs import (
 )
 from support.qepcad_cells import Decomposition, decomposition
 from support.singular_slice import SHIPPED
-from sympy.parsing.mathematica import parse_mathematica
-from test_polynomial_text import of_sympy, read_latex, read_maple
+from test_polynomial_text import of_sympy
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
@@ -87,28 +83,6 @@ def test_sympy_program_defines_the_variety(name: str) -> None:
     assert [of_sympy(p, names) for p in found["variety"]] == polynomials(variety(name))
 
 
-@pytest.mark.parametrize("name", QUICK)
-def test_maple_commands_define_the_variety(name: str) -> None:
-    of = variety(name)
-    code = re.sub(r"#.*", "", of.text("maple"))
-    found = re.fullmatch(r"\s*variety\s*:=\s*\[(.*)\]\s*:\s*", code, re.DOTALL)
-    assert found is not None
-    joined = (" ".join(entry.split()) for entry in found.group(1).split(","))
-    assert [read_maple(entry, of.slice.axis_names) for entry in joined] == polynomials(of)
-
-
-@pytest.mark.parametrize(
-    "name", ["fig2", "fig3", pytest.param("fig5-text", marks=pytest.mark.slow)]
-)
-def test_mathematica_expression_defines_the_variety(name: str) -> None:
-    of = variety(name)
-    code = re.sub(r"\(\*.*?\*\)", "", of.text("mathematica"))
-    found = re.fullmatch(r"\s*variety = (\{.*\});\s*", code, re.DOTALL)
-    assert found is not None
-    read = parse_mathematica(" ".join(found.group(1).split()))
-    assert [of_sympy(p, of.slice.axis_names) for p in read] == polynomials(of)
-
-
 LATEX_DISPLAY = re.compile(
     r"^% (\d+): [^\n]*\n\\begin\{align\*\}\n(.*?)\n\\end\{align\*\}$", re.MULTILINE | re.DOTALL
 )
@@ -126,21 +100,6 @@ def latex_displays(of: SliceVariety) -> list[list[str]]:
         displays.append([first.strip(), *(match.group(1) for match in others if match)])
         assert all(others)
     return displays
-
-
-@pytest.mark.parametrize("name", QUICK)
-def test_latex_has_every_monomial(name: str) -> None:
-    """The structure, since no TeX is asked for: one display a component, its rows joined are the
-    polynomial.
-    """
-    of = variety(name)
-    assert all(
-        line.startswith(("%", "  ", r"\begin{align*}", r"\end{align*}"))
-        for line in of.text("latex").splitlines()
-    )
-    spelled = symbols(of.slice.axis_names, Style.LATEX)
-    read = [read_latex(" ".join(rows), (spelled[0], spelled[1])) for rows in latex_displays(of)]
-    assert read == polynomials(of)
 
 
 @pytest.mark.parametrize("name", few(["fig3", "fig5-text"], "fig3"))
@@ -249,16 +208,6 @@ def test_qepcad_decomposes_the_window(name: str) -> None:
 
 
 @needs_qepcad
-def test_qepcad_reads_a_variety_without_a_curve_in_the_window() -> None:
-    of = variety("fig3")
-    none = replace(
-        of, components=tuple(replace(c, left_out="no point in the window") for c in of.components)
-    )
-    (output,) = qepcad_session([none.text("qepcad").removesuffix("quit\n")])
-    assert re.search(r"Truth value\s*: T", output)
-
-
-@needs_qepcad
 def test_a_name_that_qepcad_can_not_spell(tmp_path: Path) -> None:
     record = tmp_path / "names.yaml"
     record.write_text("axes: {a_b: [0, 2], ab: [1, 2]}\nparameters: {rho: a_b, L2: ab}\n")
@@ -358,22 +307,6 @@ def test_msolve_leaves_out_what_ptmcad_leaves_out(record: Any) -> None:
     check_elimination(generators, replace(of, components=kept), slice.axis_names)
 
 
-@needs_msolve
-def test_a_missing_curve_is_noticed_by_msolve() -> None:
-    of = variety("fig3")
-    generators = eliminated(of.text("msolve"), len(of.system.unknowns))
-    with pytest.raises(AssertionError):
-        check_elimination(
-            generators, replace(of, components=of.components[1:]), of.slice.axis_names
-        )
-
-
-@needs_msolve
-def test_what_msolve_can_not_eliminate_is_an_error() -> None:
-    with pytest.raises(ProgramError):
-        eliminated("x,y\n0\nx*\n", 5)
-
-
 @needs_singular
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4"])
 @pytest.mark.slow_cases("fig3", "fig4")
@@ -388,33 +321,6 @@ def test_singular_eliminates_the_same_system(name: str) -> None:
         f"ideal e = eliminate(std(i), {product});\nprint(string(e));"
     )
     check_elimination("".join(output.split()).split(","), of, of.slice.axis_names)
-
-
-def test_the_system_is_that_of_the_paper() -> None:
-    """Equations (3) and (4) with the errata, for fig. 4 and divided by k: L2 s12 - 2 rho s1 + f3
-    c1, f3 = -1/10.
-    """
-    of = variety("fig4")
-    names = [sympy.Symbol(n) for n in (*of.system.unknowns, *of.system.axes)]
-    c1, s1, c2, s2, inverse, rho, l2 = names
-    read = [
-        sympy.sympify(text.replace("^", "**"), locals={str(n): n for n in names})
-        for text in of.system.texts()
-    ]
-    f = -sympy.Rational(1, 10)
-    first = l2 * (s1 * c2 + c1 * s2) - 2 * rho * s1 + f * c1
-    second = (s1 * c2 + c1 * s2) - 2 * rho * s2 + f * c2
-    h11 = 2 * rho * c1 + f * s1 - l2 * (c1 * c2 - s1 * s2)
-    h22 = l2 * (2 * rho * c2 + f * s2 - (c1 * c2 - s1 * s2))
-    h12 = -l2 * (c1 * c2 - s1 * s2)
-    circles = [c1**2 + s1**2 - 1, c2**2 + s2**2 - 1]
-    assert [sympy.expand(a - b) for a, b in zip(read[2:4], circles, strict=True)] == [0, 0]
-    for found, expected in zip((read[0], read[1]), (first, second), strict=True):
-        assert sympy.cancel(found / expected).is_number
-    _, remainder = sympy.reduced(sympy.expand(h11 * h22 - h12**2), circles, c1, c2, s1, s2, rho, l2)
-    assert read[4] == inverse * rho * l2 - 1
-    _, stored = sympy.reduced(read[5], circles, c1, c2, s1, s2, rho, l2)
-    assert sympy.cancel(stored / remainder).is_number
 
 
 # --------------------------------------------------------------------------------------------- the command line
@@ -435,21 +341,6 @@ def test_command_prints_or_writes_the_same(
     assert capsys.readouterr().out == "written   sub/fig3.txt\n"
     assert (tmp_path / "sub" / "fig3.txt").read_text(encoding="utf-8") == printed.out
     assert [path.name for path in (tmp_path / "sub").iterdir()] == ["fig3.txt"]
-
-
-def test_command_takes_the_options_of_classify(capsys: pytest.CaptureFixture[str]) -> None:
-    """Reference: the three lines of the unloaded slice, which the paper gives as its boundaries
-    (fig. 2).
-    """
-    assert run(["variety", "--slice", "L2,rho"]) == 0
-    printed = capsys.readouterr().out
-    for line in ("L2 - 2*rho + 1", "L2 - 2*rho - 1", "L2 + 2*rho - 1"):
-        assert f"\n          {line}\n" in printed
-    assert (
-        run(["variety", str(CONFIGS / "fig4.yaml"), "--set", "F3=-20", "--range", "rho=1:2"]) == 0
-    )
-    printed = capsys.readouterr().out
-    assert "F3 = -20" in printed and "1 < rho < 2" in printed
 
 
 @pytest.mark.parametrize(
@@ -485,40 +376,3 @@ def test_unknown_format_in_python() -> None:
 def test_degenerate_slice_has_no_variety() -> None:
     with pytest.raises(InfiniteSolutionsError):
         ptmcad.slice_variety(ptmcad.slice_from_options(slice="L1,L2", sets=["rho=0"]))
-
-
-@pytest.mark.slow
-def test_nothing_large_is_loaded_and_a_time_limit_ends_it(tmp_path: Path) -> None:
-    code = "import sys; from ptmcad.cli import run; run(sys.argv[1:]); print(sorted(sys.modules), file=sys.stderr)"
-    arguments = ["variety", str(CONFIGS / "fig4.yaml"), "--format", "sympy"]
-    done = subprocess.run(
-        [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True
-    )
-    assert not {"'sympy'", "'matplotlib'", "'numpy'"} & set(re.findall(r"'\w+'", done.stderr))
-    hard = [
-        "--slice",
-        "rho,L2",
-        "--set",
-        "F3=rho^3-L2",
-        "--set",
-        "F4=L2^3+rho",
-        "--set",
-        "F3x=rho^2*L2",
-    ]
-    stopped = subprocess.run(
-        [sys.executable, "-m", "ptmcad", "variety", *hard, "--timeout", "0.5", "--out", str(tmp_path / "out.txt")],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert stopped.returncode == 3
-    assert stopped.stderr.startswith("stopped: ") and len(stopped.stderr.splitlines()) == 1
-    assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("format", [name for name in FORMATS if name != "json"])
-def test_no_colon_is_left_where_nothing_is_fixed(format: str) -> None:
-    """A slice whose parameters are the axes is named without a list of others."""
-    cusp = {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}
-    record = {"name": "e64", "system": cusp, "axes": {"a": [-1, 1], "b": [-1, 1]}}
-    found = ptmcad.slice_variety(ptmcad.slice_from_mapping(record))
-    text = FORMATS[format](found)
-    assert not re.search(r"e64: *(;|\*\)|$)", text, re.MULTILINE)

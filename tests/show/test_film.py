@@ -6,7 +6,6 @@ import io
 import stat
 import sys
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,7 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.stage import Stage
-from ptmcad.show.style import DEFAULT, styled
+from ptmcad.show.style import DEFAULT
 
 FIG4 = str(CONFIGS / "fig4.yaml")
 PATH = "rho=3/4:6/5,L2=3/2"
@@ -64,26 +63,6 @@ def test_pictures_say_what_they_show(stage: Stage, motion: Motion) -> None:
     assert said(stage, len(motion.steps) - 1)[1] == "one of exactly 4 equilibria, 1 stable"
 
 
-@pytest.mark.slow
-def test_the_key_says_whether_all_equilibria_are_in_the_energys_frame(
-    stage: Stage, motion: Motion
-) -> None:
-    low, high = stage.curve.get_ylim()
-    others = [height for step in motion.steps for height, _ in step.others]
-    assert not all(low < height < high for height in others)
-    assert (
-        stage.curve.get_title(loc="right") == "dots: equilibria within the frame, stable ones blue"
-    )
-    heights = [step.height for step in motion.steps if step.height is not None]
-    steps = [
-        replace(s, others=tuple((min(heights), stable) for _, stable in s.others))
-        for s in motion.steps
-    ]
-    with settings():
-        full = Stage(replace(motion, steps=tuple(steps)), DEFAULT, 60)
-    assert full.curve.get_title(loc="right") == "dots: all equilibria, stable ones blue"
-
-
 def test_what_is_fixed_stands_still_and_all_is_at_one_scale(stage: Stage, motion: Motion) -> None:
     nodes = [seen.nodes for seen in stage.sketches]
     assert {tuple(round(v, 9) for v in node["A1"]) for node in nodes} == {
@@ -97,42 +76,6 @@ def test_what_is_fixed_stands_still_and_all_is_at_one_scale(stage: Stage, motion
     assert {len(line) for seen in stage.sketches for line in seen.coils.values()} == {
         len(stage.sketches[0].coils["spring-1"])
     }
-
-
-@pytest.mark.slow
-def test_pictures_do_not_depend_on_their_order(stage: Stage, motion: Motion) -> None:
-    with settings():
-        once = [stage.frame(k) for k in range(len(motion.steps))]
-        again = [stage.frame(k) for k in reversed(range(len(motion.steps)))][::-1]
-    assert all(np.array_equal(a, b) for a, b in zip(once, again, strict=True))
-    assert all(not np.array_equal(a, b) for a, b in pairwise(once))
-    # the point on the map: a white disc where the step is
-    tall, wide, _ = once[0].shape
-    box = stage.chart.get_position()
-    for picture, step in zip(once, motion.steps, strict=True):
-        x = (box.x0 + box.width * float(step.at[0]) / 2) * wide
-        y = (1 - box.y0 - box.height * float(step.at[1]) / 2) * tall
-        assert picture[round(y - 0.5), round(x - 0.5)].min() > 240
-
-
-@pytest.mark.parametrize("size", ["6.5x3.4in", "6.5x8in", "12x6in"])
-@pytest.mark.fast_cases("6.5x3.4in")
-def test_all_words_are_within_the_picture(motion: Motion, size: str) -> None:
-    style = styled("default", size=size)
-    with settings(style):
-        stage = Stage(motion, style, 100)
-        wide, tall = stage.figure.get_size_inches() * 100
-        for number in (0, next(k for k, step in enumerate(motion.steps) if step.falling)):
-            texts = list(stage._said(motion.steps[number]))
-            for text in (*texts, *stage.figure.texts):
-                box = text.get_window_extent(stage.canvas.get_renderer())
-                assert 0 <= box.x0 < box.x1 <= wide and 0 <= box.y0 < box.y1 <= tall, (
-                    text.get_text()
-                )
-                assert text.get_fontsize() >= 6
-            for text in texts:
-                text.remove()
-    assert (stage.curve is None) == (size == "6.5x3.4in")
 
 
 @pytest.mark.slow

@@ -8,7 +8,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from click.testing import CliRunner
 from support import pages
@@ -19,7 +18,6 @@ from ptmcad.ask.solving import poses_at
 from ptmcad.cli.solve import command as solve_command
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import point_from_mapping
-from ptmcad.show.render.energy import Energy
 from ptmcad.show.render.landscape import draw_landscape
 from ptmcad.show.render.posepicture import draw_poses
 from ptmcad.show.report import page
@@ -92,18 +90,6 @@ def test_a_mechanism_is_drawn_with_its_own_parts() -> None:
     ]
     assert any(re.fullmatch(r"θ = .*°, s = .*", text) for text in texts)
     assert "vertical slider, at A" in texts and "springs AP, BP, BO;" in texts
-
-
-def test_an_energy_over_an_angle_and_a_length() -> None:
-    found = solved(PENDULUM, a="1", W="1/2")
-    energy = Energy(found.model, found.parameters)
-    for pose in found.equilibria:
-        value = float(energy(*(np.array(float(x)) for x in (*pose.angles, *pose.reals))))
-        assert value == pytest.approx(float(pose.energy.center), abs=1e-9)
-    axes = draw_landscape(found).axes[0]
-    assert axes.get_xlabel() == "θ (degrees)" and axes.get_ylabel() == "s (length)"
-    low, high = axes.get_ylim()
-    assert all(low < float(pose.reals[0]) < high for pose in found.equilibria)
 
 
 def test_an_energy_over_one_unknown_is_a_curve() -> None:

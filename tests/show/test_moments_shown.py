@@ -102,35 +102,6 @@ def test_what_is_drawn_is_level_at_the_equilibria(record: dict[str, Any]) -> Non
             assert abs(rise) / 2e-5 < 1e-5
 
 
-@pytest.mark.parametrize("record", [ANGLE, TWO, MIXED, FREE, WAVE])
-@pytest.mark.fast_cases("record0", "record4")
-def test_a_landscape_says_what_it_is_of(record: dict[str, Any]) -> None:
-    figure = draw_landscape(solved(record, M="1/2", F="1/3"))
-    title = words(figure).replace("\n", " ")
-    assert "V = U − 0.0" in title or "V = U − 0.5" in title
-    assert "cut at ±180°, not periodic" in title
-    assert "V (force · length)" in title and "U (force · length)" not in title
-    assert "less the" in figure.get_label() and "moment" in figure.get_label()
-    without = draw_landscape(solved(record, M="0", F="1/3"))
-    assert "periodic" not in words(without) and "U (force · length)" in words(without)
-
-
-def test_a_force_along_a_length_needs_no_cut() -> None:
-    record = bar(
-        {"s": "M"}, loads=(0, 0), unknowns={"s": "length"}, springs=[{"between": ["O", "P"], "k": 1}],
-        points={"O": [0, 0], "P": ["s", 1]}, bars=[],
-    )  # fmt: skip
-    del record["mechanism"]["loads"], record["mechanism"]["parameters"]["F"]
-    record["mechanism"]["parameters"]["c"] = {"kind": "stiffness", "default": 1}
-    record["mechanism"]["springs"][0]["k"] = "c"
-    record["axes"] = {"M": [-1, 1], "c": [1, 2]}
-    figure = draw_landscape(solved(record, M="1/2", c="1"))
-    assert "V = U − 0.5\N{NO-BREAK SPACE}s" in words(figure) and "periodic" not in words(figure)
-    assert "energy less the work of the force on s" in words(figure).replace("\n", " ")
-    assert "moment" not in words(figure) + solved(record, M="1/2", c="1").table()
-    assert data_of(record)["work"] == "work of the force on s"
-
-
 def test_a_force_that_depends_on_another_unknown_is_called_so() -> None:
     record = {**UNTOLD, "mechanism": {**UNTOLD["mechanism"], "moments": {"s": "cos(th) + M"}}}
     found = solved(record, M="1/2", F="1/5")
@@ -186,13 +157,6 @@ def test_the_table_says_what_the_energy_leaves_out() -> None:
     )
     untold = solved(UNTOLD, M="1/2", F="1").table()
     assert "energy  none, and nothing says which are stable" in untold and "solution" not in untold
-
-
-def test_the_picture_of_poses_says_what_the_energy_leaves_out() -> None:
-    assert "without the moment's work" in words(draw_poses(solved(ANGLE, M="1/2", F="1"))).replace(
-        "\n", " "
-    )
-    assert "without" not in words(draw_poses(solved(ANGLE, M="0", F="1")))
 
 
 def test_poses_without_an_energy_are_drawn() -> None:

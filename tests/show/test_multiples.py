@@ -15,9 +15,7 @@ import ptmcad
 from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.chartgrid import multiples_figure
-from ptmcad.show.render.outline import shapes
-from ptmcad.show.render.printing import content, save
+from ptmcad.show.render.printing import save
 from ptmcad.show.render.solid import MAX_FLOORS, solid_figure
 from ptmcad.show.render.surfacepicture import MAX_SIDE, box_of, halved, towards_eye
 from ptmcad.show.style import DEFAULT
@@ -64,14 +62,6 @@ def test_what_does_not_fit_is_refused(family: FamilyMap) -> None:
         family.plot(size="2x1in")
 
 
-@pytest.mark.slow
-def test_the_same_bytes_twice(family: FamilyMap) -> None:
-    for make in (multiples_figure, solid_figure):
-        assert content(make(family, 100, DEFAULT), "svg") == content(
-            make(family, 100, DEFAULT), "svg"
-        )
-
-
 def test_of_many_maps_a_few_are_filled_and_of_the_others_there_are_curves(
     family: FamilyMap,
 ) -> None:
@@ -95,28 +85,6 @@ def test_of_many_maps_a_few_are_filled_and_of_the_others_there_are_curves(
 def with_surface() -> tuple[FamilyMap, BoundarySurface]:
     found = ptmcad.family(RECORD | {"members": 3}, areas=False, changes=True)
     return found, found.boundary_surface("1/50")
-
-
-@pytest.mark.slow
-def test_a_boundary_surface_is_drawn_with_the_members_curves_and_says_what_it_is(
-    solid: tuple[FamilyMap, BoundarySurface], tmp_path: Path
-) -> None:
-    found, surface = solid
-    figure = found.plot(surface=surface)
-    (axes,) = figure.axes
-    (sheets,) = (each for each in axes.collections if each.get_gid() == "sheets")
-    assert len(sheets.get_facecolor()) > len(surface.faces)  # and pieces of curves
-    assert not sheets.get_rasterized()
-    texts = [text.get_text() for text in figure.texts]
-    assert {"1", "3", "between 1 and 3", "boundary of a member"} <= set(texts)
-    assert f"sheets: linear between {len(surface.members)} exact boundaries" in texts
-    assert not any("not proved" in text for text in texts)
-    # of the maps there is the lowest member's, on the floor
-    assert len(axes.patches) == len(found.members[0].regions)
-    for name in ("a.svg", "b.svg"):
-        save(solid_figure(found, 100, DEFAULT, surface), tmp_path / name)
-    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
-    assert "exact members" in (tmp_path / "a.svg").read_text()
 
 
 @pytest.mark.slow
@@ -152,35 +120,6 @@ def test_what_is_in_front_is_painted_last(solid: tuple[FamilyMap, BoundarySurfac
     assert screen[0] == pytest.approx(screen[1], abs=1e-9)
 
 
-@pytest.mark.slow
-def test_the_free_parameter_has_its_unit() -> None:
-    loads = {
-        "mechanism": "ptm", "parameters": {"F3": "F", "F4": "2*F"}, "axes": {"rho": [0, 2], "L2": [0, 2]},
-        "free": {"F": [-40, 0]},
-    }  # fmt: skip
-    axes = ptmcad.family(loads, values=[-10], areas=False).plot(solid=True).axes[0]
-    assert [axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()] == [
-        "ρ (length)",
-        "L₂ (length)",
-        "F (force)",
-    ]
-    mixed = {**loads, "parameters": {"F3": "F", "k": "200 + F"}}
-    assert (
-        ptmcad.family(mixed, values=[-10], areas=False).plot(solid=True).axes[0].get_zlabel()
-        == "F (force)"
-    )
-    own = {
-        "mechanism": "ptm",
-        "axes": {"rho": [0, 2], "L2": [0, 2]},
-        "free": {"L1": [1, 2]},
-        "units": {"length": "mm"},
-    }
-    assert (
-        ptmcad.family(own, values=[1], areas=False).plot(solid=True).axes[0].get_zlabel()
-        == "L₁ (mm)"
-    )
-
-
 def test_the_table_has_a_line_for_each_member(family: FamilyMap) -> None:
     lines = family.table().splitlines()
     assert len(lines) == 9
@@ -189,53 +128,3 @@ def test_the_table_has_a_line_for_each_member(family: FamilyMap) -> None:
     with pytest.raises(KeyError):
         family.at(Fraction(1, 3))
     assert "<pre" in replace(family, title="T")._repr_html_()
-
-
-def test_the_legend_tells_of_thin_curves_and_labels_of_regions_that_are_not_seen() -> None:
-    record = {
-        "name": "narrow",
-        "system": {
-            "unknowns": {"x": "real"},
-            "equations": ["x^2 - a*(a - e)"],
-            "parameters": {"e": {}},
-        },
-        "axes": {"a": [-1, 1], "b": [-1, 1]},
-        "parameters": {"e": "c"},
-        "free": {"c": ["1/1000", 1]},
-    }
-    drawn = ptmcad.family(record, values=["1/1000", 1], areas=False).plot()
-    arrows = [
-        [a.get_gid() for a in axes.texts if str(a.get_gid()).startswith("arrow-")]
-        for axes in drawn.axes
-    ]
-    assert [len(found) for found in arrows] == [
-        1,
-        0,
-    ]  # the strip of no solution, which is seen in the other map
-    assert "another curve" not in " ".join(text.get_text() for text in drawn.texts)
-    loads: dict[str, Any] = {
-        "mechanism": "ptm", "parameters": {"F3": "F", "F4": "F"}, "axes": {"rho": [0, 2], "L2": [0, 2]},
-        "free": {"F": [-40, 0]},
-    }  # fmt: skip
-    thin = ptmcad.family(loads, values=[-40], areas=False).plot()
-    assert "another curve of the variety, the count does not change" in [
-        text.get_text() for text in thin.texts
-    ]
-
-
-def test_legends_have_the_curve_and_members_their_values_in_three_dimensions(
-    family: FamilyMap,
-) -> None:
-    assert "the count changes" in [text.get_text() for text in family.plot().texts]
-    drawn = family.plot(solid=True)
-    told = [text.get_text() for text in drawn.texts]
-    assert {"the count changes", "paler: seen through a map above it"} <= set(told)
-    thin = any(not separates for r in family.members for _, separates, _ in shapes(r).walls())
-    assert ("other curves left out" in told) == thin
-    named = {text.get_gid(): text.get_text().strip() for text in drawn.axes[0].texts}
-    assert named == {
-        f"member-{number}": f"c = {value}"
-        for number, value in enumerate(("0", "0.5", "1", "1.5", "2", "2.5", "3"))
-    }
-    one = replace(family, values=family.values[:1], members=family.members[:1])
-    assert "paler: seen through" not in [text.get_text() for text in one.plot(solid=True).texts]

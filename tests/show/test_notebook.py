@@ -18,9 +18,6 @@ from support.maps import CONFIGS, shipped
 
 import ptmcad
 from ptmcad.answer import METHODS, Method
-from ptmcad.answer.boundaries import Grid
-from ptmcad.answer.family import FamilyMap
-from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.text.enclosure import AlgebraicNumber
 
@@ -45,17 +42,6 @@ def results() -> list[object]:
         shipped("fig4").field("energy", columns=5),
         ptmcad.intervals(slice, "rho", line), ptmcad.pose_paths(slice, "rho", line, "1"),
     ]  # fmt: skip
-
-
-@pytest.mark.slow
-def test_every_result_is_a_line_at_the_prompt() -> None:
-    for result in [*results(), shipped("fig4").components[0].polynomial]:
-        text = repr(result)
-        assert text.startswith(f"<{type(result).__name__} ") or text.startswith(
-            f"<{type(result).__name__}:"
-        ), text
-        assert len(text) < SCREEN, text
-        assert "\n" not in text
 
 
 ONE_LINE = {
@@ -145,20 +131,6 @@ def test_what_results_are_made_of_fits_one_screen_too(everything: list[object]) 
     assert {"Region", "Cell"} <= {kind.__name__ for kind in done}
 
 
-def test_pixels_and_families_are_pictures(everything: list[object]) -> None:
-    by_name = {type(result).__name__: result for result in everything}
-    for name in ("Grid", "Field", "FamilyMap"):
-        result: Any = by_name[name]
-        assert result._repr_png_().startswith(b"\x89PNG")
-    grid, field, family = (by_name[name] for name in ("Grid", "Field", "FamilyMap"))
-    assert isinstance(grid, Grid) and isinstance(field, Field) and isinstance(family, FamilyMap)
-    assert "agree with exact poses" in field._repr_html_()
-    assert grid.extent == field.extent == (0.0, 2.0, 0.0, 2.0)
-    assert (
-        family.members[0].grid(4)._repr_png_().startswith(b"\x89PNG")
-    )  # of all: stability is not told
-
-
 class Reader(HTMLParser):
     """The open tags and the cells of tables; fails where tags do not match."""
 
@@ -207,10 +179,6 @@ def test_a_map_is_a_picture_and_a_table() -> None:
     assert png.startswith(b"\x89PNG")
 
 
-def test_a_certified_map_too() -> None:
-    assert [r[1] for r in read(certified_map()._repr_html_())[1:]] == ["2", "1", "2"]
-
-
 def test_a_map_without_cells_has_no_picture() -> None:
     whole = shipped("fig2")
     empty = RegionMap(
@@ -235,12 +203,6 @@ def test_names_from_records_are_escaped() -> None:
     html = ptmcad.classify(ptmcad.slice_from_mapping(record))._repr_html_()
     assert "<script" not in html
     assert "&lt;script&gt;" in html
-
-
-def test_a_variety_is_its_text() -> None:
-    html = ptmcad.slice_variety(ptmcad.load(CONFIGS / "fig2.yaml"))._repr_html_()
-    assert html.startswith("<pre>")
-    assert "critical" in html
 
 
 def test_public_names_are_listed_before_they_are_loaded() -> None:

@@ -128,12 +128,6 @@ def test_broken_lines_are_the_same_text(
         assert len(line) <= width or len(re.findall(r" [+-] ", line)) == 0
 
 
-@given(polynomial=POLYNOMIALS)
-def test_plain_text_is_that_of_the_plane(polynomial: PlanePolynomial) -> None:
-    """The stored result's own spelling, written by other code."""
-    assert polynomial_text(polynomial, NAMES, "text") == polynomial.text(NAMES)
-
-
 @pytest.mark.parametrize("style", [s for s in Style if s is not Style.LATEX])
 @given(names=st.lists(AXES, min_size=2, max_size=2, unique=True))
 def test_reserved_names_are_spelled_apart(style: Style, names: list[str]) -> None:

@@ -5,8 +5,6 @@ time.
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, pairwise, product
@@ -16,10 +14,7 @@ from xml.etree import ElementTree
 import matplotlib
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
-from matplotlib.image import imread
-from matplotlib.text import Annotation
 from support.maps import shipped
 
 import ptmcad
@@ -37,12 +32,11 @@ from ptmcad.answer.regionmap import (
 from ptmcad.model import known_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.show.render import draw
-from ptmcad.show.render.axes import heading_of, scale_of, symbol
+from ptmcad.show.render.axes import heading_of, symbol
 from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of, fill_of_index
 from ptmcad.show.render.labels import Label, overlap, place
-from ptmcad.show.render.mappicture import MapDrawing
 from ptmcad.show.render.outline import outline
-from ptmcad.show.render.slivers import thin_regions, zooms
+from ptmcad.show.render.slivers import zooms
 from ptmcad.show.render.view import View
 from ptmcad.show.units import unit
 from ptmcad.text.plane import PlanePolynomial
@@ -203,34 +197,6 @@ def test_the_raster_agrees_with_locate(name: str, count: str) -> None:
                 assert image[row, column] == located.region
 
 
-def test_neighbouring_stacks_meet() -> None:
-    """Branches that end at a turning point meet there: no gap is left at a stack's end."""
-    seen = outline(classified("fig4", "index"))
-    ends = [line[k] for _, _, line in seen.walls() for k in (0, -1)]
-    inner = [p for p in ends if (p > 1e-6).all() and (p < 1 - 1e-6).all()]
-    assert inner
-    for k, p in enumerate(inner):
-        assert min(np.abs(p - q).max() for j, q in enumerate(inner) if j != k) < 1e-5
-
-
-def test_vertical_lines_are_drawn(tmp_path: Path) -> None:
-    """Without load the boundaries do not depend on k: over rho they are vertical lines."""
-    record = tmp_path / "record.yaml"
-    record.write_text(
-        "name: lines\nmechanism: ptm\nparameters: {L1: 1, L2: 3/2}\naxes: {rho: [0, 2], k: [1, 200]}\n"
-    )
-    result = ptmcad.classify(ptmcad.load(record))
-    assert len(result.regions) == 3
-    strong = [line for _, separates, line in outline(result).walls() if separates]
-    across = sorted({round(float(x), 6) for line in strong for x in line[:, 0]})
-    assert across == [0.125, 0.625], "rho = 1/4 and 5/4"
-    for x in across:
-        covered = sum(
-            abs(line[-1, 1] - line[0, 1]) for line in strong if abs(line[0, 0] - x) < 1e-5
-        )
-        assert covered == pytest.approx(1, abs=1e-6)
-
-
 # ------------------------------------------------------------------------------------------------------ the slivers
 
 
@@ -258,44 +224,11 @@ def test_the_sliver_has_an_arrow_and_an_inset(name: str, x_end: str, tmp_path: P
     )
 
 
-@pytest.mark.parametrize("exponent", [3, 7, 15, 30, 100])
-@pytest.mark.parametrize("base", [0, 1])
-@pytest.mark.fast_cases("0-3", "0-7", "1-3", "1-7")
-def test_slanting_slivers_of_any_thinness_are_shown(exponent: int, base: int) -> None:
-    result = bands([Fraction(1, 4), Fraction(1, 4) + Fraction(1, 10**exponent)], base=base)
-    whole = outline(result)
-    assert thin_regions(whole, 200) == (1,)
-    (zoom,) = zooms(whole, (1,))
-    image = zoom.outline.raster(60, 60)
-    assert np.count_nonzero(image == 1) > 0.02 * image.size
-    assert set(np.unique(image)) == {0, 1, 2}
-
-
 def test_every_region_can_be_zoomed() -> None:
     result = classified("fig4", "index")
     whole = outline(result)
     found = zooms(whole, range(len(result.regions)))
     assert sorted(s.region for z in found for s in z.slivers) == list(range(len(result.regions)))
-
-
-@pytest.mark.slow
-def test_labels_and_texts_do_not_overlap() -> None:
-    heights = [Fraction(k // 2 + 1, 17) + (k % 2) * Fraction(1, 10**5) for k in range(14)]
-    with matplotlib.rc_context({"text.parse_math": False, "font.family": ["DejaVu Sans"]}):
-        figure = MapDrawing(bands(heights, title="word " * 50), dpi=100).figure()
-        canvas = FigureCanvasAgg(figure)
-        canvas.draw()
-        renderer = canvas.get_renderer()
-        marks = [t for t in figure.axes[0].texts if isinstance(t, Annotation)]
-        assert len(marks) == 7
-        boxes = [t.get_bbox_patch().get_window_extent(renderer) for t in marks]
-        boxes += [t.get_window_extent(renderer) for t in figure.texts]
-        boxes += [a.get_tightbbox(renderer) for a in figure.axes[1:]]
-        for first, second in combinations(boxes, 2):
-            assert not first.overlaps(second)
-        width, height = figure.canvas.get_width_height()
-        for box in boxes:
-            assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height
 
 
 def test_labels_of_crowded_tips_are_apart() -> None:
@@ -307,100 +240,12 @@ def test_labels_of_crowded_tips_are_apart() -> None:
 # ----------------------------------------------------------------------------------------------------- the picture
 
 
-@pytest.mark.parametrize(
-    ("name", "count", "dpi"),
-    [(*m, 100) for m in MAPS] + [pytest.param("fig4", "index", 300, marks=pytest.mark.slow)],
-)
-@pytest.mark.fast_cases("fig2-stable-100")
-def test_every_colour_is_in_the_picture(name: str, count: str, dpi: int, tmp_path: Path) -> None:
-    result = classified(name, count)
-    draw(result, tmp_path / "map.png", dpi=dpi)
-    image = imread(tmp_path / "map.png")[:, :, :3]
-    legend = image[:, int(image.shape[1] * 0.665) :]
-    for face in {fill_of(region, result.slice.count).face for region in result.regions}:
-        everywhere, there = (pixels_of(part, to_rgb(face)) for part in (image, legend))
-        # a swatch in the legend is not enough
-        swatch = 0.26 * 0.14 * dpi**2
-        assert everywhere > 2 * swatch
-        assert there > 0.7 * swatch
-
-
-def pixels_of(image: np.ndarray, colour: tuple[float, float, float]) -> int:
-    return int(
-        np.logical_and.reduce([np.abs(image[:, :, k] - colour[k]) < 0.01 for k in range(3)]).sum()
-    )
-
-
-def test_no_seams_between_the_cells_of_a_region(tmp_path: Path) -> None:
-    """Within a region every pixel away from walls has exactly its colour."""
-    result = classified("fig4", "stable")
-    figure = MapDrawing(result, dpi=100).figure()
-    for label in figure.axes[0].texts:
-        label.set_visible(False)
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    image = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255
-    box = figure.axes[0].get_window_extent()
-    part = image[round(box.y0) + 2 : round(box.y1) - 2, round(box.x0) + 2 : round(box.x1) - 2]
-    faces = {
-        tuple(np.round(255 * np.array(to_rgb(fill_of(r, Count.STABLE).face))).astype(int))
-        for r in result.regions
-    }
-    pixels = np.round(255 * part).astype(int)
-    known = np.zeros(pixels.shape[:2], dtype=bool)
-    for face in faces:
-        known |= (pixels == face).all(axis=2)
-    # the rest is the walls, whose anti-aliasing makes pixels darker than the lighter face, never
-    # lighter
-    lightest = max(sum(face) for face in faces)
-    assert known.mean() > 0.97
-    assert pixels.sum(axis=2).max() == lightest
-
-
-@pytest.mark.parametrize("dpi", [72, 150, 300])
-@pytest.mark.slow_cases("300", "150")
-def test_png_has_the_size_that_dpi_tells(dpi: int, tmp_path: Path) -> None:
-    draw(classified("fig2", "stable"), tmp_path / "map.png", dpi=dpi)
-    data = (tmp_path / "map.png").read_bytes()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    width, height = (int.from_bytes(data[k : k + 4], "big") for k in (16, 20))
-    assert width == pytest.approx(8.45 * dpi, abs=1.5)
-    assert height == pytest.approx(5.77 * dpi, abs=1.5)
-    physical = data.index(b"pHYs") + 4
-    assert int.from_bytes(data[physical : physical + 4], "big") == pytest.approx(
-        dpi / 0.0254, abs=1
-    )
-    assert b"Software" not in data and b"Matplotlib" not in data
-
-
 @pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
 @pytest.mark.slow_cases("pdf", "png")
 def test_the_same_bytes_twice(suffix: str, tmp_path: Path) -> None:
     for k in range(2):
         draw(classified("fig3", "index"), tmp_path / f"{k}.{suffix}")
     assert (tmp_path / f"0.{suffix}").read_bytes() == (tmp_path / f"1.{suffix}").read_bytes()
-
-
-@pytest.mark.slow
-def test_the_same_bytes_in_another_process_without_pyplot(tmp_path: Path) -> None:
-    """Nor does a user's matplotlibrc change them."""
-    (tmp_path / "map.json").write_text(classified("fig3", "index").to_json(), encoding="utf-8")
-    code = (
-        "import sys; from pathlib import Path\n"
-        "from ptmcad.answer.regionmap import RegionMap\n"
-        "from ptmcad.show.render import draw\n"
-        "draw(RegionMap.from_json(Path('map.json').read_text()), Path(sys.argv[1]))\n"
-        "assert 'matplotlib.pyplot' not in sys.modules\n"
-    )
-    (tmp_path / "matplotlibrc").write_text(
-        "font.family: serif\naxes.grid: True\nxtick.color: red\nsvg.fonttype: none\n"
-    )
-    arguments = [sys.executable, "-W", "error", "-c", code, "other.svg"]
-    done = subprocess.run(arguments, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    (tmp_path / "matplotlibrc").unlink()
-    own = svg(classified("fig3", "index"), tmp_path)
-    assert (tmp_path / "other.svg").read_text() == own
 
 
 @pytest.mark.parametrize(("name", "count"), MAPS)
@@ -502,16 +347,6 @@ def test_degenerate_maps_are_drawn(result: RegionMap, suffix: str, tmp_path: Pat
         ElementTree.parse(tmp_path / "map.svg")
 
 
-@pytest.mark.slow
-def test_special_characters_are_written_as_pdf(tmp_path: Path) -> None:
-    draw(
-        bands([HALF], title="$5 & <b>x_1^{ \\frac \x07 ü ρ 弹 % #"),
-        tmp_path / "map.pdf",
-        samples=True,
-    )
-    assert (tmp_path / "map.pdf").stat().st_size > 1000
-
-
 # ------------------------------------------------------------------------------------------------ colours and names
 
 
@@ -525,14 +360,6 @@ def lightness(colour: str) -> float:
 def test_the_palette_falls_in_lightness(row: tuple[str, ...]) -> None:
     for first, second in pairwise(row):
         assert lightness(first) - lightness(second) >= 6
-
-
-def test_index_colours_differ_on_grey_prints() -> None:
-    shades = [
-        lightness(fill_of(region(index=i), Count.INDEX).face)
-        for i in ((1, 2, 1), (2, 3, 1), (1, 3, 2))
-    ]
-    assert min(abs(a - b) for a, b in combinations(shades, 2)) > 10
 
 
 @pytest.mark.parametrize("unknowns", [1, 2])
@@ -600,14 +427,3 @@ def test_units() -> None:
     assert (
         unit(replace(ptmcad.load(ROOT / "configs" / "fig3.yaml"), model=known_of("other")), 0) == ""
     )
-
-
-@pytest.mark.parametrize("low", ["0", "-1", "1e-20", "-1e20", "123456.789", "1e400"])
-@pytest.mark.parametrize("width", ["1", "1e-20", "1e20", "7e-400"])
-def test_scales_are_exact_and_small(low: str, width: str) -> None:
-    start, end = Fraction(low), Fraction(low) + Fraction(width)
-    scale = scale_of(start, end)
-    assert scale.low < scale.high
-    assert max(abs(scale.low), abs(scale.high)) < 1e5 * (scale.high - scale.low)
-    assert 1e-4 < max(abs(scale.low), abs(scale.high)) < 1e5
-    assert float((end - scale.offset) / Fraction(10) ** scale.exponent) == scale.high

@@ -22,18 +22,17 @@ from support.certified_maps import certified, circle, crossing, cusp
 from support.pages import data_of
 
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.cli import run
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count, Point
-from ptmcad.show.render import coveroutline, draw, polylines
-from ptmcad.show.render.colours import CORE, ONE_MAXIMUM, RIM, TWO_MAXIMA, UNDETERMINED, fill_of
+from ptmcad.show.render import draw
+from ptmcad.show.render.colours import CORE, ONE_MAXIMUM, RIM, TWO_MAXIMA, UNDETERMINED
 from ptmcad.show.render.coveroutline import TOLERANCE
 from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
 from ptmcad.show.render.mappicture import MapDrawing, _zoomed
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.polylines import simplified_polygons
-from ptmcad.show.render.view import Floats, View
+from ptmcad.show.render.view import View
 from ptmcad.show.report import page
 
 STEPS = 2**20
@@ -60,33 +59,6 @@ def test_what_is_undetermined_looks_like_no_count() -> None:
         assert np.abs(np.array(to_rgb(face)) - grey).max() > 0.1
 
 
-@pytest.mark.parametrize(("result", "dpi"), [
-    pytest.param(circle(7), 100, id="100-circle"),
-    pytest.param(circle(7), 300, id="300-circle", marks=pytest.mark.slow),
-    pytest.param(crossing(7), 100, id="100-crossing"),
-    pytest.param(crossing(7), 300, id="300-crossing", marks=pytest.mark.slow),
-])  # fmt: skip
-@pytest.mark.slow_cases("100-crossing")
-def test_a_picture_shows_counts_where_they_are_and_grey_elsewhere(
-    result: RegionMap, dpi: int, tmp_path: Path
-) -> None:
-    image = map_pixels(result, tmp_path, dpi)
-    n = len(image)
-    raster = shapes(result).raster(n, n)[::-1]
-    same = np.ones_like(raster, dtype=np.bool_)
-    rim = ceil((CORE / 2 + RIM) * dpi / 72) + 1
-    for i in range(-rim, rim + 1):  # away from the rims
-        for j in range(-rim, rim + 1):
-            same &= np.roll(raster, (i, j), (0, 1)) == raster
-    same[:6] = same[-6:] = same[:, :6] = same[:, -6:] = False
-    for number in range(-1, len(result.regions)):
-        fill = UNDETERMINED if number < 0 else fill_of(result.regions[number], Count.STABLE)
-        inside = image[same & (raster == number)]
-        if len(inside):
-            assert np.abs(inside - np.array(to_rgb(fill.face))).max() < 0.01, number
-    assert (same & (raster >= 0)).sum() > 0.5 * n * n
-
-
 @pytest.mark.parametrize("dpi", [100, 150, 300])
 @pytest.mark.parametrize("width", [1e-5, 1e-4, 1e-3])
 @pytest.mark.fast_cases("0.0001-100")
@@ -101,14 +73,6 @@ def test_a_narrow_tube_is_seen_as_grey_between_its_rims(
     assert (middle > 0.02).sum() <= ceil((CORE + 2 * RIM) * dpi / 72 + width * SIDE * dpi) + 1
     if dpi == 300:
         assert np.abs(row - np.array(to_rgb(UNDETERMINED.face))).max(axis=1).min() < 0.05
-
-
-@pytest.mark.parametrize("dpi", [100, 300])
-@pytest.mark.slow_cases("300")
-def test_a_wide_strip_is_as_wide_as_it_is(dpi: int, tmp_path: Path) -> None:
-    image = map_pixels(tube(0.25, 0.5), tmp_path, dpi)
-    grey = np.abs(image[len(image) // 2] - np.array(to_rgb(UNDETERMINED.face))).max(axis=1) < 0.02
-    assert abs(int(grey.sum()) - SIDE * dpi / 4) <= 3 + (CORE + 2 * RIM) * dpi / 72
 
 
 def test_the_legend_tells_the_undetermined_share(tmp_path: Path) -> None:
@@ -136,15 +100,6 @@ def test_the_same_map_gives_the_same_bytes(suffix: str, tmp_path: Path) -> None:
     assert (tmp_path / f"first.{suffix}").read_bytes() == (
         tmp_path / f"second.{suffix}"
     ).read_bytes()
-
-
-@pytest.mark.slow
-def test_the_svg_of_many_rectangles_is_small(tmp_path: Path) -> None:
-    result = crossing(10)
-    assert result.cover is not None
-    assert len(result.cover.rectangles) > 30_000
-    draw(result, tmp_path / "map.svg")
-    assert (tmp_path / "map.svg").stat().st_size < 500_000
 
 
 def test_a_thin_region_is_marked_and_zoomed() -> None:
@@ -204,81 +159,9 @@ def test_simplified_polygons_stay_near_and_keep_their_corners(
         assert np.hypot(*(p - a - share[:, None] * along).T).min() <= TOLERANCE * 1.000001
 
 
-def distance(points: np.ndarray, polygon: np.ndarray) -> float:
-    """The largest one of a point from a closed polygon."""
-    a, along = polygon, np.roll(polygon, -1, axis=0) - polygon
-    offset = points[:, None] - a
-    share = np.clip((offset * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1)
-    return float(np.linalg.norm(offset - share[:, :, None] * along, axis=2).min(axis=1).max())
-
-
-@settings(deadline=None)
-@given(
-    st.lists(
-        st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=20),
-        min_size=1,
-        max_size=6,
-    )
-)
-def test_polygons_that_are_simplified_together_are_what_each_is_by_itself(
-    corners: list[list[tuple[int, int]]],
-) -> None:
-    """Empty ones, and such as collapse to a point, too."""
-    polygons = [np.array(each, dtype=float).reshape(-1, 2) for each in corners]
-    together = simplified_polygons(
-        np.concatenate(polygons), np.array([len(p) for p in polygons]), 1.5
-    )
-    assert [p.tolist() for p in together] == [
-        simplified_polygons(p, np.array([len(p)]), 1.5)[0].tolist() for p in polygons
-    ]
-
-
 def test_a_triangle_stays_however_flat() -> None:
     flat = np.array([[0.0, 0.0], [9.0, 0.0], [4.0, 0.1]])
     assert simplified_polygons(flat, np.array([len(flat)]), 1.5)[0].tolist() == flat.tolist()
-
-
-@pytest.mark.parametrize("height", [3.0, 0.3])
-def test_a_long_flight_of_stairs_is_simplified_in_few_steps(
-    height: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Halving splits off stair by stair: so many stairs, higher than the tolerance, took half as
-    many steps.
-    """
-    steps: list[int] = []
-    measured = polylines._distances
-
-    def counted(points: Floats, a: Floats, b: Floats) -> Floats:
-        steps.append(len(points))
-        return measured(points, a, b)
-
-    monkeypatch.setattr(polylines, "_distances", counted)
-    rises = np.repeat(np.cumsum(np.linspace(1.0, 1.2, 400)), 2) * height * TOLERANCE
-    stairs = np.concatenate([np.stack([rises[1:], rises[:-1]], axis=1), [[0.0, rises[-1]]]])
-    few = simplified_polygons(stairs, np.array([len(stairs)]), TOLERANCE)[0]
-    assert len(steps) <= 70
-    assert {tuple(p) for p in few.tolist()} <= {tuple(p) for p in stairs.tolist()}
-    assert distance(stairs, few) <= TOLERANCE * 1.000001
-    assert len(few) > 760 if height > 1 else len(few) < 30
-
-
-def test_outlines_are_simplified_once_for_a_view(monkeypatch: pytest.MonkeyPatch) -> None:
-    """However many regions and lines are drawn; and none of a polygon that is not in the view."""
-    sizes: list[int] = []
-    once = coveroutline.simplified_polygons
-
-    def counted(points: Floats, each: np.ndarray, tolerance: float) -> list[Floats]:
-        sizes.append(len(each))
-        return once(points, each, tolerance)
-
-    monkeypatch.setattr(coveroutline, "simplified_polygons", counted)
-    result = tube(0.25, 0.5)
-    whole = shapes(result)
-    right = whole.in_view(View((Fraction(3, 2), Fraction(2)), (Fraction(0), Fraction(2))))
-    for seen in (whole, right):
-        drawn = [len(list(seen.polygons(number))) for number in range(len(result.regions))]
-        assert sum(drawn) == len(list(seen.edges())) == (2 if seen is whole else 1)
-    assert sizes == [2, 1]
 
 
 # ------------------------------------------------------------------------------------------------------- the page
@@ -329,35 +212,6 @@ def test_a_damaged_certified_map_has_no_page(fault: str) -> None:
         damaged = replace(first, stack=0)
     with pytest.raises(ConfigError, match="contradicts itself"):
         page(replace(result, cells=(damaged, second)))
-
-
-def test_a_stored_certified_map_has_a_page_and_pictures(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "map.json"
-    path.write_text(circle(6).to_json(), encoding="utf-8")
-    assert run(["report", str(path)]) == 0
-    assert "Certified result." in (tmp_path / "map.html").read_text(encoding="utf-8")
-    assert run(["plot", str(path), "--format", "png,svg", "--dpi", "100"]) == 0
-    assert capsys.readouterr().out.splitlines()[1:] == [
-        str(tmp_path / "map.png"),
-        str(tmp_path / "map.svg"),
-    ]
-    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_a_damaged_certified_map_has_no_picture(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    made = circle(6)
-    first = replace(made.cells[0], sample=Point(made.slice.axis_names, Fraction(1, 2), Fraction(1)))
-    (tmp_path / "map.json").write_text(
-        replace(made, cells=(first, made.cells[1])).to_json(), encoding="utf-8"
-    )
-    assert run(["plot", str(tmp_path / "map.json")]) == 2
-    message = capsys.readouterr().err
-    assert "contradicts itself" in message and message.count("\n") == 1
-    assert [path.name for path in tmp_path.iterdir()] == ["map.json"]
 
 
 @pytest.mark.parametrize(

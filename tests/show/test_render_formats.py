@@ -6,22 +6,15 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from matplotlib.figure import Figure
 from support.maps import shipped
 
 from ptmcad.show.render import draw
-from ptmcad.show.render.printing import save
 from ptmcad.show.style import styled
 
 
 def drawn(folder: Path, suffix: str, **options: object) -> bytes:
     draw(shipped("fig4"), folder / f"map.{suffix}", style=styled(**options))  # type: ignore[arg-type]
     return (folder / f"map.{suffix}").read_bytes()
-
-
-@pytest.mark.slow
-def test_the_same_bytes_twice(tmp_path: Path) -> None:
-    assert drawn(tmp_path, "eps") == drawn(tmp_path, "eps")
 
 
 @pytest.mark.slow
@@ -50,11 +43,3 @@ def test_svg_has_text_that_can_be_searched_in_fonts_that_are_there(tmp_path: Pat
     assert {"equilibria", "area 3.2536", "0.5", "L₂ (length)", "a < b & 'DejaVu Sans'"} <= set(said)
     for text in texts:
         assert "'DejaVu Sans', 'Bitstream Vera Sans', Verdana" in text.attrib["style"]
-
-
-def test_eps_is_silent_about_transparency(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    figure = Figure(figsize=(1, 1))
-    figure.text(0.5, 0.5, "x", alpha=0.5)
-    figure.set_label("title")
-    save(figure, tmp_path / "x.eps")
-    assert not caplog.records

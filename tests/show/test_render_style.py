@@ -18,7 +18,6 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.text import Annotation, Text
-from support.few import few
 from support.maps import CONFIGS, shipped
 from test_render import bands
 
@@ -28,24 +27,13 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count
 from ptmcad.show.render import draw
-from ptmcad.show.render.colours import GREYS, Fill, filler
+from ptmcad.show.render.colours import GREYS, filler
 from ptmcad.show.render.fitting import rewrapped
-from ptmcad.show.render.labels import overlap
-from ptmcad.show.render.layout import (
-    BOTTOM,
-    INSET_ABOVE,
-    INSET_BELOW,
-    INSET_LEFT,
-    LEFT,
-    WIDEST,
-    flowing,
-)
-from ptmcad.show.render.legend import Entry, Type, entries
+from ptmcad.show.render.legend import Type, entries
 from ptmcad.show.render.mappicture import MapDrawing, left_out
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.slivers import told_apart
 from ptmcad.show.style import MIN_FONT, PRESETS, LegendPlace, PictureStyle, styled
-from ptmcad.show.table import area_text
 
 SLIVERS = [Fraction(k // 2 + 1, 8) + (k % 2) * Fraction(1, 10**5) for k in range(6)]
 MAPS = {
@@ -141,67 +129,6 @@ def test_the_picture_has_the_size_that_is_asked_for(
 
 def legend_of(made: Figure) -> str:
     return " ".join(t.get_text() for t in made.texts)
-
-
-@pytest.mark.slow
-def test_insets_go_first_then_the_legend_moves_then_areas_go() -> None:
-    result = bands(SLIVERS[:2])
-    large, medium, small = (
-        figure(result, styled(size=size, font_size=8)) for size in ((7, 5), (3.5, 2.6), (2.9, 2.9))
-    )
-    assert [len(made.axes) for made in (large, medium, small)] == [2, 1, 1]
-    assert ["area" in legend_of(made) for made in (large, medium, small)] == [True, True, False]
-    arrows = [t.get_gid() for t in small.findobj(Text) if str(t.get_gid()).startswith("arrow")]
-    assert len(arrows) == 1, "what no inset shows is marked in the map"
-    tall = figure(shipped("fig4"), styled(size=(3.0, 3.8), font_size=8))
-    assert max(t.get_position()[1] for t in tall.texts[1:]) < tall.axes[0].get_position().y0 * 3.8
-
-
-def crowded(made: Figure) -> list[str]:
-    """What lies on what, of labels and of arrows: in which a label's own arrow is left out."""
-    canvas = FigureCanvasAgg(made)
-    canvas.draw()
-    labels = [t for t in made.findobj(Annotation) if str(t.get_gid()).startswith("arrow")]
-    boxes = [t.get_bbox_patch().get_window_extent() for t in labels]
-    arrows = [t.axes.transAxes.transform(np.array([t.xy, t.get_position()])) for t in labels]
-    met = [f"{a.get_text()} on {b.get_text()}" for (a, p), (b, q) in combinations(zip(labels, boxes, strict=True), 2)
-           if p.overlaps(q)]  # fmt: skip
-    for k, arrow in enumerate(arrows):
-        points = arrow[0] + np.linspace(0, 1, 200)[:, None] * (arrow[1] - arrow[0])
-        met += [f"arrow of {labels[k].get_text()} on {labels[n].get_text()}" for n, box in enumerate(boxes)
-                if n != k and any(box.contains(*point) for point in points)]  # fmt: skip
-    return met
-
-
-MANY = [Fraction(k // 2 + 1, 14) + (k % 2) * Fraction(1, 10**4) for k in range(26)]
-
-
-@pytest.mark.parametrize("size", few([(3.5, 2.6), (3.5, 3.2), (2.6, 2.6)], (3.5, 2.6)))
-def test_labels_that_no_inset_explains_are_apart_and_the_rest_is_told(
-    size: tuple[float, float],
-) -> None:
-    """First the count that is seen nowhere else, a label at a thin region; they are counts without
-    letters.
-    """
-    counts = [1 + k % 2 for k in range(27)]
-    counts[13] = 5
-    made = figure(bands(MANY, Fraction(0), counts), styled(size=size, font_size=7))
-    labels = [
-        t.get_text() for t in made.findobj(Annotation) if str(t.get_gid()).startswith("arrow")
-    ]
-    assert len(made.axes) == 1 and "5" in labels and set(labels) <= {"1", "2", "5"}
-    assert crowded(made) == []
-    hidden = re.search(r"(\d+) more regions? (?:are|is) too thin for a label", legend_of(made))
-    assert hidden is not None and int(hidden[1]) + len(labels) == 13
-
-
-@pytest.mark.slow
-def test_a_title_breaks_at_no_equals_sign() -> None:
-    words = "Some words and L1 = 1, L2 = 2, F3 = F4 = -10, k = 100 " * 2
-    made = figure(shipped("fig4"), styled(size=(3.5, 3.5), title=words))
-    lines = [t.get_text().replace("\N{NO-BREAK SPACE}", " ") for t in made.texts]
-    title = lines[: next(k for k, line in enumerate(lines) if line.startswith("Stable"))]
-    assert len(title) > 1 and not any(line.startswith("=") or line.endswith("=") for line in title)
 
 
 def test_without_a_legend_there_is_none() -> None:
@@ -376,19 +303,6 @@ def thin_curves(made: Figure) -> list[object]:
     return [a for a in made.findobj(LineCollection) if str(a.get_gid()).endswith("-thin")]
 
 
-def test_what_no_inset_shows_is_named_on_the_map_and_the_legend_has_its_curve() -> None:
-    """Neither does a journal's column drop what the default picture shows."""
-    result = shipped("fig4")
-    assert "another curve" in legend_of(figure(result, styled(size="6x4in", font_size=9)))
-    small = figure(result, styled("ieee"))
-    assert len(small.axes) == 1 and "another curve" in legend_of(small) and thin_curves(small)
-    (arrow,) = [t for t in small.findobj(Annotation) if str(t.get_gid()).startswith("arrow")]
-    assert arrow.get_text() == "1 of 6"
-    box = arrow.get_bbox_patch().get_window_extent(FigureCanvasAgg(small).get_renderer())
-    chart = small.axes[0].get_window_extent()
-    assert chart.x0 <= box.x0 and box.x1 <= chart.x1 and chart.y0 <= box.y0 and box.y1 <= chart.y1
-
-
 def test_a_line_in_the_legend_has_something_to_show_and_what_is_shown_has_a_line() -> None:
     result = shipped("fig4")
     thin = replace(result, slice=replace(result.slice, count=Count.TOTAL))
@@ -410,44 +324,6 @@ def test_a_line_in_the_legend_has_something_to_show_and_what_is_shown_has_a_line
     assert tiny.unnamed == 1 and not tiny.thin_lines and not tiny.views
 
 
-@pytest.mark.slow
-def test_what_has_no_room_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "fig4.json"
-    path.write_text(shipped("fig4").to_json())
-    assert run(["plot", str(path), "--style", "ieee", "--format", "pdf"]) == 0
-    assert "fig4.pdf has no room for 1 zoomed view" in capsys.readouterr().err
-    assert run(["plot", str(path), "--format", "pdf"]) == 0
-    assert not capsys.readouterr().err
-    with settings():
-        assert left_out(*MapDrawing(shipped("fig4"), styled(size="3x1.6in"), 100).fit()) == (
-            "1 zoomed view of parts that are too thin to be seen", "the areas in the legend"
-        )  # fmt: skip
-
-
-def test_areas_are_those_of_the_table() -> None:
-    for result in (
-        shipped("fig4"),
-        shipped("fig2"),
-        bands([Fraction(k, 40) for k in range(1, 13)]),
-    ):
-        said = legend_of(figure(result, styled(size="7x6in", font_size=9)))
-        for region in result.regions if len(result.regions) < 9 else ():
-            assert (
-                area_text(result, region.area) in said
-                and area_text(result, region.area) in result.table()
-            )
-    assert "7 regions, in all 0.85" in said
-
-
-def test_the_legend_says_of_how_many_solutions_even_where_these_differ() -> None:
-    assert "1 of 4 or 6 equilibria" in legend_of(
-        figure(shipped("fig4"), styled(size="6x4in", font_size=9))
-    )
-    assert "1 of 4 equilibria" in legend_of(
-        figure(shipped("fig2"), styled(size="6x4in", font_size=9))
-    )
-
-
 @pytest.mark.parametrize("size", ["3.5x3in", "8x5in"])
 @pytest.mark.slow_cases("8x5in")
 def test_no_text_is_smaller_than_is_read_on_paper(size: str) -> None:
@@ -463,29 +339,6 @@ def test_no_text_is_smaller_than_is_read_on_paper(size: str) -> None:
 def test_a_palette_with_one_colour_twice_is_refused(palette: str) -> None:
     with pytest.raises(ConfigError, match="is there twice"):
         styled("default", palette=palette)
-
-
-@pytest.mark.parametrize("number", range(13))
-def test_however_much_is_zoomed_a_picture_is_at_most_so_wide(number: int) -> None:
-    legend = [Entry(("count", "area"), Fill("#ffffff"))] * 8
-    made = flowing(["title"], legend, Type(), number)
-    assert len(made.insets) == number and made.size[0] <= WIDEST < 11.1
-    boxes = [
-        (x - INSET_LEFT, y - INSET_BELOW, x + w, y + h + INSET_ABOVE) for x, y, w, h in made.insets
-    ] + [
-        (
-            made.chart[0] - LEFT,
-            made.chart[1] - BOTTOM,
-            made.chart[0] + made.chart[2],
-            made.chart[1] + made.chart[3],
-        )
-    ]
-    inner = [(a + 1e-6, b + 1e-6, c - 1e-6, d - 1e-6) for a, b, c, d in boxes]
-    assert not any(overlap(a, b) for a, b in combinations(inner, 2))
-    assert all(
-        a + 1e-9 >= 0 and b + 1e-9 >= 0 and c <= made.size[0] and d <= made.size[1]
-        for a, b, c, d in boxes
-    )
 
 
 def test_a_heading_of_two_lines_is_in_one_size() -> None:

@@ -10,24 +10,21 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import pi
 from pathlib import Path
-from typing import Any
 
 import pytest
 from support import browser as chromium
-from support import shipped_records
 from support.browser import Browser
 from support.certified_maps import certified
 from support.maps import CONFIGS
 from support.maps import shipped as computed
 
 import ptmcad
-from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover.rectangles import Cover
 from ptmcad.show.report import page
 
 pytestmark = pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
 
-PAPER = ("fig2", "fig3", "fig4", "fig5-text", "fig5-caption")
 FEW = """(() => { const shown = document.querySelector('#poses');
   return { head: (shown.querySelector('h3') || {}).textContent || '',
     poses: shown.querySelectorAll('.pose').length, stable: shown.querySelectorAll('.pose.stable').length,
@@ -429,43 +426,6 @@ def test_the_policy_stops_what_is_not_the_pages_own(view: Callable[..., Browser]
     assert len(sent) == sum(e["params"].get("blockedReason") == "csp" for e in blocked)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=() if name in ("fig4", "fig5-text") else pytest.mark.slow)
-        for name in PAPER
-    ],
-)
-@pytest.mark.slow_cases("fig5-text")
-def test_it_opens_within_a_second_and_is_small(view: Callable[..., Browser], name: str) -> None:
-    """The least of three: the machine may be doing something else."""
-    assert len(page(computed(name)).encode()) < 300_000
-    times = []
-    for _ in range(3):
-        b = view(name)
-        b.until("performance.getEntriesByType('navigation')[0].loadEventEnd > 0")
-        times.append(b.run("performance.getEntriesByType('navigation')[0].loadEventEnd"))
-        quiet(b, name)
-    assert min(times) < 1000, times
-    print(f"{name}: {min(times):.0f} ms")
-
-
-EXACT = [
-    path.relative_to(CONFIGS).with_suffix("").as_posix()
-    for path in (*shipped_records.EXACT, *shipped_records.OTHER)
-    if path.stem not in shipped_records.LINES_ONLY
-]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", EXACT)
-def test_the_page_of_every_shipped_slice_is_small(name: str) -> None:
-    """That of four oscillators has a curve of 809 terms, and up to 14 solutions in each cell."""
-    assert len(page(computed(name)).encode()) < (
-        600_000 if name == "systems/kuramoto-4" else 300_000
-    )
-
-
 def test_reduced_motion_and_print(view: Callable[..., Browser], tmp_path: Path) -> None:
     b = view("fig4")
     assert b.run("getComputedStyle(document.documentElement).scrollBehavior") == "smooth"
@@ -496,81 +456,6 @@ def test_reduced_motion_and_print(view: Callable[..., Browser], tmp_path: Path) 
     )
     assert (tmp_path / "fig4-print.pdf").read_bytes().startswith(b"%PDF")
     quiet(b, "fig4")
-
-
-CRANE: dict[str, Any] = {
-    "mechanism": {
-        "parameters": {
-            "a": {"kind": "length"},
-            "k": {"kind": "stiffness", "default": 10},
-            "W": {"kind": "force"},
-        },
-        "unknowns": {"th": "angle", "s": "length"},
-        "points": {
-            "O": [0, 0],
-            "B": [0, 1],
-            "S": ["s*cos(th)", "s*sin(th)"],
-            "T": ["a*cos(th)", "a*sin(th)"],
-        },
-        "bars": [["O", "T"]],
-        "springs": [{"between": ["B", "S"], "k": "k"}, {"between": ["S", "T"], "k": "k"}],
-        "loads": {"T": {"weight": "W"}},
-    },
-    "axes": {"a": ["1/2", 3], "W": [0, 20]},
-}
-
-
-def test_all_poses_of_a_cell_are_at_one_scale_however_tall_one_of_them_is(
-    one: Browser, tmp_path: Path
-) -> None:
-    """A card does not exceed a height: where a tall pose is shrunk to it, the others are shrunk
-    alike.
-    """
-    path = tmp_path / "crane.html"
-    path.write_text(page(ptmcad.classify(CRANE, areas=False)), encoding="utf-8")
-    one.media(prefers_color_scheme="light")
-    for width in (1200, 620, 380):
-        one.size(width, 900)
-        one.open(path)
-        one.run("choose(0, false)")
-        scales = one.run(
-            "[...document.querySelectorAll('#poses .pose svg')].map((one) => one.getScreenCTM().a)"
-        )
-        # the frame of a stable pose is a pixel wider
-        assert len(scales) > 2 and max(scales) < 1.03 * min(scales)
-        heads = one.run(
-            "[...document.querySelectorAll('#poses .load-head')].map((head) => head.getBoundingClientRect())"
-            ".map((box) => Math.hypot(box.width, box.height))"
-        )
-        assert len(heads) == len(scales) and max(heads) < 1.5 * min(heads) and max(heads) < 40
-    assert one.complaints() == []
-
-
-def test_partial_results_open_too(one: Browser, tmp_path: Path) -> None:
-    result = computed("fig4")
-    empty = RegionMap.from_json(
-        replace(result, status=Status.PARTIAL, cells=(), stacks=(), regions=(), adjacencies=(), non_adjacencies=(),
-                critical_values=(), components=tuple(replace(c, separates=False) for c in result.components)).to_json()
-    )  # fmt: skip
-    file = tmp_path / "partial.html"
-    file.write_text(page(empty), encoding="utf-8")
-    one.media(prefers_color_scheme="light")
-    one.size(1200, 900)
-    one.open(file)
-    assert "Partial result." in one.run("document.querySelector('.banner').textContent")
-    assert one.run("document.querySelector('#readout').textContent") == "No cells are known yet."
-    assert one.complaints() == []
-
-
-@pytest.mark.slow
-def test_every_cell_of_every_slice_can_be_chosen(view: Callable[..., Any]) -> None:
-    for name, count in (("fig2", None), ("fig3", "index"), ("forces", None), ("rods", "total")):
-        b = view(name, count)
-        for number, cell in enumerate(computed(name, count).cells):
-            b.run(f"choose({number}, true)")
-            shown = b.run(FEW)
-            assert (shown["poses"], shown["stable"]) == (cell.total, cell.stable)
-        quiet(b, name, count)
 
 
 def test_a_landscape_under_a_moment_is_level_at_the_equilibria(
@@ -617,46 +502,3 @@ def test_a_landscape_under_a_moment_is_level_at_the_equilibria(
         # moments are 1 / 5 and more
         assert all(abs(rise) / (2 * step) < 5 * step for rise in rises[:2]) and abs(rises[2]) < 1e-3
     assert one.complaints() == []
-
-
-def test_torsion_springs_are_drawn_at_their_joints_and_told_in_numbers(
-    one: Browser, tmp_path: Path
-) -> None:
-    record = {
-        "name": "bent",
-        "mechanism": {
-            "parameters": {"c": {"kind": "stiffness"}, "W": {"kind": "force"}},
-            "unknowns": {"th": "angle"},
-            "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
-            "bars": [["O", "P"]],
-            "torsion": [{"angle": "th", "k": "c", "rest": "pi/2"}, {"angle": "2*th", "k": "1/9"}],
-            "loads": {"P": {"weight": "W"}},
-        },
-        "axes": {"c": ["1/10", 1], "W": [0, 2]},
-    }
-    result = ptmcad.classify(record)
-    path = tmp_path / "bent.html"
-    path.write_text(page(result), encoding="utf-8")
-    one.size(1200, 900)
-    one.open(path)
-    one.run("choose(0, false)")
-    found = one.run(
-        "(() => { const box = (part) => part.getBoundingClientRect();"
-        " const middle = ({ left, top, width, height }) => [left + width / 2, top + height / 2];"
-        " return [...document.querySelectorAll('#poses .pose')].map((pose) =>"
-        " [...pose.querySelectorAll('.torsion')].map((part) => {"
-        " const [here, frame] = [box(part), box(pose.querySelector('svg'))];"
-        " const [[x, y], [u, v]] = [here, box(pose.querySelector('.node'))].map(middle);"
-        " const inside = here.top >= frame.top && here.left >= frame.left && here.right <= frame.right"
-        " && here.bottom <= frame.bottom;"
-        " return { away: Math.hypot(x - u, y - v) / here.width, inside }; })) })()"
-    )
-    assert len(found) == result.cells[0].total
-    for springs in found:
-        assert len(springs) == 1, "the joint of the other one is not known"
-        assert springs[0]["away"] < 0.15 and springs[0]["inside"]
-    text = one.run("document.querySelector('#poses').textContent")
-    assert "spirals: torsion springs on θ at O; torsion springs on 2*θ are not drawn" in text
-    assert "deflection θmoment θdeflection 2*θmoment 2*θ" in text
-    assert one.complaints() == []
-    one.picture("torsion.png")

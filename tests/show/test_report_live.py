@@ -191,37 +191,6 @@ def test_no_point_is_said_to_be_in_a_cell_that_it_is_not_in(
     assert near > 15
 
 
-def test_what_is_pointed_at_is_what_is_there(view: Callable[..., Browser]) -> None:
-    """Of a map that is drawn so large that a pointer's whole pixels are much smaller than the rims."""
-    result = crossing(7)
-    assert result.cover is not None
-    b = view(result)
-    b.run("Object.assign(document.querySelector('#map').style, { position: 'fixed', left: 0, top: 0, maxWidth: 'none',"
-          " width: '80000px', zIndex: 9 })")  # fmt: skip
-    across = """([x, y]) => {
-      const map = document.querySelector('#map');
-      map.style.left = map.style.top = 0;
-      const box = map.querySelector('.frame').getBoundingClientRect();
-      map.style.left = `${600 - Math.round(box.left + x * box.width)}px`;
-      map.style.top = `${500 - Math.round(box.top + (1 - y) * box.height)}px`;
-      return Array.from({ length: 51 }, (_, k) => {
-        const at = { clientX: 500 + 4 * k, clientY: 500 };
-        return [document.elementFromPoint(at.clientX, at.clientY).dataset.cell || null, ...shareAt(at)];
-      });
-    }"""
-    chosen = random.Random(8).choices(result.cover.rectangles, k=40)
-    sides = [
-        (right / result.cover.steps, (bottom + top) / 2 / result.cover.steps)
-        for _, right, bottom, top in chosen
-    ]
-    seen = set()
-    for found, x, y in (one for row in b.run(f"{json.dumps(sides)}.map({across})") for one in row):
-        true = result.locate(rho=2 * x, L2=2 * y).cell
-        seen.add((found is None, true is None))
-        assert found is None or int(found) == true, (x, y)
-    assert seen == {(True, True), (True, False), (False, False)}
-
-
 def test_at_a_sample_the_cell_is_known_however_near_its_rims_are(
     view: Callable[..., Browser],
 ) -> None:
@@ -321,23 +290,6 @@ def test_a_finger_drags_the_point_and_scrolls_beside_it(view: Callable[..., Brow
     b.picture("fig4-live-phone.png")
 
 
-def test_keys_move_the_point(view: Callable[..., Browser]) -> None:
-    b = view(computed("fig4"))
-    move(b, 0.5, 0.5)
-    b.run("live.probe.focus()")
-    b.press("ArrowRight", "ArrowRight", "ArrowUp")
-    assert b.run(SHARE) == pytest.approx([0.51, 0.505])
-    b.press("ArrowLeft", "ArrowDown", shift=True)
-    assert b.run(SHARE) == pytest.approx([0.46, 0.455])
-    assert b.run("document.querySelector('#said').textContent") == b.run(STATUS) != ""
-    assert (
-        b.run("getComputedStyle(document.querySelector('.probe .ring')).strokeWidth") == "5px"
-    )  # the focus is seen
-    for _ in range(12):
-        b.press("ArrowLeft", shift=True)
-    assert b.run(SHARE)[0] == 0.0005  # it stays in the window
-
-
 def test_a_slider_leads_to_the_snap(view: Callable[..., Browser]) -> None:
     """It is at the map's wall: exact poses have what vanishes there on one side, and where it goes
     to on the other.
@@ -417,60 +369,3 @@ def test_at_a_degenerate_point_it_says_so(view: Callable[..., Browser]) -> None:
     assert "none is drawn" in b.run(STATUS) and b.run("live.found.length") == 0
     move(b, 0.53125, 0.5)
     assert b.run("live.found.length") == result.cells[b.run("live.cell")].total
-
-
-def test_paper_shows_no_controls(view: Callable[..., Browser], tmp_path: Path) -> None:
-    b = view(computed("fig4"))
-    shown = "[...document.querySelectorAll('button, .axis, .hint, #readout')].filter((e) => e.checkVisibility()).length"
-    assert b.run(shown) > 10
-    b.media(media="print")
-    chips = b.run(
-        "[...document.querySelectorAll('.chip')].filter((e) => e.checkVisibility()).length"
-    )
-    assert b.run(shown) == chips == 22
-    b.printed(tmp_path / "fig4-live-print.pdf")
-    # the landscape has light colours on paper, whatever the screen has
-    b.media(prefers_color_scheme="dark")
-    b.until("document.querySelector('#live .landscape') !== null")
-    shade = "(() => { const copy = document.createElement('canvas').getContext('2d', { willReadFrequently: true });"
-    shade += "copy.drawImage(document.querySelector('#live canvas'), 0, 0); const all = copy.getImageData(0, 0, 256, 256)"
-    shade += ".data; return Math.max(...all.filter((_, k) => k % 4 === 0)); })()"
-    dark = b.run(shade)
-    b.media(prefers_color_scheme="dark", media="print")
-    b.until(f"{shade} > {dark}")
-    assert b.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
-    b.media(media="")
-    b.run("show(8)")
-    b.media(media="print")
-    assert b.run(shown) == chips + 1  # what was pointed at says something
-
-
-def test_a_system_without_points_is_listed(view: Callable[..., Browser]) -> None:
-    result = ptmcad.classify(
-        ptmcad.load(CONFIGS / "systems" / "schloegl.yaml"), area_tolerance="1/10"
-    )
-    b = view(result)
-    move(b, 0.5, 0.5)
-    cell = result.cells[b.run("live.cell")]
-    assert b.run("document.querySelectorAll('#live .live-body li').length") == cell.total
-
-
-def test_no_step_leaps_over_a_snap(view: Callable[..., Browser]) -> None:
-    """However far the point is thrown: the pose is followed to the wall, found there, and falls
-    once.
-    """
-    b = view(computed("fig4"))
-    for y in (0.5625, 0.625, 0.6875, 0.75, 0.8125, 0.875, 0.9375):
-        falls, ends = b.run(
-            f"(() => {{ const y = {y}; let x = 0.02; moveProbe([x, y]);"
-            " while (live.found.length < 6) moveProbe([x += 0.01, y]);"
-            " const start = pointOf([x + 0.05, y]); const { found } = solutionsAt(start, cellAt([x + 0.05, y]));"
-            " const end = pointOf([0.02, y]);"
-            " const falls = (one) => followed(start, end, one.at).snaps.map((snap) => snap.point[0] / 2);"
-            " return [found.filter((one) => one.kind === 'stable').map(falls), x]; })()"
-        )
-        assert sorted(map(len, falls)) == [0, 1]
-        at = max(falls)[0]
-        assert ends - 0.0101 < at < ends
-        beside = [f"DATA.cells[cellAt([{at + shift}, {y}])].stable" for shift in (-0.002, 0.002)]
-        assert [b.run(text) for text in beside] == [1, 2]

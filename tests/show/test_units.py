@@ -18,7 +18,6 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.model import ptm
 from ptmcad.question.config import slice_from
-from ptmcad.show.render.axes import axis_name
 from ptmcad.show.report.reportpage import page
 from ptmcad.show.units import area_unit, energy_unit, unit
 
@@ -28,18 +27,6 @@ RECORD = {
     "parameters": {"F3": -10, "F4": -10},
     "units": {"length": "mm", "force": "N"},
 }
-
-
-@pytest.mark.slow
-def test_axes_and_areas_have_the_declared_units() -> None:
-    result = ptmcad.classify(RECORD)
-    assert [axis_name(result.slice, k) for k in (0, 1)] == ["ρ (mm)", "L₂ (mm)"]
-    assert "1: 3.2536 mm²; 2: 0.7464 mm²" in result.table()
-    said = [
-        t.get_text() for t in result.plot(style="ieee").findobj(lambda a: hasattr(a, "get_text"))
-    ]
-    assert {"ρ (mm)", "L₂ (mm)"} <= set(said)
-    assert "area 0.7464 mm²" in " ".join(said)  # perhaps on two lines, as narrow as a column is
 
 
 @pytest.mark.parametrize(
@@ -115,76 +102,6 @@ def test_units_of_quantities(units: dict[str, str], expected: list[str]) -> None
     slice = slice_from({**RECORD, "units": units})
     names = ("energy", "force:k1", "length:k1", "th1")
     assert [unit_of(quantity(slice.model, name), slice) for name in names] == expected
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("coarse")
-@pytest.mark.parametrize(
-    ("units", "energy", "force"),
-    [
-        ({"length": "mm", "force": "N"}, "N·mm", "N"),
-        ({"length": "mm"}, "force × mm", "force"),
-        ({}, "force × length", "force"),
-    ],
-)
-def test_quantities_have_the_declared_units(
-    units: dict[str, str],
-    energy: str,
-    force: str,
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    (tmp_path / "u.yaml").write_text(json.dumps({"name": "u", **RECORD, "units": units}))
-    config, out = str(tmp_path / "u.yaml"), ["--out", str(tmp_path)]
-    asked = ["--along", "rho", "--at", "L2=3/2", "--over", "L2", "--rows", "3", "--path", "1"]
-    quantities = ["--quantity", "energy", "--quantity", "force:k1", "--quantity", "th1"]
-    assert run(["range", config, *asked, *quantities, "--format", "json,svg", *out]) == 0
-    head = next(
-        line
-        for line in capsys.readouterr().out.splitlines()
-        if line.startswith("from ") and "kind" in line
-    )
-    assert re.split(r"  +", head)[3:] == [
-        f"energy ({energy})",
-        f"force:k1 ({force})",
-        "th1 (degrees)",
-    ]
-    assert json.loads((tmp_path / "u-range.json").read_text())["branches"]["units"] == [
-        energy,
-        force,
-        "degrees",
-    ]
-    length = units.get("length", "length")
-    for part, words in {
-        "-branches": [f"energy ({energy})", f"force k₁ ({force})", "θ₁ (degrees)", f"ρ ({length})"],
-        "-over": [f"L₂ ({length})", f"ρ ({length})", f"operation range ({length})"],
-        "-path": ["θ₁ (degrees)", f"ρ ({length})"],
-    }.items():
-        root = ElementTree.parse(tmp_path / f"u-range{part}.svg").getroot()
-        said = {text.text for text in root.iter("{http://www.w3.org/2000/svg}text")}
-        assert set(words) <= said
-    assert (
-        run(
-            [
-                "map",
-                config,
-                "--value",
-                "energy",
-                "--pixels",
-                "9",
-                "--checks",
-                "0",
-                "--format",
-                "svg",
-                *out,
-            ]
-        )
-        == 0
-    )
-    assert re.search(rf"energy of stable:1: \S+ to \S+ {energy}, at", capsys.readouterr().out)
-    root = ElementTree.parse(tmp_path / "u-energy-stable-1.svg").getroot()
-    said = {text.text for text in root.iter("{http://www.w3.org/2000/svg}text")}
-    assert {f"energy ({energy})", f"ρ ({length})", f"L₂ ({length})"} <= said
 
 
 @pytest.mark.parametrize(

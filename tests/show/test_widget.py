@@ -5,8 +5,6 @@ drives.
 from __future__ import annotations
 
 import json
-import re
-import shutil
 from collections.abc import Iterator
 from fractions import Fraction
 from importlib.util import find_spec
@@ -16,7 +14,7 @@ from typing import Any
 import pytest
 from support import browser as chromium
 from support.browser import Browser
-from support.maps import CONFIGS, shipped
+from support.maps import shipped
 
 from ptmcad import extras
 from ptmcad.errors import ConfigError, PtmcadError
@@ -41,19 +39,6 @@ def test_the_point_has_its_exact_poses() -> None:
     widget.point = {"L2": 1, "rho": "1.25"}
     assert widget.point == {"rho": 1.25, "L2": 1.0}
     assert widget.poses.stable == 1
-
-
-@pytest.mark.slow
-@needs_anywidget
-def test_the_manual_says_what_it_shows(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    text = (CONFIGS.parent / "docs" / "how-to.md").read_text(encoding="utf-8")
-    (lines,) = re.findall(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
-    shutil.copy(CONFIGS / "fig4.yaml", tmp_path)
-    monkeypatch.chdir(tmp_path)
-    exec(lines, {})
-    assert capsys.readouterr().out == f"{lines.rpartition('#')[2].strip()}\n"
 
 
 @needs_anywidget
@@ -180,23 +165,3 @@ def test_a_drag_tells_python_where_it_rests(view: Browser) -> None:
     told = view.run("saved.at(-1)")
     assert (told["rho"], told["L2"]) == pytest.approx((0.7, 1.5), abs=0.02)
     assert inside(view, "pointOf(live.share)") == pytest.approx([told["rho"], told["L2"]])
-
-
-@pytest.mark.slow
-def test_python_moves_the_point_and_answers(view: Browser) -> None:
-    before = view.run("saved.length")
-    view.run(
-        "model.set('point', {rho: 1.5, L2: 0.5}); model.set('_answer', 'four <b>of them</b>'); 0"
-    )
-    view.until("document.querySelector('.ptmcad-answer').textContent === 'four <b>of them</b>'")
-    for _ in range(200):
-        if inside(view, "pointOf(live.share)") == pytest.approx([1.5, 0.5]):
-            break
-    else:
-        raise AssertionError("the point has not moved")
-    assert "exact count of this region: 1 stable of 4 equilibria" in inside(
-        view, "live.status.textContent"
-    )
-    assert (
-        view.run("new Promise((done) => setTimeout(() => done(saved.length), 400))") == before
-    )  # no echo

@@ -136,19 +136,3 @@ def test_bad_input(
         status = end.code
     assert status == 2
     assert message in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_ablation(tmp_path: Path) -> None:
-    """One round on the smallest slice: every saving is there, and nothing differs."""
-    assert (
-        command.main(
-            ["ablation", str(CONFIGS / "fig2.yaml"), "--rounds", "1", "--out", str(tmp_path)]
-        )
-        == 0
-    )
-    rows = json.loads((tmp_path / "ablation.json").read_text(encoding="utf-8"))["rows"]
-    assert {row["subject"] for row in rows} == {"fig2", "fig2, axes exchanged"}
-    assert {"all made", "axis-order", "imports", "all"} <= {row["setting"] for row in rows}
-    assert {row["differs"] for row in rows} == {""}
-    assert all(row["over all made"] > 0 for row in rows)

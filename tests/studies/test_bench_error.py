@@ -13,16 +13,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from flint import fmpq
 from hypothesis import given
 from hypothesis import strategies as st
 from support.maps import shipped
 
 import ptmcad
-from ptmcad.algebra.polynomials import from_plane
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.exact.cad.polyline import FLAT, WallBranch, chains, chords
-from ptmcad.exact.cad.projection import curve
 from ptmcad.studies import byhand
 from ptmcad.studies.bench.error import (
     COUNTS,
@@ -36,7 +32,6 @@ from ptmcad.studies.bench.error import (
     truths,
 )
 from ptmcad.studies.bench.study import question
-from ptmcad.text.plane import PlanePolynomial
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 ZERO, ONE = Fraction(0), Fraction(1)
@@ -154,33 +149,6 @@ def test_half_plane_of_known_error(n: int, expected: Fraction) -> None:
     assert low <= expected <= high < low + 1e-5
 
 
-def test_walls_that_leave_a_cusp_side_by_side_are_shut_in() -> None:
-    """(2 v - 1)^2 = u^7: near 0 the walls are too close together for slopes to be proved, but not
-    for heights.
-    """
-    source = curve(
-        0, from_plane(PlanePolynomial.of([(0, 2, 4), (0, 1, -4), (0, 0, 1), (7, 0, -1)])), 0
-    )
-    unit = (fmpq(0), fmpq(1))
-    span = (Fraction(1, 2**32), 1 - Fraction(1, 2**32))
-    for root, side in ((0, -1), (1, 1)):
-        found = chords(
-            WallBranch(source, root, unit, unit), span, Fraction(1, 2**18), Fraction(1, 2**24)
-        )
-        assert len(found) < 2000
-        assert max(c.distance for c in found) <= FLAT
-        assert sum(c.distance * (c.right - c.left) for c in found) < Fraction(1, 2**17)
-        for c in found:
-            for part in (Fraction(1, 9), Fraction(1, 2), Fraction(8, 9)):
-                x = c.left + (c.right - c.left) * part
-                line = c.at_left + (c.at_right - c.at_left) * part
-                # the wall's v is 1/2 + side sqrt(u^7) / 2: both ends of the chord's band, squared
-                # exactly
-                ends = [2 * side * (line + s * c.distance - Fraction(1, 2)) for s in (-1, 1)]
-                low, high = min(ends), max(ends)
-                assert (low < 0 or low**2 <= x**7) and high > 0 and x**7 <= high**2
-
-
 def test_blank_picture_of_fig3_is_wrong_where_two_are_stable() -> None:
     """The reference's area 7.352277514 of 20; the other counts' regions add up to the rest."""
     found, known = exact("fig3")
@@ -191,19 +159,6 @@ def test_blank_picture_of_fig3_is_wrong_where_two_are_stable() -> None:
     assert high - low < 1e-5
     assert len(known["stable"].counts) == 3
     assert len(known["index"].counts) == 4 == 1 + max(known["index"].region_of)
-
-
-@pytest.mark.slow
-def test_walls_are_within_their_distances() -> None:
-    """At many places the isolated roots are no further from the polyline than is claimed."""
-    found, known = exact("fig3")
-    lines = chains(found, Fraction(1, 2**19))
-    assert max(w.distance for w in known["index"].walls) < 2.0**-11
-    edge = 2
-    assert {len(w.points) for w in known["index"].walls} <= {
-        edge,
-        *(len(c.points) for walls in lines for c in walls),
-    }
 
 
 def test_error_of_grids_shrinks_with_their_pixels() -> None:

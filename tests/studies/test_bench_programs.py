@@ -208,27 +208,6 @@ def test_singular_gets_the_system_in_names_of_its_own(
     assert "eliminate(std(i), v0);" in script
 
 
-def test_curves_are_compared_as_sets_of_irreducible_ones() -> None:
-    result = shipped("fig2")
-    lines = [
-        c.polynomial.text(("u0", "u1")).replace(" ", "")
-        for c in result.components
-        if c.kind.value == "critical"
-    ]
-    product = programs.curves(lines, factors=True)
-    assert programs.same_curves(result, product)[0]
-    both = programs.curves(["2*u0^2-2*u1^2", "1/3*u0+1/3*u1"])
-    assert both == programs.curves(["u0+u1"], factors=True)
-    assert not programs.same_curves(result, set(list(product)[1:]))[0]
-    other = programs.curves(["7*u0-3*u1"])
-    assert programs.same_curves(result, product | other) == (
-        False,
-        "4 of 4 critical curves, 1 others",
-    )
-    with pytest.raises(ValueError, match="not understood"):
-        programs.curves(["u0+q"])
-
-
 def printed(samples: Sequence[tuple[Fraction, Fraction]]) -> str:
     """QEPCAD's words for open cells with these samples."""
     return "".join(

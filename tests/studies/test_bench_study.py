@@ -4,12 +4,8 @@ command itself.
 
 from __future__ import annotations
 
-import csv
 import json
-from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -24,10 +20,8 @@ from ptmcad.errors import ConfigError
 from ptmcad.question.config import load
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.show.schemas import with_prose
-from ptmcad.studies.bench import harness
 from ptmcad.studies.bench.error import figures, outward
 from ptmcad.studies.bench.harness import Row, measurement
-from ptmcad.studies.bench.process import Usage
 from ptmcad.studies.bench.stored import (
     BAD,
     compare,
@@ -35,11 +29,9 @@ from ptmcad.studies.bench.stored import (
     study_of,
     study_schema,
     write_study,
-    write_table,
 )
 from ptmcad.studies.bench.study import RIVALS
-from ptmcad.studies.bench.studyreport import curve_file, curves, page, sentences, terminal
-from ptmcad.studies.picture import draw
+from ptmcad.studies.bench.studyreport import curve_file, page, sentences, terminal
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIGS = ROOT / "configs"
@@ -161,18 +153,6 @@ def test_the_published_schema_is_that_of_the_codec() -> None:
     assert with_prose(study_schema(), SCHEMA) == SCHEMA
 
 
-def test_table_has_a_row_for_each_measurement_and_count() -> None:
-    rows = list(csv.DictReader(StringIO(write_table(STUDY))))
-    assert len(rows) == len(STUDY["measurements"])
-    assert (rows[3]["setting"], rows[3]["wrong_low"], rows[3]["missed"], rows[3]["runs"]) == (
-        "N = 400",
-        "0.001",
-        "0",
-        "3",
-    )
-    assert rows[5]["seconds_median"] == "" and rows[5]["reason"].startswith("left out")
-
-
 @given(st.fractions(0, 1), st.fractions(0, 1))
 def test_rounding_keeps_bounds(a: Fraction, b: Fraction) -> None:
     low, high = outward(min(a, b), max(a, b))
@@ -260,18 +240,6 @@ def test_studies_of_different_slices_are_not_compared() -> None:
         compare(STUDY, {**STUDY, "slice": "fig3"})
 
 
-def test_comparing_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    old, new = tmp_path / "old.json", tmp_path / "new.json"
-    old.write_text(write_study(STUDY), encoding="utf-8")
-    new.write_text(write_study(changed(0, seconds=times(0.6))), encoding="utf-8")
-    assert run(["bench", "--compare", str(old), str(old)]) == 0
-    assert run(["bench", "--compare", str(old), str(new)]) == 1
-    out = capsys.readouterr().out
-    assert out.splitlines()[-1] == "1 slower"
-    assert "2.00 times the time, machine allowed for" in out
-    assert run(["bench", "--compare", str(new), str(old)]) == 0
-
-
 def test_a_record_is_there_in_any_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What ``ptmcad bench`` measures without CONFIG."""
     monkeypatch.chdir(tmp_path)
@@ -345,40 +313,6 @@ def test_one_slice_by_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     ).read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
-def test_everything_but_the_times_is_repeatable(tmp_path: Path) -> None:
-    def stripped(folder: str) -> Any:
-        arguments = ["bench", str(CONFIGS / "fig3.yaml"), "--quick", "--rounds", "1", "--seed", "5"]
-        assert run([*arguments, "--method", "certified", "--method", "multistart", "--method", "companion",
-                    "--method", "exact", "--out", str(tmp_path / folder)]) == 0  # fmt: skip
-        data = json.loads((tmp_path / folder / "fig3.bench.json").read_text(encoding="utf-8"))
-        del data["machine"], data["floor"]
-        for m in data["measurements"]:
-            del m["seconds"], m["computing"], m["peak"]
-        return data
-
-    assert stripped("first") == stripped("second")
-
-
-def test_a_zero_is_drawn_below_the_logarithms() -> None:
-    figure = draw("fig4", "seconds", "share", {"": curves(STUDY)}, sentences(STUDY))
-    (axes,) = figure.axes
-    marks = [line for line in axes.lines if line.get_marker() in ("o", "P", "X", "D")]
-    zeros = [y for line in marks for y in line.get_ydata() if y == 0]
-    assert len(zeros) == 2 + 1  # the exact engine's two and QEPCAD's one
-    assert axes.get_ylim()[0] < 0
-    assert (
-        len(
-            {
-                line.get_color() + line.get_marker() + str(line.get_linestyle())
-                for line in figure.legends[0].get_lines()
-            }
-        )
-        == 4
-    )
-    assert "0.3: 0, 0.4: 0." in figure.get_label()
-
-
 def test_what_is_written_for_the_report_is_positive(tmp_path: Path) -> None:
     path = tmp_path / "fig4.error-time.json"
     path.write_text(curve_file(STUDY), encoding="utf-8")
@@ -398,59 +332,3 @@ def test_page_tells_what_is_left_out_and_what_is_claimed() -> None:
     assert ".svg" not in page(
         [{**STUDY, "measurements": STUDY["measurements"][-1:]}]
     )  # nothing to draw
-
-
-STOPPING = """
-from fractions import Fraction
-from ptmcad.certified import engine
-
-engine._MapSearch._late = lambda run: run.tolerance < Fraction(1, 100) and run.best is not None
-from ptmcad.__main__ import main
-
-raise SystemExit(main())
-"""
-"""The program, whose time is over as soon as a search for a fine tolerance has a map."""
-
-
-@pytest.mark.slow
-def test_a_certified_run_that_is_stopped_is_a_point_too(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What was left undetermined then, marked; what no time is left for is left out. No clock
-    decides which.
-    """
-    pytest.importorskip("numba")
-    taken = {"1e-1": 2.0, "1e-2": 5.0, "1e-3": 593.0}
-
-    def timed(command: Sequence[str], **_: Any) -> Usage:
-        if "ptmcad" not in command:
-            return measured(command)
-        usage = measured([command[0], "-c", STOPPING, *command[command.index("ptmcad") + 1 :]])
-        return replace(usage, seconds=taken[command[command.index("--tolerance") + 1]])
-
-    measured = harness.run
-    monkeypatch.setattr(harness, "run", timed)
-    arguments = [
-        "bench",
-        str(ROOT / "configs" / "free02.yaml"),
-        "--method",
-        "certified",
-        "--rounds",
-        "1",
-    ]
-    assert run([*arguments, "--time-limit", "600", "--out", str(tmp_path)]) == 0
-    study = study_of((tmp_path / "free02.bench.json").read_text(encoding="utf-8"))
-    told = {m["setting"].split()[-1]: m for m in study["measurements"]}
-    for tolerance, seconds in taken.items():
-        m = told.pop(tolerance)
-        assert m["seconds"]["median"] == seconds
-        share = next(iter(m["figures"].values()))["undetermined"]
-        assert (
-            (share > float(tolerance))
-            == ("stopped at the limit" in m["note"])
-            == (tolerance == "1e-3")
-        )
-        assert share < 1
-    left_out = told.pop("1e-4")
-    assert left_out["seconds"] is None and left_out["reason"].startswith("left out")
-    assert not told

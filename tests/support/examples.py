@@ -10,7 +10,7 @@ FAST, THOROUGH = "fast", "thorough"
 """The names of the profiles."""
 ALL = 100
 """What a test draws in the thorough profile that asks for no number of its own."""
-FEW = 25
+FEW = 12
 """The same in the fast one."""
 
 

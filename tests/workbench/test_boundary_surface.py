@@ -21,8 +21,7 @@ from ptmcad.answer.boundarysurface import ACCURACY, BoundarySurface
 from ptmcad.answer.family import FamilyMap, SpaceTerms
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.exact.slicearrangement import BoundaryStrips, picture_of
-from ptmcad.question.config import family_from, slice_from
+from ptmcad.question.config import family_from
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.workbench import boundarymesh as asking
 
@@ -167,34 +166,6 @@ def test_faces_are_triangles_that_neighbouring_members_bound(name: str) -> None:
     assert not inner
 
 
-@pytest.mark.slow
-def test_sheets_are_told_by_the_counts_that_they_part() -> None:
-    assert {sheet.counts for sheet in surface("swallowtail").sheets} == {((0,), (2,)), ((2,), (4,))}
-    assert {sheet.counts for sheet in surface("loads").sheets} == {((1,), (2,))}
-    assert all(sheet.low < sheet.high for sheet in surface("loads").sheets)
-
-
-@pytest.mark.parametrize("base", [0, 1])
-def test_a_line_across_the_base_parts_regions_too(base: int) -> None:
-    axis = "ab"[base]
-    slice = slice_from(
-        {
-            "system": {"unknowns": {"u": "real"}, "equations": [f"u^2 - ({axis} - 1/3)"]},
-            "axes": SQUARE,
-        }
-    )
-    found = BoundaryStrips(picture_of(slice, base=base))
-    assert [strip.keys for strip in found.strips] == [((0,),), ((2,),)]
-    (opening,) = found.openings
-    assert (opening.keys, opening.low, opening.high) == (((0,), (2,)), -1, 1)
-    assert float(opening.at) == pytest.approx(1 / 3, abs=1e-9)
-    other = BoundaryStrips(picture_of(slice, base=1 - base))
-    assert not other.openings
-    (strip,) = other.strips
-    assert strip.keys == ((0,), (2,))
-    assert float(other.at(0, 0.3)[1]) == pytest.approx(1 / 3, abs=float(2 * ACCURACY))
-
-
 @pytest.mark.parametrize("first", ["a", "b"])
 def test_a_plane_is_a_sheet_over_either_axis(first: str) -> None:
     axes = {name: [-1, 1] for name in sorted("ab", reverse=first == "b")}
@@ -207,21 +178,6 @@ def test_a_plane_is_a_sheet_over_either_axis(first: str) -> None:
     assert mesh.vertices[:, int(place)] == pytest.approx(mesh.vertices[:, 2], abs=1e-6)
 
 
-def test_strips_end_at_corners_of_walls_and_not_at_other_curves() -> None:
-    system = {"unknowns": {"u": "real"}, "equations": ["u - 1"], "positive": ["b - a", "b + a"]}
-    corner = BoundaryStrips(picture_of(slice_from({"system": system, "axes": SQUARE}), base=0))
-    assert [strip.keys for strip in corner.strips] == [((0,), (1,))] * 2
-    wall = {
-        "unknowns": {"u": "real", "v": "real"},
-        "equations": ["u^2 - (b - a/2)", "v^3 - (b + a)^2*(a^2 + 1)"],
-    }
-    smooth = picture_of(slice_from({"system": wall, "axes": SQUARE}), base=0)
-    assert (
-        len(smooth.cut.stacks) > 1
-    )  # cut where the line on which no count changes crosses the wall
-    assert [strip.keys for strip in BoundaryStrips(smooth).strips] == [((0,), (2,))]
-
-
 @pytest.mark.slow
 def test_where_elimination_is_out_of_reach_that_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ptmcad.ask.changes.critical_values", lambda *_: "for a reason")
@@ -232,22 +188,6 @@ def test_where_elimination_is_out_of_reach_that_is_said(monkeypatch: pytest.Monk
     assert "(not proved that nothing changes between them)" in [
         t.get_text() for t in found.plot(surface=mesh).texts
     ]
-
-
-@pytest.mark.slow
-def test_few_members_leave_a_deviation_or_gaps_that_are_told() -> None:
-    coarse = maps("loads").boundary_surface(max_members=8)
-    assert 1 / 100 < coarse.deviation < 5 / 100
-    assert not coarse.unresolved
-    assert len(coarse.members) <= 10
-    broken = maps("swallowtail").boundary_surface("1/1000", max_members=14)
-    assert broken.unresolved > 1
-    assert f"{broken.unresolved} gaps were left open" in broken.words()
-    fine = maps("bowl").boundary_surface("1/300")
-    assert fine.deviation <= 1 / 300
-    assert len(fine.members) > len(surface("bowl").members)
-    # a cone's sheets are straight, so that few members do
-    assert surface("cone").deviation < 1e-4
 
 
 def test_a_family_of_which_the_changes_are_not_known_is_refused() -> None:

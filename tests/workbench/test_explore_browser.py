@@ -10,12 +10,11 @@ import signal
 import time
 from collections.abc import Iterator
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import pytest
 from support import browser as chromium
-from support.browser import Browser, browser
+from support.browser import Browser
 from support.explorer import Explorer, explorer
 from support.maps import CONFIGS
 
@@ -119,18 +118,6 @@ def test_the_keyboard_moves_sliders_and_the_point(view: Browser) -> None:
     )
 
 
-@pytest.mark.slow
-def test_what_is_typed_is_exact_and_what_is_wrong_is_said(view: Browser) -> None:
-    typed = "document.querySelector('#sliders input[type=text]')"
-    view.run(f"{typed}.value = '-1/3'; {typed}.dispatchEvent(new Event('change'))")
-    view.until(SETTLED)
-    assert view.run("view.of.F") == "-1/3" and view.run("view.shown.digest") == expected("-1/3")
-    for wrong in ("-41", "x", "", "1e999"):
-        view.run(f"{typed}.value = {wrong!r}; {typed}.dispatchEvent(new Event('change'))")
-        assert view.run(f"{typed}.classList.contains('wrong')") is True
-        assert view.run("view.values.F") == "-1/3"
-
-
 def test_the_point_under_the_pointer_agrees_with_the_region_beside_it(view: Browser) -> None:
     left, top, width, height = at(view, "#frame .frame")
     for x, y, stable in ((0.3, 0.5, 2), (0.8, 0.2, 1), (0.5, 0.9, 2), (0.05, 0.9, 1)):
@@ -154,45 +141,6 @@ def test_the_point_under_the_pointer_agrees_with_the_region_beside_it(view: Brow
 
 
 @pytest.mark.slow
-def test_another_parameter_makes_another_family(view: Browser) -> None:
-    second = "document.querySelectorAll('#sliders input[type=range]')[2]"
-    view.run(
-        f"{second}.value = Number({second}.value) / 2; {second}.dispatchEvent(new Event('input'))"
-    )
-    view.until(SETTLED)
-    assert view.run("view.of.k") == "50.0"
-    alone = ptmcad.classify({"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"k": 50, "F3": -20, "F4": -20}},
-                            areas=False)  # fmt: skip
-    assert view.run("view.shown.digest") == [
-        [r.stable, r.total, len(r.cells)] for r in alone.regions
-    ]
-    assert "k = 50.0" in view.run("state.textContent")
-
-
-def test_the_figure_is_recorded_and_saved(view: Browser, own: Explorer, tmp_path: Path) -> None:
-    view.run(f"{FIRST}.value = -123; {FIRST}.dispatchEvent(new Event('input'))")
-    view.until(SETTLED)
-    view.run("document.querySelector('#record').click()")
-    view.until(
-        "!document.querySelector('#recorded').hidden && document.querySelector('#yaml').textContent !== ''"
-    )
-    record = tmp_path / "again.yaml"
-    record.write_text(view.run("document.querySelector('#yaml').textContent"), encoding="utf-8")
-    again = ptmcad.classify(record, areas=False)
-    assert [[r.stable, r.total, len(r.cells)] for r in again.regions] == view.run(
-        "view.shown.digest"
-    )
-    assert (
-        view.run("document.querySelector('#command').textContent")
-        == "ptmcad classify equal-loads-F-123_10.yaml"
-    )
-    view.run("document.querySelector('#save button').click()")
-    view.until("document.querySelector('#saved').textContent.startsWith('Saved')")
-    view.run("document.querySelector('#save button').click()")
-    view.until("document.querySelector('#saved').textContent.includes('is there already')")
-
-
-@pytest.mark.slow
 def test_two_tabs_do_not_disturb_each_other(view: Browser, own: Explorer) -> None:
     other = view.tab()
     try:
@@ -209,51 +157,6 @@ def test_two_tabs_do_not_disturb_each_other(view: Browser, own: Explorer) -> Non
             )
     finally:
         view.switch(other)
-
-
-@pytest.mark.slow
-def test_another_browser_is_not_let_in(view: Browser, own: Explorer) -> None:
-    with browser() as stranger:
-        stranger.call("Page.navigate", url=own.address)
-        stranger.until(
-            "document.body !== null && document.body.textContent.includes('used already')"
-        )
-        stranger.call("Page.navigate", url=f"http://127.0.0.1:{own.port}/")
-        stranger.until("document.body !== null && document.body.textContent.includes('the token')")
-
-
-@pytest.mark.slow
-def test_phones_have_touch_and_dark_colours(view: Browser) -> None:
-    view.size(390, 844, phone=True)
-    view.media(prefers_color_scheme="dark")
-    try:
-        assert view.run("document.documentElement.scrollWidth <= innerWidth")
-        left, top, width, height = at(view, "#frame .frame")
-        view.swipe((left + 0.5 * width, top + 0.5 * height), (left + 0.4 * width, top + 0.5 * height),
-                   (left + 0.3 * width, top + 0.5 * height))  # fmt: skip
-        view.until(f"Math.abs(view.share[0] - 0.3) < 0.03 && {SOLVED}")
-        view.run(f"{FIRST}.scrollIntoView({{ block: 'center' }})")
-        x, y, wide, tall = at(view, "#sliders input[type=range]")
-        view.tap(x + 0.8 * wide, y + tall / 2)
-        view.until(f"{SETTLED} && Number(view.of.F) > -10")
-        view.picture("explore-phone-dark.png")
-        assert view.complaints() == []
-    finally:
-        view.size(1300, 1000)
-
-
-@pytest.mark.slow
-def test_a_refused_question_leaves_the_old_map_and_says_why(one: Browser) -> None:
-    """Without loads and without a base every pose turns freely: there is no map of that."""
-    with explorer("--slice", "L1,L2", "--slider", "rho=0:2") as own:
-        one.visit(own.address, "view.shown !== null")
-        before = one.run("document.querySelector('#strong').getAttribute('d')")
-        one.run("(() => { const n = DATA.sliders.findIndex((s) => s.name === 'rho'); const range ="
-                   " document.querySelectorAll('#sliders input[type=range]')[n]; range.value = 0;"
-                   " range.dispatchEvent(new Event('input')); })()")  # fmt: skip
-        one.until("state.className === 'refused'")
-        assert "infinitely many" in one.run("state.textContent")
-        assert one.run("document.querySelector('#strong').getAttribute('d')") == before
 
 
 @pytest.mark.slow

@@ -5,13 +5,11 @@ flooded on a grid.
 from __future__ import annotations
 
 import random
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.image import imread
 from support.few import few
 from support.maps import CONFIGS, shipped
 
@@ -20,12 +18,10 @@ from ptmcad.answer.field import Field
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields import equations
-from ptmcad.ask.fields.equations import ModelState
 from ptmcad.cli import map as command
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.show.data import cell_rows, region_rows
-from ptmcad.workbench.fields.barrier import barriers
 from ptmcad.workbench.fields.quantityfield import centre, exact_at, field_of, request_of
 
 
@@ -307,45 +303,6 @@ def test_the_command_writes_pictures_and_numbers(
     assert np.array_equal(table["value"].reshape(15, 20), expected, equal_nan=True)
 
 
-def test_the_command_takes_a_result_whose_map_is_not_made_again(
-    tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def fail(*_: object) -> None:
-        raise AssertionError("made again")
-
-    result = tmp_path / "stored.json"
-    result.write_text(shipped("fig2").to_json())
-    monkeypatch.setattr("ptmcad.ask.classification.region_map", fail)
-    wanted = [
-        "--pixels",
-        "12x9",
-        "--checks",
-        "0",
-        "--format",
-        "npz",
-        "--tolerance",
-        "1/9",
-        "--out",
-        str(tmp_path),
-    ]
-    assert run(["map", str(result), *wanted]) == 0
-    assert "--tolerance has no effect here: the map is made already" in capsys.readouterr().err
-    with np.load(tmp_path / "fig2-energy-stable-1.npz") as arrays:
-        assert np.array_equal(
-            arrays["values"], shipped("fig2").field("energy", "stable:1", 12, 9).values
-        )
-    assert run(["map", str(result), "--set", "L1=2"]) == 2
-    assert "--set: a result has its slice already" in capsys.readouterr().err
-    first = shipped("fig2").critical_values[0]
-    moved = replace(first, polynomial=(-3, 1), low=Fraction(3), high=Fraction(3))
-    result.write_text(replace(shipped("fig2"), critical_values=(moved,)).to_json())
-    assert run(["map", str(result), *wanted, "--format", "png"]) == 2
-    assert "stored.json: the map contradicts itself" in capsys.readouterr().err
-    result.write_text(shipped("fig2").to_json()[:500])
-    assert run(["map", str(result), *wanted]) == 2
-    assert "stored.json: is damaged or not a ptmcad-region-map/" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     "arguments", [["--value", "nothing"], ["--pose", "best"], ["--pixels", "0"]]
 )
@@ -394,31 +351,6 @@ def test_a_difference_from_exact_poses_is_said(
     assert "do not trust this map" in capsys.readouterr().err
 
 
-def test_derivatives_of_the_equations_are_those_of_differences() -> None:
-    """Gradient and Hessian by the chain rule against central differences of the energy."""
-    result = shipped("fig4")
-    values = {
-        n: float(e.evaluate(Fraction(7, 10), Fraction(3, 2)))
-        for n, e in result.slice.parameters.items()
-    }
-    values |= {"l0_1": 0.3, "l0_2": 0.1, "l0_3": 0.7}
-    at = np.random.default_rng(1).uniform(-3, 3, (2, 5))
-    state, step = equations.state_at(result.slice.model, values, at), 1e-5
-    for k in range(2):
-        moved = [at.copy(), at.copy()]
-        moved[0][k] += step
-        moved[1][k] -= step
-        up, down = (equations.state_at(result.slice.model, values, m) for m in moved)
-        assert up.energy is not None
-        assert down.energy is not None
-        assert state.residuals[k] == pytest.approx(
-            (up.energy - down.energy) / (2 * step), rel=1e-6, abs=1e-5
-        )
-        assert state.jacobian[k] == pytest.approx(
-            (up.residuals - down.residuals) / (2 * step), rel=1e-6, abs=1e-5
-        )
-
-
 TURNED = {
     "name": "turned",
     "mechanism": {
@@ -464,21 +396,6 @@ def test_a_barrier_that_was_not_found_is_counted(monkeypatch: pytest.MonkeyPatch
     assert np.isnan(field.values).all()
 
 
-def test_a_barrier_among_more_poses_than_an_integer_has_bits() -> None:
-    """-cos 40 x has 40 wells, and all passes between them are as high."""
-    waves = 40
-
-    def evaluate(_pixels: Any, points: np.ndarray) -> ModelState:
-        angle = waves * points[0]
-        return ModelState(
-            waves * np.sin(angle)[None], waves**2 * np.cos(angle)[None, None], -np.cos(angle)
-        )
-
-    at = (np.pi * np.arange(2 * waves) / waves)[None, None]
-    for chosen in (0, 66, 78):
-        assert barriers(evaluate, at, np.array([chosen]), 1) == pytest.approx(2)
-
-
 def test_windows_beyond_doubles_are_refused() -> None:
     record = {
         "name": "vast", "system": {"unknowns": {"z": "real"}, "equations": ["z^2 - x*y"]},
@@ -508,14 +425,9 @@ def test_at_its_poles_an_expression_has_no_value(recwarn: pytest.WarningsRecorde
     [
         ("rho^1000000", 9, None),  # two columns too small or too large, and the one at 1, see below
         ("1e-400*rho", 9, None),
-        ("10^300*10^300*rho", 9, None),
-        ("rho/10^300/10^300", 9, None),
         ("cos(10^400)", 9, None),
-        ("1/(rho*1e-400)", 9, None),
         ("1 + 1e-400*rho", 0, 1.0),  # what is lost is less than rounding
         ("cos(10^-400)", 0, 1.0),
-        ("(1 + 10^-400)^2", 0, 1.0),
-        ("2/(1 + 10^-400) + 3*10^-400", 0, 2.0),
         ("0*10^300", 0, 0.0),
     ],
 )
@@ -527,40 +439,6 @@ def test_values_that_no_double_is_near_are_undecided_and_counted(
     assert field.beyond == beyond - 3 * at_one
     assert np.isnan(field.values).sum() == field.beyond
     assert np.all(field.values[~np.isnan(field.values)] == (1.0 if at_one else known))
-
-
-@pytest.mark.slow
-def test_the_command_says_at_how_many_pixels_a_value_is_beyond_doubles(
-    tmp_path: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
-    result = tmp_path / "fig4.json"
-    result.write_text(shipped("fig4").to_json(), encoding="utf-8")
-    asked = [
-        "map",
-        str(result),
-        "--pixels",
-        "7",
-        "--out",
-        str(tmp_path),
-        "--format",
-        "csv",
-        "--value",
-    ]
-    assert run([*asked, "rho^1000000"]) == 0
-    out, err = capsys.readouterr()
-    assert "rho^1000000 of stable:1: 1 to 1, at 14.3 % of the pixels" in out
-    assert err == (
-        "warning: 42 pixels are left empty, where rho^1000000 or a part of it is beyond doubles: larger than 1.8e308 "
-        "or nearer to zero than 2.2e-308\n"
-    )
-    assert run([*asked, "1e-400*rho"]) == 0
-    out, err = capsys.readouterr()
-    assert (
-        "1e-400*rho of stable:1 is beyond doubles wherever it has a value" in out
-        and "49 pixels" in err
-    )
-    assert run([*asked, "rho^2"]) == 0
-    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.parametrize(
@@ -597,86 +475,14 @@ def test_a_pose_that_the_counts_exclude_is_refused_before_anything_is_drawn(
 ) -> None:
     result = tmp_path / "fig4.json"
     result.write_text(shipped("fig4").to_json(), encoding="utf-8")
-    for pose, most in (
-        ("stable:9", "at most 2"),
-        ("maximum:3", "at most 2"),
-        ("pose:7", "at most 6"),
-    ):
-        assert (
-            run(
-                [
-                    "map",
-                    str(result),
-                    "--pose",
-                    pose,
-                    "--pixels",
-                    "7",
-                    "--checks",
-                    "1",
-                    "--out",
-                    str(tmp_path),
-                ]
-            )
-            == 2
-        )
-        assert (
-            f"--pose: there is no {pose} in the window: of its kind there are {most}"
-            in capsys.readouterr().err
-        )
+
+    def refused(pose: str) -> str:
+        asked = ["map", str(result), "--pixels", "7", "--checks", "1", "--out", str(tmp_path)]
+        assert run([*asked, "--pose", pose]) == 2
+        return capsys.readouterr().err
+
+    for pose, most in (("stable:9", 2), ("maximum:3", 2), ("pose:7", 6)):
+        said = f"--pose: there is no {pose} in the window: of its kind there are at most {most}"
+        assert said in refused(pose)
     # what the counts leave open is seen at the pixels
-    assert (
-        run(
-            [
-                "map",
-                str(result),
-                "--pose",
-                "maximum:2",
-                "--pixels",
-                "7",
-                "--checks",
-                "1",
-                "--out",
-                str(tmp_path),
-            ]
-        )
-        == 2
-    )
-    assert "no pixel has maximum:2" in capsys.readouterr().err
-    assert (
-        run(
-            [
-                "map",
-                str(result),
-                "--pose",
-                "saddle:3",
-                "--pixels",
-                "7",
-                "--checks",
-                "1",
-                "--out",
-                str(tmp_path),
-            ]
-        )
-        == 0
-    )
-    assert [path.suffix for path in tmp_path.iterdir()].count(".png") == 1
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("coarse")
-def test_a_quantitys_map_is_drawn_in_a_style_at_its_size(
-    tmp_path: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
-    result = tmp_path / "fig4.json"
-    result.write_text(shipped("fig4").to_json(), encoding="utf-8")
-    asked = ["map", str(result), "--pixels", "12", "--checks", "0", "--out", str(tmp_path)]
-    assert run([*asked, "--style", "ieee", "--dpi", "100", "--pose", "stable:2"]) == 0
-    assert imread(tmp_path / "fig4-energy-stable-2.png").shape[:2] == (260, 350)
-    capsys.readouterr()
-    assert run([*asked, "--size", "1.5x1.5in"]) == 2
-    assert (
-        "error: --size: the map with its scale does not fit into 1.50x1.50in"
-        in capsys.readouterr().err
-    )
-    assert run([*asked, "--thin-lines", "dashed", "--format", "csv", "--dpi", "80"]) == 0
-    assert "--dpi has no effect here: no picture is written" in capsys.readouterr().err
+    assert "no pixel has maximum:2" in refused("maximum:2")

@@ -8,17 +8,15 @@ from math import degrees, pi
 
 import numpy as np
 import pytest
-from support.maps import CONFIGS, shipped
+from support.maps import shipped
 
 import ptmcad
 from ptmcad.answer.motion import Motion
 from ptmcad.ask.fields import track
 from ptmcad.ask.fields.course import Course, corners_of
-from ptmcad.ask.fields.equations import unknowns_of
 from ptmcad.errors import ConfigError
 from ptmcad.workbench.fields import posemotion as module
 from ptmcad.workbench.fields.posemotion import LostError, motion_of
-from ptmcad.workbench.fields.quantityfield import exact_at
 
 
 @pytest.fixture(scope="module")
@@ -40,32 +38,6 @@ def test_it_snaps_where_and_to_what_the_certified_path_does(snap: Motion) -> Non
     for found, angle in zip(fall.after, end.target.angles, strict=True):
         assert abs((found - float(angle.center) + pi) % (2 * pi) - pi) < 1e-4
     assert fall.drop == pytest.approx(float(end.energy.center - end.target_energy.center), rel=1e-3)
-
-
-@pytest.mark.slow
-def test_every_step_is_one_of_all_equilibria_of_its_point(snap: Motion) -> None:
-    still = [step for step in snap.steps if not step.falling]
-    assert (len(still), snap.counted, snap.end) == (30, 30, "")
-    assert [step.at for step in (still[0], still[-1])] == [
-        (Fraction(3, 4), Fraction(3, 2)),
-        (Fraction(6, 5), Fraction(3, 2)),
-    ]
-    for step in still[::4]:
-        poses = exact_at(snap.result, *step.at).equilibria
-        near = [p for p in poses if np.allclose(unknowns_of(p), step.unknowns, atol=1e-8)]
-        assert len(near) == 1
-        assert near[0].stable
-        assert step.height == pytest.approx(float(near[0].known_energy.center), rel=1e-10)
-        assert (step.total, step.stable) == (len(poses), sum(p.stable is True for p in poses))
-        levels = sorted((float(p.known_energy.center), bool(p.stable)) for p in poses)
-        assert [s for _, s in sorted(step.others)] == [s for _, s in levels]
-        assert [h for h, _ in sorted(step.others)] == pytest.approx(
-            [h for h, _ in levels], rel=1e-9
-        )
-        assert step.points == pytest.approx(
-            np.array([[float(v) for v in near[0].nodes[n]] for n in near[0].nodes])
-        )
-    assert {step.stable for step in still} == {1, 2}
 
 
 def test_a_fall_descends_and_counts_nothing(snap: Motion) -> None:
@@ -102,33 +74,6 @@ def test_a_pose_that_gives_way_by_symmetry_falls_to_a_side() -> None:
     )
 
 
-def turning() -> ptmcad.RegionMap:
-    record = {
-        "name": "turned",
-        "mechanism": {
-            "parameters": {"M": {"kind": "force"}, "b": {"kind": "base"}}, "unknowns": {"th": "angle"},
-            "points": {"O": [0, 0], "B": ["b", 0], "P": ["cos(th)", "sin(th)"]},
-            "springs": [{"between": ["B", "P"], "k": 1}], "moments": {"th": "M"},
-        },
-        "axes": {"b": ["1/2", 2], "M": [-3, 3]},
-    }  # fmt: skip
-    return ptmcad.classify(record, areas=False)
-
-
-@pytest.mark.slow
-def test_a_moment_that_turns_a_bar_for_ever_ends_the_motion() -> None:
-    """b sin(th) = M has no solution from M = b on."""
-    motion = turning().animate("b=1,M=0:5/2", frames=20)
-    assert motion.end == "at b = 1, M = 1 the pose vanishes, and no other was reached from there"
-    assert not motion.falls
-    for step in motion.steps:
-        assert np.sin(step.unknowns[0]) == pytest.approx(float(step.at[1]))
-        # the energy less the moment's work, as the residuals are slopes of that
-        assert step.height == pytest.approx(
-            1 - np.cos(step.unknowns[0]) - float(step.at[1]) * step.unknowns[0]
-        )
-
-
 def test_what_was_not_stable_or_has_no_energy_does_not_fall() -> None:
     saddle = shipped("fig4").animate("rho=3/4:6/5,L2=3/2", "saddle:1", frames=12)
     assert "the pose, which was not stable, vanishes" in saddle.end
@@ -144,23 +89,6 @@ def test_what_was_not_stable_or_has_no_energy_does_not_fall() -> None:
     for step in cubic.steps:
         x, a = step.unknowns[0], float(step.at[0])
         assert abs(x**3 - a * x + 0.5) < 1e-9
-
-
-@pytest.mark.slow
-def test_a_certified_map_and_what_it_leaves_open() -> None:
-    """Steps in undetermined strips have the counts of certified solutions at their points."""
-    pytest.importorskip("numba")
-    slice = ptmcad.slice_from_options(CONFIGS / "free02.yaml", ranges=["rho=1:3/2", "L2=7/5:8/5"])
-    result = ptmcad.classify(slice, tolerance="1/5", jobs=1)
-    motion = result.animate("rho=11/10:7/5,L2=3/2", "stable:2", frames=100)
-    still = [step for step in motion.steps if not step.falling]
-    assert (len(motion.falls), motion.counted, len(still)) == (1, 100, 100)
-    labels = [result.locate(rho=step.at[0], L2=step.at[1]).cell for step in still]
-    assert None in labels
-    assert any(label is not None for label in labels)
-    for step, label in zip(still, labels, strict=True):
-        assert (step.total is None) == (label is not None)
-        assert step.stable == exact_at(result, *step.at).stable
 
 
 def test_a_pose_that_is_lost_within_a_region_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:

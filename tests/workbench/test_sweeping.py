@@ -4,7 +4,6 @@ interrupts them.
 
 from __future__ import annotations
 
-import json
 import os
 import random
 import signal
@@ -96,20 +95,6 @@ def test_a_member_equals_the_record_classified_alone(tmp_path: Path) -> None:
         assert [float(low) for low, _ in found.widest.places] == pytest.approx(
             [float(m.at.low) for m in widest]
         )
-
-
-def test_members_with_one_slice_are_computed_once(tmp_path: Path) -> None:
-    sweep = mapped(SQUARES, tmp_path / "s")
-    found = list(sweep)
-    assert [member.same_as for member in found] == [None, None, 1, None, None, 1]
-    assert [member.attempts for member in found] == [1, 1, 0, 1, 0, 0]
-    assert found[2].summary == found[1].summary and found[2].file == found[1].file
-    assert len(list((tmp_path / "s" / "results").rglob("*.json"))) == 3
-    refused = found[4]
-    assert (refused.state, refused.error) == (
-        State.REFUSED,
-        "parameters.d: d is 0, but a length must be positive",
-    )
 
 
 def test_the_answer_can_be_read_in_several_ways(tmp_path: Path) -> None:
@@ -323,20 +308,6 @@ def check_once(sweep: Sweep) -> None:
     assert {member.attempts for member in sweep} == {1}
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(not Path("/proc/self").exists(), reason="processes are looked up in /proc")
-def test_killed_twice_it_goes_on_and_leaves_the_same_index(tmp_path: Path) -> None:
-    many = CUSPS | {
-        "sweep": {"c": {"from": 0, "to": 1, "steps": 12}, "d": {"from": 1, "to": 2, "steps": 5}}
-    }
-    record = tmp_path / "cusps.yaml"
-    record.write_text(yaml.safe_dump(many, sort_keys=False), encoding="utf-8")
-    assert interrupted(record, tmp_path / "killed", 2, lambda k: 5 + 20 * k, 1) == 2
-    sweep = whole(many, tmp_path / "killed")
-    assert sweep.to_csv() == whole(many, tmp_path / "whole").to_csv()
-    check_once(sweep)
-
-
 FAMILY = {"name": "family", "parameters": {"L1": 1}, "axes": AXES,
           "sweep": {"F3": {"from": -10, "to": 0, "steps": 9}, "F4": {"from": -10, "to": 0, "steps": 9}}}  # fmt: skip
 
@@ -459,57 +430,3 @@ def test_a_cluster_gives_the_same_index_although_a_worker_is_killed(tmp_path: Pa
         )
     assert killed.is_set()
     assert there.to_csv() == whole(FAMILY, tmp_path / "here").to_csv()
-
-
-@pytest.mark.skipif(
-    find_spec("distributed") is None, reason="distributed is not installed (ptmcad[distributed])"
-)
-@pytest.mark.slow
-def test_a_scheduler_that_does_not_answer_is_told(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from ptmcad.workbench.sweeps import pool as cluster
-
-    monkeypatch.setattr(cluster, "CONNECT_SECONDS", 1)
-    with pytest.raises(ConfigError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:1"):
-        ptmcad.sweep(CUSPS, tmp_path / "u", scheduler="tcp://127.0.0.1:1")
-
-
-@pytest.mark.slow
-def test_memory_does_not_grow_with_the_members(tmp_path: Path) -> None:
-    """Ten thousand members, by a stand-in for the engine: from a tenth of them on next to nothing
-    grows.
-    """
-    code = f"""
-import json, resource, sys
-from pathlib import Path
-from ptmcad.workbench.sweeps import run
-import ptmcad
-peaks = {{}}
-def progress(stage, done, total):
-    if done in (1000, 10000):
-        pages = int(Path("/proc/self/statm").read_text().split()[1])
-        peaks[done] = pages * 4096
-class Here:
-    def __init__(self): self.numbers = []
-    room = property(lambda self: len(self.numbers) < 4)
-    busy = property(lambda self: bool(self.numbers))
-    def submit(self, number): self.numbers.append(number)
-    def answers(self, seconds):
-        n = self.numbers.pop()
-        return [(n, OUTCOME)]
-    def close(self): pass
-values = {{"from": 1, "to": 100, "steps": 100}}
-record = {{"name": "many", "axes": {AXES!r}, "sweep": {{"k1": values, "k2": values}}}}
-from ptmcad.question.config.sweeps import sweep_from
-OUTCOME = run.computing(sweep_from(record), run.Wanted(areas=False))(0)
-run._workers = lambda *asked: Here
-sweep = run.sweep(record, {str(tmp_path / "many")!r}, progress=progress)
-assert sweep.complete and len(sweep) == 10000
-print(json.dumps(peaks))
-"""
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    peaks = json.loads(done.stdout)
-    assert peaks["10000"] - peaks["1000"] < 4 << 20
