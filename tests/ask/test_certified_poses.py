@@ -210,8 +210,3 @@ def test_a_coordinate_that_interval_arithmetic_knows_exactly(force: Q, tmp_path:
     (pose,) = solve(model=model, F=force, G="1/4").equilibria
     assert pose.reals[0].exact == force
     assert pose.reals[1].exact is None
-
-
-def test_energy_has_no_free_length_unless_asked_for() -> None:
-    plain = solve(rho=Q(1), L2=Q(3, 2))
-    assert energy_of(plain.model, plain.parameters).roots == ()

@@ -227,6 +227,44 @@ mechanism:
 """
 
 
+@pytest.mark.parametrize(
+    ("stiffness", "says"),
+    [
+        ("-1", "a stiffness is positive, but this is -1"),
+        ("0", "a stiffness is positive, but this is 0"),
+        ("0*L", "a stiffness is positive, but this is 0*L = 0"),
+        (
+            "W - 1",
+            "a stiffness must be positive in the whole window, but W - 1 is -1/4 at L = 1, W = 3/4",
+        ),
+        (
+            "L - 3",
+            "a stiffness must be positive in the whole window, but L - 3 is -2 at L = 1, W = 3/2",
+        ),
+    ],
+)
+def test_a_stiffness_written_in_a_spring_is_proved_positive(
+    stiffness: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = SPRUNG % ("", stiffness, "0", stiffness) + AXES
+    found = faults_of(text, tmp_path, capsys)
+    assert [fault.partition(f": {says}")[0] for fault in found] == [
+        "6: mechanism.springs.1.k", "7: mechanism.torsion.1.k",
+    ]  # fmt: skip
+    path = tmp_path / "bad.yaml"
+    assert run(["classify", str(path), "--out", str(tmp_path)]) == 2
+    assert f"{path}:{found[0]}" in capsys.readouterr().err
+
+
+def test_a_free_length_written_in_a_spring_is_proved_not_negative(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (fault,) = faults_of(SPRUNG % ("", "1", "L - 1", "1") + AXES, tmp_path, capsys)
+    assert fault.startswith(
+        "6: mechanism.springs.1.free: a free length must not be negative in the whole window"
+    )
+
+
 def test_a_stiffness_is_positive_at_a_single_point_too(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -9,11 +9,14 @@ import json
 import os
 import re
 import shlex
+import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from fractions import Fraction
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -29,6 +32,9 @@ from ptmcad.show import render
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG4 = ROOT / "configs" / "fig4.yaml"
+needs_engine = pytest.mark.skipif(
+    find_spec("ptmcad.ask.classification") is None, reason="the engine is not built yet"
+)
 
 
 class StandIn:
@@ -241,6 +247,38 @@ def test_engine_errors_have_status_2(engine: dict[str, Any], tmp_path: Path) -> 
     assert run(["classify", str(FIG4), "--out", str(tmp_path)]) == 2
 
 
+def test_sigterm_removes_the_temporary_files(tmp_path: Path) -> None:
+    program = (
+        "import sys, time, types\n"
+        "pipeline, render = types.ModuleType('ptmcad.ask.classification'), types.ModuleType('ptmcad.show.render')\n"
+        "class Result:\n"
+        "    cover, status = None, types.SimpleNamespace(value='exact')\n"
+        "    def to_json(self, timings): return 'new'\n"
+        "def draw(result, path, **how):\n"
+        "    path.write_text('half'); time.sleep(60)\n"
+        "pipeline.region_map, pipeline.prepare = lambda slice, options: Result(), lambda *_: None\n"
+        "render.draw = draw\n"
+        "sys.modules.update({'ptmcad.ask.classification': pipeline, 'ptmcad.show.render': render})\n"
+        "from ptmcad.__main__ import main\n"
+        f"sys.argv = ['ptmcad', 'classify', {str(FIG4)!r}, '--out', {str(tmp_path)!r}, '--format', 'png']\n"
+        "main()\n"
+    )
+    (tmp_path / "fig4.json").write_text("old")
+    process = subprocess.Popen(
+        [sys.executable, "-c", program], cwd=ROOT, stderr=subprocess.PIPE, text=True
+    )
+    deadline = time.monotonic() + 30
+    while not any(path.read_text() == "half" for path in tmp_path.glob("*/*.png")):
+        assert time.monotonic() < deadline, "nothing was drawn"
+        time.sleep(0.01)
+    process.send_signal(signal.SIGTERM)
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == 143
+    assert errors == "terminated (SIGTERM); nothing was saved\n"
+    assert names(tmp_path) == ["fig4.json"]
+    assert (tmp_path / "fig4.json").read_text() == "old"
+
+
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
 def test_what_is_no_file_is_not_replaced(tmp_path: Path) -> None:
     """A rename would have removed a device; /dev/null itself, for the superuser."""
@@ -259,6 +297,21 @@ def test_what_is_no_file_is_not_replaced(tmp_path: Path) -> None:
     write_files(tmp_path, {"c.json": text_writer("new")})
     assert names(tmp_path) == ["a.json", "b.json", "c.json"]
     assert not (tmp_path / "c.json").is_symlink()
+
+
+def test_write_files_replaces_all_or_none(tmp_path: Path) -> None:
+    (tmp_path / "b.json").mkdir()
+    with pytest.raises(OutputError, match=r"b\.json is a folder, so no file can be written"):
+        write_files(tmp_path, {"b.json": text_writer("new")})
+    assert names(tmp_path) == ["b.json"]
+    umask = os.umask(0o027)
+    try:
+        (written,) = write_files(tmp_path, {"a.json": text_writer("ä\n")})
+    finally:
+        os.umask(umask)
+    assert written.read_bytes() == "ä\n".encode()
+    if os.name == "posix":
+        assert written.stat().st_mode & 0o777 == 0o640
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
@@ -406,3 +459,40 @@ def test_start_up_is_lean() -> None:
         [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "[]"
+
+
+@needs_engine
+def test_the_engine_is_reached(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert (
+        run(
+            [
+                "classify",
+                "--slice",
+                "L2,rho",
+                "--out",
+                str(tmp_path),
+                "--format",
+                "json",
+                "--no-timings",
+            ]
+        )
+        == 0
+    )
+    assert names(tmp_path) == ["slice-L2-rho.json"]
+    assert capfd.readouterr().out.strip()
+
+
+@pytest.mark.slow
+def test_pictures_of_a_window_narrower_than_any_float(tmp_path: Path) -> None:
+    """1e-400 is no floating-point number."""
+    options = [
+        "classify",
+        "--slice",
+        "L2,rho",
+        "--range",
+        "rho=1/2:1/2+1e-400",
+        "--out",
+        str(tmp_path),
+    ]
+    assert run([*options, "--format", "json,png"]) == 0
+    assert {path.suffix for path in tmp_path.iterdir()} == {".json", ".png"}

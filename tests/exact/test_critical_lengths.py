@@ -6,16 +6,66 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import pairwise
+from math import cos, hypot, sin
 from pathlib import Path
+from random import Random
 
 import pytest
+import sympy
 from support.programs import needs_msolve
 
 from ptmcad.algebra import msolve
-from ptmcad.studies.paper.critical import critical_free_lengths
+from ptmcad.ask.lines.along import certified_intervals
+from ptmcad.question.config import slice_from_options
+from ptmcad.studies.paper.critical import UNKNOWNS, critical_free_lengths, critical_system
 from ptmcad.studies.paper.squaring import Design, signed_solutions
 
 DESIGN: Design = ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10")
+
+
+def potential(
+    rho: float, l1: float, l2: float, l0: float, f3: float, f4: float, a: float, b: float
+) -> float:
+    x3, y3, x4, y4 = l1 * cos(a), l1 * sin(a), rho - l2 * cos(b), l2 * sin(b)
+    lengths = hypot(x4, y4), hypot(x3 - rho, y3), hypot(x3 - x4, y3 - y4)
+    return sum((x - l0) ** 2 for x in lengths) / 2 - f3 * y3 - f4 * y4
+
+
+@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3))])
+@pytest.mark.slow_cases("1")
+def test_equations_are_derivatives_of_the_potential(seed: int) -> None:
+    """Difference quotients of U/k from the nodes' coordinates; each polynomial up to one positive
+    factor.
+    """
+    random = Random(seed)
+    exact = [Fraction(random.randint(1, 30), 10) for _ in range(5)]
+    rho, l1, l2, f3, f4 = map(float, exact)
+    texts = critical_system((*map(str, exact[:3]), "1", *map(str, exact[3:])))  # type: ignore[arg-type]
+    equations = [sympy.sympify(text.replace("^", "**")) for text in texts]
+    ratios = []
+    for _ in range(3):
+        free, a, b = random.uniform(0.5, 3), random.uniform(-3, 3), random.uniform(-3, 3)
+        x3, y3, x4, y4 = l1 * cos(a), l1 * sin(a), rho - l2 * cos(b), l2 * sin(b)
+        inverses = 1 / hypot(x4, y4), 1 / hypot(x3 - rho, y3), 1 / hypot(x3 - x4, y3 - y4)
+        at = dict(
+            zip(map(str, UNKNOWNS), (*inverses, cos(a), sin(a), cos(b), sin(b), free), strict=True)
+        )
+        values = [float(e.subs(at)) for e in equations]
+        assert max(map(abs, values[:5])) < 1e-7
+        h = 1e-3
+
+        def u(
+            i: int, j: int, free: float = free, a: float = a, b: float = b, h: float = h
+        ) -> float:
+            return potential(rho, l1, l2, free, f3, f4, a + i * h, b + j * h)
+
+        h11, h22 = ((u(i, j) - 2 * u(0, 0) + u(-i, -j)) / h**2 for i, j in ((1, 0), (0, 1)))
+        h12 = (u(1, 1) - u(1, -1) - u(-1, 1) + u(-1, -1)) / (4 * h * h)
+        wanted = (u(1, 0) - u(-1, 0)) / (2 * h), (u(0, 1) - u(0, -1)) / (2 * h), h11 * h22 - h12**2
+        ratios.append([w / v for w, v in zip(wanted, values[5:], strict=True)])
+    for same in zip(*ratios, strict=True):
+        assert min(same) > 0
+        assert max(same) == pytest.approx(min(same), rel=1e-2)
 
 
 ANSWERS = {
@@ -79,3 +129,21 @@ def test_fifty_two_critical_lengths_and_the_counts_around_them() -> None:
     counts = [signed_solutions((*DESIGN[:3], str(free), *DESIGN[4:])) for free in samples]
     for critical, (before, after) in zip(positive, pairwise(counts), strict=False):
         assert abs(after.real - before.real) == 2, critical
+
+
+@needs_msolve
+@pytest.mark.slow
+def test_elimination_and_intervals_find_the_same_folds() -> None:
+    """Along l0 in (0, 2) at rho = 7/10, L2 = 3/2, F = -10: seven, to ten digits."""
+    pytest.importorskip("numba")
+    axes = {"slice": "rho,l0", "ranges": ["l0=0:2"], "sets": ["L2=3/2", "F3=-10", "F4=-10"]}
+    slice = slice_from_options(**axes)  # type: ignore[arg-type]
+    algebra = [
+        free
+        for free, signs in critical_free_lengths(DESIGN)
+        if signs == (1, 1, 1) and 0 < free.center < 2
+    ]
+    line = certified_intervals(slice, "l0", {"rho": "7/10"}, 10)
+    folds = [c.at for c in line.changes if c.names == ("fold",)]
+    assert len(algebra) == 7
+    assert [c.text(10) for c in algebra] == [c.text(10) for c in folds]

@@ -136,6 +136,25 @@ def test_there_are_62_complex_solutions() -> None:
     )
 
 
+def test_counts_at_two_points() -> None:
+    random = Random(3)
+    assert compared([random_point(random) for _ in range(2)]) == ([], [])
+
+
+def test_a_false_count_is_noticed() -> None:
+    """Of other free lengths, and of solutions with a negative length."""
+    random = Random(3)
+    points = [random_point(random) for _ in range(2)]
+    assert len(real_boxes([str(u) for u in UNKNOWNS], equations(points[0]))) > counted_by_msolve(
+        points[0]
+    )
+    shorter = [at | {"l1": at["l1"] / 10, "l2": at["l2"] / 10} for at in points]
+    assert any(
+        len(solved(other).equilibria) != counted_by_msolve(at)
+        for at, other in zip(points, shorter, strict=True)
+    )
+
+
 @pytest.mark.slow
 def test_counts_at_random_points() -> None:
     random = Random(62)

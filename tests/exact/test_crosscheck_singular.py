@@ -4,6 +4,7 @@ coordinates.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -96,6 +97,46 @@ def test_number_of_solutions_drops_exactly_over_improper_curves(name: str, shipp
         assert drops == (component.polynomial in improper_curves(name)), component.polynomial.text(
             axes(name)
         )
+
+
+def dropped(components: tuple[Component, ...]) -> tuple[Component, ...]:
+    return components[1:]
+
+
+def changed(components: tuple[Component, ...]) -> tuple[Component, ...]:
+    first = components[0]
+    *terms, (i, j, c) = first.polynomial.terms
+    return (replace(first, polynomial=PlanePolynomial.of((*terms, (i, j, c + 1)))), *components[1:])
+
+
+def added(components: tuple[Component, ...]) -> tuple[Component, ...]:
+    return (
+        replace(components[0], polynomial=PlanePolynomial.of(((1, 1, 7), (0, 0, -3)))),
+        *components,
+    )
+
+
+def retagged(components: tuple[Component, ...]) -> tuple[Component, ...]:
+    return (replace(components[0], kind=Kind.INFINITY), *components[1:])
+
+
+@pytest.mark.parametrize("mutation", [dropped, changed, added, retagged])
+@pytest.mark.parametrize("name", ["fig2", "fig3", "rods", "fig4"])
+def test_false_critical_components_are_noticed(name: str, mutation, shipped) -> None:  # type: ignore[no-untyped-def]
+    components = shipped(name).components
+    assert components[0].kind is Kind.CRITICAL
+    assert differences_of_critical(name, mutation(components))
+
+
+def test_a_missing_infinity_component_is_noticed() -> None:
+    """Fig. 4 has 400 rho^2 + 1, over which two of six solutions are lost; over a random line none
+    is.
+    """
+    assert {p.text(axes("fig4")) for p in improper_curves("fig4")} == {"400*rho^2 + 1", "L2"}
+    pole, line = (
+        PlanePolynomial.parse(text, axes("fig4")) for text in ("400*rho^2 + 1", "7*rho - 3")
+    )
+    assert [solutions_over("fig4", p, Fraction(3, 7)) for p in (pole, line)] == [4, 6]
 
 
 @pytest.mark.parametrize(

@@ -199,9 +199,51 @@ def test_a_window_of_width_1e_20(base: str) -> None:
     assert len(result.regions) == 1
 
 
+@pytest.mark.slow
+def test_a_tiny_window_across_the_curve() -> None:
+    """Around the end 0.498131... at L2 = 3/2, found by bisection with the oracle: two regions in a
+    window of 1e-20.
+    """
+    fixed = {n: Fraction(v) for n, v in {"L1": 1, "L2": "3/2", "k1": 100, "k2": 100, "k3": 100, "F3": -10, "F4": -10,
+                                         "F3x": 0, "F4x": 0}.items()}  # fmt: skip
+    low, high = Fraction("0.49813"), Fraction("0.49814")
+    while high - low > Fraction(1, 10**24):
+        middle = (low + high) / 2
+        low, high = (
+            (middle, high) if oracle.count({**fixed, "rho": middle})[0] == 1 else (low, middle)
+        )
+    half = Fraction(1, 2 * 10**20)
+    axes = {
+        "rho": [str(low - half), str(low + half)],
+        "L2": [str(Fraction(3, 2) - half / 100), str(Fraction(3, 2) + half / 100)],
+    }
+    result = region_map(axes, "stable", F3=-10, F4=-10)
+    assert sorted(r.stable for r in result.regions) == [1, 2]  # type: ignore[type-var]
+
+
+@pytest.mark.slow
+def test_forty_digits() -> None:
+    digits = "1.414213562373095048801688724209698078569"
+    result = region_map(RHO_L2, L1=digits, F3="-10.000000000000000000000000000000000000001", F4=-10)
+    assert result.slice.parameters["L1"].constant() == Fraction(digits)
+
+
 def test_extreme_numbers() -> None:
     region_map(RHO_L2, F3="-1e-6", F4="-1e-6", count="total")
     region_map({"rho": ["1e-12", "2e-12"], "L2": ["1e-12", "2e-12"]}, F3=-10, F4=-10)
+
+
+@pytest.mark.slow
+def test_a_vast_window() -> None:
+    """The sliver near the origin is some 10^-28 of the window."""
+    result = region_map({"rho": [0, "1e12"], "L2": [0, "1e12"]}, F3=-10, F4=-10)
+    assert sorted((r.total, r.stable) for r in result.regions) == [(4, 1), (6, 1), (6, 2)]  # type: ignore[type-var]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("load", ["-1e-10", "-1e-30"])
+def test_tiny_loads(load: str) -> None:
+    region_map(RHO_L2, F3=load, F4=load)
 
 
 @pytest.mark.parametrize(
@@ -284,3 +326,18 @@ def test_a_limit_leaves_the_best_map_so_far(stage: str, monkeypatch: pytest.Monk
 def test_a_time_limit_of_no_time_stops_at_once() -> None:
     with pytest.raises(LimitReached):
         classify(load(CONFIGS / "fig4.yaml"), timeout=1e-9)
+
+
+@pytest.mark.slow
+def test_plain_decimals_with_long_coefficients() -> None:
+    """F3 = -0.001 and a 40-digit rod: factors with coefficients longer than a machine word."""
+    small = region_map(RHO_L2, F3="-0.001", F4="-10")
+    assert {r.stable for r in small.regions} == {1, 2}
+    record = {"axes": {"L2": ["0", "4e-30"], "rho": ["0", "4e-30"]}, "parameters": {"L1": "1e-30"}}
+    scaled = classify(slice_from_mapping(record))
+    assert len(scaled.regions) == 4
+    assert (
+        min(r.area[0] for r in scaled.regions)
+        <= Fraction("0.25e-60")
+        <= min(r.area[1] for r in scaled.regions)
+    )

@@ -18,6 +18,7 @@ import pytest
 from support import oracle
 from support.random_slices import paper_cusp
 from support.structure import check_structure
+from test_topology import KNOWN
 
 from ptmcad import RegionMap, classify, slice_from_mapping, verify
 from ptmcad.answer.regionmap import Merge, Status
@@ -40,20 +41,35 @@ CURVES: dict[str, tuple[str, Window, Ring, int, str]] = {
     "cusp that opens upward": ("y^3-x^2", SQUARE, (1, 2), 1, "on"),
     "rhamphoid cusp": ("(y-x^2)^2-x^5", ("-1", "1/2", "-1", "1"), (1, 2), 1, "on"),
     "isolated point": ("y^2-x^2*(x-1)", ("-1", "3", "-2", "2"), (1, 2), 1, "on"),
+    "isolated point alone": ("x^2+2*y^2+x^4", SQUARE, (2,), 0, "on"),
+    "vertical line": ("x", SQUARE, (1, 2), 1, "on"),
     "vertical lines at irrational abscissae": ("x^2-2", SQUARE, (1, 2, 2), 2, "exact"),
+    "vertical line through a node": ("x*(y^2-x^2*(x+1))", SQUARE, (1, 1, 2, 2, 2), 5, "on"),
     "vertical line through a cusp": ("x*(y^2-x^3)", SQUARE, (1, 1, 2, 2), 4, "on"),
+    "vertical tangents": ("(x-1)^2+y^2-1", ("-1", "3", "-2", "2"), (1, 2), 1, "on"),
+    "vertical tangent at an inflection": ("x-y^3", SQUARE, (1, 2), 1, "on"),
     "vertical line along a vertical tangent": ("x*((x-1)^2+y^2-1)", ("-1", "3", "-2", "2"), (1, 1, 2), 2, "on"),
+    "two curves touching": ("y*(y-x^2)", SQUARE, (1, 1, 2, 2), 4, "on"),
+    "two curves touching, one inside the other": (
+        "((x-1)^2+y^2-1)*((x-1/2)^2+y^2-1/4)", ("-1", "3", "-2", "2"), (1, 2, 2), 2, "on"),
     "two curves touching with a third order contact": ("y*(y-x^3)", SQUARE, (1, 1, 2, 2), 4, "on"),
     "a curve along the window's edge": ("y*(y-x+1)", ("-2", "2", "0", "2"), (1, 2), 1, "on the edge"),
     "curves along all edges": ("(x^2-4)*(y^2-4)", SQUARE, (2,), 0, "exact"),
     "triple point": ("x*y*(x-y)", SQUARE, (1, 1, 1, 2, 2, 2), 6, "on"),
+    "triple point of curves with two tangents in common": ("x*(y-x^2)*(y+x^2)", SQUARE, (1, 1, 1, 2, 2, 2), 6, "on"),
     "curves through a window corner": ("(x-y)*(y-2*x)", ("0", "2", "0", "2"), (1, 1, 2), 2, "on the edge"),
     "a circle through all window corners": ("2-x^2-y^2", ("-1", "1", "-1", "1"), (2,), 0, "exact"),
+    "a cusp in the window's corner": ("y^2-x^3", ("0", "2", "0", "2"), (1, 2), 1, "on the edge"),
+    "a window of width 1e-30 around a cusp": ("y^2-x^3*1e30", THIN, (1, 2), 1, "on"),
     "a window of width 1e-30 around a node": ("y^2-x^2*(x+1)", THIN, (1, 1, 2, 2), 4, "on"),
+    "a window of width 1e-30 around a smooth point": ("y-x-x^2", THIN, (1, 2), 1, "on"),
+    "a window of width 1e-30 around a vertical tangent": ("x-1e29*y^2", THIN, (1, 2), 1, "on"),
+    "a window of width 1e-30 around a triple point": ("1e60*x*y*(x-y)", THIN, (1, 1, 1, 2, 2, 2), 6, "on"),
     "a window of width 1e-30 around an isolated point": ("1e30*(x^2+y^2)", THIN, (2,), 0, "on"),
 }  # fmt: skip
-THIN_TWIN = "a window of width 1e-30 around a node"
-"""A point around which a wider window is tried too."""
+TWINS = ("a triple point", "a vertical tangent", "a node", "a smooth point")
+THIN_TWINS = tuple(f"a window of width 1e-30 around {place}" for place in TWINS)
+"""Points around which wider windows are tried too."""
 
 
 def region_map(
@@ -105,7 +121,7 @@ def check_around(result: RegionMap, x: Fraction, y: Fraction, steps: tuple[Fract
     "swap", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["x,y", "y,x"]
 )
 @pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=pytest.mark.slow) if n == THIN_TWIN else n for n in CURVES]
+    "name", [pytest.param(n, marks=pytest.mark.slow) if n in THIN_TWINS else n for n in CURVES]
 )
 @pytest.mark.fast_cases(
     "node with one branch vertical-x,y",
@@ -118,6 +134,7 @@ def check_around(result: RegionMap, x: Fraction, y: Fraction, steps: tuple[Fract
     "curves along all edges-x,y",
     "triple point-x,y",
     "a circle through all window corners-x,y",
+    "a window of width 1e-30 around an isolated point-x,y",
 )
 def test_degenerate(name: str, swap: bool) -> None:
     g, (a, b, c, d), stable, pairs, origin = CURVES[name]
@@ -136,6 +153,12 @@ def test_degenerate(name: str, swap: bool) -> None:
     for cell in result.cells:
         values = {n: e.evaluate(*cell.sample) for n, e in result.slice.parameters.items()}
         assert cell.stable == (2 if values["L2"] > 1 else 1)
+
+
+def test_the_synthetic_curves_have_these_names_too() -> None:
+    for word in ("node", "cusp", "isolated", "vertical line", "vertical tangent", "tangent", "along the edge",
+                 "lines through a point", "corner", "1e-30 around a cusp"):  # fmt: skip
+        assert any(word in name for name in KNOWN), word
 
 
 # ------------------------------------------------------------------------------------- singular points of loaded slices
@@ -178,6 +201,15 @@ def test_a_cusp_of_the_fold_curve(cusp: str, axes: tuple[str, str]) -> None:
     check_cusp(values, axes, width)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("axes", [("rho", "L2"), ("L2", "rho"), ("F3", "F4")], ids=",".join)
+@pytest.mark.parametrize("cusp", CUSPS)
+def test_a_window_of_width_1e_30_around_a_cusp_of_the_fold_curve(
+    cusp: str, axes: tuple[str, str]
+) -> None:
+    check_cusp(CUSPS[cusp], axes, Q(1, 10**30))
+
+
 def check_cusp(values: dict[str, Fraction], axes: tuple[str, str], width: Fraction) -> None:
     result = region_map(around(values, width, *axes), fixed(values, *axes), "index")
     assert sorted(r.total for r in result.regions) == [4, 6]  # type: ignore[type-var]
@@ -205,6 +237,25 @@ def test_an_isolated_point_where_the_whole_hessian_vanishes(
     x, y = (values[n] for n in axes)
     assert result.locate(**{axes[0]: x, axes[1]: y}).status is Status.ON_VARIETY
     check_around(result, x, y, (Q(width) / 3, Q(width) * TINY))
+
+
+@pytest.mark.parametrize("axes", [("rho", "F"), exchanged("F", "rho")], ids=",".join)
+@pytest.mark.slow
+def test_two_curves_touching_rose_and_astroid(axes: tuple[str, str]) -> None:
+    """fig. 3: they touch at 2 rho = -F/k = 1/sqrt(2); the regions in both and in neither share that
+    point only.
+    """
+    windows = {"rho": ["3/10", "2/5"], "F": [-80, -60]}
+    result = region_map(
+        {n: windows[n] for n in axes}, {"L1": 1, "L2": 1, "F3": "F", "F4": "F"}, "index"
+    )
+    assert sorted(r.index for r in result.regions) == [(1, 2, 1), (1, 2, 1), (1, 3, 2), (2, 3, 1)]  # type: ignore[type-var]
+    assert len(separated(result)) == 4
+    middle = {
+        "rho": Q("0.35355339059327376220042218105242451964"),
+        "F": Q("-70.710678118654752440084436210484903928"),
+    }
+    check_around(result, *(middle[n] for n in axes), (Q(1, 10**37), Q(1, 10**4)))
 
 
 @pytest.mark.parametrize("axes", [("rho", "k"), exchanged("k", "rho")], ids=",".join)

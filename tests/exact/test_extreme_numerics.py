@@ -11,6 +11,7 @@ import pytest
 from flint import arb, ctx, fmpq, fmpq_poly, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from ptmcad.verification.sturm import roots_between
 from support.examples import examples
 
 import ptmcad
@@ -20,7 +21,6 @@ from ptmcad.algebra.real_roots import RealRoot, isolate
 from ptmcad.answer.regionmap import Status
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.verification.sturm import roots_between
 
 
 def polynomial(roots: list[Fraction]) -> fmpz_poly:

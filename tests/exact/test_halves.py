@@ -7,14 +7,20 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from flint import fmpq
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import ptmcad
+from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.errors import DegenerateSliceError, GeometryError
 from ptmcad.exact.exactmap import exact_map
-from ptmcad.exact.stages import SliceProblem, problem_of
+from ptmcad.exact.stages import Sample, SliceProblem, problem_of
 from ptmcad.options import Options
 from ptmcad.question.config import load, slice_from_mapping
 from ptmcad.question.slice import Slice
+from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 
@@ -106,3 +112,27 @@ def _without_areas(found: RegionMap) -> tuple[object, ...]:
         found.adjacencies,
         [(r.cells, r.total, r.stable, r.index, r.sample) for r in found.regions],
     )
+
+
+@pytest.mark.parametrize("name", [*SYSTEMS, "rods", "forces", "systems/kuramoto"])
+def test_counts_at_mirrored_points_are_the_same(name: str) -> None:
+    problem = problem_of(_record(name))
+    (low, high), (bottom, top) = problem.window
+    share = st.fractions(0, 1, max_denominator=97).map(from_fraction)
+
+    @settings(max_examples=10, deadline=None)
+    @given(share, share)
+    def agree(s: fmpq, t: fmpq) -> None:
+        at = (low + (high - low) * s, bottom + (top - bottom) * t)
+        for change in problem.reflections:
+            x, y = change.at((to_fraction(at[0]), to_fraction(at[1])))
+            assert _counts(problem, at) == _counts(problem, (from_fraction(x), from_fraction(y)))
+
+    agree()
+
+
+def _counts(problem: SliceProblem, at: Sample) -> Counts | type[Exception]:
+    try:
+        return problem.solved_at(at).counts
+    except (DegenerateSliceError, GeometryError) as error:
+        return type(error)

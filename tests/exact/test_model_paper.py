@@ -7,6 +7,7 @@ arithmetic.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import cos, hypot, sin
 from types import SimpleNamespace
 
@@ -14,6 +15,8 @@ import pytest
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 from support.counting import system_of
 from support.free_length_equilibria import free_length_equilibria
+
+from ptmcad.text.flint_numbers import to_fraction
 
 NAMES = ("L1", "L2", "rho", "k", "F3", "F4", "F3x", "F4x", "c1", "s1", "c2", "s2", "t1", "t2")
 RING = fmpq_mpoly_ctx.get(NAMES, Ordering.degrevlex)
@@ -41,6 +44,27 @@ def with_equal_springs(p: fmpq_mpoly) -> fmpq_mpoly:
 
 def substituted(p: fmpq_mpoly, **values: fmpq_mpoly | int) -> fmpq_mpoly:
     return p.compose(*[RING.constant(0) + values.get(n, getattr(V, n)) for n in NAMES], ctx=RING)
+
+
+def half_angles(p: fmpq_mpoly) -> fmpq_mpoly:
+    """p (1 + t1^2)(1 + t2^2) with cos = (1 - t^2)/(1 + t^2), sin = 2t/(1 + t^2), p of degree 1 in
+    each angle.
+    """
+    total = ZERO
+    for exponents, coefficient in p.terms():
+        power = dict(zip(NAMES, exponents, strict=True))
+        term = RING.from_dict(
+            {
+                tuple(
+                    0 if n in ("c1", "s1", "c2", "s2") else e for n, e in power.items()
+                ): coefficient
+            }
+        )
+        for c, s, t in (("c1", "s1", V.t1), ("c2", "s2", V.t2)):
+            assert power[c] + power[s] <= 1
+            term *= 1 - t**2 if power[c] else 2 * t if power[s] else 1 + t**2
+        total += term
+    return total
 
 
 U = with_equal_springs(SYSTEM.potential)
@@ -85,6 +109,132 @@ def test_equations_3_and_4() -> None:
     assert substituted(G2, **VERTICAL) == -V.L2 * equation_3
     assert substituted(G1, **VERTICAL) == -V.L1 * equation_4
     assert substituted(G1, **VERTICAL) != -V.L1 * printed_4
+
+
+def equation_5(extra: int = 0) -> fmpq_mpoly:
+    """k times the paper's (5); 5.1 adds 2 F3x at t2^2 t1 and t1."""
+    t1, t2 = V.t1, V.t2
+    return (
+        V.F3 * t1**2 * t2**2 + 2 * V.k * V.L2 * (t1**2 * t2 + t2**2 * t1) + 4 * V.k * V.rho * t2**2 * t1
+        + V.F3 * t1**2 - V.F3 * t2**2 - 2 * V.k * V.L2 * (t1 + t2) + 4 * V.k * V.rho * t1 - V.F3
+        + extra * V.F3x * (t2**2 * t1 + t1)
+    )  # fmt: skip
+
+
+def equation_6(sign: int, extra: int = 0) -> fmpq_mpoly:
+    """k times the paper's (6) with sign (F4' t2^2 - F4' t1^2); 5.1 adds extra F4x at t1^2 t2 and
+    t2.
+    """
+    t1, t2 = V.t1, V.t2
+    return (
+        V.F4 * t1**2 * t2**2 + 2 * V.k * V.L1 * (t1**2 * t2 + t2**2 * t1) + 4 * V.k * V.rho * t1**2 * t2
+        + sign * V.F4 * (t2**2 - t1**2) - 2 * V.k * V.L1 * (t1 + t2) + 4 * V.k * V.rho * t2 - V.F4
+        + extra * V.F4x * (t1**2 * t2 + t2)
+    )  # fmt: skip
+
+
+def test_equation_5() -> None:
+    assert half_angles(substituted(G1, **VERTICAL)) == V.L1 * equation_5()
+
+
+def test_equation_6_with_the_signs_of_11() -> None:
+    ours = half_angles(substituted(G2, **VERTICAL))
+    assert ours == V.L2 * equation_6(1)
+    assert ours != V.L2 * equation_6(-1)  # as printed
+
+
+def test_horizontal_forces_5_1() -> None:
+    """+ 2 F3x in (5); in (6) it is - 2 F4x, not + 2 F4x, when x points to the right."""
+    assert half_angles(G1) == V.L1 * equation_5(2)
+    assert half_angles(G2) == V.L2 * equation_6(1, -2)
+    assert half_angles(G2) != V.L2 * equation_6(1, 2)
+
+
+SYMMETRIC = {"L2": V.L1, "F3": V.F4, **VERTICAL}
+
+
+def difference_10() -> fmpq_mpoly:
+    return (V.t1 - V.t2) * (V.F4 * (V.t1 + V.t2) + 2 * V.k * V.rho * (1 - V.t1 * V.t2))
+
+
+def equation_11() -> fmpq_mpoly:
+    t1, t2, k, rho = V.t1, V.t2, V.k, V.rho
+    return (
+        V.F4 * (t1**2 * t2**2 - 1) + 2 * V.L1 * k * (t1**2 * t2 + t1 * t2**2) + 4 * k * rho * (t1**2 * t2 + t2)
+        + V.F4 * (t2**2 - t1**2) - 2 * V.L1 * k * (t1 + t2)
+    )  # fmt: skip
+
+
+def test_symmetric_equations_10_and_11() -> None:
+    first, second = (half_angles(substituted(g, **SYMMETRIC)) for g in (G1, G2))
+    assert first - second == 2 * V.L1 * difference_10()
+    assert second == V.L1 * equation_11()
+
+
+def test_at_most_two_solutions_are_not_symmetric_12() -> None:
+    """Eliminating t1 from the second factor of (10) and (11) gives (12), of degree 2: not 4, as the
+    conclusions say.
+    """
+    k, rho, f, t2, length = V.k, V.rho, V.F4, V.t2, V.L1
+    equation_12 = (
+        4 * f * k**2 * t2**2 * (length * rho + rho**2) + 16 * k**3 * rho**3 * t2 + f**3 * (t2**2 - 1)
+        + 4 * f**2 * k * rho * t2 + 4 * f * k**2 * (length * rho - rho**2)
+    )  # fmt: skip
+    second_factor = f * (V.t1 + t2) + 2 * k * rho * (1 - V.t1 * t2)
+    eliminated = second_factor.resultant(equation_11(), "t1")
+    by_t2 = [
+        (q / q.leading_coefficient(), e)
+        for q, e in eliminated.factor()[1]
+        if q.degrees()[NAMES.index("t2")]
+    ]
+    assert len(by_t2) == 2
+    assert (equation_12 / equation_12.leading_coefficient(), 1) in by_t2
+    assert t2**2 + 1 in [q for q, _ in by_t2]
+    assert equation_12.degrees()[NAMES.index("t2")] == 2
+
+
+def test_unloaded_angles_9() -> None:
+    """The triangle with sides L1, L2, 2 rho solves the unloaded equations; with sines of unlike
+    sign it does not.
+    """
+    length1, length2, rho = (
+        Fraction(13),
+        Fraction(20),
+        Fraction(21, 2),
+    )  # 13, 20, 21 is a triangle with area 126
+    c1 = (4 * rho**2 + length1**2 - length2**2) / (4 * rho * length1)
+    c2 = (4 * rho**2 + length2**2 - length1**2) / (4 * rho * length2)
+    s1, s2 = 12 / length1, 12 / length2
+    assert c1**2 + s1**2 == c2**2 + s2**2 == 1
+    values = {
+        "L1": length1,
+        "L2": length2,
+        "rho": rho,
+        "k": 1,
+        "F3": 0,
+        "F4": 0,
+        "t1": 0,
+        "t2": 0,
+        **VERTICAL,
+    }
+    for sign1, sign2, holds in ((1, 1, True), (-1, -1, True), (1, -1, False)):
+        at = {**values, "c1": c1, "s1": sign1 * s1, "c2": c2, "s2": sign2 * s2}
+        numbers = [Fraction(at[n]) for n in NAMES]
+        zero = [
+            sum(
+                (to_fraction(c) * _power(numbers, e) for e, c in g.terms()), Fraction(0)
+            ) == 0
+            for g in (G1, G2)
+        ]  # fmt: skip
+        assert all(zero) == holds
+    assert length1 * c1 - (rho - length2 * c2) == rho  # a parallelogram: x3 - x4 = rho
+
+
+def _power(numbers: list[Fraction], exponents: tuple[int, ...]) -> Fraction:
+    result = Fraction(1)
+    for x, e in zip(numbers, exponents, strict=True):
+        result *= x ** int(e)
+    return result
 
 
 def test_hessian() -> None:

@@ -14,9 +14,11 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from support.few import few
-from support.maps import shipped
+from support.maps import CONFIGS, shipped
 
-from ptmcad.show.render.fieldlines import MIN_LINE, _chains, branch_edges, contour_lines
+import ptmcad
+from ptmcad.cli.plot import poses_at
+from ptmcad.show.render.fieldlines import MIN_PIECE, MIN_RING, contour_lines, pixel_edges
 from ptmcad.show.render.fieldpicture import field_figure
 from ptmcad.show.render.printing import settings
 from ptmcad.show.style import MIN_FONT, styled
@@ -43,6 +45,36 @@ def test_contours_have_their_values_at_the_scale_and_are_no_tiny_rings() -> None
     ticks = figure.axes[1].get_yticks()
     assert ticks[0] == 0.0 < values[0] and np.ptp(np.diff(ticks)) < 1e-9
     np.testing.assert_allclose(ticks[1:], values)
+
+
+@pytest.mark.slow
+def test_where_the_branch_changes_is_an_edge_which_no_contour_crosses() -> None:
+    result = ptmcad.classify(CONFIGS / "mechanisms" / "platform.yaml", areas=False)
+    field = result.field("angle:phi", columns=70)
+    assert field.jumps is not None
+    right, above = field.jumps
+    assert not right.any() and above.shape == (69, 70)
+    # another way to know: the exact poses below the two lines on which it changes, between them and
+    # above
+    exact = [
+        poses_at(result, (Fraction(2), w)).equilibria[0]
+        for w in (Fraction(-1, 2), Fraction(-1, 10), Fraction(1, 2))
+    ]
+    assert [float(pose.degrees[1].center) > 0 for pose in exact] == [True, False, True]
+    rows = np.nonzero(above.any(axis=1))[0]
+    assert len(rows) == 2
+    (low, high) = ((field.y[r], field.y[r + 1]) for r in rows)
+    assert low[0] < -0.25 < low[1] and high[0] < 0 < high[1]
+    axes: Any = Figure().add_axes((0, 0, 1, 1))
+    extent = (0.0, 3.0, -2.0, 2.0)
+    found = [line for lines in contour_lines(axes, field, extent, 8).values() for line in lines]
+    points = np.vstack(found)
+    beyond = points[points[:, 0] > 1.4, 1]
+    assert len(found) > 5 and len(beyond) > 50
+    for start, end in (low, high):
+        assert not ((start + 1e-9 < beyond) & (beyond < end - 1e-9)).any()
+    heights = {y for side in pixel_edges(right, above, extent) for _, y in side}
+    assert sorted(heights) == pytest.approx([sum(low) / 2, sum(high) / 2])
 
 
 def test_an_angle_that_turns_once_more_is_no_other_branch_and_has_no_contour_there() -> None:
@@ -92,3 +124,17 @@ def test_a_quantitys_map_has_all_text_on_the_page_and_none_too_small(preset: str
     assert not [
         1 for a, b in combinations(boxes, 2) if a.shrunk(0.9, 0.9).overlaps(b.shrunk(0.9, 0.9))
     ]
+
+
+@pytest.mark.slow
+def test_a_contour_goes_on_over_a_curve_at_which_its_branch_does_not_change() -> None:
+    """The bistable slider's 140 degrees, by symmetry at both sides of F = 0, cross the astroid to
+    where c is 0.33.
+    """
+    result = ptmcad.classify(CONFIGS / "mechanisms" / "bistable-slider.yaml", areas=False)
+    field = result.field("angle:th", columns=100, rows=100)
+    axes: Any = Figure().add_axes((0, 0, 1, 1))
+    found = contour_lines(axes, field, (-1.5, 1.5, 0.0, 1.0), 8)
+    inside = [line for line in found[140.0] if abs(line[:, 0]).max() < 0.09]
+    assert len(inside) == 1
+    assert inside[0][np.argmax(inside[0][:, 0])] == pytest.approx([-0.03, 0.33], abs=0.02)

@@ -11,13 +11,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.lines import Line2D
+from ptmcad.show.render.leaders import Berth, meet, routed
 from support.maps import shipped
 
 from ptmcad.cli import run
 from ptmcad.cli.plot import measured, places, poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.around import draw_around
-from ptmcad.show.render.leaders import Berth, meet, routed
 from ptmcad.show.render.mappicture import MapDrawing
 from ptmcad.show.render.overlay import Agreement
 from ptmcad.show.render.printing import settings

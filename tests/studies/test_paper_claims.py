@@ -11,7 +11,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -28,7 +28,7 @@ from support.free_length_equilibria import free_length_equilibria
 from support.maps import once_per_run
 
 from ptmcad.answer.regionmap import Merge, Status
-from ptmcad.studies.paper import claim, free, maps
+from ptmcad.studies.paper import claim, free, maps, statements
 from ptmcad.studies.paper.claim import TEXTS, Claim, Verdict, judge, texts
 from ptmcad.studies.paper.maps import FIGURES, region_map
 from ptmcad.studies.paper.squaring import squared
@@ -395,6 +395,27 @@ def test_non_flat_equilibria_at_a_triangle() -> None:
     assert 13 * c1.parts[0] - (p["rho"] - 20 * c2.parts[0]) == p["rho"]
 
 
+@pytest.mark.parametrize(("length2", "rho", "stable"), [
+    (1, 2, (0, 0)), (3, Fraction(1, 2), (1, 0)), (Fraction(1, 4), Fraction(1, 4), (0, 1)), (1, Fraction(1, 2), None),
+])  # fmt: skip
+def test_flat_equilibria_one_by_one(length2: Any, rho: Any, stable: tuple[int, int] | None) -> None:
+    """3.3-three-flat: which of the four is stable, from H by hand; its determinant is not zero
+    (c-singular).
+    """
+    k, length2, rho = 1, Fraction(length2), Fraction(rho)
+    good = []
+    for a in (0, 1):
+        for b in (0, 1):
+            c1, c2 = (-1) ** a, (-1) ** b
+            h11 = 2 * k * rho * c1 - k * length2 * c1 * c2
+            h22 = length2 * (2 * k * rho * c2 - k * c1 * c2)
+            h12 = -k * length2 * c1 * c2
+            assert h11 * h22 - h12**2 != 0
+            if h11 > 0 and h11 * h22 - h12**2 > 0:
+                good.append((a, b))
+    assert good == ([] if stable is None else [stable])
+
+
 def stable_heights(at: Mapping[str, float]) -> list[tuple[float, float]]:
     """(y3, y4) of the stable equilibria, by descent from a grid in floating point."""
     length2, rho, f3, f4 = (at[n] for n in ("L2", "rho", "f3", "f4"))
@@ -451,6 +472,71 @@ def test_squared_equations_vanish_at_the_equilibria() -> None:
             assert abs(math.fsum(terms)) < 1e-8 * max(map(abs, terms))
 
 
+def test_three_degrees_of_freedom_at_rational_points() -> None:
+    """2-dof: the positions' derivatives by rho, th1 and th2 are independent, by dual numbers and
+    elimination.
+    """
+    for p in POINTS:
+        (c1, s1), (c2, s2) = angle(p["t1"], 1), angle(p["t2"], 2)
+        moving = (p["rho"] - p["L2"] * c2, p["L2"] * s2, p["L1"] * c1, p["L1"] * s1)
+        by_angle = [[Fraction(0)] + [Dual.of(x).parts[n] for x in moving] for n in (1, 2)]
+        rows = [[Fraction(x) for x in (1, 1, 0, 0, 0)], *by_angle]
+        assert sp.Matrix(3, 5, lambda i, j: sp.Rational(*rows[i][j].as_integer_ratio())).rank() == 3  # noqa: B023
+
+
+def elastic_energy(
+    design: Sequence[str], angles: tuple[float, float]
+) -> tuple[float, tuple[float, ...]]:
+    """U/k of (17) in floating point, and the springs' lengths."""
+    rho, length1, length2, free, f3, f4 = map(float, design)
+    a, b = angles
+    x3, y3 = length1 * math.cos(a), length1 * math.sin(a)
+    x4, y4 = rho - length2 * math.cos(b), length2 * math.sin(b)
+    lengths = (math.hypot(x4, y4), math.hypot(x3 - rho, y3), math.hypot(x4 - x3, y4 - y3))
+    return sum((n - free) ** 2 for n in lengths) / 2 - f3 * y3 - f4 * y4, lengths
+
+
+def test_gradient_by_difference_quotients() -> None:
+    """5.2-eq17: the shared derivation is the slope of (17)."""
+    design, (a, b), h = TWELVE, (0.7, -2.1), 1e-6
+    rho, length1, length2, free_length, f3, f4 = map(float, design)
+    values = {"rho": rho, "L1": length1, "L2": length2, "k": 1.0, "F3": f3, "F4": f4, "F3x": 0.0, "F4x": 0.0,
+              "c1": math.cos(a), "s1": math.sin(a), "c2": math.cos(b), "s2": math.sin(b)}  # fmt: skip
+    values |= {"l0": free_length} | dict(
+        zip(("l1", "l2", "l3"), elastic_energy(design, (a, b))[1], strict=True)
+    )
+    for n, slope in enumerate(statements.gradient()):
+        up, down = ((a + h * (n == 0) * e, b + h * (n == 1) * e) for e in (1, -1))
+        found = (elastic_energy(design, up)[0] - elastic_energy(design, down)[0]) / (2 * h)
+        assert float(slope.subs({s: values[s.name] for s in slope.free_symbols})) == pytest.approx(
+            found, abs=1e-8
+        )
+
+
+@pytest.mark.parametrize("design", [AT_ELIMINATED, TWELVE, TWENTY_SIX], ids=[6, 12, 26])
+def test_stable_and_tense_by_difference_quotients(design: Sequence[str]) -> None:
+    """5.2-acceptable: stability and lengths at the poses, from the energy alone."""
+    h, found = 1e-4, [0, 0, 0]
+    for e in free.equilibria(design).equilibria:
+        a, b = (float(angle.center) for angle in e.angles)
+        u = {
+            (i, j): elastic_energy(design, (a + i * h, b + j * h))[0]
+            for i in (-1, 0, 1)
+            for j in (-1, 0, 1)
+        }
+        h11, h22 = u[1, 0] + u[-1, 0] - 2 * u[0, 0], u[0, 1] + u[0, -1] - 2 * u[0, 0]
+        h12 = (u[1, 1] + u[-1, -1] - u[1, -1] - u[-1, 1]) / 4
+        stable, tense = (
+            h11 > 0 and h11 * h22 > h12**2,
+            min(elastic_energy(design, (a, b))[1]) > float(design[3]),
+        )
+        found[0] += stable
+        found[1] += stable and not tense
+        found[2] += tense and not stable
+    expected = free.numbers(design)
+    assert found == [expected["stable"], expected["short"], expected["loose"]]
+
+
 def test_real_roots_by_isolation() -> None:
     """5.2-real: real roots isolated on the line; they are counted among all complex ones."""
     from flint import fmpq
@@ -492,6 +578,16 @@ def test_maps_with_free_lengths_at_points() -> None:
             assert there.stable == sum(pose.index == 0 for pose in poses)
             seen.append(there.stable)
     assert set(seen) == {1, 2}
+
+
+def test_half_are_saddles_by_the_oracle() -> None:
+    """3.3-others, at points that the check does not use."""
+    draw = Random(33)
+    for _ in range(4):
+        loads = {n: draw.randint(-90, 90) for n in ("F3", "F4", "F3x", "F4x")}
+        at = {n: Fraction(draw.randint(20, 250), 100) for n in ("L2", "rho")}
+        minima, saddles, maxima = count(**at, **loads)
+        assert minima in (1, 2) and saddles == minima + maxima
 
 
 # --- verdicts follow the evidence: each check is broken once ----------------------------------------------------------
@@ -583,6 +679,15 @@ def test_six_equilibria_would_not_refute() -> None:
     )
 
 
+@pytest.mark.slow
+def test_an_elimination_without_spurious_roots_would_not_confirm(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found = free.elimination()
+    monkeypatch.setattr(free, "elimination", lambda: {**found, "real roots": 6})
+    assert changed("5.2-spurious").verdict is Verdict.UNDECIDED
+
+
 @pytest.mark.parametrize(("numbers", "verdict"), [
     ((12, 30, 20), Verdict.CONFIRMED), ((11, 20), Verdict.CORRECTED), ((20, 31), Verdict.CORRECTED),
     ((11, 31), Verdict.UNDECIDED),
@@ -640,6 +745,13 @@ def test_a_general_count_that_is_not_general_corrects_nothing(
     assert changed("3.3-others").verdict is Verdict.UNDECIDED
 
 
+def test_a_rod_that_does_not_move_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """2-dof rests on the model's nodes."""
+    at = dict(statements.points()) | {"A3": statements.points()["A2"]}
+    monkeypatch.setattr(statements, "points", lambda: at)
+    assert statements.independent() == 2
+
+
 def test_a_place_that_is_not_one_would_not_be_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
     """4.3-widest: another place of the maximum decides nothing, and a wider row refutes."""
     found = maps.over_length()
@@ -676,3 +788,28 @@ def test_errata_page_lists_what_is_not_as_printed() -> None:
     """docs/errata.md names exactly the claims that are corrected or refuted."""
     page = (Path(__file__).resolve().parents[2] / "docs" / "errata.md").read_text(encoding="utf-8")
     assert set(re.findall(r"`([a-z0-9.]+-[a-z0-9-]+)`", page)) == {*CORRECTED, *REFUTED}
+
+
+@pytest.mark.parametrize(("figure", "at"), [
+    ("fig2", "3/2"), ("fig3", "-10"), ("fig4", "3/2"), ("fig5-text", "-20"), ("fig5-caption", "-20"),
+], ids=FIGURES)  # fmt: skip
+def test_ranges_end_on_the_curves_of_the_maps(figure: str, at: str) -> None:
+    """The operation range computes the variety of the line and not of the plane: its ends lie on
+    the plane's curves.
+    """
+    from flint import fmpz_poly
+
+    from ptmcad.algebra.polynomials import coefficients_in, from_plane, univariate
+    from ptmcad.answer.intervals import lower, upper
+    from ptmcad.text.flint_numbers import from_fraction
+
+    found = maps.operation(figure, "rho", at)
+    number = maps.slice_of(figure).axis_names.index("rho")
+    cut = fmpz_poly([1])
+    for c in region_map(figure).components:
+        cut *= univariate(
+            coefficients_in(from_plane(c.polynomial), number), from_fraction(Fraction(at))
+        )
+    for end in (found.low, found.high):
+        low, high = (cut(from_fraction(x)) for x in (lower(end), upper(end)))
+        assert low * high <= 0

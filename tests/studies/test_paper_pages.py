@@ -12,9 +12,10 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import sympy as sp
 
 from ptmcad.studies.paper import corrected as equations
-from ptmcad.studies.paper.claim import Claim, Verdict
+from ptmcad.studies.paper.claim import Claim, Verdict, texts
 from ptmcad.studies.paper.pages import (
     FILES,
     claims_html,
@@ -105,6 +106,42 @@ def test_summary_counts_and_shows_what_is_not_confirmed() -> None:
     assert [line.split()[0] for line in lines[1:]] == ["refuted", "corrected", "undecided", "time"]
 
 
+def test_equations_are_the_right_ones() -> None:
+    """The page's (5), (6), (12), (13) read back as SymPy, against the corrected text."""
+    by_number = {e.number: e for e in equations.equations()}
+    names = {n: sp.Symbol(n, positive=True) for n in ("L1", "L2", "rho", "k")}
+    names |= {n: sp.Symbol(n, real=True) for n in ("F3", "F4", "t1", "t2")}
+    names |= {"f3": names["F3"] / names["k"], "f4": names["F4"] / names["k"]}
+
+    def read(number: str) -> sp.Expr:
+        left, _, right = by_number[number].text.partition(" = ")
+        assert left in ("0", "det(H)")
+        return sp.sympify(right.replace("^", "**"), locals=names)
+
+    k = names["k"]
+
+    def stated(name: str, key: str = "printed") -> sp.Expr:
+        return sp.sympify(
+            texts()[name][key][0].partition(" = ")[2].replace("^", "**"), locals=names
+        )
+
+    fifteen, sixteen = (
+        sp.sympify(text.replace("^", "**"), locals=names | {"F": names["F4"]})
+        for text in texts()["4.2-eq15-16"]["with"]["texts"]
+    )
+    assert sp.expand(k * read("(5)") - stated("3-eq5")) == 0
+    assert sp.expand(k * read("(6)") - stated("3-eq6", "shown")) == 0
+    assert sp.expand(2 * read("(10)") - stated("3.2-eq10")) == 0
+    assert sp.expand(read("(11)") - stated("3.2-eq11")) == 0
+    assert sp.expand(read("(12)") - stated("3.2-eq12")) == 0
+    assert sp.expand(read("(15)") - fifteen) == 0
+    assert sp.expand(read("(16)") - sixteen) == 0
+    root = k * names["rho"] * names["t2"] ** 2 - names["F4"] * names["t2"] - k * names["rho"]
+    assert (
+        sp.cancel(read("(13)") + 4 * names["L1"] ** 2 * root**2 / (1 + names["t2"] ** 2) ** 2) == 0
+    )
+
+
 def test_latex_is_balanced() -> None:
     text = equations.as_latex()
     assert (
@@ -133,6 +170,13 @@ def test_unwritable_folder_is_one_message(tmp_path: Path) -> None:
         and "Traceback" not in done.stderr
     )
     assert (tmp_path / "file").read_text() == "kept"
+
+
+@pytest.mark.slow
+def test_time_limit_leaves_nothing(tmp_path: Path) -> None:
+    done = run("--out", "out", "--timeout", "1", cwd=tmp_path)
+    assert done.returncode == 3, done.stderr
+    assert not [p for p in (tmp_path / "out").glob("*") if p.is_file()]
 
 
 @pytest.mark.slow

@@ -9,6 +9,7 @@ symmetries of the mechanism.
 
 from __future__ import annotations
 
+from collections import Counter
 from fractions import Fraction
 from math import atan
 from random import Random
@@ -16,9 +17,10 @@ from random import Random
 import pytest
 import sympy
 from support.free_length_equilibria import free_length_equilibria
+from support.programs import needs_msolve, real_solutions
 
 from ptmcad.studies.paper import free
-from ptmcad.studies.paper.squaring import signed_solutions
+from ptmcad.studies.paper.squaring import SignedSolutions, signed_solutions
 
 Numbers = tuple[str, str, str, str, str, str]
 """rho, L1, L2, l0, f3, f4."""
@@ -43,6 +45,35 @@ def test_numbers_of_solutions(numbers: Numbers, total: int, real: int, equilibri
     assert (len(found.solutions) + 8 * flat, found.real + 8 * flat, found.equilibria + flat) == (
         total, real, equilibria
     )  # fmt: skip
+
+
+@pytest.mark.slow
+def test_simple_roots_are_accounted_for() -> None:
+    """256 = 128 solutions + 128 pairs of equations with opposite signs of l3, at the design of
+    section 5.2.
+    """
+    found = signed_solutions(PAPER)
+    assert (len(found.solutions), found.opposed, found.unsettled) == (128, 128, 0)
+    assert len({signs for *_, signs in found.solutions}) == 8
+    assert found.equilibria == 6
+
+
+@pytest.mark.slow
+def test_solutions_satisfy_the_equations() -> None:
+    """Residuals in floating point, with lengths of the stated signs."""
+    rho, length1, length2, free, f3, f4 = (float(Fraction(x)) for x in PAPER)
+    for x, y, signs in signed_solutions(PAPER).solutions:
+        t1, t2 = complex(x), complex(y)
+        (c1, s1), (c2, s2) = (((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)) for t in (t1, t2))
+        x3, y3, x4, y4 = length1 * c1, length1 * s1, rho - length2 * c2, length2 * s2
+        squares = (x4**2 + y4**2, (x3 - rho) ** 2 + y3**2, (x3 - x4) ** 2 + (y3 - y4) ** 2)
+        m1, m2, m3 = (
+            1 - free / (sign * square**0.5) for sign, square in zip(signs, squares, strict=True)
+        )
+        s12 = s1 * c2 + c1 * s2
+        size = 1 + abs(s1 * c2) + abs(c1 * s2) + abs(m1) + abs(m2) + abs(m3)
+        assert abs(m2 * rho * s1 + m3 * (rho * s1 - length2 * s12) - f3 * c1) < 1e-9 * size**2
+        assert abs(m1 * rho * s2 + m3 * (rho * s2 - length1 * s12) - f4 * c2) < 1e-9 * size**2
 
 
 def random_design(seed: int) -> Numbers:
@@ -95,3 +126,38 @@ def system(numbers: Numbers) -> tuple[list[str], list[str]]:
         for e in equations
     ]
     return [str(u) for u in unknowns], texts
+
+
+@needs_msolve
+@pytest.mark.parametrize("numbers", [
+    PAPER, UNLOADED, *(pytest.param(random_design(n), marks=pytest.mark.slow) for n in range(4)),
+])  # fmt: skip
+def test_real_solutions_by_msolve(numbers: Numbers) -> None:
+    """Real solutions over all signs: a Groebner basis and a rational parametrisation instead of a
+    resultant.
+    """
+    assert real_solutions(*system(numbers)) == signed_solutions(numbers).real + 8 * (
+        FLAT if numbers == UNLOADED else 0
+    )
+
+
+@pytest.mark.slow
+def test_symmetries() -> None:
+    """Swapping the rods with their loads, reversing the loads, scaling lengths keep all counts;
+    l0 -> -l0 the signs.
+    """
+    rho, length1, length2, length, f3, f4 = ("3/4", "1", "6/5", "9/10", "-1/10", "1/4")
+    first = signed_solutions((rho, length1, length2, length, f3, f4))
+    swapped = signed_solutions((rho, length2, length1, length, f4, f3))
+    reversed_ = signed_solutions((rho, length1, length2, length, "1/10", "-1/4"))
+    scaled = signed_solutions(("3/2", "2", "12/5", "9/5", "-1/5", "1/2"))
+    negative = signed_solutions((rho, length1, length2, "-9/10", f3, f4))
+    counts = [(len(s.solutions), s.real, s.equilibria) for s in (first, swapped, reversed_, scaled)]
+    assert counts == [counts[0]] * 4
+
+    def by_signs(found: SignedSolutions, factor: int) -> Counter[tuple[int, ...]]:
+        return Counter(
+            tuple(factor * x for x in signs) for _, t2, signs in found.solutions if t2.imag == 0
+        )
+
+    assert by_signs(first, 1) == by_signs(negative, -1)

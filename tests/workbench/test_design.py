@@ -225,6 +225,7 @@ LOADED: dict[str, Any] = {
     "axes": {"rho": [0, 2], "L2": [0, 2]},
     "parameters": {"L1": 1, "k": 100, "F3": -10, "F4": -10},
 }
+BOTH = {"L1": ["1/2", 2], "L2": ["1/2", 2]}
 
 
 @pytest.mark.slow
@@ -234,3 +235,64 @@ def test_the_range_is_widest_at_equal_lengths() -> None:
     assert found.best == {"L2": 1} and found.proved and "critical value" in found.reason
     assert found.value is not None and found.value.text(10) == "0.5885498309"
     assert found.bound is not None and found.bound - found.value.low < Fraction(1, 10**20)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("window", "conditions", "best"),
+    [
+        pytest.param(2, [], {"L2": 2, "L1": 2}, id="the longest rods"),
+        pytest.param(2, ["L1 + L2 <= 2"], {"L2": 1, "L1": 1}, id="of rods that are two together"),
+        pytest.param(1, [], None, id="of a base of at most one"),
+    ],
+)
+def test_no_design_of_a_grid_is_better(
+    window: int, conditions: list[str], best: dict[str, int] | None
+) -> None:
+    """Lengths within 1/2 and 2: the optimum within 1 %, and 41 x 41 exact evaluations by each
+    line's own variety.
+    """
+    record = {**LOADED, "axes": {"rho": [0, window], "L2": [0, 2]}}
+    found = ptmcad.design(
+        record, "range", BOTH, where={"conditions": conditions} if conditions else None
+    )
+    assert found.proved and found.value is not None and found.bound is not None
+    assert found.bound <= found.value.low * Fraction(101, 100)
+    assert best is None or found.best == best
+    grid = []
+    for i in range(GRID + 1):
+        first = Fraction(1, 2) + Fraction(3, 2) * Fraction(i, GRID)
+        slice = ptmcad.slice_from_mapping(
+            {**record, "parameters": {**record["parameters"], "L1": first}}
+        )
+        for j in range(GRID + 1):
+            second = Fraction(1, 2) + Fraction(3, 2) * Fraction(j, GRID)
+            if not conditions or first + second <= 2:
+                spans = ptmcad.intervals(slice, "rho", {"L2": second}, 2).operation
+                grid.append(max((span.width.low for span in spans), default=Fraction(0)))
+    assert max(grid) <= found.value.high, "the grid has nothing better"
+    assert max(grid) <= found.bound
+
+
+GRID = 40
+
+
+@pytest.mark.slow
+def test_a_finer_proof_holds_too() -> None:
+    found = ptmcad.design(
+        {**LOADED, "axes": {"rho": [0, 1], "L2": [0, 2]}}, "range", BOTH, tolerance="1/500"
+    )
+    assert found.proved and found.value is not None and 0.7616 < float(found.value) < 0.7619
+
+
+@pytest.mark.slow
+def test_the_area_of_two_stable_poses_is_bounded() -> None:
+    found = ptmcad.design(LOADED, "area", {"L1": ["1/2", 2]}, tolerance="1/5", evaluations=20)
+    assert found.proved and found.value is not None and 1.15 < float(found.value) < 1.17
+    for number in range(13):
+        record = {**LOADED, "parameters": {**LOADED["parameters"], "L1": Fraction(4 + number, 8)}}
+        result = ptmcad.classify(ptmcad.slice_from_mapping(record))
+        assert (
+            found.bound is not None
+            and sum(r.area[0] for r in result.regions if r.stable == 2) <= found.bound
+        )

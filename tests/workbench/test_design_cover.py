@@ -8,14 +8,16 @@ from itertools import pairwise
 import numpy as np
 from flint import fmpq
 
-from ptmcad.algebra.bernstein import table_of
+from ptmcad.algebra.bernstein import halves, over, sign, table_of
 from ptmcad.workbench.designs.designbounds import Lengths
 from ptmcad.workbench.designs.designlines import (
     Space,
     certain,
     longest,
+    longest_on_line,
     measure,
     refined,
+    root_bound,
 )
 
 WINDOW = (fmpq(0), fmpq(1))
@@ -89,6 +91,22 @@ def _float(value: fmpq) -> float:
     return int(value.p) / int(value.q)
 
 
+def test_signs_over_boxes() -> None:
+    table = table_of([((2, 0, 0), 1), ((0, 1, 1), 1)])  # x^2 + y z
+    unit = (fmpq(0), fmpq(1))
+    assert sign(over(table, (unit, unit, unit))) == 1, "zero on the box's rim alone"
+    mixed = over(table, ((fmpq(-1), fmpq(1)), (fmpq(-1), fmpq(0)), unit))
+    assert sign(mixed) == 0
+    lower, upper = halves(
+        over(table, ((fmpq(1), fmpq(3)), (fmpq(-3), fmpq(-2)), (fmpq(1), fmpq(2))))
+    )
+    assert (sign(lower), sign(upper)) == (0, 0)
+    lower, upper = halves(
+        over(table, ((fmpq(0), fmpq(4)), (fmpq(-2), fmpq(-1)), (fmpq(1), fmpq(2))))
+    )
+    assert (sign(lower), sign(upper)) == (0, 1), "x > 2 with y z > -4"
+
+
 def _two_intervals() -> Space:
     """The count is 1 between 1/4 and 1/2 and from 5/8 on, for all designs."""
     tables = [table_of([((1, 0, 0), a), ((0, 0, 0), b)]) for a, b in ((4, -1), (2, -1), (8, -5))]
@@ -99,9 +117,28 @@ def _two_intervals() -> Space:
     return Space(tuple(tables), 1, WINDOW, count, 1)
 
 
+def test_the_longest_of_several_intervals() -> None:
+    space = _two_intervals()
+    found = longest_on_line(space, (fmpq(1, 3), fmpq(1, 5)))
+    assert found == ((fmpq(5, 8), fmpq(5, 8)), (fmpq(1), fmpq(1)))
+    runs = refined(space, (WINDOW, WINDOW), space.whole(), fmpq(1, 64))
+    assert [run.ends for run in runs] == [(fmpq(1, 4), fmpq(1, 2)), (fmpq(5, 8), fmpq(1))]
+    assert longest(space, runs) == fmpq(3, 8) == certain(space, runs) and measure(
+        space, runs
+    ) == fmpq(5, 8)
+
+
 def test_runs_that_are_short_enough_still_count() -> None:
     bounder = Lengths(_two_intervals(), fmpq(1, 10))
     place = (WINDOW, WINDOW)
     _, _, state = bounder.over(place, bounder.whole(), fmpq(1), fmpq(1, 10))
     for enough in (fmpq(3, 10), fmpq(1, 2)):
         assert bounder.over(place, state, fmpq(1), enough)[0] == fmpq(3, 8)
+
+
+def test_roots_are_rounded_outwards() -> None:
+    for value in (fmpq(2), fmpq(1, 3), fmpq(9, 4), fmpq(0)):
+        low, high = root_bound(value, 2, up=False), root_bound(value, 2, up=True)
+        assert low**2 <= value <= high**2 and high - low <= fmpq(1, 2**64)
+        assert (low == high) == (value in (fmpq(9, 4), fmpq(0)))
+        assert root_bound(value, 1, up=True) == value
