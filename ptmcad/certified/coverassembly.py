@@ -9,12 +9,11 @@ larger component next to it. Its area is then undetermined.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
 
 from ptmcad.answer.counts import counted_by
-from ptmcad.answer.regionmap import Cell, PlanStep, Region, RegionMap, Status
+from ptmcad.answer.regionmap import Cell, Region, RegionMap, Status
 from ptmcad.certified.plain.pointcounts import BranchCounter
 from ptmcad.certified.plain.zeros import PointCount
 from ptmcad.certified.statement import system_text
@@ -30,94 +29,84 @@ counts of a larger one next to them are taken for artefacts. So a region that is
 appears as the cover shrinks."""
 
 
-@dataclass(frozen=True, slots=True)
-class Assembler:
-    """Makes maps of one slice."""
+def assembled(
+    complement: Components,
+    slice: Slice,
+    counter: BranchCounter,
+    status: Status,
+    late: Callable[[], bool] = lambda: False,
+) -> RegionMap:
+    """The map of the window outside a cover, without a plan, versions and timings.
 
-    slice: Slice
-    counter: BranchCounter
-    plan: tuple[PlanStep, ...]
-    versions: Mapping[str, str]
-
-    def map(
-        self,
-        complement: Components,
-        status: Status,
-        seconds: Mapping[str, float],
-        late: Callable[[], bool] = lambda: False,
-    ) -> RegionMap:
-        """The map of the window outside a cover.
-
-        Parameters
-        ----------
-        late : asked before each count but the first; components that are not counted when it says
-            True, the smallest ones, stay undetermined.
-        """
-        cover = complement.cover
-        pocket = min(POCKET_SHARE * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
-        counted = self._counts(complement, pocket, late)
-        kept = [
-            n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)
-        ]
-        known = frozenset(kept)
-        square = self.slice.area / cover.steps**2
-        cells, regions = [], []
-        for region, n in enumerate(kept):
-            sample, count = counted[n]
-            cells.append(
-                Cell(
-                    None,
-                    n,
-                    sample,
-                    region,
-                    count.total,
-                    count.stable,
-                    count.index,
-                    count.solutions,
-                    count.further,
-                )
+    Parameters
+    ----------
+    late : asked before each count but the first; components that are not counted when it says True,
+        the smallest ones, stay undetermined.
+    """
+    cover = complement.cover
+    pocket = min(POCKET_SHARE * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
+    counted = _counts(complement, slice, counter, pocket, late)
+    kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, slice.count)]
+    known = frozenset(kept)
+    square = slice.area / cover.steps**2
+    cells, regions = [], []
+    for region, n in enumerate(kept):
+        sample, count = counted[n]
+        cells.append(
+            Cell(
+                None,
+                n,
+                sample,
+                region,
+                count.total,
+                count.stable,
+                count.index,
+                count.solutions,
+                count.further,
             )
-            low, high = complement.area_bounds(n, known)
-            area = (low * square, high * square)
-            regions.append(
-                Region(
-                    count.stable, count.total, count.index, area, (region,), sample, count.further
-                )
-            )
-        open_area = cover.steps**2 - sum(complement.areas[n] for n in kept)
-        return RegionMap(
-            slice=self.slice,
-            status=status,
-            system=system_text(self.slice.model, self.slice.has_free_lengths),
-            cells=tuple(cells),
-            regions=tuple(regions),
-            plan=self.plan,
-            undetermined=Fraction(open_area, cover.steps**2),
-            versions=self.versions,
-            timings=dict(seconds),
-            cover=cover,
         )
+        low, high = complement.area_bounds(n, known)
+        area = (low * square, high * square)
+        regions.append(
+            Region(count.stable, count.total, count.index, area, (region,), sample, count.further)
+        )
+    open_area = cover.steps**2 - sum(complement.areas[n] for n in kept)
+    return RegionMap(
+        slice=slice,
+        status=status,
+        system=system_text(slice.model, slice.has_free_lengths),
+        cells=tuple(cells),
+        regions=tuple(regions),
+        undetermined=Fraction(open_area, cover.steps**2),
+        versions={},
+        cover=cover,
+    )
 
-    def _counts(
-        self, complement: Components, pocket: Fraction, late: Callable[[], bool]
-    ) -> dict[int, tuple[Point, PointCount]]:
-        """Samples and counts of the components, largest first, as far as they are decided; small
-        ones only easily.
-        """
-        horizontal, vertical = self.slice.axes
-        window = ((horizontal.low, horizontal.high), (vertical.low, vertical.high))
-        counted = {}
-        for n in range(min(len(complement.areas), MAX_COUNTED)):
-            if n > 0 and late():
+
+def _counts(
+    complement: Components,
+    slice: Slice,
+    counter: BranchCounter,
+    pocket: Fraction,
+    late: Callable[[], bool],
+) -> dict[int, tuple[Point, PointCount]]:
+    """Samples and counts of the components, largest first, as far as they are decided; small ones
+    only easily.
+    """
+    horizontal, vertical = slice.axes
+    window = ((horizontal.low, horizontal.high), (vertical.low, vertical.high))
+    counted = {}
+    for n in range(min(len(complement.areas), MAX_COUNTED)):
+        if n > 0 and late():
+            break
+        large = complement.areas[n] >= pocket
+        for x, y in islice(samples(complement, n, window), 3 if large else 1):
+            sample = Point((horizontal.name, vertical.name), x, y)
+            count = counter.at(sample[0], sample[1], slice.count, thorough=large)
+            if count.decided:
+                counted[n] = (sample, count)
                 break
-            large = complement.areas[n] >= pocket
-            for x, y in islice(samples(complement, n, window), 3 if large else 1):
-                sample = Point((horizontal.name, vertical.name), x, y)
-                count = self.counter.at(sample[0], sample[1], self.slice.count, thorough=large)
-                if count.decided:
-                    counted[n] = (sample, count)
-                    break
-        return counted
+    return counted
 
 
 def _is_pocket(

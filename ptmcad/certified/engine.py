@@ -19,7 +19,7 @@ import numba
 import numpy as np
 
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.certified.coverassembly import Assembler
+from ptmcad.certified.coverassembly import assembled
 from ptmcad.certified.covering import (
     Lattice,
     Thinning,
@@ -133,8 +133,8 @@ class _MapSearch:
         self.enclosures: list[CurveEnclosure] = begin(
             wanted, first_rectangles(self.lattice, self.resumed)
         )
-        plan = plan_of(slice, wanted, options.without, self.lattice.change)
-        self.assembler = Assembler(slice, plain_counter(slice), plan, _versions())
+        self.counter = plain_counter(slice)
+        self.plan = plan_of(slice, wanted, options.without, self.lattice.change)
         self.best: RegionMap | None = None
         """The map with the least undetermined area of those that were handed over."""
         self._thinned: Thinning | None = None
@@ -263,7 +263,12 @@ class _MapSearch:
         complement = components(cover)
         if area is not None:
             complement = without_specks(complement, self.enclosures, self.lattice, area)
-        result = self.assembler.map(complement, status, times, self._must_hand_over)
+        result = replace(
+            assembled(complement, self.slice, self.counter, status, self._must_hand_over),
+            plan=self.plan,
+            versions=_versions(),
+            timings=times,
+        )
         self.seconds["regions"] += self.clock() - start
         self.pace.map.record(boxes, self.clock() - start)
         return result

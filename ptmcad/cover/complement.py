@@ -204,8 +204,8 @@ def _sides(
     """All pieces of the leaves' sides between an owner (not -1) and something else, with the owner
     at the left.
     """
-    pairs = touching(leaves)
-    first, second = pairs.first[pairs.along], pairs.second[pairs.along]
+    first, second, along = touching(leaves)
+    first, second = first[along], second[along]
     found: list[tuple[Integers, Integers, Integers, Integers, Integers, Integers]] = []
     for one, other in ((first, second), (second, first)):
         edge = (owner[one] >= 0) & (owner[one] != owner[other])

@@ -47,9 +47,9 @@ def components(cover: Cover, tree: Subdivision | None = None) -> Components:
     tree = tree or subdivide(array, cover.steps)
     parts = np.flatnonzero(tree.state != CUT)
     leaves, free = tree.bounds[parts], tree.state[parts] == FREE
-    pairs = touching(leaves)
-    meeting = pairs.along | ~(free[pairs.first] & free[pairs.second])
-    first, second = pairs.first[meeting], pairs.second[meeting]
+    first, second, along = touching(leaves)
+    meeting = along | ~(free[first] & free[second])
+    first, second = first[meeting], second[meeting]
     joined = free[first] == free[second]
     label = connected(len(parts), first[joined], second[joined])
     is_root = label == np.arange(len(label))  # a label is the smallest leaf of what is connected

@@ -256,23 +256,9 @@ def _doubled(array: NDArray[Any]) -> NDArray[Any]:
     return np.concatenate([array, np.zeros_like(array)])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Touching:
-    """Pairs of leaves, as positions in the array of leaves; each pair once.
-
-    Attributes
-    ----------
-    first, second : shape (k,).
-    along : whether the two share a segment; else they share one point.
-    """
-
-    first: Integers
-    second: Integers
-    along: NDArray[np.bool_]
-
-
-def touching(leaves: Integers) -> Touching:
-    """The pairs of leaves whose closures meet.
+def touching(leaves: Integers) -> tuple[Integers, Integers, NDArray[np.bool_]]:
+    """The pairs of leaves whose closures meet, each once, as positions of the first and of the
+    second ones; and whether the two share a segment, else one point.
 
     Parameters
     ----------
@@ -285,11 +271,8 @@ def touching(leaves: Integers) -> Touching:
     # a corner that two leaves share is the end of an upright line between them: the pass above has
     # it
     c, d, _ = _across(up, across, corners=False)
-    return Touching(
-        np.concatenate([a, c]),
-        np.concatenate([b, d]),
-        np.concatenate([along, np.ones(len(c), dtype=np.bool_)]),
-    )
+    segments = np.ones(len(c), dtype=np.bool_)
+    return np.concatenate([a, c]), np.concatenate([b, d]), np.concatenate([along, segments])
 
 
 def _across(

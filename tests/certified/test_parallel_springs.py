@@ -1,5 +1,5 @@
-"""Springs side by side (Lemma S7): they answer as the one spring that they are together, and the
-checker agrees.
+"""Springs between the same points (Lemma S7): they answer as the one spring that they are together,
+and the checker agrees.
 """
 
 from __future__ import annotations
@@ -8,22 +8,21 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 pytest.importorskip("numba")
 
+from support.examples import examples
 
 import ptmcad
 from ptmcad.answer.poses import Poses
-from ptmcad.answer.regionmap import Status
 from ptmcad.certified.engine import certified_map
-from ptmcad.certified.plain import problem as plain_problem
 from ptmcad.certified.plain.certifiedposes import plain_poses
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.model import Mechanism
 from ptmcad.options import Options
 from ptmcad.verification import verify
-from ptmcad.verification.coordinates import monomials
 from ptmcad.verification.normalform.waves import form_of
 
 Springs = list[dict[str, Any]]
@@ -43,17 +42,6 @@ APART: dict[str, Springs] = {
         {"between": ["P", "A"], "k": 1, "free": 1},
         {"between": ["A", "P"], "k": 2, "free": "1/2"},
     ],
-    # 4 (l/2 - 1/4)^2 is (l - 1/2)^2, and so on
-    "to a point between": [
-        {"between": ["A", "P"], "k": 1, "free": 1},
-        {"between": ["M", "A"], "k": 8, "free": "1/4"},
-        TOGETHER[1],
-    ],
-    "to a point beyond": [
-        {"between": ["A", "N"], "k": "1/4", "free": 2},
-        {"between": ["A", "P"], "k": 2, "free": "1/2"},
-        TOGETHER[1],
-    ],
 }
 
 
@@ -69,8 +57,6 @@ def bead(springs: Springs, count: str = "index") -> dict[str, Any]:
                 "A": [0, 0],
                 "B": [2, 0],
                 "P": ["x", "y"],
-                "M": ["x/2", "y/2"],
-                "N": ["-2*x", "-2*y"],
             },
             "springs": springs,
             "loads": {"P": ["F", "G"]},
@@ -88,26 +74,17 @@ def poses(springs: Springs, force: Fraction, up: Fraction) -> Poses:
 
 @pytest.mark.parametrize("how", list(APART))
 def test_springs_side_by_side_are_one_cone(how: str) -> None:
-    """Of engine and checker: they take off twice what the first one of them alone would per its
-    length.
-    """
+    """Of engine and checker, of twice the first one's pull."""
     slice = ptmcad.slice_from_mapping(bead(APART[how]))
-    strength = {"AN": Fraction(1)}.get(
-        next(s for s in ("AN", "AP") if s in named(how)), Fraction(2)
-    )
     pulls = {cone.name.count("+"): cone.pull.constant() for cone in problem_of(slice).cones}
-    assert pulls == {0: Fraction(1, 3), 1: strength}
-    checked = {cone.name.count("+"): cone.pull for cone in form_of(slice).cones}
-    assert {number: str(pull) for number, pull in checked.items()} == {0: "1/3", 1: str(strength)}
-
-
-def named(how: str) -> list[str]:
-    return ["".join(spring["between"]) for spring in APART[how]]
+    assert pulls == {0: Fraction(1, 3), 1: Fraction(2)}
+    checked = {cone.name.count("+"): str(cone.pull) for cone in form_of(slice).cones}
+    assert checked == {0: "1/3", 1: "2"}
 
 
 @pytest.mark.parametrize("count", ["stable", "total", "index"])
 @pytest.mark.parametrize("how", list(APART))
-@pytest.mark.fast_cases("to a point between-index")
+@pytest.mark.fast_cases("ends in the other order-index")
 def test_they_have_the_map_of_the_one_spring(how: str, count: str) -> None:
     options = Options(tolerance=Fraction(1, 50), jobs=1)
     one, many = (
@@ -125,16 +102,28 @@ def test_they_have_the_map_of_the_one_spring(how: str, count: str) -> None:
 
 def test_the_checker_confirms_them_everywhere() -> None:
     """It joins them by itself, from the description."""
-    slice = ptmcad.slice_from_mapping(bead(APART["to a point between"], "stable"))
+    slice = ptmcad.slice_from_mapping(bead(APART["ends in the other order"], "stable"))
     report = verify(certified_map(slice, Options(tolerance=Fraction(1, 50), jobs=1)), boxes=4)
     told = {check.name for check in report.checks if check.passed}
     assert told >= {"counts and solutions", "random boxes", "the whole free area"}
 
 
-def test_apart_nothing_is_decided(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where both have no length, each direction is free."""
-    monkeypatch.setattr(plain_problem, "shares", lambda *_: None)
-    assert poses(APART["same ends"], Fraction(-1, 2), Fraction(1, 3)).status is Status.UNDECIDED
+forces = st.fractions(min_value=-2, max_value=2, max_denominator=16)
+
+
+@settings(max_examples=examples(15), deadline=None)
+@given(st.sampled_from(list(APART)), forces, forces)
+def test_they_have_the_equilibria_of_the_one_spring(
+    how: str, force: Fraction, up: Fraction
+) -> None:
+    one, many = poses(TOGETHER, force, up), poses(APART[how], force, up)
+    assert one.status is many.status
+    pairs = list(zip(one.equilibria, many.equilibria, strict=True))
+    assert [a.index for a, _ in pairs] == [b.index for _, b in pairs]
+    for a, b in pairs:
+        assert all(
+            max(p.low, q.low) <= min(p.high, q.high) for p, q in zip(a.reals, b.reals, strict=True)
+        )
 
 
 def test_a_vector_the_other_way_is_as_long() -> None:
@@ -150,126 +139,3 @@ def test_a_rational_equilibrium_has_its_exact_numbers() -> None:
     found = poses(TOGETHER, Fraction(-1), Fraction(0))
     forces = [[spring.force.exact for spring in pose.springs] for pose in found.equilibria]
     assert [Fraction(0), Fraction(1)] in forces
-
-
-SCALED: dict[str, Any] = yaml.safe_load("""
-unknowns: {x: length, y: length}
-parameters: {F: {kind: force}, a: {kind: length}, b: {kind: length}, c: {}}
-points:
-  A: [0, 0]
-  B: [2, 0]
-  P: [x, y]
-  M: [a*x, a*y]
-  N: [-b*x, -b*y]
-  C: [c*x, c*y]
-  S: [a*x, b*y]
-loads: {P: [F, 1/3]}
-""")
-NEAR: dict[str, Any] = {"between": ["B", "P"], "k": 1, "free": "1/3"}
-
-
-def scaled(
-    ends: str, axes: dict[str, Any], parameters: dict[str, Any], count: str = "stable"
-) -> ptmcad.Slice:
-    """Springs to these points from A, all with k l0 = 1/2."""
-    springs = [{"between": ["A", end], "k": 2, "free": "1/4"} for end in ends]
-    values = {name: parameters.get(name, 1) for name in SCALED["parameters"] if name not in axes}
-    record = {
-        "mechanism": {**SCALED, "springs": [*springs, NEAR]},
-        "axes": axes,
-        "parameters": values,
-    }
-    return ptmcad.slice_from_mapping({**record, "name": "scaled", "count": count})
-
-
-OVER_A = {"F": [-3, 1], "a": [1, 2]}
-"""Near F = -5/3 springs from A balance the rest where they are short."""
-
-
-@pytest.mark.parametrize(
-    ("ends", "axes", "parameters", "engine", "checker"),
-    [
-        # 1/2 |d| + 1/2 |a d|, with a an axis, a fixed parameter or a function of an axis
-        ("PM", OVER_A, {}, "1/2 + 1/2*y", {("a",): "1/2", (): "1/2"}),
-        ("PM", {"F": [-2, 2], "b": [1, 2]}, {"a": "3/2"}, "5/4", {("a",): "1/2", (): "1/2"}),
-        # the engine has half the vector
-        ("NP", {"F": [-2, 2], "t": [1, 2]}, {"b": "t/2"}, "1 + 1/2*y", {("b",): "1/2", (): "1/2"}),
-        # a d and -b d, of which neither is a polynomial times the other
-        (
-            "PMN",
-            {"a": [1, 2], "b": [0, 3]},
-            {},
-            "1/2 + 1/2*y + 1/2*x",
-            {("a",): "1/2", ("b",): "1/2", (): "1/2"},
-        ),
-        # negative all over the window
-        ("PC", {"F": [-2, 2], "c": [-2, 0]}, {}, "1/2 - 1/2*y", {("c",): "-1/2", (): "1/2"}),
-        # parallel at every point of the slice, not for other parameters
-        (
-            "PS",
-            {"F": [-2, 2], "t": [1, 2]},
-            {"a": "t", "b": "t"},
-            "1/2 + 1/2*y",
-            {("a",): "1/2", (): "1/2"},
-        ),
-    ],
-)
-def test_the_ratio_is_a_function_of_the_axes(
-    ends: str,
-    axes: dict[str, Any],
-    parameters: dict[str, Any],
-    engine: str,
-    checker: dict[tuple[str, ...], str],
-) -> None:
-    slice = scaled(ends, axes, parameters)
-    told = {cone.name.count("+"): cone.pull.to_text() for cone in problem_of(slice).cones}
-    assert told == {0: "1/3", len(ends) - 1: engine}
-    found = {cone.name.count("+"): cone.pull for cone in form_of(slice).cones}
-    assert found.keys() == told.keys()
-    pull = {
-        tuple(n for n, power in names for _ in range(power)): str(c)
-        for c, names in monomials(found[len(ends) - 1])
-    }
-    assert pull == checker
-
-
-@pytest.mark.parametrize(
-    ("ends", "axes", "parameters"),
-    [
-        # c is positive at some points and negative at others, or zero along a line inside
-        ("PC", {"F": [-2, 2], "c": [-1, 2]}, {}),
-        ("PC", {"F": [-2, 2], "t": [-1, 2]}, {"c": "t^2"}),
-        # parallel where a = b, which is not everywhere
-        ("PS", {"a": [1, 2], "b": [1, 2]}, {}),
-        ("PS", {"F": [-2, 2], "t": [1, 2]}, {"a": "t", "b": "3/2"}),
-    ],
-)
-def test_what_is_parallel_or_turns_at_some_points_only_stays_apart(
-    ends: str, axes: dict[str, Any], parameters: dict[str, Any]
-) -> None:
-    slice = scaled(ends, axes, parameters)
-    assert [len(cones) for cones in (problem_of(slice).cones, form_of(slice).cones)] == [3, 3]
-
-
-@pytest.mark.parametrize("ends", ["PM", "MP"])
-@pytest.mark.slow_cases("MP")
-def test_the_checker_confirms_a_ratio_that_is_an_axis(ends: str) -> None:
-    """Apart, they leave the map undetermined around the loads that balance them where both are
-    short.
-    """
-    result = certified_map(scaled(ends, OVER_A, {}), Options(tolerance=Fraction(1, 50), jobs=1))
-    assert result.undetermined < Fraction(1, 50)
-    report = verify(result, boxes=4)
-    told = {check.name for check in report.checks if check.passed}
-    assert told >= {"counts and solutions", "random boxes", "the whole free area"}
-
-
-def test_counts_over_an_axis_are_those_at_its_points() -> None:
-    """At a point the ratio is a number."""
-    slice = scaled("MP", OVER_A, {}, "total")
-    result = certified_map(slice, Options(tolerance=Fraction(1, 50), jobs=1))
-    for cell in result.cells:
-        values = {name: e.evaluate(*cell.sample) for name, e in slice.parameters.items()}
-        assert isinstance(slice.model, Mechanism)
-        found = plain_poses(slice.model, values, 8)
-        assert (found.status, len(found.equilibria)) == (Status.CERTIFIED, cell.total)

@@ -40,15 +40,6 @@ def quotient(polynomial: tuple[Term, ...], divisor: tuple[Term, ...]) -> tuple[T
     return _terms(_polynomial(polynomial) // _polynomial(divisor))
 
 
-def lowest_terms(value: Expression) -> Expression:
-    """The same function, whose numerator and denominator have no common divisor."""
-    divisor = common_divisor([value.numerator, value.denominator])
-    above, below = (
-        Expression(quotient(terms, divisor)) for terms in (value.numerator, value.denominator)
-    )
-    return above / below
-
-
 def square_root(polynomial: tuple[Term, ...]) -> tuple[Term, ...] | None:
     """A polynomial with this square, either one of both; None where there is none."""
     try:

@@ -18,7 +18,6 @@ from fractions import Fraction
 from itertools import combinations
 
 from ptmcad.certified.plain.harmonics import Harmonics, TrigonometricPolynomial, Vector
-from ptmcad.certified.plain.parallel import shares
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.formulas.graph import Formula, Graph, expression_formula, length
 from ptmcad.model.builtinmechanisms import title_of
@@ -277,19 +276,16 @@ def _with_springs(
 def _pulls(
     slice: Slice, system: CompiledSystem, ring: Harmonics
 ) -> list[tuple[str, Expression, Vector]]:
-    """Name, K and d of each spring with a free length; of those side by side as of one."""
+    """Name, K and d of each spring with a free length; of those between the same points as of one."""
     found: list[tuple[str, Expression, Vector]] = []
     for spring, weight, (across, up) in system.pulling(ring):
         if not (across.terms or up.terms):
             continue
         name, pull = title_of(spring, slice.model), constant_of(weight)
         for k, (other, its_pull, its_vector) in enumerate(found):
-            # each of K |d| and K' |d'| alone has a cone, and where both are short at once neither
-            # direction would be balanced by the rest; but K f |e| and K' g |e| are one
-            if parts := shares(its_vector, (across, up), slice.axes):
-                f, g = parts
-                x, y = (c.scaled(1 / f) for c in its_vector)
-                found[k] = f"{other} + {name}", f * its_pull + g * pull, (x, y)
+            # where both are short at once neither direction would be balanced by the rest
+            if its_vector in ((across, up), (-across, -up)):
+                found[k] = f"{other} + {name}", its_pull + pull, its_vector
                 break
         else:
             found.append((name, pull, (across, up)))
