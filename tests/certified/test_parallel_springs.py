@@ -1,6 +1,4 @@
-"""Springs side by side (Lemma S7): they answer as the one spring that they are together, and the
-checker agrees.
-"""
+"""Springs side by side (Lemma S7): they answer as the one spring that they are together."""
 
 from __future__ import annotations
 
@@ -24,9 +22,6 @@ from ptmcad.certified.plain.certifiedposes import plain_poses
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.model import Mechanism
 from ptmcad.options import Options
-from ptmcad.verification import verify
-from ptmcad.verification.coordinates import monomials
-from ptmcad.verification.normalform.waves import form_of
 
 Springs = list[dict[str, Any]]
 TOGETHER: Springs = [
@@ -90,17 +85,13 @@ def poses(springs: Springs, force: Fraction, up: Fraction) -> Poses:
 
 @pytest.mark.parametrize("how", list(APART))
 def test_springs_side_by_side_are_one_cone(how: str) -> None:
-    """Of engine and checker: they take off twice what the first one of them alone would per its
-    length.
-    """
+    """They take off twice what the first one of them alone would per its length."""
     slice = ptmcad.slice_from_mapping(bead(APART[how]))
     strength = {"AN": Fraction(1)}.get(
         next(s for s in ("AN", "AP") if s in named(how)), Fraction(2)
     )
     pulls = {cone.name.count("+"): cone.pull.constant() for cone in problem_of(slice).cones}
     assert pulls == {0: Fraction(1, 3), 1: strength}
-    checked = {cone.name.count("+"): cone.pull for cone in form_of(slice).cones}
-    assert {number: str(pull) for number, pull in checked.items()} == {0: "1/3", 1: str(strength)}
 
 
 def named(how: str) -> list[str]:
@@ -123,14 +114,6 @@ def test_they_have_the_map_of_the_one_spring(how: str, count: str) -> None:
     for r, s in zip(one.regions, many.regions, strict=True):
         assert (r.stable, r.total, r.index) == (s.stable, s.total, s.index)
         assert max(r.area[0], s.area[0]) <= min(r.area[1], s.area[1])
-
-
-def test_the_checker_confirms_them_everywhere() -> None:
-    """It joins them by itself, from the description."""
-    slice = ptmcad.slice_from_mapping(bead(APART["to a point between"], "stable"))
-    report = verify(certified_map(slice, Options(tolerance=Fraction(1, 50), jobs=1)), boxes=4)
-    told = {check.name for check in report.checks if check.passed}
-    assert told >= {"counts and solutions", "random boxes", "the whole free area"}
 
 
 forces = st.fractions(min_value=-2, max_value=2, max_denominator=16)
@@ -213,34 +196,32 @@ OVER_A = {"F": [-3, 1], "a": [1, 2]}
 
 
 @pytest.mark.parametrize(
-    ("ends", "axes", "parameters", "engine", "checker"),
+    ("ends", "axes", "parameters", "engine"),
     [
         # 1/2 |d| + 1/2 |a d|, with a an axis, a fixed parameter or a function of an axis
-        ("PM", OVER_A, {}, "1/2 + 1/2*y", {("a",): "1/2", (): "1/2"}),
-        ("MP", OVER_A, {}, "1/2 + 1/2*y", {("a",): "1/2", (): "1/2"}),
-        ("PM", {"F": [-2, 2], "b": [1, 2]}, {"a": "3/2"}, "5/4", {("a",): "1/2", (): "1/2"}),
-        # the engine has half the vector
-        ("NP", {"F": [-2, 2], "t": [1, 2]}, {"b": "t/2"}, "1 + 1/2*y", {("b",): "1/2", (): "1/2"}),
+        ("PM", OVER_A, {}, "1/2 + 1/2*y"),
+        ("MP", OVER_A, {}, "1/2 + 1/2*y"),
+        ("PM", {"F": [-2, 2], "b": [1, 2]}, {"a": "3/2"}, "5/4"),
+        # half the vector
+        ("NP", {"F": [-2, 2], "t": [1, 2]}, {"b": "t/2"}, "1 + 1/2*y"),
         # a d and -b d, of which neither is a polynomial times the other
-        ("MN", {"a": [1, 2], "b": [0, 3]}, {}, "1/2*y + 1/2*x", {("a",): "1/2", ("b",): "1/2"}),
+        ("MN", {"a": [1, 2], "b": [0, 3]}, {}, "1/2*y + 1/2*x"),
         (
             "PMN",
             {"a": [1, 2], "b": [0, 3]},
             {},
             "1/2 + 1/2*y + 1/2*x",
-            {("a",): "1/2", ("b",): "1/2", (): "1/2"},
         ),
         # negative all over the window
-        ("PC", {"F": [-2, 2], "c": [-2, 0]}, {}, "1/2 - 1/2*y", {("c",): "-1/2", (): "1/2"}),
+        ("PC", {"F": [-2, 2], "c": [-2, 0]}, {}, "1/2 - 1/2*y"),
         # parallel at every point of the slice, not for other parameters
         (
             "PS",
             {"F": [-2, 2], "t": [1, 2]},
             {"a": "t", "b": "t"},
             "1/2 + 1/2*y",
-            {("a",): "1/2", (): "1/2"},
         ),
-        ("PS", {"F": [-2, 2], "c": [1, 2]}, {"a": "3/2", "b": "3/2"}, "5/4", {(): "5/4"}),
+        ("PS", {"F": [-2, 2], "c": [1, 2]}, {"a": "3/2", "b": "3/2"}, "5/4"),
     ],
 )
 def test_the_ratio_is_a_function_of_the_axes(
@@ -248,18 +229,10 @@ def test_the_ratio_is_a_function_of_the_axes(
     axes: dict[str, Any],
     parameters: dict[str, Any],
     engine: str,
-    checker: dict[tuple[str, ...], str],
 ) -> None:
     slice = scaled(ends, axes, parameters)
     told = {cone.name.count("+"): cone.pull.to_text() for cone in problem_of(slice).cones}
     assert told == {0: "1/3", len(ends) - 1: engine}
-    found = {cone.name.count("+"): cone.pull for cone in form_of(slice).cones}
-    assert found.keys() == told.keys()
-    pull = {
-        tuple(n for n, power in names for _ in range(power)): str(c)
-        for c, names in monomials(found[len(ends) - 1])
-    }
-    assert pull == checker
 
 
 @pytest.mark.parametrize(
@@ -277,20 +250,7 @@ def test_what_is_parallel_or_turns_at_some_points_only_stays_apart(
     ends: str, axes: dict[str, Any], parameters: dict[str, Any]
 ) -> None:
     slice = scaled(ends, axes, parameters)
-    assert [len(cones) for cones in (problem_of(slice).cones, form_of(slice).cones)] == [3, 3]
-
-
-@pytest.mark.parametrize("ends", ["PM", "MP"])
-@pytest.mark.slow_cases("MP")
-def test_the_checker_confirms_a_ratio_that_is_an_axis(ends: str) -> None:
-    """Apart, they leave the map undetermined around the loads that balance them where both are
-    short.
-    """
-    result = certified_map(scaled(ends, OVER_A, {}), Options(tolerance=Fraction(1, 50), jobs=1))
-    assert result.undetermined < Fraction(1, 50)
-    report = verify(result, boxes=4)
-    told = {check.name for check in report.checks if check.passed}
-    assert told >= {"counts and solutions", "random boxes", "the whole free area"}
+    assert len(problem_of(slice).cones) == 3
 
 
 def test_counts_over_an_axis_are_those_at_its_points() -> None:

@@ -45,9 +45,9 @@ lattice.
 _MAX_TRIALS = 400
 """Random points looked at for one that is free."""
 _FIRST_TRIALS = 40
+"""The same for points beside rectangles, of which others will do."""
 PLACES_ON_TUBES = 4
 """Beside which points are tried, for each tube."""
-"""The same for points beside rectangles, of which others will do."""
 Edge = tuple[Fraction | int, Fraction | int, Fraction | int, Fraction | int]
 """A side of a rectangle within a square: left, right, bottom, top, one pair of them equal; in
 lattice steps times the number of squares side by side, in which squares begin and end at whole

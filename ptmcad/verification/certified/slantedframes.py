@@ -87,9 +87,7 @@ class SlantedFrame:
                 return k if away < -half else None
         return len(self.centers)
 
-    def side(
-        self, axis: int, end: int
-    ) -> Sequence[tuple[Fraction | int, Fraction | int, bool, int]]:
+    def side(self, axis: int, end: int) -> Sequence[Part]:
         """The parts of a side across an axis, the lower (0) or the upper (1) one; numbers of parts
         or of tubes.
         """
@@ -99,9 +97,7 @@ class SlantedFrame:
         return self._sides[key]
 
     @cached_property
-    def _sides(
-        self,
-    ) -> dict[tuple[int, int], Sequence[tuple[Fraction | int, Fraction | int, bool, int]]]:
+    def _sides(self) -> dict[tuple[int, int], Sequence[Part]]:
         return {}
 
     def _end(self, end: int) -> Iterator[Part]:

@@ -10,8 +10,8 @@ coefficients have one sign, and the constant one is not zero, there is no soluti
 signs of unknowns are tried. Coefficients are balls over all angles and all other real unknowns as
 far as they are bounded; the part of a spring with a free length is at most its pull times the
 slope, of either sign. Where unknowns bound one another, x_j = t_j g^w_j with |t_j| at most 1, and
-the same is tried for g; where springs hold several, `ptmcad.verification.normalform.held` is. The
-second engine evaluates by Horner's rule on unbounded intervals.
+the same is tried for g. Sliders that springs alone hold together have no bound here: maps of them
+are listed as not checked. The second engine evaluates by Horner's rule on unbounded intervals.
 """
 
 from __future__ import annotations
@@ -19,14 +19,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
-from math import comb, inf, nextafter
+from math import comb
 from typing import NamedTuple
 
 from flint import arb
 
 from ptmcad.verification.coordinates import ball, power
 from ptmcad.verification.normalform.boxes import Unproved, size
-from ptmcad.verification.normalform.held import bounds_of
 from ptmcad.verification.normalform.waves import Form, Key, Waves
 
 HALF_TURN = 101 / 32
@@ -42,8 +41,6 @@ Row = Mapping[Key, arb]
 """A polynomial by its waves."""
 Monomials = dict[tuple[int, ...], arb]
 """By the powers of what is not bounded."""
-_Linear = tuple[list[list[arb]], list[arb], list[tuple[arb, list[arb], list[arb]]]]
-"""Equations A s + b less the parts of springs, as `bounds_of` has them."""
 _ZERO, _ANY = arb(0), arb(0, 1)
 
 
@@ -177,58 +174,6 @@ class _Bounds:
                 return {k: bound**w for k, w in of.items()}
         return None
 
-    def held(self, chosen: Sequence[int]) -> dict[int, float] | None:
-        """Bounds of some unknowns in which their equations are linear, but for the directions of
-        springs.
-        """
-        factors = tuple(
-            arb(1) if half is None else self._factor(k) for k, half in enumerate(self.found)
-        )
-        variables = tuple(k if half is None else None for k, half in enumerate(self.found))
-        whole = _RangeChart(factors, variables, (1,) * len(factors), 0)
-        waiting, most = [whole], [arb(0)] * len(chosen)
-        treated = 0
-        while waiting:
-            part = waiting.pop()
-            treated += 1
-            linear = self._linear(part, chosen)
-            if linear is None:
-                return None
-            bounds = bounds_of(*linear)
-            if bounds is not None:
-                most = list(map(max, most, bounds))
-                continue
-            halves = None if treated + len(waiting) >= MAX_PARTS else part.halves(whole)
-            if halves is None:
-                return None
-            waiting += halves
-        return {k: nextafter(float(bound), inf) for k, bound in zip(chosen, most, strict=True)}
-
-    def _linear(self, chart: _RangeChart, chosen: Sequence[int]) -> _Linear | None:
-        """The equations of some unknowns; None where other unknowns without a bound, or squares of
-        these, are in.
-        """
-        none = (0,) * (len(chart.factors) + 1)
-        units = [tuple(int(j == k) for j in range(len(none))) for k in chosen]
-        matrix, rest, parts = [], [], []
-        for equation in (self.equations[k] for k in chosen):
-            terms = chart.monomials(equation.smooth)
-            slopes = [
-                (chart.monomials(across), chart.monomials(up)) for _, across, up in equation.cones
-            ]
-            if not _present(terms) <= {none, *units} or any(
-                not _present(f) <= {none} for pair in slopes for f in pair
-            ):
-                return None
-            matrix.append([terms.get(unit, _ZERO) for unit in units])
-            rest.append(terms.get(none, _ZERO))
-            parts.append([(across.get(none, _ZERO), up.get(none, _ZERO)) for across, up in slopes])
-        springs = [
-            (pull, [vectors[c][0] for vectors in parts], [vectors[c][1] for vectors in parts])
-            for c, (pull, _, _) in enumerate(self.equations[chosen[0]].cones)
-        ]
-        return matrix, rest, springs
-
     def _faces(self, weights: Mapping[int, int]) -> Iterator[_RangeChart]:
         lead, everything = len(self.found), range(len(self.found))
         free = [j for j, half in enumerate(self.found) if half is None and j not in weights]
@@ -283,11 +228,6 @@ class _Bounds:
         return True
 
 
-def _present(terms: Monomials) -> set[tuple[int, ...]]:
-    """The powers of terms that are not exactly zero."""
-    return {powers for powers, c in terms.items() if not (c == 0)}  # noqa: SIM201 (a ball that is not exactly zero)
-
-
 def _is_positive(terms: Monomials, lead: int, bound: arb, sign: int) -> bool:
     """Whether a polynomial times a sign is positive where the leading number is at least the bound."""
     shifted: Monomials = {}
@@ -327,9 +267,8 @@ def _all_bounds(bounds: _Bounds) -> list[float | None]:
                 break
         else:
             several = [c for n in range(2, len(waiting) + 1) for c in combinations(waiting, n)]
-            for way, chosen in product((bounds.together, bounds.held), several):
-                both = way(chosen)
-                if both is not None:
+            for chosen in several:
+                if (both := bounds.together(chosen)) is not None:
                     for k, half in both.items():
                         found[k] = half
                     break

@@ -8,7 +8,7 @@ with powers of the real unknowns.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -18,12 +18,12 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.model import Model
 from ptmcad.question.counts import Count
-from ptmcad.question.slice import Axis, Slice
-from ptmcad.text.expressions import Expression
-from ptmcad.verification.coordinates import CoordinateRing, circle_names
+from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import Expression, constant
+from ptmcad.verification.coordinates import CoordinateRing, circle_names, evaluated
 from ptmcad.verification.derivation import Derivation, derivation_of
 from ptmcad.verification.kinds import has_margins
-from ptmcad.verification.normalform.springlines import Parameters, SpringLine, line_of
+from ptmcad.verification.normalform.springlines import SpringLine, Vanishes, line_of
 
 Multi = tuple[int, ...]
 """For each unknown the multiple of an angle, or the power of a real unknown."""
@@ -35,21 +35,15 @@ positive, and there is no sine of nothing."""
 Vector = tuple[Waves, Waves]
 Sides = Mapping[str, int]
 """1 or -1 by the name of each spring on a line: the sign of s."""
-_Side = tuple[str, Waves, Vector, Vector | None]
-"""Springs side by side: their names, and the pull and the vector, with its derivative along loops,
-of the one that they are together."""
 
 
 class SpringCone(NamedTuple):
-    """A spring with a free length, or several side by side, which take K times a vector's length
-    off the potential.
+    """A spring with a free length, which takes K times its vector's length off the potential.
 
     Attributes
     ----------
-    name : of the spring, or of each.
-    pull : K, the stiffness times the free length; of several the sum, each by how much longer it is
-        than the vector.
-    vector : between the spring's ends; of several one in the same direction.
+    pull : K, the stiffness times the free length.
+    vector : between the spring's ends.
     weights : for each equation the vector whose product with the spring's direction, times K, it
         lacks: the vector's derivative by the unknown, but with closed loops that along them in the
         last equation, and nothing in others.
@@ -217,27 +211,32 @@ def by(f: Waves, k: int) -> Waves:
 
 
 def form_of(slice: Slice) -> Form:
-    """The form of a slice's model, with springs as one that are parallel all over the slice."""
-    return _form(slice.model, tuple(slice.parameters.items()), slice.axes, slice.count)
+    """The form of a slice's model."""
+    return _form(slice.model, tuple(slice.parameters.items()), slice.count)
 
 
 @lru_cache(maxsize=8)
-def _form(
-    model: Model, values: tuple[tuple[str, Expression], ...], axes: tuple[Axis, Axis], count: Count
-) -> Form:
+def _form(model: Model, values: tuple[tuple[str, Expression], ...], count: Count) -> Form:
     true = derivation_of(model)
     ring = _Exponentials(model, true.ring)
     unknowns = ring.unknowns
-    parameters = Parameters(values, axes, ring.numbers)
+    known = {name: constant(0) for name in ring.numbers.names()} | dict(values)
+
+    def on_slice(p: fmpq_mpoly) -> Expression:
+        """A polynomial in the parameters as a function of the axes."""
+        value: Expression = constant(0) + evaluated(p, known)
+        return value
+
+    def vanishes(p: fmpq_mpoly) -> bool:
+        return not on_slice(p).numerator
 
     def says_something(condition: Waves) -> bool:
         """Of others nothing is stored: they are positive numbers all over the slice."""
         [*terms] = condition.items()
-        return (
-            len(terms) != 1
-            or any(map(any, terms[0][0][:2]))
-            or not parameters.is_positive_number(terms[0][1])
-        )
+        if len(terms) != 1 or any(map(any, terms[0][0][:2])):
+            return True
+        value = on_slice(terms[0][1])
+        return not (value.is_constant and value.constant() > 0)
 
     inequalities, stability = (
         list(filter(says_something, map(ring.waves, some)))
@@ -251,7 +250,7 @@ def _form(
         whole = list(map(ring.waves, true.equations))
         equations = [_divided(e, inequalities) for e in whole]
         multiples = [e for e, f in zip(whole, equations, strict=True) if e != f]
-    cones = tuple(_cones(ring, true, parameters))
+    cones = tuple(_cones(ring, true, vanishes))
     closing = tuple(map(unknowns.index, true.unknowns)) if cones and true.closing else ()
     if closing:
         stability = []  # the determinant of the whole Jacobian
@@ -297,58 +296,21 @@ def _divided(f: Waves, inequalities: Iterable[Waves]) -> Waves:
     return found
 
 
-def _cones(ring: _Exponentials, true: Derivation, parameters: Parameters) -> Iterable[SpringCone]:
-    """The springs with a free length; those that are parallel all over a slice as one."""
+def _cones(ring: _Exponentials, true: Derivation, vanishes: Vanishes) -> Iterable[SpringCone]:
+    """The springs with a free length."""
     everything = range(len(ring.unknowns))
-    sides: list[_Side] = []
     for spring in true.pulling:
-        pull = ring.waves(spring.pull)
-        vector = ring.vector(spring.vector)
-        if all(map(parameters.vanishes, pull.values())) or not any(
+        pull, vector = ring.waves(spring.pull), ring.vector(spring.vector)
+        if all(map(vanishes, pull.values())) or not any(
             by(d, k) for d in vector for k in everything
         ):
             continue
-        across, up = spring.vector
-        along = (
-            ring.vector((true.along_loops(across), true.along_loops(up))) if true.closing else None
-        )
-        new = (spring.name, pull, vector, along)
-        for k, side in enumerate(sides):
-            if joined := _joined(side, new, parameters):
-                sides[k] = joined
-                break
-        else:
-            sides.append(new)
-    for name, pull, vector, along in sides:
         weights = [(by(vector[0], k), by(vector[1], k)) for k in everything]
-        if along is not None:
-            weights = [*[({}, {})] * (len(weights) - 1), along]
-        ((_, strength),) = pull.items()
-        yield SpringCone(
-            name, strength, vector, tuple(weights), line_of(vector, parameters.vanishes)
-        )
-
-
-def _joined(one: _Side, other: _Side, parameters: Parameters) -> _Side | None:
-    """Two as one, if their vectors are f e and g e at every point of the slice: K |f e| + K' |g e|."""
-    (name, pull, vector, along), (also, more, parallel, _) = one, other
-    for look in (
-        dict,
-        parameters.valued,
-    ):  # where parameters may stay, they do: they are factors of equations
-        ours, theirs = ([look(f) for f in some] for some in (vector, parallel))
-        if any(ours) and (factors := parameters.shares(ours, theirs)):
-            f, g = factors
-            pulls = [(key, c * f) for key, c in look(pull).items()]
-            pulls += [(key, c * g) for key, c in look(more).items()]
-            turned = None if along is None else _divided_by(f, along, look)
-            return f"{name} + {also}", _collected(pulls), _divided_by(f, vector, look), turned
-    return None
-
-
-def _divided_by(f: fmpq_mpoly, vector: Vector, look: Callable[[Waves], Waves]) -> Vector:
-    across, up = ({key: c / f for key, c in look(d).items()} for d in vector)
-    return across, up
+        if true.closing:
+            across, up = map(true.along_loops, spring.vector)
+            weights = [*[({}, {})] * (len(weights) - 1), ring.vector((across, up))]
+        (strength,) = pull.values()
+        yield SpringCone(spring.name, strength, vector, tuple(weights), line_of(vector, vanishes))
 
 
 def sides(form: Form) -> Iterator[Sides]:
