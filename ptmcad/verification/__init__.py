@@ -6,22 +6,22 @@ with its table of counts, and the result's data classes.
 
 An order of reading, for what an exact map claims:
 
-1. `report`: a check is a function that raises `Violation`, or says what it checked; `checks` lists
-   all of them.
-2. `coordinates`, `derivation`, `constraints`, `kinds`: the polynomials that follow from a
-   description, derived once for both halves. `claims`: a stored map seen with them.
+1. `report`: a check is a function that raises `Violation`, or says what it checked. `checks` lists
+   all of them, in the order in which one rests on another.
+2. `coordinates`, `constraints`, `kinds`, `derivation`: the polynomials that follow from a
+   description, derived once for both halves of this package. `claims`: a stored map seen with them.
 3. `polynomialtexts`, `equationtexts`, `parameterclaims`: the stored texts say the same.
-4. `fibrealgebra`, `principalminors`: the solutions over a point, counted by signatures; `solutions`: the
-   stored counts and boxes. `norms`: the stored curves are all of those where counts change.
-5. `planecurves`, `rootcounts`, `projections`, `adjacencies`, `merging`: the decomposition of the plane.
-   `windowsigns`, `planclaims`: what was left out.
-6. `disks`, `wallintegrals`, `areaclaims`: enclosures of the areas.
+4. `quotientalgebra`, `principalminors`, `fibrealgebra`: the solutions over a point, counted by
+   signatures. `solutions`: the stored counts and boxes. `norms`: the stored curves are all of those
+   where counts change.
+5. `planecurves`, `rootcounts`, `projections`, `adjacencies`, `merging`: the decomposition of the
+   plane. `windowsigns`, `planclaims`: what was left out.
+6. `disks`, `wallintegrals`, `areaclaims`: enclosures of the areas, by power series alone.
 7. `parameterlines`, `rangeclaims`, `designclaims`, `arrangements`: lines, designs and families.
 
-Certified maps: `certified.certificate` lists their checks. `normalform.waves` and `modelequations`
-derive, `certified.ballequations` encloses, `exclusion.places` and `certified.krawczyk` find all
-solutions at a point, `certified.sampling` looks at random boxes, and `certified.freearea` at the
-whole free area.
+Certified maps have their own order in `certified`. There `normalform` derives formulas from the
+polynomials of step 2, `exclusion` finds where their solutions may be, and `certified` itself proves
+what is there.
 """
 
 from __future__ import annotations

@@ -1,22 +1,21 @@
-"""Checks of where a family changes: members are classified once more, each alone and over either
-axis, and compared.
+"""Checks of a family: where it changes, and its surfaces.
+
+*Changes.* Members are classified once more, each alone and over either axis, and compared. Their
+arrangement is read off these two maps: regions, counts and neighbours off both, and the order along
+two sides off each, where the map's stacks begin and end. The program that finds changes counts once
+for all cells that are joined, with the basis that the members have in common, and finds the order
+along the other sides in another way.
+
+*Surfaces*, cut at a random value, are the critical curves of the member there, which is classified
+alone, without what the members have in common.
 
 Guarantee: a change that is listed is one, within a stated distance of its value; between changes
-the members that were looked at, at random values, have the arrangement that is listed. That none is
-missing between those is not checked.
+the members that were looked at, at random values, have the arrangement that is listed. Where the
+surfaces, at the random value, have other irreducible factors than the member's curves on which
+solutions meet, they are not those of the family, but for finitely many values, of which a random
+one is none by accident.
 
-A member's arrangement is read off two maps, one over each axis: regions, counts and neighbours off
-both, and the order along two sides off each, where the map's stacks begin and end. The program that
-finds changes counts once for all cells that are joined, with the basis that the members have in
-common, and finds the order along the other sides in another way.
-
-The check of a family's surfaces: cut at a random value they are the critical curves of the
-member there.
-
-Guarantee: where the stored polynomials, at that value of the free parameter, have other irreducible
-factors than the member's curves on which solutions meet, they are not those of the family, but for
-finitely many values, of which a random one is none by accident. The member is classified alone,
-without what the members have in common.
+Not guaranteed: that no change is missing between the members that were looked at.
 """
 
 from __future__ import annotations
@@ -26,6 +25,7 @@ from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import count
 
 from flint import fmpz_poly
 
@@ -75,7 +75,7 @@ def verify_changes(
     chosen = drawn(seed)
     source = random.Random(chosen)
     try:
-        detail: str = _checked(found, _Members(found, maps_at, progress), source)
+        detail: str = _checked(found, _fits(found, maps_at, progress), source)
         passed = None if isinstance(detail, Unchecked) else True
     except Violation as violation:
         return (Check("changes", method, False, shown(str(violation))),)
@@ -84,55 +84,47 @@ def verify_changes(
     return (Check("changes", method, passed, detail), Check("changes complete", "", None, missing))
 
 
-class _Members:
-    """Members compared with what is listed."""
+Fits = Callable[[Fraction, int], bool]
+"""Whether the member at a value has the arrangement of a part between changes."""
 
-    def __init__(self, found: Changes, maps_at: MapsAt, progress: Progress | None) -> None:
-        self.found, self.maps_at, self.progress = found, maps_at, progress
-        self.done, self.total = 0, 2 * len(found.changes) + (1 + RANDOM) * len(found.between)
 
-    def fits(self, value: Fraction, part: int) -> bool:
-        """Whether the member at a value has the arrangement of a part between changes."""
-        if self.progress is not None:
-            self.progress("changes", self.done, self.total)
-        self.done += 1
-        listed = self.found.arrangements[part]
-        return all(
-            _is_seen(listed, result, side) for side, result in enumerate(self.maps_at(value))
-        )
+def _fits(found: Changes, maps_at: MapsAt, progress: Progress | None) -> Fits:
+    total, tried = 2 * len(found.changes) + (1 + RANDOM) * len(found.between), count()
 
-    def expect(self, value: Fraction, part: int, where: str) -> None:
-        """The member at a value has the arrangement of a part between changes.
+    def fits(value: Fraction, part: int) -> bool:
+        if progress is not None:
+            progress("changes", next(tried), total)
+        listed = found.arrangements[part]
+        return all(_is_seen(listed, result, side) for side, result in enumerate(maps_at(value)))
 
-        Raises
-        ------
-        Violation
-        """
-        if not self.fits(value, part):
-            at = f"{self.found.free.name} = {text_of(value)}"
+    return fits
+
+
+def _checked(found: Changes, fits: Fits, source: random.Random) -> str:
+    def expect(value: Fraction, part: int, where: str) -> None:
+        if not fits(value, part):
+            at = f"{found.free.name} = {text_of(value)}"
             raise Violation(f"the member at {at}, {where}, has another arrangement than is listed")
 
-
-def _checked(found: Changes, members: _Members, source: random.Random) -> str:
     values = [change.value for change in found.changes]
     _check_numbers([*values, *found.others])
     gaps = _gaps(found)
     for part, listed in enumerate(found.between):
-        members.expect(listed, part, "listed between changes")
+        expect(listed, part, "listed between changes")
     for k, value in enumerate(values):
         low, high = _beside(value, gaps[k])
         name = f"the change at {value.text(8) if isinstance(value, AlgebraicNumber) else text_of(value.low)}"
-        members.expect(low, k, f"below {name}")
-        members.expect(high, k + 1, f"above {name}")
+        expect(low, k, f"below {name}")
+        expect(high, k + 1, f"above {name}")
         if correspondence(found.arrangements[k], found.arrangements[k + 1]) is not None:
-            _check_instant(members, value, k, name)
+            _check_instant(fits, value, k, name)
     skipped = 0
     for part, ends in enumerate(_parts(found)):
         for _ in range(RANDOM):
             low, high = (ends[0] + (ends[1] - ends[0]) * n for n in _place(source))
             member = low if low == high else simplest_fraction(low, high)
             try:
-                members.expect(member, part, "between changes")
+                expect(member, part, "between changes")
             except HypothesisError:  # none of the kinds of members of which anything is said
                 skipped += 1
     number = RANDOM * len(found.between) - skipped
@@ -194,9 +186,7 @@ def _place(source: random.Random) -> tuple[Fraction, Fraction]:
     return Fraction(first, _DIGITS), Fraction(first, _DIGITS) + Fraction(1, 2 * _DIGITS)
 
 
-def _check_instant(
-    members: _Members, value: AlgebraicNumber | Enclosure, part: int, name: str
-) -> None:
+def _check_instant(fits: Fits, value: AlgebraicNumber | Enclosure, part: int, name: str) -> None:
     """On both sides of a value the arrangement is the same: then that at the value itself is
     another one.
     """
@@ -204,7 +194,7 @@ def _check_instant(
     if exact is None:
         raise Violation(f"{name} is none: on both sides of it the arrangement is the same")
     try:
-        same = members.fits(exact, part)
+        same = fits(exact, part)
     except HypothesisError:
         return
     if same:

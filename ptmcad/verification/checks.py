@@ -32,7 +32,7 @@ from ptmcad.verification.windowsigns import check_left_out
 NOT_CHECKED = (
     (
         "plan without trace",
-        "predicted costs; whether savings were made that leave no trace in this file",
+        "predicted costs; symmetries and other savings that leave no trace in this file",
     ),
     (
         "provenance",

@@ -138,19 +138,19 @@ def verify_design(
     ----------
     seed : of the random designs; a fresh one when None.
     """
-    headway = CheckProgress(progress)
+    bar = CheckProgress(progress)
     steps: tuple[tuple[str, str, Callable[[_DesignLines], str]], ...] = (
         ("form", "comparison", _check_form),
         ("boxes", "disjoint; what is left, halved", _check_boxes),
         (
             "values",
             "ranges of each design by itself",
-            partial(_check_values, within=headway.within),
+            partial(_check_values, within=bar.within),
         ),
         ("bound", "ranges of random designs", _check_bound),
         ("extremes", "ranges on the lines themselves", _check_extremes),
     )
-    checks = checked(_DesignLines(found, drawn(seed)), steps, (), headway)
+    checks = checked(_DesignLines(found, drawn(seed)), steps, (), bar)
     checks.append(
         Check(
             "bound of every design",

@@ -6,7 +6,7 @@ conditions in a result are the description's in all parameters, so for every sli
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Sequence
 
 from flint import fmpq_mpoly
 
@@ -27,17 +27,27 @@ def check_system(claims: Claims, seed: str = "") -> str:
         raise Violation(
             "a parameter has the name of a coordinate, so that no text can be understood"
         )
-    _check_sizes(system, true)
-    relations = (f"cos_{angle}^2 + sin_{angle}^2 - 1" for angle in model.angles)
-    for k, (text, relation) in enumerate(zip(system.relations, relations, strict=True)):
-        if text != relation:
-            raise Violation(f"relation {k} is {relation}, not {text[:60]}")
+    relations = tuple(f"cos_{angle}^2 + sin_{angle}^2 - 1" for angle in model.angles)
+    if system.relations != relations:
+        raise Violation(
+            f"the relations are {', '.join(relations)}, not {', '.join(system.relations)[:80]}"
+        )
+    if len(system.hessian) != len(true.jacobian):
+        raise Violation(f"there are {len(true.jacobian)} rows of derivatives")
+    if true.potential is None and system.potential:
+        raise Violation(
+            "equations are given, or a moment depends on another unknown, so there is no potential"
+        )
     names = dict(zip((*unknowns, *ring.names[len(unknowns) :]), ring.names, strict=True))
     texts = PolynomialTexts(true, names, seed or drawn(None))
     reasons = []
     if true.potential is not None:
         reasons.append(texts.compare_potential(system.potential, true.moments, varying=True))
-    reasons += [texts.compare(what, text, p) for what, text, p in _of_system(system, true)]
+    reasons += _compared(texts, true.meaning.equation, system.gradient, true.equations)
+    for i, (row, slopes) in enumerate(zip(system.hessian, true.jacobian, strict=True)):
+        reasons += _compared(texts, true.meaning.entry.format(i, "{}"), row, slopes)
+    reasons += _compared(texts, "inequality {}", system.inequalities, true.inequalities)
+    reasons += _compared(texts, "condition {} for stability", system.stability, true.stability)
     _check_free_lengths(claims, true)
     number = f"{len(reasons)} polynomials in {len(unknowns)} unknowns"
     return _outcome(reasons, f"{number} and {len(parameters)} parameters")
@@ -55,21 +65,11 @@ def check_potential(claims: Claims, seed: str = "", *, closed: bool = False) -> 
     _check_unknowns(system, unknowns)
     if len(true.equations) != len(unknowns):
         raise Violation(f"there are {len(true.equations)} equations for {len(unknowns)} unknowns")
-    if closed and len(system.relations) != len(true.closing):
-        raise Violation(
-            f"there are {len(true.closing)} loops that are closed, and {len(system.relations)} relations"
-        )
     stated = true.energy is not None and (true.from_energy or closed)
-    if (system.relations and not closed) or system.hessian or (stated and system.gradient):
-        raise Violation(
-            "a certified map has no relations, and its gradient and Hessian follow from the potential"
-        )
-    if system.moments and not (stated and true.apart):
-        raise Violation(
-            "moments are stated in addition to the potential only where one depends on another unknown"
-        )
-    if not stated and (system.potential or len(system.gradient) != len(true.equations)):
-        raise Violation(f"there are {len(true.equations)} equations and no potential")
+    if system.hessian:
+        raise Violation("a Hessian is stated, which follows from the potential or the equations")
+    if not stated and system.potential:
+        raise Violation("equations are given, and no potential")
     names = {*true.ring.names[true.coordinates :], *unknowns}
     has_work = stated and true.moved and not true.apart
     texts = PolynomialTexts(
@@ -84,18 +84,14 @@ def check_potential(claims: Claims, seed: str = "", *, closed: bool = False) -> 
         work = nothing if true.apart else true.moments
         reasons.append(texts.compare_potential(system.potential, work))
     moments = [true.moments[unknown] for unknown in unknowns]
-    kinds = (
-        ("equation", system.gradient, () if stated else true.equations),
-        ("moment", system.moments, moments if stated and true.apart else ()),
-        ("inequality", system.inequalities, true.inequalities),
-        ("condition for stability", system.stability, () if closed else true.stability),
-        ("relation", system.relations, true.closing if closed else ()),
-    )
-    for what, stored, polynomials in kinds:
-        if len(stored) != len(polynomials):
-            raise Violation(f"there are {len(polynomials)} of the kind {what}, not {len(stored)}")
-        named = zip(stored, polynomials, strict=True)
-        reasons += [texts.compare(f"{what} {k}", text, p) for k, (text, p) in enumerate(named)]
+    for what, stored, polynomials in (
+        ("equation {}", system.gradient, () if stated else true.equations),
+        ("moment {}", system.moments, moments if stated and true.apart else ()),
+        ("inequality {}", system.inequalities, true.inequalities),
+        ("condition {} for stability", system.stability, () if closed else true.stability),
+        ("relation {}", system.relations, true.closing if closed else ()),
+    ):
+        reasons += _compared(texts, what, stored, polynomials)
     what = "the equations"
     if stated:
         what = "the potential and the moments" if true.apart else "the potential"
@@ -113,35 +109,14 @@ def _outcome(reasons: Iterable[str], found: str) -> str:
     return Unchecked(reason) if reason else found
 
 
-def _check_sizes(system: System, true: Derivation) -> None:
-    n = len(true.equations)
-    if (len(system.gradient), [len(row) for row in system.hessian]) != (n, [n] * n):
-        raise Violation(f"{n} unknowns have {n} equations and a {n} x {n} matrix of derivatives")
-    for what, stored, expected in (
-        ("relations", system.relations, true.ring.relations),
-        ("inequalities", system.inequalities, true.inequalities),
-        ("conditions for stability", system.stability, true.stability),
-    ):
-        if len(stored) != len(expected):
-            raise Violation(f"there are {len(expected)} {what}, not {len(stored)}")
-    if true.potential is None and system.potential:
-        raise Violation(
-            "equations are given, or a moment depends on another unknown, so there is no potential"
-        )
-
-
-def _of_system(system: System, true: Derivation) -> Iterator[tuple[str, str, fmpq_mpoly]]:
-    """Each stored polynomial: its name, its text, and the true one."""
-    for i, (text, row, equation) in enumerate(
-        zip(system.gradient, system.hessian, true.equations, strict=True)
-    ):
-        yield true.meaning.equation.format(i), text, equation
-        for j, entry in enumerate(row):
-            yield true.meaning.entry.format(i, j), entry, true.jacobian[i][j]
-    for k, (text, p) in enumerate(zip(system.inequalities, true.inequalities, strict=True)):
-        yield f"inequality {k}", text, p
-    for k, (text, p) in enumerate(zip(system.stability, true.stability, strict=True)):
-        yield f"condition {k} for stability", text, p
+def _compared(
+    texts: PolynomialTexts, name: str, stored: Sequence[str], true: Sequence[fmpq_mpoly]
+) -> list[str]:
+    """Why some texts were not compared, empty where they were; ``name`` has a place for the number."""
+    if len(stored) != len(true):
+        raise Violation(f"there are {len(true)} of the kind {name.format('n')}, not {len(stored)}")
+    pairs = enumerate(zip(stored, true, strict=True))
+    return [texts.compare(name.format(k), text, p) for k, (text, p) in pairs]
 
 
 def _check_free_lengths(claims: Claims, true: Derivation) -> None:

@@ -1,23 +1,14 @@
-"""The algebra Q[x]/(equations) of finitely many solutions: standard monomials and tables of
-multiplication.
+"""The solutions over one rational point: counts, signs and norms by the algebra of the equations.
 
-Guarantee: exact. FLINT's own Buchberger algorithm gives the Groebner basis, in graded reverse
-lexicographic order with the last variable first.
-
-The solutions over one rational point, by a route of its own: geometry, Groebner basis at the
-point, trace forms.
-
-Guarantee: exact.
-
-The order is graded reverse lexicographic with the last unknown first, FLINT's own Buchberger
-algorithm runs at the point itself, and counts come from signatures of trace forms: another
-elimination than the one over Q(x, y) in `ptmcad.exact.discriminant_variety` and another count than the root
-isolation in `ptmcad.exact.counting`.
+Guarantee: exact. The Groebner basis is that at the point itself (`quotientalgebra`), and counts come
+from signatures of trace forms: another elimination than the one over Q(x, y) in
+`ptmcad.exact.discriminant_variety`, and another count than the root isolation in
+`ptmcad.exact.counting`.
 
 The number of negative eigenvalues of a Hessian is that of the changes of sign in the sequence of
-its leading principal minors (Jacobi), in a basis in which none of them vanishes; the sums of the
-signs of their products over the real solutions tell how many solutions have which signs (Tarski
-queries).
+its leading principal minors (Jacobi), in a basis in which none of them vanishes. The sums of the
+signs of their products over the real solutions determine how many solutions have which signs
+(Tarski queries).
 """
 
 from __future__ import annotations
@@ -29,7 +20,7 @@ from functools import cached_property
 from itertools import chain, pairwise, product
 from math import prod
 
-from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpz_mpoly_ctx, fmpz_mpoly_vec
+from flint import fmpq, fmpq_mat, fmpq_mpoly
 
 from ptmcad.answer.counts import Counts
 from ptmcad.model import Model
@@ -42,99 +33,7 @@ from ptmcad.verification.principalminors import (
     leading_minors,
     negative_eigenvalues,
 )
-
-Monomial = tuple[int, ...]
-"""Exponents of the variables, last to first."""
-
-
-class NotFinite(ArithmeticError):
-    """The equations have infinitely many complex solutions at the point."""
-
-
-def algebra(
-    equations: list[fmpq_mpoly], variables: int
-) -> tuple[tuple[Monomial, ...], tuple[fmpq_mat, ...]]:
-    """The standard monomials, and the matrix of multiplication by each variable, last to first."""
-    rules = _reduced_basis(equations, variables)
-    width = range(variables)
-    if not all(any(sum(lead) == lead[k] for lead in rules) for k in width):
-        raise NotFinite
-    bounds = [
-        next(lead[k] for lead in rules if sum(lead) == lead[k])
-        if (0,) * variables not in rules
-        else 0
-        for k in width
-    ]
-    basis = tuple(
-        sorted(
-            (
-                m
-                for m in product(*map(range, bounds))
-                if not any(_divides(lead, m) for lead in rules)
-            ),
-            key=lambda m: (sum(m), m),
-        )
-    )
-    place = {m: i for i, m in enumerate(basis)}
-    known: dict[Monomial, list[fmpq]] = {}
-
-    def normal(m: Monomial) -> list[fmpq]:
-        """Coordinates of a monomial, by the rules, recursively."""
-        if m in known:
-            return known[m]
-        row = [fmpq(0)] * len(basis)
-        if m in place:
-            row[place[m]] = fmpq(1)
-        else:
-            lead = next(r for r in rules if _divides(r, m))
-            for t, c in rules[lead].items():
-                for i, x in enumerate(normal(_times(t, m, lead))):
-                    if x != 0:
-                        row[i] += c * x
-        known[m] = row
-        return row
-
-    tables = []
-    for k in width:
-        columns = [normal(tuple(e + (i == k) for i, e in enumerate(m))) for m in basis]
-        tables.append(
-            fmpq_mat(
-                len(basis), len(basis), [column[i] for i in range(len(basis)) for column in columns]
-            )
-        )
-    return basis, tuple(tables)
-
-
-def _reduced_basis(
-    equations: list[fmpq_mpoly], variables: int
-) -> dict[Monomial, dict[Monomial, fmpq]]:
-    """A Groebner basis as rules: leading monomial -> what it is modulo the ideal."""
-    ring: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(
-        tuple(f"x{k}" for k in range(variables)), Ordering.degrevlex
-    )
-    integral = []
-    for e in equations:
-        scale = 1
-        for c in e.coeffs():
-            scale = scale * int(c.q)
-        integral.append(
-            ring.from_dict({m[::-1]: int((c * scale).p) for m, c in e.to_dict().items()})
-        )
-    vector = fmpz_mpoly_vec([p.primitive()[1] for p in integral], ring)
-    rules: dict[Monomial, dict[Monomial, fmpq]] = {}
-    for p in vector.buchberger_naive().autoreduction():
-        terms = [(tuple(int(e) for e in m), fmpq(c)) for m, c in p.terms()]
-        (lead, c), tail = terms[0], terms[1:]
-        rules[lead] = {m: -d / c for m, d in tail}
-    return rules
-
-
-def _divides(a: Monomial, b: Monomial) -> bool:
-    return all(x <= y for x, y in zip(a, b, strict=True))
-
-
-def _times(tail: Monomial, m: Monomial, lead: Monomial) -> Monomial:
-    return tuple(t + x - y for t, x, y in zip(tail, m, lead, strict=True))
+from ptmcad.verification.quotientalgebra import Monomial, NotFinite, algebra
 
 
 @dataclass(frozen=True)

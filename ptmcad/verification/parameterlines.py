@@ -1,24 +1,19 @@
-"""Solutions along one parameter: the values at which counts can change, read off one fibre, and
-counts between.
+"""Solutions along one parameter: the values at which counts can change, the counts between, and where
+ranges over a second parameter are longest.
 
 The norms of the Jacobian's determinant and of all conditions, and a sum of traces, whose poles are
 where solutions leave every bounded set, are rational functions of the parameter. The digits of its
-value over a large integer are the coefficients of each (`ptmcad.verification.fibrealgebra`), where it has
-the right values over further integers, too.
+value over a large integer are the coefficients of each (`ptmcad.verification.fibrealgebra`), where
+it has the right values over further integers, too.
 
 Guarantee: counts at a point are exact. That no change is missing holds but for the probability that
-a wrong rational function has the right values at `FRESH` random points.
+a wrong rational function has the right values at `FRESH` random points. Longest ranges, and whether
+they are attained, are checked at rational values: those that the claims name, the window's edges,
+random ones in an interval, and all at which the whole line is exceptional: counts can change there
+on every line across it, so that it is a common critical value of some random ones. On a line with
+degenerate solutions points with another count are sought that leave no room for the range.
 
-Checks of where ranges are longest, and whether that is attained, on lines of the slice by
-themselves.
-
-Guarantee: what passes holds at the rational values that were looked at: those that the claims name,
-the window's edges, random ones in an interval, and all at which the whole line is exceptional:
-counts can change there on every line across it, so that it is a common critical value of some
-random ones. On a line with degenerate solutions points with another count are sought that leave no
-room for the range.
-
-Not guaranteed: anything at irrational values, and of places that are enclosed.
+Not guaranteed: longest ranges at irrational values, and of places that are enclosed.
 """
 
 from __future__ import annotations
@@ -43,7 +38,8 @@ from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.expressions import Expression
 from ptmcad.text.flint_numbers import from_fraction, simplest_fraction, to_fraction
 from ptmcad.text.numerals import shortest_text
-from ptmcad.verification.fibrealgebra import NotFinite, fibre
+from ptmcad.verification.fibrealgebra import fibre
+from ptmcad.verification.quotientalgebra import NotFinite
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.rootcounts import isolating_intervals, squarefree
 from ptmcad.verification.solutions import not_positive

@@ -4,8 +4,9 @@ Guarantee: the steps are those that the slice's parameters and the stored compon
 their order, with every saving made; what a saving leaves out is not in the result.
 
 Not guaranteed: what leaves no trace in a result. These are the predicted costs by which the base
-axis was chosen; whether the savings "imports" and "equal-counts" were made, and areas are those on
-one half of the window; and that a harmless curve that is used could not have been left out.
+axis was chosen; whether the savings "imports" and "equal-counts" were made; whether areas are twice
+those on one half of the window, and by which symmetry (no other check believes one, and each area is
+enclosed over the whole window); and that a harmless curve that is used could not have been left out.
 """
 
 from __future__ import annotations

@@ -1,26 +1,23 @@
-"""Checks of the decomposition: critical values, stacks, walls and samples.
+"""Checks of the decomposition: critical values, stacks, walls and samples; and the heights of the
+curves' points over a critical value.
 
 Guarantee: over each stack the curves' roots between the window's edges are constant in number and
 order (discriminants, resultants and edge values have no root there but the stored ones); over its
-sample they are the stored walls.
+sample they are the stored walls. Counts of heights are exact, every point counted once. Roots are
+counted by FLINT's isolation; the decomposition isolates them by Descartes' rule.
 
-Roots are counted by FLINT's isolation; the decomposition isolates them by Descartes' rule.
-
-The heights of the curves' points over a critical value: counted, and parted by rational heights.
-
-Guarantee: counts are exact, every point counted once.
-
-Let P(u, v) be the product of the curves' polynomials and a the critical value. Where deg_v P is the
-same at a, the Sturm sequence of P(a, v) is computed with balls for the coefficients: remainder by
-remainder, each of the degree before less one, until a linear one is left whose leading coefficient
-is certainly not zero. The next remainder would be a constant. It is zero exactly when P(a, v) has a
-multiple root, which is when a is a root of a curve's discriminant or of the resultant of two: that
-is decided in integers. Either way the sequence is known to its end, and its changes of sign count
-the different real roots (Sturm; for the multiple root all terms are divided by their last one).
+Heights. Let P(u, v) be the product of the curves' polynomials and a the critical value. Where
+deg_v P is the same at a, the Sturm sequence of P(a, v) is computed with balls for the coefficients:
+remainder by remainder, each of the degree before less one, until a linear one is left whose leading
+coefficient is certainly not zero. The next remainder would be a constant. It is zero exactly when
+P(a, v) has a multiple root, which is when a is a root of a curve's discriminant or of the resultant
+of two: that is decided in integers. Either way the sequence is known to its end, and its changes of
+sign count the different real roots (Sturm; for the multiple root all terms are divided by their
+last one).
 
 Otherwise, where several roots are multiple, roots are counted of the polynomials in v among whose
-roots all points are (`points_over`), but for those that balls show to be on no curve;
-this takes long for values of high degree.
+roots all points are (`points_over`), but for those that balls show to be on no curve; this takes
+long for values of high degree.
 """
 
 from __future__ import annotations

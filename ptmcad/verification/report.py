@@ -241,7 +241,7 @@ def checked(
     claims: C,
     steps: Sequence[tuple[str, str, Callable[[C], str]]],
     missing: Collection[str] = (),
-    headway: CheckProgress | None = None,
+    bar: CheckProgress | None = None,
 ) -> list[Check]:
     """Run checks, given as name, method and function, in their order; none after a failed one, none
     of the missing.
@@ -249,14 +249,14 @@ def checked(
     checks: list[Check] = []
     ended, finished = "", FINISHED.get()
     within = FINISHED.set(lambda _check: None)  # of the checks inside of these
-    headway = headway or CheckProgress(None)
-    headway.number = len(steps)
+    bar = bar or CheckProgress(None)
+    bar.number = len(steps)
     for name, method, check in steps:
         passed: bool | None = None
         detail = ended or "not complete in this partial result"
         if not ended and name not in missing:
             try:
-                headway.begins(name)
+                bar.begins(name)
                 detail = check(claims)
                 passed = None if isinstance(detail, Unchecked) else True
             except Violation as violation:

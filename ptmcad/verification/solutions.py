@@ -1,31 +1,24 @@
-"""Checks of the solutions: each stored box contains a solution that counts, with the stored signs.
+"""Checks of the counts and the solutions at every cell's sample, and of the poses at a point.
 
-Each stored box, in the coordinates of the unknowns, is tested by Krawczyk's image
+*Counts* come from signatures of trace forms, exactly. That they hold in the whole cells follows
+from the checks of the variety and of the decomposition.
+
+*Solutions.* Each stored box, in the coordinates of the unknowns, is tested by Krawczyk's image
 (`certified.narrow`). Where it has one solution, the signs of the Hessian's eigenvalues, of
-inequalities and of conditions for stability are those on a narrower box, or precision is doubled.
+inequalities and of conditions for stability are those on its image, or precision is doubled.
 Where that shows nothing, as of a box much larger than the distance over which the equations bend,
-trace forms count the solutions in the box, and tell the signs.
+trace forms count the solutions in the box and give their signs.
+
+*Poses* are checked as the solutions of a map's cell, and with free lengths as in
+`certified.cellsamples`: a window of two axes on which nothing depends has the point as its sample.
 
 Guarantee: boxes that pass are disjoint and contain at least one solution each. As their number is
-the total that the signatures of `ptmcad.verification.solutions` give, each contains exactly one and
-together they contain all. No box has a real solution that does not count: it has one real solution
-by the test, or trace forms count one; where neither tells, that is listed as not checked.
-Conditions for stability that are said to be zero are so: trace forms give the number of solutions
-at which one is, and in the other boxes it is not. A box is refused on such a count alone.
-
-Checks of the counts: at every cell's sample, by signatures of trace forms.
-
-Guarantee: exact at the samples; that the counts hold in the whole cells follows from the checks of
-the variety and of the decomposition.
-
-Checks of the poses at a point: none is missing or stored twice, in each box is one, with its
-index and stability.
-
-They are those of a map's cell (`ptmcad.verification.solutions`, and with free lengths
-`certified.cellsamples`): a window of two axes on which nothing depends has the point as its sample.
-
-Guarantee: that of these checks. Where a pose is degenerate, the number of different ones alone is
-checked.
+the total that the signatures give, each contains exactly one and together they contain all. No box
+has a real solution that does not count: it has one real solution by the test, or trace forms count
+one; where neither decides, that is listed as not checked. Conditions for stability that are said to
+be zero are so: trace forms give the number of solutions at which one is, and in the other boxes it
+is not. A box is refused on such a count alone. Of degenerate poses the number of different ones
+alone is checked.
 """
 
 from __future__ import annotations
@@ -50,7 +43,7 @@ from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.ballequations import Matrix
 from ptmcad.verification.certified.cellsamples import check_cell, check_listed
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
-from ptmcad.verification.certified.narrow import narrowed, precisions, tested
+from ptmcad.verification.certified.narrow import precisions, tested
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import ball_at
 from ptmcad.verification.derivation import Derivation, parameters_of
@@ -59,9 +52,6 @@ from ptmcad.verification.kinds import kind_of, meaning_of
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.principalminors import inertia
 from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
-
-_NARROWINGS = 4
-"""Images of a box that a solution is proved to be in, until signs on it are certain."""
 
 
 def check_solutions(claims: Claims) -> str:
@@ -106,20 +96,14 @@ def _check_signs(claims: Claims, cell: Cell, solution: Solution) -> bool:
     return alone
 
 
-def signs_of(claims: Claims, cell: Cell, solution: Solution) -> str:
-    """The signs at the one solution that counts in a box.
+def _signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool]:
+    """The signs at the one solution that counts in a box, by a test of the box, else by trace
+    forms; and whether it is proved that no other real solution is in it.
 
     Raises
     ------
     Violation
         When there is none, or several.
-    """
-    return _signs_in(claims, cell, solution)[0]
-
-
-def _signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool]:
-    """The same by a test of the box, else by trace forms; and whether no other real solution is in
-    it.
     """
     fibre = claims.fibre_at(*cell.sample)
     for bits in precisions(solution):
@@ -187,18 +171,14 @@ def _tested(point: Derivation, solution: Solution) -> str | None:
         return list(map(value, system)), [list(map(value, row)) for row in slopes]
 
     found = tested(function, solution)
-    for _ in range(_NARROWINGS):
-        if found is None or not found.holds:
-            return None
-        value = ball_at(found.within)
-        if all(value(p) > 0 for p in point.inequalities):
-            hessian = [list(map(value, row)) for row in point.hessian]
-            conditions = list(map(value, point.stability))
-            signs = inertia(hessian) if hessian else _of_conditions(conditions, solution.signs)
-            if signs is not None:
-                return signs
-        found = narrowed(function, found)
-    return None
+    if found is None or not found.holds:
+        return None
+    value = ball_at(found.within)
+    if not all(value(p) > 0 for p in point.inequalities):
+        return None
+    if hessian := [list(map(value, row)) for row in point.hessian]:
+        return inertia(hessian)
+    return _of_conditions(list(map(value, point.stability)), solution.signs)
 
 
 def _of_conditions(conditions: list[arb], stored: str) -> str | None:
@@ -329,7 +309,7 @@ def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
     ]
     for k, pose, box in regular:
         try:
-            signs = signs_of(claims, cell, box)
+            signs, _ = _signs_in(claims, cell, box)
         except Violation as violation:
             raise Violation(f"the box of pose {k + 1}: {violation}") from None
         index, stable = claims.meaning.index(signs), claims.meaning.is_stable(signs)

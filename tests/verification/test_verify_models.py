@@ -328,7 +328,11 @@ def other_system(change: Callable[[dict[str, Any]], Any], name: str) -> RegionMa
             "the stored equation 0 differs",
         ),
         ("duffing", lambda m: m.update(positive=["z - 1"]), "the stored inequality 0 differs"),
-        ("duffing", lambda m: m.update(positive=["z", "z + 1"]), "there are 2 inequalities, not 1"),
+        (
+            "duffing",
+            lambda m: m.update(positive=["z", "z + 1"]),
+            "there are 2 of the kind inequality n, not 1",
+        ),
         (
             "stable where",
             lambda m: m.update(stable=["x + b", "x"]),

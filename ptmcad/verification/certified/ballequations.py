@@ -36,6 +36,7 @@ from ptmcad.verification.normalform.operations import (
     LENGTH,
     MAX_VARIABLES,
     MULTIPLY,
+    POWER,
     SINE,
     SQUARE,
     SUBTRACT,
@@ -46,10 +47,6 @@ from ptmcad.verification.normalform.waves import Form, Sides
 
 Matrix = list[list[arb]]
 _ZERO, _ANY = arb(0), arb(0, 1)
-_POWER = LENGTH + 1
-"""A power: as a product of balls that have nothing to do with one another it would be enclosed
-poorly.
-"""
 _Step = tuple[int, Callable[[arb, arb], arb], int, int]
 """The number of a value, and of what operands."""
 
@@ -83,15 +80,6 @@ _OPERATIONS: Mapping[int, Callable[[arb, arb], arb]] = {
 }
 
 
-class _PowerFormulas(Formulas):
-    """Formulas with powers as operations."""
-
-    def power(self, a: int, exponent: int) -> int:
-        if exponent < 2 or self.constant(a) is not None:
-            return super().power(a, exponent)
-        return self._new(_POWER, a, self.number(exponent))
-
-
 class _FormFormulas:
     """The formulas of a form with springs on one line each on some sides, by their numbers in one
     list.
@@ -103,7 +91,7 @@ class _FormFormulas:
     """
 
     def __init__(self, form: Form, names: Sequence[str], sides: Sides):
-        f = self.list = _PowerFormulas()
+        f = self.list = Formulas(with_powers=True)
         m = self.model = Equations(
             form, f, {name: f.variable(MAX_VARIABLES + k) for k, name in enumerate(names)}
         )
@@ -155,7 +143,7 @@ class _FormFormulas:
         code, a, b = self.list.rows[n]
         if code <= VARIABLE:
             return None
-        if code == _POWER:
+        if code == POWER:
             exponent = int(self.list.numbers[b])
             return n, lambda x, _: power(x, exponent), a, a
         return n, _OPERATIONS[code], a, b

@@ -43,8 +43,8 @@ def verify_certified(
     claims = CertifiedClaims(result)
     chosen = drawn(seed)
     number = BOXES if boxes is None else boxes
-    headway = CheckProgress(progress)
-    within = headway.within
+    bar = CheckProgress(progress)
+    within = bar.within
     steps: tuple[tuple[str, str, Callable[[CertifiedClaims], str]], ...] = (
         ("form", "comparison", check_form),
         ("parameters as written", "expressions compared", check_text),
@@ -72,7 +72,7 @@ def verify_certified(
             lambda of: check_free_area(EFFORT if effort is None else effort, of, within),
         ),
     )
-    checks = checked(claims, steps, headway=headway)
+    checks = checked(claims, steps, bar=bar)
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
     return VerifyReport(tuple(checks))
 

@@ -25,7 +25,7 @@ from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.ballequations import BallEquations, Matrix
 from ptmcad.verification.certified.counted import CellCounts, CountedPoint
 from ptmcad.verification.certified.krawczyk import Spent, zeros
-from ptmcad.verification.certified.narrow import is_wide, narrowed, precisions, tested
+from ptmcad.verification.certified.narrow import is_wide, precisions, tested
 from ptmcad.verification.coordinates import evaluated
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.normalform.boxes import MIN_HALF_WIDTH, Floats, Unproved, Zero, is_same
@@ -46,8 +46,6 @@ BUDGETS = (20_000, 40_000, 60_000)
 BOX_BUDGET_SHARE = 4
 """For a box of parameters so many times fewer."""
 _HALVINGS = 60
-_NARROWINGS = 4
-"""Images of a box that a solution is proved to be in, until signs on it are certain."""
 MAX_ANGLE = 8
 """Of the middle of a stored box, where an unknown is an angle."""
 MAX_REAL = 2**1000
@@ -359,16 +357,14 @@ def _zero_in(
                 return None if jet.short else (jet.values, jet.jacobian)
 
             found = tested(function, solution)
-            for _ in range(_NARROWINGS):
-                if found is None:
-                    break
-                if not found.holds or not _may_be_on_side(field, found.within):
-                    return None
-                signs = inertia(found.jacobian) if form.is_gradient else ""
-                if signs is not None and all(c > 0 for c in _ahead(field, found.within)):
-                    center, radii = found.in_floats()
-                    return _apart(field, Zero(center, radii, _room(solution, center), signs))
-                found = narrowed(function, found)
+            if found is None:
+                continue
+            if not found.holds or not _may_be_on_side(field, found.within):
+                return None
+            signs = inertia(found.jacobian) if form.is_gradient else ""
+            if signs is not None and all(c > 0 for c in _ahead(field, found.within)):
+                center, radii = found.in_floats()
+                return _apart(field, Zero(center, radii, _room(solution, center), signs))
     raise Unproved("not decided")
 
 

@@ -23,9 +23,10 @@ from typing import Any
     DIRECTION,
     INVERSE_LENGTH,
     LENGTH,
-) = range(12)
+    POWER,
+) = range(13)
 """Operations. DIRECTION, INVERSE_LENGTH and LENGTH of the vector (a, b): a/|(a, b)|, 1/|(a, b)| and
-|(a, b)|.
+|(a, b)|; POWER of a value, with a whole exponent.
 """
 MAX_VARIABLES = 6
 """Both axes, three unknowns, and the direction of a spring; even, as sums over them take two at
@@ -40,9 +41,15 @@ class Formulas:
     rows : of each value the operation and the numbers of its operands; of a variable its own
         number.
     numbers : those that are rational.
+
+    Parameters
+    ----------
+    with_powers : whether a power is one operation. As a product of balls that have nothing to do
+        with one another it would be enclosed poorly; compiled code has products alone.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, with_powers: bool = False) -> None:
+        self._with_powers = with_powers
         self.rows: list[tuple[int, int, int]] = []
         self.numbers: dict[int, Fraction] = {}
         self._known: dict[Any, int] = {}
@@ -139,6 +146,8 @@ class Formulas:
         """A power with a whole exponent that is not negative."""
         if exponent == 0:
             return self.number(1)
+        if self._with_powers and exponent > 1 and self.constant(a) is None:
+            return self._new(POWER, a, self.number(exponent))
         half = self.power(a, exponent // 2)
         whole = self.multiply(half, half)
         return self.multiply(whole, a) if exponent % 2 else whole

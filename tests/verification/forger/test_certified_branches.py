@@ -305,9 +305,9 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (check_domain, springs, with_parameter("l0_1", "rho - 1.2503"), "l0_1 is negative somewhere in the window"),
     (check_domain, springs, with_parameter("rho", "rho - 1.2503"), "rho is not positive somewhere in the window"),
     (check_potential, springs, with_system(unknowns=("th2", "th1")), "the unknowns are"),
-    (check_potential, springs, with_system(relations=("1",)), "a certified map has no relations"),
-    (check_potential, springs, with_system(gradient=("1",)), "a certified map has no relations"),
-    (check_potential, springs, with_system(hessian=(("1",),)), "a certified map has no relations"),
+    (check_potential, springs, with_system(relations=("1",)), "there are 0 of the kind relation n, not 1"),
+    (check_potential, springs, with_system(gradient=("1",)), "there are 0 of the kind equation n, not 1"),
+    (check_potential, springs, with_system(hessian=(("1",),)), "a Hessian is stated"),
     *((check_potential, springs, plus(text), "the stored potential cannot be read: ")
       for text in ("0*\N{GREEK SMALL LETTER ALPHA}", "1.5.2", "0 # L1", "0\n", "0\0", "0x0", "0*1_0", "L1 % L2",
                    "cos(th1, th2)", "0if L1 else 0", "0*L1[0]", "0*L1.real", "exit()", "(0 if L1 else 0)", "01", "1 +",
