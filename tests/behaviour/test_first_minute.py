@@ -248,11 +248,12 @@ SEARCH = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "columns"),
     [
         pytest.param([*SEARCH, "--tolerance", "1/20"], 40, id="design"),
-        pytest.param(MAP, 80, id="map", marks=pytest.mark.slow),
+        pytest.param(MAP, 80, id="map"),
     ],
 )
 def test_a_long_command_has_one_bar_on_one_line(

@@ -133,8 +133,9 @@ def test_a_map_at_irrational_guides_has_the_counts_of_a_search() -> None:
 
 
 @pytest.mark.parametrize(
-    ("record", "reals"), [pytest.param(TURNED, [1, 2], marks=pytest.mark.slow), (THREE, [0, 1, 2])]
+    ("record", "reals"), [(TURNED, [1, 2]), (THREE, [0, 1, 2])], ids=["turned", "three"]
 )
+@pytest.mark.slow
 def test_bounds_with_a_guide_that_turns_and_of_three_sliders(
     record: dict[str, Any], reals: list[int]
 ) -> None:

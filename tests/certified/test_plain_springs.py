@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from math import atan2, hypot
 from typing import Any
 
 import numpy as np
@@ -76,6 +77,25 @@ def test_matrix_is_the_derivative_of_the_equations(mechanism: dict[str, Any]) ->
     graph = at.equations[0].graph
     slopes = [graph.derivative(f, k) for f in at.equations for k in problem.variables]
     assert values(slopes, POINT) == pytest.approx(matrix(at, POINT).ravel(), rel=1e-9)
+
+
+@pytest.mark.parametrize("mechanism", [PLAIN_PTM, THREE_BARS])
+@pytest.mark.slow_cases("mechanism1")
+def test_determinant_in_a_chart_is_that_times_the_length(mechanism: dict[str, Any]) -> None:
+    problem, direct = charts(mechanism)
+    phi = 2 + len(problem.unknowns)
+    for s in range(len(problem.cones)):
+        _, turned = charts(mechanism, s)
+        x, y = values(turned.cones[s].vector, POINT)
+        point = POINT.copy()
+        point[phi] = atan2(y, x)
+        length = hypot(x, y)
+        found = values(
+            [turned.determinant(), turned.aligned, turned.cones[s].extent, *turned.equations], point
+        )
+        assert found[0] == pytest.approx(np.linalg.det(matrix(direct, POINT)) * length, rel=1e-9)
+        assert found[1:3] == pytest.approx([0, length], abs=1e-12)
+        assert found[3:] == pytest.approx(values(direct.equations, POINT), rel=1e-9)
 
 
 def equilibria(at: SpringChart, number: int) -> list[NDArray[np.float64]]:

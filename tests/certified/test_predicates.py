@@ -31,6 +31,7 @@ ENGINES = [
 
 
 @pytest.mark.parametrize(("record", "engine"), ENGINES)
+@pytest.mark.fast_cases("fig4-auto", "horizontal-exact", "four-bar-auto")
 def test_stable_equilibria_above_the_ground(
     record: str, engine: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

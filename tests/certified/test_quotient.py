@@ -281,6 +281,7 @@ def test_pitchforks_along_a_line_of_all_equilibria() -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_spring_without_length_in_a_configuration_that_is_its_own_image() -> None:
     """At rho = L1 - L2 the bars are in a line, and so is a curve of configurations whose spring has
     no length: that spring's direction is a variable there, and pitchforks with a short one are
