@@ -16,7 +16,6 @@ import random
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from importlib.util import find_spec
 from itertools import zip_longest
 from pathlib import Path
@@ -254,13 +253,9 @@ def measure(
     PtmcadError
         When the slice has no map, or an answer of ours contradicts the reference.
     """
-    exact, known, sound = None, None, None
-    if not slice.has_free_lengths:
-        report(f"{slice.name}: the exact map that errors are measured against")
-        with suppress(LimitReached):
-            exact = classify(slice, count=finest_count(slice), timeout=max(MAP_SECONDS, time_limit))
-            sound = verified(exact)
-            known = truths(exact)
+    exact = _exact(slice, max(MAP_SECONDS, time_limit), report)
+    sound = None if exact is None else verified(exact)
+    known = None if exact is None else truths(exact)
     with tempfile.TemporaryDirectory() as name:
         case = Case(slice, record.resolve(), exact, known, Path(name), quick)
         found = {method: jobs(method, case) for method in methods}
@@ -294,6 +289,17 @@ def measure(
             ),
         ),
     }
+
+
+def _exact(slice: Slice, seconds: float, report: Callable[[str], None]) -> RegionMap | None:
+    """The map that errors are measured against; None where there is none, or not in the time."""
+    if slice.has_free_lengths:
+        return None
+    report(f"{slice.name}: the exact map that errors are measured against")
+    try:
+        return classify(slice, count=finest_count(slice), timeout=seconds)
+    except LimitReached:
+        return None
 
 
 def _run_all(
