@@ -261,14 +261,16 @@ def measure(
         found = {method: jobs(method, case) for method in methods}
         ranked = [asked for asked in found.values() if not isinstance(asked, str)]
         floor = Job(slice.name, "", "reference job", FLOOR)
-        floor.attempt(WARM_UP_SECONDS)  # fills caches
-        for job in [asked[0] for asked in ranked if asked[0].saves and warm_up]:
-            job.attempt(WARM_UP_SECONDS)  # compiles
+        # this fills caches, and compiles
+        for job in [floor, *(asked[0] for asked in ranked if asked[0].saves and warm_up)]:
+            job.attempt(WARM_UP_SECONDS)
             job.usages.clear()
-        floor.usages.clear()
         _run_all(ranked, floor, rounds, seed, time_limit, report)
         report(f"{slice.name}: errors")
         measured = [_measured(case, job) for asked in ranked for job in asked]
+    for method, why in found.items():
+        if isinstance(why, str):
+            measured.append(measurement(method, "", reason=why))
     return {
         "format": FORMAT,
         "slice": slice.name,
@@ -280,14 +282,7 @@ def measure(
         "quick": quick,
         "verified": sound,
         "floor": floor.times,
-        "measurements": (
-            *measured,
-            *(
-                measurement(method, "", reason=why)
-                for method, why in found.items()
-                if isinstance(why, str)
-            ),
-        ),
+        "measurements": tuple(measured),
     }
 
 
