@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 from dataclasses import replace
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -61,23 +60,14 @@ MIN_SECONDS = 0.01
 """Seconds that are left in any case, so that the result from which to go on is handed on."""
 
 
+ENGINE = ("engine", "jobs", "tolerance", "area_tolerance", "without", "keep", "no_areas")
+"""The options of the computation, by their parameters' names."""
+
+
 def _wanted(
-    engine: str,
-    jobs: int | None,
-    tolerance: Fraction | None,
-    area_tolerance: Fraction | None,
-    without: tuple[str, ...],
-    keep: tuple[str, ...],
-    no_areas: bool,
+    *, without: tuple[str, ...], keep: tuple[str, ...], no_areas: bool, **named: Any
 ) -> Options:
-    return Options(
-        engine=engine,
-        jobs=jobs,
-        tolerance=tolerance,
-        area_tolerance=area_tolerance,
-        without=frozenset((*without, *keep)),
-        areas=not no_areas,
-    )
+    return Options(**named, without=frozenset((*without, *keep)), areas=not no_areas)
 
 
 def classify_to_files(slice: Slice, options: Options, output: Output, spent: float = 0.0) -> Any:
@@ -363,7 +353,7 @@ def _classify_family(
     help="Leave run times out of the JSON, so that it is the same every time.",
 )
 @drawing_options(FORMATS, "json,png,svg", "Files to write")
-@gathered(options=_wanted, output=Output, third=Third)
+@gathered(options=(ENGINE, _wanted), output=Output, third=Third)
 def command(
     *, asked: Typed, third: Third, count: str | None, options: Options, output: Output, limits: ResourceLimits,
     resume: Path | None,
