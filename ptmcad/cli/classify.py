@@ -259,6 +259,21 @@ def _resumed(slice: Slice, path: Path) -> Any:
     return earlier
 
 
+def _going_on(
+    slice: Slice, options: Options, output: Output, resume: Path | None
+) -> tuple[Options, float]:
+    """The options with the map from which to go on, and the seconds that it took to check it: of many
+    rectangles that is a while, which is part of the limit.
+    """
+    if resume is None:
+        return options, 0.0
+    if "json" in output.formats:
+        send(Topic.RESUMABLE, "the map to go on from was still being checked; it is as it was")
+    begun = time.monotonic()
+    earlier = _resumed(slice, resume)
+    return replace(options, resume=earlier), time.monotonic() - begun
+
+
 def _classify_family(
     family: Family,
     third: Third,
@@ -402,28 +417,15 @@ def command(
         ("surface", third.surface, "no parameter is free: add --free NAME=LO:HI"),
         *idle_drawing(output.formats),
     ))  # fmt: skip
-    spent = 0.0
     with held(limits):
-        if resume is not None:
-            if "json" in output.formats:
-                send(
-                    Topic.RESUMABLE,
-                    "the map to go on from was still being checked; it is as it was",
-                )
-            begun = time.monotonic()
-            earlier = _resumed(
-                slice, resume
-            )  # of many rectangles that takes a while, which is part of the limit
-            options, spent = replace(options, resume=earlier), time.monotonic() - begun
+        options, spent = _going_on(slice, options, output, resume)
         if output.explain:
             click.echo(question_of(slice))
         steps = announced(slice, options) if output.explain else ()
         warn(slice, options)
         result = classify_to_files(slice, options, output, spent)
-    further = (
-        [step for step in own_steps(result.plan) if step not in steps] if output.explain else []
-    )
-    if further:
+    further = [step for step in own_steps(result.plan) if step not in steps]
+    if output.explain and further:
         click.echo(f"decided on the way:\n{explanation(further)}")
     click.echo(result.table() if output.explain else f"{question_of(slice)}\n{result.table()}")
     report_written(output.out, names_of(slice.name, output.formats))
