@@ -28,10 +28,10 @@ def check_numbers(result: RegionMap) -> None:
     try:
         check_names(result.slice.model, result.slice.parameters)
     except ValueError as error:
-        raise _fault(str(error)) from error
+        raise contradiction(str(error)) from error
     # each is looked at only when nothing was wrong before
     for problem in chain(_of_stacks(result), _of_cells(result), _of_regions(result)):
-        raise _fault(problem)
+        raise contradiction(problem)
 
 
 def _of_stacks(result: RegionMap) -> Iterator[str]:
@@ -118,5 +118,6 @@ def _outside(numbers: Iterable[int], length: int, place: str, what: str) -> Iter
     return (f"{place} names {what} {n}, which is not there" for n in numbers if not 0 <= n < length)
 
 
-def _fault(problem: str) -> ConfigError:
+def contradiction(problem: str) -> ConfigError:
+    """The error of a map whose parts contradict each other."""
     return ConfigError(f"the map contradicts itself: {problem}; check it with ptmcad verify")

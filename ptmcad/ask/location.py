@@ -16,6 +16,7 @@ from flint import fmpq
 from ptmcad.algebra.algebraic_numbers import root_of
 from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_plane, univariate
 from ptmcad.algebra.real_roots import has_root_between, isolate, order, sign_at, squarefree_part
+from ptmcad.answer.consistency import contradiction
 from ptmcad.answer.location import Location
 from ptmcad.answer.regionmap import Component, Kind, RegionMap, Status
 from ptmcad.answer.words import noun
@@ -87,9 +88,7 @@ def _cell_at(result: RegionMap, u: fmpq, v: fmpq) -> int:
     curves = _curves(result)
     stack, on_critical = stack_over(result, u)
     if stack >= len(result.stacks):
-        raise ConfigError(
-            f"the map contradicts itself: there is no stack {stack}; check it with ptmcad verify"
-        )
+        raise contradiction(f"there is no stack {stack}")
     if on_critical:
         # the point lies on an artefact of the decomposition: step to the stack at its left along a
         # free segment
@@ -99,9 +98,7 @@ def _cell_at(result: RegionMap, u: fmpq, v: fmpq) -> int:
         number = result.stacks[stack].cells[below]
         result.cells[number]
     except IndexError as error:
-        raise ConfigError(
-            f"the map contradicts itself: stack {stack} has no cell above {below} walls; check it with ptmcad verify"
-        ) from error
+        raise contradiction(f"stack {stack} has no cell above {below} walls") from error
     return number
 
 
@@ -235,17 +232,13 @@ def _component_cells(result: RegionMap, cover: Cover) -> tuple[Components, dict[
         try:
             place = complement.locate(*in_steps(result, cover, (cell.sample[0], cell.sample[1])))
         except ValueError as error:
-            raise _contradiction(f"the sample of cell {number} is not in the window") from error
+            raise contradiction(f"the sample of cell {number} is not in the window") from error
         if place is None or place in cells:
-            raise _contradiction(
+            raise contradiction(
                 f"the sample of cell {number} is in the cover or in the component of another cell"
             )
         cells[place] = number
     return complement, cells
-
-
-def _contradiction(what: str) -> ConfigError:
-    return ConfigError(f"the map contradicts itself: {what}; check it with ptmcad verify")
 
 
 def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction]:

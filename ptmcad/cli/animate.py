@@ -5,6 +5,7 @@ or MP4.
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import partial
 from math import degrees, remainder
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import click
 from ptmcad.answer.motion import Fall, Motion
 from ptmcad.answer.words import assignments
 from ptmcad.cli.commonoptions import Formats, format_option, gathered, name_option, out_option
-from ptmcad.cli.drawing import picture, report_written
+from ptmcad.cli.drawing import picture, report_written, style_of
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import question_of, slice_options
@@ -25,21 +26,13 @@ from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import file_name, slice_from_typed
 from ptmcad.question.config.typed import Typed
 from ptmcad.question.shipped import FIRST, SECOND
-from ptmcad.question.slice import Slice
 from ptmcad.show import render
 from ptmcad.show.drawable import no_drawing
-from ptmcad.show.style import PictureStyle, styled
+from ptmcad.show.style import PictureStyle
 from ptmcad.text.numerals import equalities
 
 FORMATS = ("gif", "mp4")
 MAX_FPS = 60
-
-
-def _style(size: str | None, palette: str | None, title: str | None) -> PictureStyle:
-    try:
-        return styled("default", size=size, palette=palette, title=title)
-    except ConfigError as error:
-        raise ConfigError(error.message, key=f"--{error.key}") from error
 
 
 @click.command("animate")
@@ -77,7 +70,7 @@ def _style(size: str | None, palette: str | None, title: str | None) -> PictureS
     FORMATS, f"Files to write, of {', '.join(FORMATS)}; mp4 needs the program ffmpeg.", "gif"
 )
 @limit_options
-@gathered(style=_style)
+@gathered(style=(("size", "palette", "title"), partial(style_of, style="default")))
 def command(
     *, asked: Typed, path: str, pose: str, frames: int, fps: int, style: PictureStyle, dpi: int,
     tolerance: Fraction, out: Path, name: str | None, formats: Formats, limits: ResourceLimits,
@@ -99,10 +92,11 @@ def command(
     with held(limits), ProgressBar() as progress:
         options = Options(areas=False, progress=progress, timeout=limits.timeout)
         stored = stored_map(asked)
-        result = stored or made_map(_slice(asked), options, tolerance)
-        if result.slice.model.drawable is None:
-            raise ConfigError(no_drawing(result.slice.model))
-        stem = f"{result.slice.name}-motion" if name is None else file_name(name, "--name")
+        slice = stored.slice if stored else slice_from_typed(asked)
+        if slice.model.drawable is None:
+            raise ConfigError(no_drawing(slice.model))
+        result = stored or made_map(slice, options, tolerance)
+        stem = f"{slice.name}-motion" if name is None else file_name(name, "--name")
         names = tuple(f"{stem}.{kind}" for kind in formats)
         check_writable(out, names)
         from ptmcad.workbench.fields.posemotion import motion_of
@@ -114,16 +108,8 @@ def command(
                 for each in names
             }
             write_files(out, film)
-    click.echo(f"{question_of(result.slice)}\n{summary(motion)}")
+    click.echo(f"{question_of(slice)}\n{summary(motion)}")
     report_written(out, names)
-
-
-def _slice(asked: Typed) -> Slice:
-    """The slice of a mechanism that can be drawn."""
-    slice = slice_from_typed(asked)
-    if slice.model.drawable is None:
-        raise ConfigError(no_drawing(slice.model))
-    return slice
 
 
 def summary(motion: Motion) -> str:

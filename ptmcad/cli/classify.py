@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 from dataclasses import replace
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -61,23 +60,14 @@ MIN_SECONDS = 0.01
 """Seconds that are left in any case, so that the result from which to go on is handed on."""
 
 
+ENGINE = ("engine", "jobs", "tolerance", "area_tolerance", "without", "keep", "no_areas")
+"""The options of the computation, by their parameters' names."""
+
+
 def _wanted(
-    engine: str,
-    jobs: int | None,
-    tolerance: Fraction | None,
-    area_tolerance: Fraction | None,
-    without: tuple[str, ...],
-    keep: tuple[str, ...],
-    no_areas: bool,
+    *, without: tuple[str, ...], keep: tuple[str, ...], no_areas: bool, **named: Any
 ) -> Options:
-    return Options(
-        engine=engine,
-        jobs=jobs,
-        tolerance=tolerance,
-        area_tolerance=area_tolerance,
-        without=frozenset((*without, *keep)),
-        areas=not no_areas,
-    )
+    return Options(**named, without=frozenset((*without, *keep)), areas=not no_areas)
 
 
 def classify_to_files(slice: Slice, options: Options, output: Output, spent: float = 0.0) -> Any:
@@ -269,6 +259,21 @@ def _resumed(slice: Slice, path: Path) -> Any:
     return earlier
 
 
+def _going_on(
+    slice: Slice, options: Options, output: Output, resume: Path | None
+) -> tuple[Options, float]:
+    """The options with the map from which to go on, and the seconds that it took to check it: of many
+    rectangles that is a while, which is part of the limit.
+    """
+    if resume is None:
+        return options, 0.0
+    if "json" in output.formats:
+        send(Topic.RESUMABLE, "the map to go on from was still being checked; it is as it was")
+    begun = time.monotonic()
+    earlier = _resumed(slice, resume)
+    return replace(options, resume=earlier), time.monotonic() - begun
+
+
 def _classify_family(
     family: Family,
     third: Third,
@@ -363,7 +368,7 @@ def _classify_family(
     help="Leave run times out of the JSON, so that it is the same every time.",
 )
 @drawing_options(FORMATS, "json,png,svg", "Files to write")
-@gathered(options=_wanted, output=Output, third=Third)
+@gathered(options=(ENGINE, _wanted), output=Output, third=Third)
 def command(
     *, asked: Typed, third: Third, count: str | None, options: Options, output: Output, limits: ResourceLimits,
     resume: Path | None,
@@ -412,28 +417,15 @@ def command(
         ("surface", third.surface, "no parameter is free: add --free NAME=LO:HI"),
         *idle_drawing(output.formats),
     ))  # fmt: skip
-    spent = 0.0
     with held(limits):
-        if resume is not None:
-            if "json" in output.formats:
-                send(
-                    Topic.RESUMABLE,
-                    "the map to go on from was still being checked; it is as it was",
-                )
-            begun = time.monotonic()
-            earlier = _resumed(
-                slice, resume
-            )  # of many rectangles that takes a while, which is part of the limit
-            options, spent = replace(options, resume=earlier), time.monotonic() - begun
+        options, spent = _going_on(slice, options, output, resume)
         if output.explain:
             click.echo(question_of(slice))
         steps = announced(slice, options) if output.explain else ()
         warn(slice, options)
         result = classify_to_files(slice, options, output, spent)
-    further = (
-        [step for step in own_steps(result.plan) if step not in steps] if output.explain else []
-    )
-    if further:
+    further = [step for step in own_steps(result.plan) if step not in steps]
+    if output.explain and further:
         click.echo(f"decided on the way:\n{explanation(further)}")
     click.echo(result.table() if output.explain else f"{question_of(slice)}\n{result.table()}")
     report_written(output.out, names_of(slice.name, output.formats))

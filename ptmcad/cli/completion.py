@@ -235,24 +235,19 @@ def answer(group: click.Group, instruction: str, program: str, variable: str) ->
     instruction : what the shell asks for.
     variable : the name of the variable in which it does.
     """
-    from click.shell_completion import BashComplete, get_completion_class
-
-    class Bash(BashComplete):
-        """As click has it, but where a value goes on (NAME=, X, or a folder) no space follows."""
-
-        source_template = BashComplete.source_template.replace(
-            "COMPREPLY+=($value)",
-            "COMPREPLY+=($value)\n            [[ $value == *[=,/] ]] && compopt -o nospace",
-        )
+    from click.shell_completion import get_completion_class
 
     shell, _, what = instruction.partition("_")
-    kind = Bash if shell == "bash" else get_completion_class(shell)
+    kind = get_completion_class(shell)
     if kind is None or what not in ("source", "complete"):
         click.echo(f"error: {variable} is no request of bash, zsh or fish: unset it", err=True)
         return 2
     completer = kind(group, {}, program, variable)
     if what == "source":
-        click.echo(completer.source())
+        # as click has it, but where a value goes on (NAME=, X, or a folder) no space follows in bash
+        further = "\n            [[ $value == *[=,/] ]] && compopt -o nospace"
+        taken = "COMPREPLY+=($value)"
+        click.echo(completer.source().replace(taken, taken + further))
     else:
         completer.ctx_args = {"obj": tuple(completer.get_completion_args()[0])}
         click.echo(completer.complete())

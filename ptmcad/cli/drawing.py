@@ -249,7 +249,7 @@ def _drawing(
     return DrawingOptions(samples, style, dpi, boundary_tolerance, pixels)
 
 
-def _style(*, style: str, **options: Any) -> PictureStyle:
+def style_of(*, style: str, **options: Any) -> PictureStyle:
     """The options of a style together."""
     try:
         made = styled(style, **options)
@@ -267,7 +267,7 @@ def style_options(command: F) -> F:
     """Add the options that make a `PictureStyle`, which the command gets as ``style``, and
     ``--dpi``.
     """
-    command = gathered(style=(STYLE, _style))(command)
+    command = gathered(style=(STYLE, style_of))(command)
     for option in (
         click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
                      help="Resolution of a PNG; regions of a map that it hides are shown zoomed, in every format."),

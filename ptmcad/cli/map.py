@@ -26,6 +26,7 @@ from ptmcad.options import Options
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import slice_from_typed
 from ptmcad.question.config.typed import Typed
+from ptmcad.question.slice import Slice
 from ptmcad.show import render
 from ptmcad.show.style import LegendPlace, PictureStyle
 
@@ -89,15 +90,7 @@ def command(
         ptmcad map --slice L2,rho --value length:k1 --pose stable:2 --format png,csv --pixels 50
     """
     stored = stored_map(asked)
-    slice = stored.slice if stored else slice_from_typed(asked)
-    if (
-        not stored
-        and slice.has_free_lengths
-        and (value.strip() == "barrier" or not pose.strip().startswith("stable"))
-    ):
-        slice = slice_from_typed(
-            asked._replace(counting="index")
-        )  # the certified engine finds the others when they are counted
+    slice = _counted(asked, value, pose) if stored is None else stored.slice
     nothing_drawn = set(formats) <= set(DATA)
     report_idle([
         *idle_style(formats),
@@ -136,6 +129,15 @@ def command(
     for path in written:
         click.echo(shown_path(path))
     _report(field)
+
+
+def _counted(asked: Typed, value: str, pose: str) -> Slice:
+    """The slice, counted so that the certified engine finds the solutions that are asked for."""
+    slice = slice_from_typed(asked)
+    further = value.strip() == "barrier" or not pose.strip().startswith("stable")
+    if slice.has_free_lengths and further:
+        return slice_from_typed(asked._replace(counting="index"))
+    return slice
 
 
 def _report(field: Field) -> None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -240,12 +241,9 @@ def command(
             found = answer(slice, request)
         click.echo(found.text)
         if names:
-            write_answer(
-                out,
-                names,
-                lambda name: found.pictures[pictures[name]](),
-                lambda: _text(slice, request, found),
-            )
+            make = {name: found.pictures[part] for name, part in pictures.items()}
+            text = partial(_text, slice, request, found)
+            write_answer(out, names, lambda name: make[name](), text)
             report_written(out, names)
 
 

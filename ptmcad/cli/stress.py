@@ -98,19 +98,15 @@ def command(
         ptmcad stress --random 100 --seed 7 --format table
         ptmcad stress all --random 100
     """
-    from ptmcad.studies.stress.case import (
-        chosen,
-        free_lengths,
-    )  # the cases' numbers need no library
+    from ptmcad.studies.stress.case import free_lengths  # the cases' numbers need no library
 
-    timeout = limits.timeout
-    limit = None if timeout is None else timeout + GRACE_SECONDS
+    limit = None if limits.timeout is None else limits.timeout + GRACE_SECONDS
     with held(limits._replace(timeout=limit)):
         cases = _cases(names, number, seed, everything=only_list)
         if only_list:
             from ptmcad.studies.stress.campaign import listing
 
-            click.echo(listing(cases if names or number else chosen(())))
+            click.echo(listing(cases))
             return 0
         files = [kind for kind in formats if kind != "table"]
         if files:
@@ -120,7 +116,7 @@ def command(
         if any(free_lengths(case.question.parameters) for case in cases):
             with ProgressBar() as progress:
                 compile_certified(limit, progress)
-        deadline = perf_counter() + (inf if timeout is None else timeout)
+        deadline = perf_counter() + (limits.timeout or inf)
         with ProgressBar() as progress:
             found = campaign(
                 cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress

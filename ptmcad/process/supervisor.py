@@ -112,8 +112,15 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     except BaseException:  # raised again: the interpreter prints it where it says so
         sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115 - the parent shows it, unless it comes of a limit
         raise
-    # Taking the interpreter down object by object costs more time than watching does;
-    # multiprocessing ends so, too.
+    _leave(status, done)
+
+
+def _leave(status: int, done: bool) -> NoReturn:
+    """End the child, and say whether it was done.
+
+    Taking the interpreter down object by object costs more time than watching does; multiprocessing
+    ends so, too.
+    """
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:

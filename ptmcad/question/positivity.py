@@ -95,13 +95,6 @@ def number(value: Fraction) -> str:
     return f"about {approximate_text(value)}"
 
 
-def _decided(terms: tuple[Term, ...], window: Box, strict: bool) -> Verdict:
-    """Whether a polynomial is positive, or not negative, in the open window."""
-    if not terms:
-        return Witness(middle_of(window), Fraction(0)) if strict else PROVED
-    return _by_halving(terms, window, strict)
-
-
 class _Part(NamedTuple):
     """A box with the Bernstein coefficients of the polynomial on it, times 2^shift and a constant:
     row i is for x^i.
@@ -116,7 +109,10 @@ class _Part(NamedTuple):
         return Fraction(min(map(min, self.rows)), 1 << self.shift)
 
 
-def _by_halving(terms: tuple[Term, ...], window: Box, strict: bool) -> Verdict:
+def _decided(terms: tuple[Term, ...], window: Box, strict: bool) -> Verdict:
+    """Whether a polynomial is positive, or not negative, in the open window."""
+    if not terms:
+        return Witness(middle_of(window), Fraction(0)) if strict else PROVED
     rows, scale = _integer_rows(terms, window)
     cost = max(1, len(rows) * len(rows[0]) * max(len(rows), len(rows[0])) // 2)
     whole = _Part(window, rows, 0)

@@ -16,7 +16,6 @@ import random
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from importlib.util import find_spec
 from itertools import zip_longest
 from pathlib import Path
@@ -254,26 +253,24 @@ def measure(
     PtmcadError
         When the slice has no map, or an answer of ours contradicts the reference.
     """
-    exact, known, sound = None, None, None
-    if not slice.has_free_lengths:
-        report(f"{slice.name}: the exact map that errors are measured against")
-        with suppress(LimitReached):
-            exact = classify(slice, count=finest_count(slice), timeout=max(MAP_SECONDS, time_limit))
-            sound = verified(exact)
-            known = truths(exact)
+    exact = _exact(slice, max(MAP_SECONDS, time_limit), report)
+    sound = None if exact is None else verified(exact)
+    known = None if exact is None else truths(exact)
     with tempfile.TemporaryDirectory() as name:
         case = Case(slice, record.resolve(), exact, known, Path(name), quick)
         found = {method: jobs(method, case) for method in methods}
         ranked = [asked for asked in found.values() if not isinstance(asked, str)]
         floor = Job(slice.name, "", "reference job", FLOOR)
-        floor.attempt(WARM_UP_SECONDS)  # fills caches
-        for job in [asked[0] for asked in ranked if asked[0].saves and warm_up]:
-            job.attempt(WARM_UP_SECONDS)  # compiles
+        # this fills caches, and compiles
+        for job in [floor, *(asked[0] for asked in ranked if asked[0].saves and warm_up)]:
+            job.attempt(WARM_UP_SECONDS)
             job.usages.clear()
-        floor.usages.clear()
         _run_all(ranked, floor, rounds, seed, time_limit, report)
         report(f"{slice.name}: errors")
         measured = [_measured(case, job) for asked in ranked for job in asked]
+    for method, why in found.items():
+        if isinstance(why, str):
+            measured.append(measurement(method, "", reason=why))
     return {
         "format": FORMAT,
         "slice": slice.name,
@@ -285,15 +282,19 @@ def measure(
         "quick": quick,
         "verified": sound,
         "floor": floor.times,
-        "measurements": (
-            *measured,
-            *(
-                measurement(method, "", reason=why)
-                for method, why in found.items()
-                if isinstance(why, str)
-            ),
-        ),
+        "measurements": tuple(measured),
     }
+
+
+def _exact(slice: Slice, seconds: float, report: Callable[[str], None]) -> RegionMap | None:
+    """The map that errors are measured against; None where there is none, or not in the time."""
+    if slice.has_free_lengths:
+        return None
+    report(f"{slice.name}: the exact map that errors are measured against")
+    try:
+        return classify(slice, count=finest_count(slice), timeout=seconds)
+    except LimitReached:
+        return None
 
 
 def _run_all(

@@ -140,7 +140,10 @@ def _in_doubles(tree: Tree, given: Mapping[str, Any], shape: tuple[int, ...]) ->
         names = names_of(tree)
         rows = zip(*(np.broadcast_to(given[name], shape).flat for name in names), strict=True)
         points = rows if names else ((),) * math.prod(shape)
-        balls = (in_balls(tree, dict(zip(names, map(arb, point), strict=True))) for point in points)
+        balls = (
+            in_balls(tree, {name: arb(float(x)) for name, x in zip(names, point, strict=True)})
+            for point in points
+        )
         return np.reshape([_double(ball) for ball in balls], shape)
 
 

@@ -98,10 +98,10 @@ def motion_of(
     choice = choice_of(pose, result.slice.model)
     corners = corners_of(result.slice, path)
     with within_doubles(result.slice):
-        walk = _Walk(result, Course.through(result.slice, corners))
-        stops = _stops(walk, frames)
+        walk = Track(result.slice, Course.through(result.slice, corners))
+        stops = _stops(result, walk, frames)
         start = _start(result, stops[0][1].at, choice)
-        steps, falls, end = _walked(walk, stops, start, max(12, frames // 3), progress)
+        steps, falls, end = _walked(result, walk, stops, start, max(12, frames // 3), progress)
     return Motion(result, corners, str(choice), tuple(steps), tuple(falls), end)
 
 
@@ -111,29 +111,22 @@ are not known.
 """
 
 
-class _Walk(Track):
-    """The model along a course over a map."""
-
-    def __init__(self, result: RegionMap, course: Course):
-        super().__init__(result.slice, course)
-        self.result = result
-
-    def cell(self, at: Place) -> int:
-        """The number of the cell at a point; `NONE` on curves, and where the map leaves it open."""
-        cell = locate(self.result, dict(zip(self.result.slice.axis_names, at, strict=True))).cell
-        return NONE if cell is None else cell
+def _cell(result: RegionMap, at: Place) -> int:
+    """The number of the cell at a point; `NONE` on curves, and where the map leaves it open."""
+    cell = locate(result, dict(zip(result.slice.axis_names, at, strict=True))).cell
+    return NONE if cell is None else cell
 
 
-def _stops(walk: _Walk, frames: int) -> list[_Stop]:
+def _stops(result: RegionMap, walk: Track, frames: int) -> list[_Stop]:
     """The steps along the path with their counts and all solutions, each next to any curve on which
     it would lie.
     """
-    result, points, cells, shares = walk.result, [], [], []
+    points, cells, shares = [], [], []
     for k in range(frames):
         share = Fraction(k, frames - 1)
         inward = 1 if k < frames / 2 else -1
         for moved in (share + inward * n * _BESIDE for n in range(4)):
-            point, cell = walk.course.at(moved), walk.cell(walk.course.at(moved))
+            point, cell = walk.course.at(moved), _cell(result, walk.course.at(moved))
             if cell != NONE:
                 break
         else:
@@ -150,7 +143,7 @@ def _stops(walk: _Walk, frames: int) -> list[_Stop]:
     for k, (share, point, number) in enumerate(zip(shares, points, cells, strict=True)):
         step = Step(float(share), point, (), None)
         if number == NONE:
-            stops.append(_open(walk, share, step))
+            stops.append(_open(result, walk, share, step))
             continue
         counts, many = result.cells[number], int(follower.total[0, k])
         known = solutions.at[:, 0, k, :many] if solutions.done[0, k] and many >= 0 else None
@@ -159,9 +152,9 @@ def _stops(walk: _Walk, frames: int) -> list[_Stop]:
     return stops
 
 
-def _open(walk: _Walk, share: Fraction, step: Step) -> _Stop:
+def _open(result: RegionMap, walk: Track, share: Fraction, step: Step) -> _Stop:
     """Where the map is silent: by an exact solution at the point."""
-    poses = exact_at(walk.result, *step.at)
+    poses = exact_at(result, *step.at)
     if poses.status not in (Status.EXACT, Status.CERTIFIED):
         return share, step, None
     found = (
@@ -171,7 +164,7 @@ def _open(walk: _Walk, share: Fraction, step: Step) -> _Stop:
     return share, _with_others(walk, counted, found), found
 
 
-def _with_others(walk: _Walk, step: Step, known: Floats | None) -> Step:
+def _with_others(walk: Track, step: Step, known: Floats | None) -> Step:
     """The step with the heights of all solutions, where each has one."""
     if known is None or not known.shape[1]:
         return step
@@ -197,7 +190,12 @@ def _start(result: RegionMap, at: Place, choice: Choice) -> Floats:
 
 
 def _walked(
-    walk: _Walk, stops: list[_Stop], start: Floats, fall_frames: int, progress: Progress | None
+    result: RegionMap,
+    walk: Track,
+    stops: list[_Stop],
+    start: Floats,
+    fall_frames: int,
+    progress: Progress | None,
 ) -> tuple[list[Step], list[Fall], str]:
     """All steps; where the pose vanishes those of its fall, as far as it goes."""
     at, own = start, int(walk.state(stops[0][1].at, start[:, None]).negatives[0])
@@ -218,7 +216,9 @@ def _walked(
                     f"at {_where(walk, done)} the pose leaves what the inequalities allow",
                 )
             beyond = min(done + MIN_STEP, until)
-            before, after = (walk.cell(walk.course.at(Fraction(share))) for share in (done, beyond))
+            before, after = (
+                _cell(result, walk.course.at(Fraction(share))) for share in (done, beyond)
+            )
             if before == after != NONE:
                 raise LostError(
                     f"the pose was lost at {100 * done:.6g} % of the path, in the middle of a region"
@@ -245,7 +245,7 @@ def _walked(
     return steps, falls, ""
 
 
-def _no_fall(walk: _Walk, own: int, done: float) -> str:
+def _no_fall(walk: Track, own: int, done: float) -> str:
     """Why nothing is said about where a pose goes that vanishes; empty where it falls."""
     why = walk.model.criterion.no_descent
     if own and not why:
@@ -253,14 +253,14 @@ def _no_fall(walk: _Walk, own: int, done: float) -> str:
     return why and f"at {_where(walk, done)} {why}"
 
 
-def _where(walk: _Walk, share: float) -> str:
+def _where(walk: Track, share: float) -> str:
     at = walk.course.at(Fraction(share))
     return ", ".join(
-        f"{n} = {float(v):.6g}" for n, v in zip(walk.result.slice.axis_names, at, strict=True)
+        f"{n} = {float(v):.6g}" for n, v in zip(walk.slice.axis_names, at, strict=True)
     )
 
 
-def _taken(walk: _Walk, stop: _Stop, at: Floats) -> Step:
+def _taken(walk: Track, stop: _Stop, at: Floats) -> Step:
     """The step with the pose, which has to be one of the solutions there."""
     share, step, solutions = stop
     if solutions is not None:
@@ -272,7 +272,7 @@ def _taken(walk: _Walk, stop: _Stop, at: Floats) -> Step:
     return _seen(walk, step, at)
 
 
-def _seen(walk: _Walk, step: Step, at: Floats) -> Step:
+def _seen(walk: Track, step: Step, at: Floats) -> Step:
     """The step with unknowns, and with what follows from them."""
     state = walk.state(step.at, at[:, None])
     height = None if state.height is None else float(state.height[0])
@@ -284,7 +284,7 @@ def _length(way: Floats) -> float:
     return float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
 
 
-def _fallen(walk: _Walk, share: float, way: Floats, number: int) -> list[Step]:
+def _fallen(walk: Track, share: float, way: Floats, number: int) -> list[Step]:
     """So many steps of a fall, at equal distances."""
     done = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1))])
     places = np.linspace(0.0, done[-1], number)
@@ -293,7 +293,7 @@ def _fallen(walk: _Walk, share: float, way: Floats, number: int) -> list[Step]:
     return [_seen(walk, Step(share, point, (), None, True), at) for at in taken]
 
 
-def _fall(walk: _Walk, share: float, way: Floats) -> Fall:
+def _fall(walk: Track, share: float, way: Floats) -> Fall:
     point = walk.course.at(Fraction(share))
     heights = [
         _seen(walk, Step(share, point, (), None), at).height or 0.0 for at in (way[0], way[-1])

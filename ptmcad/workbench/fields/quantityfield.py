@@ -153,22 +153,14 @@ def field_of(
         For what this map does not know, or a map without cells.
     """
     model, (quantity, choice) = result.slice.model, request
+    if result.only_stable:
+        _check_stable(request)
     grid = grid_of(result, columns, rows)
     follower = PixelSolver(result, places_of(grid))
-    if follower.only_stable and choice.kind != "stable":
-        raise ConfigError(
-            "this map knows the stable equilibria only: ask for stable:1", key="--pose"
-        )
-    if follower.only_stable and quantity.is_barrier:
-        raise ConfigError(
-            "this map knows the stable equilibria only, and a barrier is a saddle's", key=OPTION
-        )
     solutions = filled(result, follower)
     missed = complete(result, lambda r, c: centre(result, grid, r, c), solutions, follower.total)
-    values, chosen = (
-        np.full(grid.region.shape, np.nan),
-        np.full(grid.region.shape, NONE, dtype=np.int64),
-    )
+    values = np.full(grid.region.shape, np.nan)
+    chosen = np.full(grid.region.shape, NONE, dtype=np.int64)
     places = np.nonzero(solutions.done & (follower.total > 0))
     batch = LARGE_BATCH if quantity.is_barrier else BATCH
     for first in range(0, len(places[0]), batch):
@@ -178,9 +170,8 @@ def field_of(
             model, quantity, choice, follower, (r, c), solutions.at[:, r, c]
         )
     if quantity.is_barrier:  # there is one wherever there is another stable pose
-        missed += int(
-            (np.isnan(values) & solutions.done & (grid.stable >= max(2, choice.rank))).sum()
-        )
+        lacking = np.isnan(values) & solutions.done & (grid.stable >= max(2, choice.rank))
+        missed += int(lacking.sum())
     beyond = np.isinf(values)
     values[beyond] = np.nan
     other = jumps(result, follower, solutions, chosen, grid.region)
@@ -200,6 +191,19 @@ def field_of(
         int(beyond.sum()),
         other,
     )
+
+
+def _check_stable(request: FieldRequest) -> None:
+    """Refuse what a map of the stable equilibria alone does not know."""
+    quantity, choice = request
+    if choice.kind != "stable":
+        raise ConfigError(
+            "this map knows the stable equilibria only: ask for stable:1", key="--pose"
+        )
+    if quantity.is_barrier:
+        raise ConfigError(
+            "this map knows the stable equilibria only, and a barrier is a saddle's", key=OPTION
+        )
 
 
 def expect_somewhere(result: RegionMap, choice: Choice) -> None:

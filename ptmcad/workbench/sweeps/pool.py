@@ -12,11 +12,8 @@ The workers of a Dask scheduler, on this machine or on others.
 
 Guarantee: members go to the scheduler a few more at a time than there are threads to compute them.
 A worker that dies costs what it was computing: Dask gives it to another one, and what kills several
-workers is that member's failure.
-
-Dask spends milliseconds on a task, whatever it is; so quick members are put together, and given
-again one by one where something goes wrong with them. The results come back through the scheduler,
-so that the workers need no file system in common with this process.
+workers is that member's failure. The results come back through the scheduler, so that the workers
+need no file system in common with this process.
 """
 
 from __future__ import annotations
@@ -180,9 +177,7 @@ _LOOK_SECONDS = 2.0
 """Between two looks at the scheduler: whether it is there, and how many threads its workers have.
 """
 _TASKS_EACH = 2
-"""Tasks for each thread: one that is computed and one that waits at the worker."""
-_TASK_SECONDS, _MAX_TOGETHER = 4.0, 64
-"""What members that are put together take, and how many they are at most."""
+"""Members for each thread: one that is computed and one that waits at the worker."""
 
 
 class Cluster:
@@ -209,12 +204,10 @@ class Cluster:
             ) from error
         # what it says of a scheduler that is gone is said by this program, once, as an error
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
-        self._answers: SimpleQueue[tuple[tuple[int, ...], Any]] = SimpleQueue()
-        self._under_way: dict[tuple[int, ...], Any] = {}
-        self._gathered: list[int] = []
+        self._answers: SimpleQueue[tuple[int, Any]] = SimpleQueue()
+        self._under_way: dict[int, Any] = {}
         self._threads = 0
         self._looked = -_LOOK_SECONDS
-        self._done, self._seconds = 0, 0.0
 
     @property
     def room(self) -> bool:
@@ -228,24 +221,21 @@ class Cluster:
 
     @property
     def busy(self) -> bool:
-        return bool(self._under_way or self._gathered)
+        return bool(self._under_way)
 
     def submit(self, number: int) -> None:
-        self._gathered.append(number)
-        if len(self._gathered) >= self._together():
-            self._send_gathered()
+        future = self._under_way[number] = self.client.submit(self.compute, number, pure=False)
+        future.add_done_callback(lambda done: self._answers.put((number, done)))
 
     def answers(self, seconds: float | None) -> Sequence[Answer]:
-        self._send_gathered()
         found: list[Answer] = []
+        patience = _LOOK_SECONDS if seconds is None else min(seconds, _LOOK_SECONDS)
         try:
-            numbers, done = self._answers.get(
-                timeout=_LOOK_SECONDS if seconds is None else min(seconds, _LOOK_SECONDS)
-            )
-            found += self._taken(numbers, done)
             while True:
-                numbers, done = self._answers.get_nowait()
-                found += self._taken(numbers, done)
+                number, done = self._answers.get(timeout=0 if found else patience)
+                del self._under_way[number]  # its copy on the cluster is given up
+                outcome = done.result() if done.status == "finished" else Failed(_why(done))
+                found.append((number, outcome))
         except Empty:
             if self.client.status not in ("running", "connecting"):
                 raise self._gone() from None
@@ -254,46 +244,10 @@ class Cluster:
     def _gone(self) -> OutputError:
         return OutputError(f"the scheduler at {self.address} is gone")
 
-    def _together(self) -> int:
-        """How many members make a task: few at first, so that every thread has some."""
-        if not self._seconds:
-            return 1
-        by_time = int(_TASK_SECONDS * self._done / self._seconds)
-        return max(1, min(by_time, 1 + self._done // (8 * max(self._threads, 1)), _MAX_TOGETHER))
-
-    def _send_gathered(self) -> None:
-        if self._gathered:
-            self._send(tuple(self._gathered))
-            self._gathered = []
-
-    def _send(self, numbers: tuple[int, ...]) -> None:
-        future = self.client.submit(_answers, self.compute, numbers, pure=False)
-        self._under_way[numbers] = future
-        future.add_done_callback(lambda done: self._answers.put((numbers, done)))
-
-    def _taken(self, numbers: tuple[int, ...], done: Any) -> Sequence[Answer]:
-        """What has become of members; their copy on the cluster is given up."""
-        del self._under_way[numbers]
-        if done.status == "finished":
-            outcomes = done.result()
-            self._done += len(numbers)
-            self._seconds += sum(getattr(outcome, "seconds", 0.0) for outcome in outcomes)
-            return list(zip(numbers, outcomes, strict=True))
-        if len(numbers) > 1:  # one of them is to blame
-            for number in numbers:
-                self._send((number,))
-            return ()
-        return [(numbers[0], Failed(_why(done)))]
-
     def close(self) -> None:
         with suppress(OSError, TimeoutError):  # it may be gone already
             self.client.cancel(list(self._under_way.values()))
             self.client.close(timeout=2)
-
-
-def _answers(compute: Callable[[int], Any], numbers: Sequence[int]) -> list[Any]:
-    """What a worker of the cluster does."""
-    return [compute(number) for number in numbers]
 
 
 def _why(done: Any) -> str:
