@@ -15,9 +15,9 @@ from ptmcad.answer.widths import Attainment, Maximum, OperationWidths, WidthRow
 from ptmcad.answer.words import sought
 from ptmcad.model import Model
 from ptmcad.show.columns import aligned
-from ptmcad.show.ranges.endtext import end_text, line_head, settled, width_text
+from ptmcad.show.ranges.endtext import end_text, settled, width_text
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.numerals import decimal, rounded, shortest_text
+from ptmcad.text.numerals import decimal, equalities, rounded, shortest_text
 from ptmcad.text.plane import PlanePolynomial
 
 MAX_POLYNOMIAL = 60
@@ -28,14 +28,16 @@ def table(found: CountIntervals, digits: int = 10) -> str:
     """One row for each interval, then what happens at their ends, then, of exact ones, the
     operation range.
     """
-    name = found.along.name
+    name, low, high = found.along.name, found.along.low, found.along.high
     heads = _heads(found)
     rows = [["from", "to", *heads.values(), "sample"]]
     for each in found.intervals:
         ends = (_side_text(each.low, digits, up=True), _side_text(each.high, digits))
         counts = (_counted(column, getattr(each, column)) for column in heads)
         rows.append([*ends, *counts, shortest_text(each.sample)])
-    lines = [line_head(found.along, found.at), "", *aligned(rows)]
+    window = f"({shortest_text(low)}, {shortest_text(high)})"
+    at = equalities(found.at, shortest_text)
+    lines = [f"{name} in {window} at {at}", "", *aligned(rows)]
     if found.changes:
         columns = ["what is met"] if found.enclosed else [f"as {name} increases", "root of"]
         changes = [["at", *columns], *(_change_row(c, name, digits) for c in found.changes)]
@@ -155,7 +157,8 @@ def width_table(found: OperationWidths, digits: int = 10) -> str:
     for row in found.rows:
         value = shortest_text(row.value)
         cells = [[value, *_width_cells(row, one, digits)] for one in row.operation]
-        rows += cells or [[value, _without_range(row), "", ""]]
+        note = "degenerate" if row.remark else "undecided" if row.undecided else "none"
+        rows += cells or [[value, note, "", ""]]
     marked = any("*" in cell for cells in rows for cell in cells)
     lines = [*aligned(rows), *[f"* the edge of the window of {found.along.name}"] * marked, ""]
     if found.enclosed:
@@ -173,10 +176,6 @@ def _width_cells(row: WidthRow, span: Span, digits: int) -> Iterator[str]:
     for end, up in ((span.low, True), (span.high, False)):
         yield _side_text(end, digits, up) + " *" * _is_edge(end)
     yield width_text(span, digits) + ", a part of the window undecided" * row.undecided
-
-
-def _without_range(row: WidthRow) -> str:
-    return "degenerate" if row.remark else "undecided" if row.undecided else "none"
 
 
 def maximum_text(found: Maximum, over: str, digits: int) -> str:
