@@ -169,6 +169,7 @@ def test_critical_free_lengths_enclosed() -> None:
         }
         assert dense_search(values, 80)["index"] == interval.index
     assert "0.38821735322286586534" in table(found, 20)
+    assert table(found, 20).splitlines()[-1].startswith("operation range: ")
 
 
 def test_the_cone_s_critical_length_by_hand() -> None:
@@ -177,7 +178,7 @@ def test_the_cone_s_critical_length_by_hand() -> None:
         None, "l0,rho", ("L2=3/2", "F3=-10", "F4=-10"), ("l0=1/3:1/2", "rho=0:2")
     )
     found = ptmcad.intervals(slice, "l0", {"rho": "7/10"})
-    assert found.enclosed
+    assert found.enclosed and found.decided
     (cone,) = found.changes
     rho, p, q, free = 0.7, 1.0, 1.5, float(cone.at.center)
     c1, c2 = (rho**2 + p**2 - q**2) / (2 * rho * p), (rho**2 + q**2 - p**2) / (2 * rho * q)

@@ -22,12 +22,11 @@ from ptmcad.text.plane import PlanePolynomial
 
 MAX_POLYNOMIAL = 60
 """Characters of a polynomial; of longer ones the degree is reported."""
+UNDECIDED_PART = ", a part of the window undecided"
 
 
 def table(found: CountIntervals, digits: int = 10) -> str:
-    """One row for each interval, then what happens at their ends, then, of exact ones, the
-    operation range.
-    """
+    """One row for each interval, then what happens at their ends, then the operation range."""
     name, low, high = found.along.name, found.along.low, found.along.high
     heads = _heads(found)
     rows = [["from", "to", *heads.values(), "sample"]]
@@ -47,13 +46,13 @@ def table(found: CountIntervals, digits: int = 10) -> str:
             "",
             "peaks: configurations without length of spring A3A4 in which the energy has a peak",
         ]
-    if found.enclosed:
-        return "\n".join(lines)
     lines.append("")
     range_name = operation_name(found.model, found.working)
     if not found.operation:
-        lines.append(f"{range_name}: none, {nowhere(found.model, found.working)}")
-    lines += [f"{range_name}: {_range_text(i, digits)}" for i in found.operation]
+        none = f"none, {nowhere(found.model, found.working)}"
+        lines.append(f"{range_name}: {none if found.decided else 'undecided'}")
+    note = "" if found.decided else UNDECIDED_PART
+    lines += [f"{range_name}: {_range_text(i, digits)}{note}" for i in found.operation]
     return "\n".join(lines)
 
 
@@ -132,7 +131,7 @@ def _range_text(interval: Span, digits: int) -> str:
             if len(edges) == 1
             else " (the whole window)"
         )
-    low, high = end_text(interval.low, digits), end_text(interval.high, digits)
+    low, high = _side_text(interval.low, digits, up=True), _side_text(interval.high, digits)
     return f"{low} to {high}, width {width_text(interval, digits)}{note}"
 
 
@@ -175,7 +174,7 @@ def _width_cells(row: WidthRow, span: Span, digits: int) -> Iterator[str]:
     """The ends, with a mark at the window's edge, and the width."""
     for end, up in ((span.low, True), (span.high, False)):
         yield _side_text(end, digits, up) + " *" * _is_edge(end)
-    yield width_text(span, digits) + ", a part of the window undecided" * row.undecided
+    yield width_text(span, digits) + UNDECIDED_PART * row.undecided
 
 
 def maximum_text(found: Maximum, over: str, digits: int) -> str:
