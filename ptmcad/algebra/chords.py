@@ -24,7 +24,6 @@ from flint import (
     fmpq,
     fmpq_mpoly_ctx,
     fmpq_poly,
-    fmpz_mpoly,
     fmpz_poly,
 )
 
@@ -150,13 +149,6 @@ Direction = tuple[int, int]
 """(dx, dy), not both zero: (1, 0) is horizontal, where the curve folds over the y-axis."""
 
 
-def tangency(p: Coefficient, direction: Direction) -> fmpz_mpoly:
-    """The polynomial dx p_x + dy p_y: on p = 0 it vanishes where that is tangent, and at singular
-    points.
-    """
-    return p.derivative(0) * direction[0] + p.derivative(1) * direction[1]
-
-
 def tangent_resultant(p: Coefficient, direction: Direction) -> fmpz_poly:
     """The squarefree polynomial in y that vanishes where p = 0 has such a (complex) point or a
     singular one.
@@ -166,7 +158,8 @@ def tangent_resultant(p: Coefficient, direction: Direction) -> fmpz_poly:
     ArithmeticError When there are infinitely many: the curve contains a line of that direction, or
         a multiple component.
     """
-    eliminated = resultant(coefficients_in(p, 0), coefficients_in(tangency(p, direction), 0))
+    tangent = p.derivative(0) * direction[0] + p.derivative(1) * direction[1]
+    eliminated = resultant(coefficients_in(p, 0), coefficients_in(tangent, 0))
     if not eliminated:
         raise ArithmeticError("the curve contains a line of the direction, or a multiple component")
     return squarefree_part(eliminated)

@@ -10,7 +10,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
+from functools import partial
 from itertools import groupby, pairwise
+from operator import eq, le
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.counts import Counts, MorseIndex, euler_sum
@@ -227,7 +229,8 @@ class CountIntervals:
         among them.
     working : the number of stable solutions in the operation range, or of all where nothing says
         what is stable.
-    enclosed : whether ends and changes are enclosures, as springs have free lengths.
+    enclosed : whether ends and changes are enclosures, as springs have free lengths; then there
+        may be more than ``working`` stable solutions in the operation range.
     """
 
     name: str
@@ -250,6 +253,13 @@ class CountIntervals:
         return f"<CountIntervals of {self.name} along {self.along.name}: {found} in turn>"
 
     @property
+    def decided(self) -> bool:
+        """Whether counts are known on all intervals, and between them nothing is open."""
+        return all(i.counts is not None for i in self.intervals) and all(
+            change.proved for change in self.changes
+        )
+
+    @property
     def stretches(self) -> list[tuple[Fraction, Fraction]]:
         """Intervals without a critical value, between rational numbers, from the lower edge to the
         upper one.
@@ -263,10 +273,11 @@ class CountIntervals:
 
     @property
     def operation(self) -> tuple[OperationSpan, ...]:
-        """The operation range: where there are so many stable solutions; of the paper's mechanism
-        two.
+        """The operation range: where there are so many stable solutions, or of enclosed intervals at
+        least so many; of the paper's mechanism two.
         """
-        return operation_spans(self.intervals, lambda number: number == self.working)
+        works = partial(le if self.enclosed else eq, self.working)
+        return operation_spans(self.intervals, works)
 
 
 def lower(end: AnyEnd) -> Fraction:

@@ -11,16 +11,19 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from support.dense_search import dense_search, derivatives
 
+import ptmcad
 from ptmcad import Poses, solve
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.lines.along import certified_intervals
+from ptmcad.cli.range import command
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, slice_from_options
 from ptmcad.show.ranges.linetable import table
-from ptmcad.show.render.energy import Energy
+from ptmcad.show.render.landscape import energy_of
 
 SCHEMA = json.loads(
     (Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8")
@@ -58,7 +61,7 @@ def test_poses_agree_with_the_energy_written_out_again(number: int) -> None:
     seen = dense_search(values, 60)
     assert (seen["total"], seen["stable"]) == (len(poses.equilibria), poses.stable)
     assert seen["admissible"] == sum(pose.admissible is True for pose in poses.equilibria)
-    energy = Energy(poses.model, poses.parameters)
+    energy = energy_of(poses.model, poses.parameters)
     for pose in poses.equilibria:
         a, b = (np.array([float(x.center)]) for x in pose.angles)
         g1, g2, h11, h12, h22, lengths = derivatives(values, a, b)
@@ -68,7 +71,7 @@ def test_poses_agree_with_the_energy_written_out_again(number: int) -> None:
         assert lengths[:, 0] == pytest.approx(
             [float(s.length.center) for s in pose.springs], abs=1e-9
         )
-        assert energy(a, b)[0] == pytest.approx(float(pose.energy.center), abs=1e-9)
+        assert energy(a, b)[0] == pytest.approx(energy.scaled(pose.energy.center), abs=1e-9)
         for spring in pose.springs:
             force = spring.stiffness * (spring.length.center - spring.free_length)
             assert float(force) == pytest.approx(float(spring.force.center), abs=1e-7)
@@ -166,6 +169,7 @@ def test_critical_free_lengths_enclosed() -> None:
         }
         assert dense_search(values, 80)["index"] == interval.index
     assert "0.38821735322286586534" in table(found, 20)
+    assert table(found, 20).splitlines()[-1].startswith("operation range: ")
 
 
 def test_the_cone_s_critical_length_by_hand() -> None:
@@ -173,7 +177,8 @@ def test_the_cone_s_critical_length_by_hand() -> None:
     slice = slice_from_options(
         None, "l0,rho", ("L2=3/2", "F3=-10", "F4=-10"), ("l0=1/3:1/2", "rho=0:2")
     )
-    found = certified_intervals(slice, "l0", {"rho": "7/10"}, 10)
+    found = ptmcad.intervals(slice, "l0", {"rho": "7/10"})
+    assert found.enclosed and found.decided
     (cone,) = found.changes
     rho, p, q, free = 0.7, 1.0, 1.5, float(cone.at.center)
     c1, c2 = (rho**2 + p**2 - q**2) / (2 * rho * p), (rho**2 + q**2 - p**2) / (2 * rho * q)
@@ -210,3 +215,68 @@ def test_a_coordinate_that_interval_arithmetic_knows_exactly(force: Q, tmp_path:
     (pose,) = solve(model=model, F=force, G="1/4").equilibria
     assert pose.reals[0].exact == force
     assert pose.reals[1].exact is None
+
+
+@pytest.mark.slow
+def test_the_issue_s_line() -> None:
+    slice = slice_from_options(
+        None, "rho,L2", ("l0=1/5", "F3=-10", "F4=-10"), ("rho=0:4", "L2=0:4")
+    )
+    found = certified_intervals(slice, "rho", {"L2": "3/2"}, 10)
+    stable = [interval.index[0] for interval in found.intervals if interval.index]
+    assert stable == [1, 2, 2, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2, 2, 1]
+
+
+@pytest.mark.slow
+def test_range_on_the_command_line(tmp_path: Path) -> None:
+    options = [
+        "--along",
+        "l0",
+        "--at",
+        "rho=7/10,L2=3/2",
+        "--range",
+        "l0=1/3:1/2",
+        "--set",
+        "F3=-10",
+    ]
+    done = CliRunner().invoke(command, options)
+    assert done.exit_code == 0 and "min-saddle-max" in done.output
+    followed = CliRunner().invoke(command, [*options, "--path", "2/5"])
+    assert followed.exit_code == 0 and "pose 2 at l0 = 0.4: th1 = 67.34006196" in followed.output
+    drawn = [*options, "--format", "svg", "--out", str(tmp_path), "--name", "x"]
+    assert CliRunner().invoke(command, drawn).exit_code == 0
+    assert (tmp_path / "x.svg").exists()
+
+
+def test_energy_has_no_free_length_unless_asked_for() -> None:
+    plain = solve(rho=Q(1), L2=Q(3, 2))
+    assert energy_of(plain.model, plain.parameters).roots == ()
+
+
+def test_a_free_length_of_zero_beside_one_that_is_a_number() -> None:
+    """One angle, two springs: the parameter is zero and the number is not, so that the point tells
+    both. The poses are those of a dense look at the energy's slope."""
+    mechanism = {
+        "parameters": {"l0": {"kind": "free length"}, "F": {"kind": "force"}},
+        "unknowns": {"th": "angle"},
+        "points": {"A": [2, 0], "B": [0, 2], "P": ["cos(th)", "sin(th)"]},
+        "springs": [
+            {"between": ["A", "P"], "k": 1, "free": "l0"},
+            {"between": ["B", "P"], "k": 1, "free": "1/2"},
+        ],
+        "loads": {"P": ["F", 0]},
+    }
+    record = {"name": "two", "mechanism": mechanism, "axes": {"F": [-1, 1], "l0": [0, 1]}}
+    poses = solve(record, F="1/3", l0=0)
+    assert poses.status is Status.CERTIFIED and poses.parameters["l0"] == 0
+    angle = np.linspace(0, 2 * np.pi, 100_001)
+    away = np.hypot(np.cos(angle), np.sin(angle) - 2)
+    energy = ((np.cos(angle) - 2) ** 2 + np.sin(angle) ** 2 + (away - 0.5) ** 2) / 2 - np.cos(
+        angle
+    ) / 3
+    slope = np.diff(energy)
+    minima = np.sum((slope[:-1] < 0) & (slope[1:] >= 0))
+    assert len(poses.equilibria) == np.sum((slope[:-1] < 0) != (slope[1:] < 0)) == 2
+    assert sum(bool(pose.stable) for pose in poses.equilibria) == minima == 1
+    found = min(float(pose.energy.center) for pose in poses.equilibria if pose.energy is not None)
+    assert abs(found - energy.min()) < 1e-8

@@ -6,12 +6,14 @@ Guarantee: that of `ptmcad.exact.ranges.exactline`, or with free lengths that of
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
 from ptmcad.answer.counts import operation_number
-from ptmcad.answer.intervals import CountIntervals
+from ptmcad.answer.intervals import CountInterval, CountIntervals
+from ptmcad.ask.quantities import open_chain
+from ptmcad.model import Model
 from ptmcad.process.memory import loading
 from ptmcad.question.line import has_free_lengths, on_line, varying_axis
 from ptmcad.question.slice import Axis, Slice
@@ -77,7 +79,7 @@ def certified_intervals(
     line = proved(replace(slice, axes=axes, parameters=parameters))
     found, changes = intervals_and_changes(line, 64 + 4 * digits)
     if working is None:
-        working = operation_number(slice.model, (i.counts for i in found if i.counts is not None))
+        working = least_number(slice.model, found)
     return CountIntervals(
         slice.name,
         slice.model,
@@ -89,3 +91,16 @@ def certified_intervals(
         working,
         enclosed=True,
     )
+
+
+def least_number(model: Model, found: Iterable[CountInterval]) -> int:
+    """The number of stable solutions that there are in an operation range of enclosed intervals at
+    least.
+
+    There may be more than two, on small parts of a window. Of closed loops, which are stable
+    somewhere nearly everywhere, it is the greatest number.
+    """
+    least = operation_number(model, ())
+    if open_chain(model) is not None:
+        return least
+    return max((i.working or 0 for i in found), default=least) or least

@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import NamedTuple
 
 from flint import arb, ctx
 
@@ -18,7 +17,7 @@ from ptmcad.exact.models import system_from
 from ptmcad.exact.models.system import Part, Terms
 from ptmcad.formulas.ballarithmetic import evaluated, signs_of
 from ptmcad.formulas.continuation import BITS, BranchEquations, Reached, Vector, branch_equations
-from ptmcad.formulas.graph import Formula, Graph, expression_formula
+from ptmcad.formulas.graph import Formula, expression_formula
 from ptmcad.model.compile import CompiledSystem
 from ptmcad.question.line import Line, compiled_on
 from ptmcad.question.slice import relaxed_springs
@@ -81,66 +80,48 @@ def line_system(line: Line) -> LineSystem:
     return LineSystem(
         line,
         formulas,
-        _relaxed(formulas, relaxed) if relaxed else _polynomial(line, formulas),
+        branch_equations(formulas.balance(relaxed), len(formulas.angles))
+        if relaxed
+        else _polynomial(line, formulas),
         formulas.energy(relaxed) if relaxed else formulas.smooth,
         tuple(formulas.springs[k].length for k in relaxed),
         SolutionsOnLine(line.model, line.parameters, DIGITS),
     )
 
 
-def _relaxed(formulas: CompiledSystem, relaxed: Iterable[int]) -> BranchEquations:
-    """The equations of springs of which some have free lengths."""
-    return branch_equations(formulas.balance(relaxed), len(formulas.angles))
-
-
 def _polynomial(line: Line, formulas: CompiledSystem) -> BranchEquations:
     """The equations as polynomials of cosines and sines: in balls they are narrower so."""
-    system, graph = system_from(line.model), formulas.graph
-    given = [expression_formula(graph, line.parameters[name]) for name in system.ring.parameters]
-    turned = (
-        f for k in formulas.angles for f in (graph.variable(k).cos(), graph.variable(k).sin())
-    )
-    elements = _Elements(
-        graph, given, (*turned, *map(graph.variable, formulas.reals)), len(formulas.angles)
-    )
-    return branch_equations(
-        list(map(elements.formula, system.equation_terms)),
-        elements.angles,
-        [elements.formula(entry) for row in system.jacobian_terms for entry in row],
-        [elements.gradient(entry) for row in system.jacobian_terms for entry in row],
-    )
+    system, graph, angles = system_from(line.model), formulas.graph, len(formulas.angles)
+    parameters = [
+        expression_formula(graph, line.parameters[name]) for name in system.ring.parameters
+    ]
+    turns = (f for k in formulas.angles for f in (graph.variable(k).cos(), graph.variable(k).sin()))
+    at = (*turns, *map(graph.variable, formulas.reals))
 
-
-class _Elements(NamedTuple):
-    """Elements of a system's ring as formulas on a line, from formulas for parameters and
-    coordinates.
-    """
-
-    graph: Graph
-    parameters: Sequence[Formula]
-    coordinates: Sequence[Formula]
-    angles: int
-
-    def formula(self, terms: Terms) -> Formula:
-        total = self.graph.constant(0)
+    def formula(terms: Terms) -> Formula:
+        total = graph.constant(0)
         for monomial, part in terms:
-            coefficient = self.graph.constant(0)
+            coefficient = graph.constant(0)
             for powers, c in part:
-                factors = ((self.parameters[k], e) for k, e in powers)
-                coefficient = coefficient + _product(self.graph.constant(to_fraction(c)), factors)
-            total = total + _product(coefficient, zip(self.coordinates, monomial, strict=True))
+                factors = ((parameters[k], e) for k, e in powers)
+                coefficient = coefficient + _product(graph.constant(to_fraction(c)), factors)
+            total = total + _product(coefficient, zip(at, monomial, strict=True))
         return total
 
-    def gradient(self, terms: Terms) -> list[Formula]:
-        """The derivatives by the unknowns.
+    def gradient(terms: Terms) -> list[Formula]:
+        # that by an angle is made of those by its cosine and its sine: in balls it is narrower than
+        # a sum of all terms'
+        by = [formula(tuple(_lowered(terms, k))) for k in range(len(at))]
+        turned = (at[k] * by[k + 1] - at[k + 1] * by[k] for k in range(0, 2 * angles, 2))
+        return [*turned, *by[2 * angles :]]
 
-        That by an angle is made of those by its cosine and its sine: in balls it is narrower than a
-        sum of all terms'.
-        """
-        at, turned = self.coordinates, 2 * self.angles
-        by = [self.formula(tuple(_lowered(terms, k))) for k in range(len(at))]
-        turns = (at[k] * by[k + 1] - at[k + 1] * by[k] for k in range(0, turned, 2))
-        return [*turns, *by[turned:]]
+    entries = [entry for row in system.jacobian_terms for entry in row]
+    return branch_equations(
+        list(map(formula, system.equation_terms)),
+        angles,
+        list(map(formula, entries)),
+        list(map(gradient, entries)),
+    )
 
 
 def _lowered(terms: Terms, k: int) -> Iterator[tuple[Monomial, Part]]:

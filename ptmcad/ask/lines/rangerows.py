@@ -13,11 +13,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
+from itertools import chain
 
-from ptmcad.answer.counts import operation_number
 from ptmcad.answer.intervals import CountIntervals, operation_spans
 from ptmcad.answer.widths import OperationWidths, WidthRow
-from ptmcad.ask.quantities import open_chain
 from ptmcad.errors import A_SLICE, ConfigError, HypothesisError, expect, quoted
 from ptmcad.options import Progress
 from ptmcad.question.slice import Axis, Slice
@@ -74,7 +73,7 @@ def _enclosed(
     slice: Slice, axis: Axis, over: Axis, rows: int, digits: int, progress: Progress | None
 ) -> OperationWidths:
     """The rows of a slice whose springs have free lengths."""
-    from ptmcad.ask.lines.along import certified_intervals
+    from ptmcad.ask.lines.along import certified_intervals, least_number
 
     found: list[tuple[Fraction, CountIntervals | None, str]] = []
     for row in _rows(
@@ -86,11 +85,7 @@ def _enclosed(
         if progress is not None:
             progress("rows", len(found), rows)
     lines = [() if line is None else line.intervals for _, line, _ in found]
-    working = operation_number(slice.model, ())
-    if open_chain(slice.model) is None:
-        # as without free lengths: a loop is stable somewhere nearly everywhere
-        known = (i.working or 0 for line in lines for i in line)
-        working = max(known, default=working) or working
+    working = least_number(slice.model, chain.from_iterable(lines))
     table = tuple(
         WidthRow(
             value,

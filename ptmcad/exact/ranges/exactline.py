@@ -15,15 +15,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import groupby
+from itertools import groupby, pairwise
 from typing import Any
 
 from flint import fmpq
 
 from ptmcad.algebra.algebraic_numbers import in_order, roots_in
-from ptmcad.algebra.real_roots import gaps
-from ptmcad.answer.counts import Counts, operation_number
-from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
+from ptmcad.answer.counts import operation_number
+from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End, lower, upper
 from ptmcad.answer.regionmap import Component
 from ptmcad.answer.words import noun
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
@@ -33,7 +32,7 @@ from ptmcad.exact.models.system import SystemOnAxes, on_axes
 from ptmcad.exact.stages import count_at
 from ptmcad.exact.witness import points, with_folds
 from ptmcad.question.line import Line, line_of
-from ptmcad.question.slice import Axis, Slice
+from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_fraction
 from ptmcad.text.numerals import equalities, shortest_text
@@ -67,22 +66,25 @@ def intervals(
         When a length or a stiffness is not positive on it.
     """
     line = line_of(slice, along, at)
-    found = critical_values(line)
-    numbers = tuple(number for number, _ in found)
-    parts = dict(found)
-    samples = samples_between(line.along, numbers)
-    counts = [counts_at(line, sample) for sample in samples]
+    found, on = critical_values(line), system_on(line)
+    ends: list[End] = [line.along.low, *(number for number, _ in found), line.along.high]
+    samples = [simplest_fraction(upper(low), lower(high)) for low, high in pairwise(ends)]
+    counts = [count_at(line.place(x), on, (from_fraction(x), fmpq(0))).counts for x in samples]
     changes = tuple(
-        Change(n, counts[k], counts[k + 1], parts[n].kind, parts[n].continuum)
-        for k, n in enumerate(numbers)
+        Change(number, *sides, part.kind, part.continuum)
+        for (number, part), sides in zip(found, pairwise(counts), strict=True)
     )
+    # neighbours with equal counts are one interval
+    joined = [list(group) for _, group in groupby(range(len(counts)), lambda k: counts[k])]
     return CountIntervals(
         slice.name,
         slice.model,
         line.along,
         line.at,
         line.parameters,
-        tuple(_joined(line.along, numbers, samples, counts)),
+        tuple(
+            CountInterval(ends[k[0]], ends[k[-1] + 1], counts[k[0]], samples[k[0]]) for k in joined
+        ),
         changes,
         operation_number(slice.model, counts) if working is None else working,
     )
@@ -134,34 +136,9 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Component], ...]
     return tuple((number, parts[number.polynomial]) for number in ordered)
 
 
-def samples_between(along: Axis, numbers: tuple[AlgebraicNumber, ...]) -> tuple[Fraction, ...]:
-    """Simple rationals below, between and above the given numbers, in the window."""
-    return tuple(simplest_fraction(*gap) for gap in gaps(numbers, (along.low, along.high)))
-
-
-def counts_at(line: Line, value: Fraction) -> Counts:
-    """Numbers of solutions at a rational value that is not critical."""
-    return count_at(line.place(value), system_on(line), (from_fraction(value), fmpq(0))).counts
-
-
 def runs(here: Sequence[bool]) -> Iterator[tuple[int, int]]:
     """Where the longest runs of gaps in which something holds begin, and where they end."""
     for holds, group in groupby(range(len(here)), lambda k: here[k]):
         numbers = list(group)
         if holds:
             yield numbers[0], numbers[-1] + 1
-
-
-def _joined(
-    along: Axis,
-    numbers: tuple[AlgebraicNumber, ...],
-    samples: tuple[Fraction, ...],
-    counts: list[Counts],
-) -> Iterator[CountInterval]:
-    """The intervals, those with equal counts joined."""
-    ends: list[End] = [along.low, *numbers, along.high]
-    start = 0
-    for k, here in enumerate(counts):
-        if k + 1 == len(counts) or counts[k + 1] != here:
-            yield CountInterval(ends[start], ends[k + 1], here, samples[start])
-            start = k + 1

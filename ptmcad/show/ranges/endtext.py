@@ -9,9 +9,8 @@ from fractions import Fraction
 
 from ptmcad.algebra.algebraic_numbers import refined
 from ptmcad.answer.intervals import AnyEnd, Span
-from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.numerals import Numbers, equalities, magnitude, shortest_text
+from ptmcad.text.numerals import magnitude
 
 MAX_DIGITS = 1000
 """That may be asked for."""
@@ -21,11 +20,6 @@ NARROW = Fraction(1, 10**20)
 """A number that is so nearly known and does not settle a digit is taken for the short decimal that
 it cannot leave.
 """
-
-
-def line_head(along: Axis, at: Numbers) -> str:
-    """The window along a line, and what is fixed on it."""
-    return f"{along.name} in ({shortest_text(along.low)}, {shortest_text(along.high)}) at {equalities(at, shortest_text)}"
 
 
 def end_text(end: AnyEnd, digits: int) -> str:

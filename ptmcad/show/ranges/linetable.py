@@ -15,27 +15,28 @@ from ptmcad.answer.widths import Attainment, Maximum, OperationWidths, WidthRow
 from ptmcad.answer.words import sought
 from ptmcad.model import Model
 from ptmcad.show.columns import aligned
-from ptmcad.show.ranges.endtext import end_text, line_head, settled, width_text
+from ptmcad.show.ranges.endtext import end_text, settled, width_text
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.numerals import decimal, rounded, shortest_text
+from ptmcad.text.numerals import decimal, equalities, rounded, shortest_text
 from ptmcad.text.plane import PlanePolynomial
 
 MAX_POLYNOMIAL = 60
 """Characters of a polynomial; of longer ones the degree is reported."""
+UNDECIDED_PART = ", a part of the window undecided"
 
 
 def table(found: CountIntervals, digits: int = 10) -> str:
-    """One row for each interval, then what happens at their ends, then, of exact ones, the
-    operation range.
-    """
-    name = found.along.name
+    """One row for each interval, then what happens at their ends, then the operation range."""
+    name, low, high = found.along.name, found.along.low, found.along.high
     heads = _heads(found)
     rows = [["from", "to", *heads.values(), "sample"]]
     for each in found.intervals:
         ends = (_side_text(each.low, digits, up=True), _side_text(each.high, digits))
         counts = (_counted(column, getattr(each, column)) for column in heads)
         rows.append([*ends, *counts, shortest_text(each.sample)])
-    lines = [line_head(found.along, found.at), "", *aligned(rows)]
+    window = f"({shortest_text(low)}, {shortest_text(high)})"
+    at = equalities(found.at, shortest_text)
+    lines = [f"{name} in {window} at {at}", "", *aligned(rows)]
     if found.changes:
         columns = ["what is met"] if found.enclosed else [f"as {name} increases", "root of"]
         changes = [["at", *columns], *(_change_row(c, name, digits) for c in found.changes)]
@@ -45,13 +46,13 @@ def table(found: CountIntervals, digits: int = 10) -> str:
             "",
             "peaks: configurations without length of spring A3A4 in which the energy has a peak",
         ]
-    if found.enclosed:
-        return "\n".join(lines)
     lines.append("")
     range_name = operation_name(found.model, found.working)
     if not found.operation:
-        lines.append(f"{range_name}: none, {nowhere(found.model, found.working)}")
-    lines += [f"{range_name}: {_range_text(i, digits)}" for i in found.operation]
+        none = f"none, {nowhere(found.model, found.working)}"
+        lines.append(f"{range_name}: {none if found.decided else 'undecided'}")
+    note = "" if found.decided else UNDECIDED_PART
+    lines += [f"{range_name}: {_range_text(i, digits)}{note}" for i in found.operation]
     return "\n".join(lines)
 
 
@@ -130,7 +131,7 @@ def _range_text(interval: Span, digits: int) -> str:
             if len(edges) == 1
             else " (the whole window)"
         )
-    low, high = end_text(interval.low, digits), end_text(interval.high, digits)
+    low, high = _side_text(interval.low, digits, up=True), _side_text(interval.high, digits)
     return f"{low} to {high}, width {width_text(interval, digits)}{note}"
 
 
@@ -155,7 +156,8 @@ def width_table(found: OperationWidths, digits: int = 10) -> str:
     for row in found.rows:
         value = shortest_text(row.value)
         cells = [[value, *_width_cells(row, one, digits)] for one in row.operation]
-        rows += cells or [[value, _without_range(row), "", ""]]
+        note = "degenerate" if row.remark else "undecided" if row.undecided else "none"
+        rows += cells or [[value, note, "", ""]]
     marked = any("*" in cell for cells in rows for cell in cells)
     lines = [*aligned(rows), *[f"* the edge of the window of {found.along.name}"] * marked, ""]
     if found.enclosed:
@@ -172,11 +174,7 @@ def _width_cells(row: WidthRow, span: Span, digits: int) -> Iterator[str]:
     """The ends, with a mark at the window's edge, and the width."""
     for end, up in ((span.low, True), (span.high, False)):
         yield _side_text(end, digits, up) + " *" * _is_edge(end)
-    yield width_text(span, digits) + ", a part of the window undecided" * row.undecided
-
-
-def _without_range(row: WidthRow) -> str:
-    return "degenerate" if row.remark else "undecided" if row.undecided else "none"
+    yield width_text(span, digits) + UNDECIDED_PART * row.undecided
 
 
 def maximum_text(found: Maximum, over: str, digits: int) -> str:
