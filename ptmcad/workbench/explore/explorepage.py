@@ -17,7 +17,7 @@ from ptmcad.question.config.scalars import number_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.polylines import GRID
 from ptmcad.show.report.mapsvg import CORE_WIDTH, RIM_WIDTH, SIDE
-from ptmcad.show.report.reportpage import drawing_of, harmless, packed
+from ptmcad.show.report.reportpage import drawing_of, harmless
 from ptmcad.text.numerals import shortest_text, text_of
 from ptmcad.version import __version__
 from ptmcad.workbench.explore.panel import SliderPanel
@@ -70,7 +70,7 @@ def _data(panel: SliderPanel, secret: str) -> dict[str, Any]:
         "grid": GRID,
         "rim": RIM_WIDTH * GRID,
         "core": CORE_WIDTH * GRID,
-        "cells": packed([]),
+        "cells": [],
         "name": record.name,
         "title": record.title or record.name,
         "drawable": model.drawable is not None,
