@@ -21,7 +21,7 @@ from ptmcad.answer.words import counted
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.inches import wrapped
 from ptmcad.show.render.labels import Position
-from ptmcad.show.render.posepicture import assigned
+from ptmcad.show.render.posewords import assigned
 from ptmcad.show.render.sketch import PanelFrame, frame_of
 from ptmcad.show.render.view import Point
 from ptmcad.show.style import PAGE_HEIGHT, LegendPlace, PictureStyle, Size
