@@ -13,10 +13,8 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import counted, noun
 from ptmcad.model import Model
 from ptmcad.model.criterion import critical_point
-from ptmcad.model.work import loads_at
-from ptmcad.question.slice import merged
+from ptmcad.show.posetable import point_texts
 from ptmcad.show.render.axes import symbol
-from ptmcad.show.render.sketch import components
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import power_of_ten, shortest_text
 
@@ -68,24 +66,9 @@ def assigned(name: str, value: Fraction) -> str:
     return f"{symbol(name)}\N{NO-BREAK SPACE}{value_text(value)}"
 
 
-def values(poses: Poses) -> list[str]:
-    """The parameters with their values; equal stiffnesses or free lengths as one; loads only where
-    there are any.
-    """
-    model = poses.model
-    shown = merged(poses.parameters, model)
-    loads = {name: value for name, value in shown.items() if name in model.forces}
-    rest = {name: value for name, value in shown.items() if name not in loads}
-    texts = [assigned(name, value) for name, value in rest.items()]
-    texts += [assigned(name, value) for name, value in loads.items() if value]
-    mechanism = model.whole
-    acting = () if mechanism is None else loads_at(mechanism, poses.parameters)
-    return [*texts, "no load"] if acting and not any(components(acting).values()) else texts
-
-
 def heading(poses: Poses, columns: int) -> list[str]:
     """The title's lines: where the equilibria are."""
-    at = ",  ".join(values(poses))
+    at = ",  ".join(point_texts(poses, assigned))
     return textwrap.wrap(
         f"{_count(poses)} at {at}" if at else _count(poses).rstrip(","), max(columns, 30)
     )
@@ -107,7 +90,7 @@ def describe(poses: Poses) -> str:
         for n, p in enumerate(poses.in_order, 1)
     ]
     return (
-        f"{noun(poses.model).capitalize()} of the {poses.model.record_key}, {', '.join(values(poses))}. "
+        f"{noun(poses.model).capitalize()} of the {poses.model.record_key}, {', '.join(point_texts(poses, assigned))}. "
         + "; ".join(parts)
         + poses.remark
     )
