@@ -6,13 +6,14 @@ more. What is not decided is said, of a pose and of all of them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, listed, noun, of_what, untold
 from ptmcad.model import Model, built_in
-from ptmcad.model.work import foreign
+from ptmcad.model.work import foreign, loads_at
 from ptmcad.question.counts import POSE_COLUMNS, PoseColumn
 from ptmcad.question.slice import merged
 from ptmcad.show.columns import WIDTH, aligned, wrapped
@@ -41,7 +42,10 @@ def table(poses: Poses, digits: int | None = None) -> str:
         given.
     """
     shown = poses.digits if digits is None else digits
-    lines = [*wrapped("point", _point(poses)), *wrapped("result", _summary(poses))]
+    lines = [
+        *wrapped("point", point_texts(poses, lambda n, v: f"{n} = {exact_text(v)}")),
+        *wrapped("result", _summary(poses)),
+    ]
     for block in _blocks(poses, shown):
         lines += ["", *aligned([*zip(*block, strict=True)], str.rjust)]
     if poses.equilibria:
@@ -104,14 +108,17 @@ def _energy_note(poses: Poses) -> str:
     return "none" if poses.known_stable is not None else f"none, and {untold(model)}"
 
 
-def _point(poses: Poses) -> list[str]:
-    values = {name: exact_text(value) for name, value in poses.parameters.items()}
-    values = merged(values, poses.model)
-    loads = [name for name in values if name in poses.model.forces]
-    parts = [f"{name} = {value}" for name, value in values.items() if name not in loads]
-    return parts + (
-        [f"{n} = {values[n]}" for n in loads if values[n] != "0"] or (["no load"] if loads else [])
-    )
+def point_texts(poses: Poses, text: Callable[[str, Fraction], str]) -> list[str]:
+    """The parameters with their values, as a function writes them; equal stiffnesses or free lengths
+    as one, loads only where there are any.
+    """
+    model = poses.model
+    shown = merged(poses.parameters, model)
+    rest = [text(name, value) for name, value in shown.items() if name not in model.forces]
+    loads = [text(name, value) for name, value in shown.items() if name in model.forces and value]
+    acting = () if model.whole is None else loads_at(model.whole, poses.parameters)
+    idle = acting and not any(force for load in acting for force in load.force)
+    return [*rest, *loads, *(["no load"] if idle else [])]
 
 
 def _bounds(poses: Poses) -> list[str]:

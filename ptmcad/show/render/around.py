@@ -119,8 +119,8 @@ def _drawn(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
         return dist(start, tip) + _COVERED * covered
 
     tips = [_tip(axes, seen.whole.view.approximate_position(at)) for at, _ in points]
-    for side, column in zip(plan.sides, plan.columns(size[1]), strict=True):
-        for block, corner, start in column.placed([tips[n] for n in side], cost):
+    for side in (0, 1):
+        for block, corner, start in plan.placed(side, size[1], tips, cost):
             _draw_block(figure, block, corner, style)
             _lead(figure, (start, tips[block.number - 1]), block.number, style)
     return figure, left_out(seen, layout)

@@ -21,7 +21,7 @@ from ptmcad.answer.words import counted
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.inches import wrapped
 from ptmcad.show.render.labels import Position
-from ptmcad.show.render.posepicture import assigned
+from ptmcad.show.render.posewords import assigned
 from ptmcad.show.render.sketch import PanelFrame, frame_of
 from ptmcad.show.render.view import Point
 from ptmcad.show.style import PAGE_HEIGHT, LegendPlace, PictureStyle, Size
@@ -72,74 +72,6 @@ class Block:
 
 
 @dataclass(frozen=True, slots=True)
-class BlockColumn:
-    """The blocks at one side of the map, in inches: from a left end, so wide, on a page so tall;
-    ``before`` at the left of the map, to which blocks are as near as they can be.
-    """
-
-    blocks: Sequence[Block]
-    left: float
-    width: float
-    page: float
-    before: bool
-
-    def placed(
-        self, tips: Sequence[Position], cost: Callable[[Position, Position], float]
-    ) -> list[tuple[Block, Position, Position]]:
-        """The blocks from above with their upper left corners and where the lines to their points
-        begin; equal spaces between, and the lines as cheap as exchanges of blocks make them.
-
-        Parameters
-        ----------
-        tips : of the lines, in the blocks' order.
-        cost : of a line, from its start to its tip.
-        """
-        order = list(range(len(tips)))
-        found = self._with_lines(order, tips, cost)
-        improved = True
-        while improved:
-            improved = False
-            for a, b in combinations(range(len(order)), 2):
-                tried = list(order)
-                tried[a], tried[b] = tried[b], tried[a]
-                other = self._with_lines(tried, tips, cost)
-                if other[0] < found[0] - 1e-9:
-                    found, order, improved = other, tried, True
-        return found[1]
-
-    def _with_lines(
-        self,
-        order: Sequence[int],
-        tips: Sequence[Position],
-        cost: Callable[[Position, Position], float],
-    ) -> tuple[float, list[tuple[Block, Position, Position]]]:
-        """What is placed in an order, and what the lines cost."""
-        heights = [block.height for block in self.blocks]
-        free = (self.page - 2 * GAP - sum(heights)) / max(1, len(heights))
-        top, total = self.page - GAP, 0.0
-        found, lines = [], list[Path]()
-        for n in order:
-            block, tip = self.blocks[n], tips[n]
-            own = block.columns * block.frame.width / 72
-            # beside the poses, not beside the head, unless there is nothing else
-            low = top - block.height + GAP + _NEAR
-            high = top - LINE * block.em * len(block.head) - _NEAR
-            if not block.shown:
-                low = high = top - LINE / 2 * block.em
-            edge = self.left + self.width + _NEAR if self.before else self.left - _NEAR
-            heights_tried = [low + (high - low) * k / _STARTS for k in range(_STARTS + 1)]
-            heights_tried.append(min(max(tip[1], low), high))
-            least, start = min((cost((edge, at), tip), (edge, at)) for at in heights_tried)
-            corner = (self.left + (self.width - own if self.before else 0.0), top)
-            found.append((block, corner, start))
-            total += least
-            lines.append(Path([start, tip]))
-            top -= heights[n] + free
-        crossed = sum(a.intersects_path(b, filled=False) for a, b in combinations(lines, 2))
-        return total + _CROSSING * crossed, found
-
-
-@dataclass(frozen=True, slots=True)
 class Plan:
     """The points' blocks, the numbers of those at the left and at the right of the map, from above,
     and the page: its width and, where it does not grow, its height.
@@ -161,14 +93,70 @@ class Plan:
         """The height that the poses need, in inches."""
         return max(sum(self.blocks[n].height for n in side) for side in self.sides) + 2 * GAP
 
-    def columns(self, page: float) -> list[BlockColumn]:
-        """The blocks at both sides on a page so tall."""
-        left, right = (each - 2 * GAP for each in self.taken)
-        ends = ((GAP, left, True), (self.width - right - GAP, right, False))
-        return [
-            BlockColumn([self.blocks[n] for n in side], start, wide, page, before)
-            for side, (start, wide, before) in zip(self.sides, ends, strict=True)
-        ]
+    def placed(
+        self,
+        side: int,
+        page: float,
+        tips: Sequence[Position],
+        cost: Callable[[Position, Position], float],
+    ) -> list[tuple[Block, Position, Position]]:
+        """The blocks at one side of the map from above with their upper left corners and where the lines to their points
+        begin; equal spaces between, and the lines as cheap as exchanges of blocks make them.
+
+        Parameters
+        ----------
+        side : 0 at the left of the map, to which blocks are as near as they can be; 1 at the right.
+        page : inches of its height.
+        tips : of the lines, by the points' numbers.
+        cost : of a line, from its start to its tip.
+        """
+        order = self.sides[side]
+        found = self._with_lines(side, page, order, tips, cost)
+        improved = True
+        while improved:
+            improved = False
+            for a, b in combinations(range(len(order)), 2):
+                tried = list(order)
+                tried[a], tried[b] = tried[b], tried[a]
+                other = self._with_lines(side, page, tried, tips, cost)
+                if other[0] < found[0] - 1e-9:
+                    found, order, improved = other, tried, True
+        return found[1]
+
+    def _with_lines(
+        self,
+        side: int,
+        page: float,
+        order: Sequence[int],
+        tips: Sequence[Position],
+        cost: Callable[[Position, Position], float],
+    ) -> tuple[float, list[tuple[Block, Position, Position]]]:
+        """What is placed in an order, and what the lines cost."""
+        width = self.taken[side] - 2 * GAP
+        left = self.width - width - GAP if side else GAP
+        edge = left - _NEAR if side else left + width + _NEAR
+        heights = sum(self.blocks[n].height for n in order)
+        free = (page - 2 * GAP - heights) / max(1, len(order))
+        top, total = page - GAP, 0.0
+        found, lines = [], list[Path]()
+        for n in order:
+            block, tip = self.blocks[n], tips[n]
+            own = block.columns * block.frame.width / 72
+            # beside the poses, not beside the head, unless there is nothing else
+            low = top - block.height + GAP + _NEAR
+            high = top - LINE * block.em * len(block.head) - _NEAR
+            if not block.shown:
+                low = high = top - LINE / 2 * block.em
+            heights_tried = [low + (high - low) * k / _STARTS for k in range(_STARTS + 1)]
+            heights_tried.append(min(max(tip[1], low), high))
+            least, start = min((cost((edge, at), tip), (edge, at)) for at in heights_tried)
+            corner = (left + (0.0 if side else width - own), top)
+            found.append((block, corner, start))
+            total += least
+            lines.append(Path([start, tip]))
+            top -= block.height + free
+        crossed = sum(a.intersects_path(b, filled=False) for a, b in combinations(lines, 2))
+        return total + _CROSSING * crossed, found
 
 
 def sized(plan: Plan, style: PictureStyle) -> tuple[Size, PictureStyle]:

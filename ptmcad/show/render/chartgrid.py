@@ -22,13 +22,14 @@ from matplotlib.figure import Figure
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
-from ptmcad.show.render.colours import INK, STRONG, THIN, Fill, Paint, fills_by_count, paint_of
+from ptmcad.show.render.colours import INK, STRONG, THIN, Fill, Paint, paint_of
 from ptmcad.show.render.fitting import MIN_SIDE
 from ptmcad.show.render.inches import wrapped, write_lines
 from ptmcad.show.render.legend import (
     Entry,
     Rows,
     Type,
+    count_entries,
     draw_legend,
     draw_rows,
     head_of,
@@ -233,12 +234,7 @@ def family_entries(
     hidden : number of regions that are not seen and have no label.
     """
     head = head_of(family.members[0].slice)
-    legend = [Entry(head, strong=True, heads=len(head))]
-    legend += [
-        Entry((text,), fill) for text, fill in fills_by_count(paint, *family.members).items()
-    ]
-    if any(result.cover is not None for result in family.members):
-        legend.append(Entry(("undetermined",), paint.undetermined))
+    legend = [Entry(head, strong=True, heads=len(head)), *count_entries(paint, *family.members)]
     if any(result.cover is None and len(result.regions) > 1 for result in family.members):
         legend.append(Entry(("the count changes",), STRONG))
     if thin:

@@ -6,9 +6,10 @@ Guarantee: every area shown is certified; changes of count are distinguished by 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -23,7 +24,7 @@ from ptmcad.show.render.legend import Entry, Type, entries, hidden_entries
 from ptmcad.show.render.mappicture import whole_title
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.slivers import Arrow, arrows_of, seen_thin_walls
+from ptmcad.show.render.slivers import arrows_of, seen_thin_walls
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, count_text
@@ -132,18 +133,28 @@ def _panels(
 ) -> list[Panel]:
     """The two maps and the difference, with text as wide as they are."""
     type, side = Type.of(style), sides[0]
-    found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], list[Arrow]]] = []
+
+    def panel(
+        title: str, legend: Iterable[Entry], names: Sequence[str] | None, **drawn: Any
+    ) -> Panel:
+        marks, hidden = arrows_of(drawn["seen"], sides, dpi, type.detail, names)
+        told = [*legend, *hidden_entries(hidden)]
+        without = style.legend is LegendPlace.NONE
+        below = [] if without else [rewrapped(entry, side, type) for entry in told]
+        head = few(wrapped(title, side, type.head, True), _MAX_HEAD)
+        return Panel(head=head, legend=below, arrows=marks, **drawn)
+
+    found = []
     pair = (comparison.first, comparison.second)
     for letter, own, result, seen in zip(
         LETTERS, own_words(*pair), pair, (first, shapes(pair[1])), strict=True
     ):
-        paint = paint_of(style, result)
-        marks, hidden = arrows_of(seen, sides, dpi, type.detail)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
-        paint = replace(paint, thin_walls=thin)
-        legend = [*entries(result, thin, paint), *hidden_entries(hidden)]
+        paint = replace(paint_of(style, result), thin_walls=thin)
         title = whole_title(result) if style.title is None else own
-        found.append((seen, paint, f"{letter}: {title}" if title else letter, legend, {}, marks))
+        legend = entries(result, thin, paint)
+        named = f"{letter}: {title}" if title else letter
+        found.append(panel(named, legend, None, seen=seen, paint=paint))
     fills = _fills(comparison, style)
     decomposition = comparison.decomposition
     of_cells = {
@@ -157,24 +168,12 @@ def _panels(
         strong,
         thin_walls=False,
     )
-    whole = shapes(decomposition)
     names = [""] * len(decomposition.regions)
     for change in comparison.changes:
         names[change.region] = change_text(comparison, change)
-    marks, hidden = arrows_of(whole, sides, dpi, type.detail, names)
-    changes = [
-        *_differences(comparison, style),
-        *hidden_entries(hidden),
-    ]
-    found.append((whole, bare, f"Difference, {' → '.join(LETTERS)}", changes, fills, marks))
-    without = style.legend is LegendPlace.NONE
-    return [
-        Panel(
-            seen, paint, _head(title, side, type),
-            [] if without else [rewrapped(entry, side, type) for entry in legend], outlined, marks,
-        )
-        for seen, paint, title, legend, outlined, marks in found
-    ]  # fmt: skip
+    title, changes = f"Difference, {' → '.join(LETTERS)}", _differences(comparison, style)
+    whole = shapes(decomposition)
+    return [*found, panel(title, changes, names, seen=whole, paint=bare, outlined=fills)]
 
 
 def own_words(first: RegionMap, second: RegionMap) -> tuple[str, str]:
@@ -205,10 +204,6 @@ def _assignments(values: Numbers, names: Sequence[str]) -> str:
         " = ".join((*symbols, shortest_text(value).replace("-", "−")))
         for value, symbols in equal.items()
     )
-
-
-def _head(title: str, side: float, type: Type) -> list[str]:
-    return few(wrapped(title, side, type.head, True), _MAX_HEAD)
 
 
 def _fills(comparison: Comparison, style: PictureStyle) -> dict[int, Fill]:

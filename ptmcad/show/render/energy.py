@@ -1,4 +1,5 @@
-"""The energy at a point as a function that can be drawn, less the work of moments where these work.
+"""The energy at a point as a function that can be drawn, less the work of moments where these work;
+and the unknowns over which it is drawn.
 
 Guarantee: the derivatives of what is drawn are zero at the equilibria: it is U - M u with a moment M
 on an unknown u.
@@ -9,7 +10,8 @@ energies themselves are lost.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import radians
 
 import numpy as np
@@ -21,7 +23,9 @@ from ptmcad.formulas.instructions import MAX_CONSTANT, Doubles
 from ptmcad.model import Model
 from ptmcad.model.compile import compiled
 from ptmcad.model.work import moments_at
+from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.view import Floats
+from ptmcad.show.units import unit_of_unknown, with_unit
 from ptmcad.text.numerals import Numbers
 
 
@@ -81,3 +85,59 @@ def drawn(poses: Poses) -> str:
 def is_cut(poses: Poses) -> bool:
     """Whether a moment works on an angle, so that what is drawn has another value after a turn."""
     return not moments_at(poses.model, poses.parameters).keys().isdisjoint(poses.model.angles)
+
+
+def copies(angle: float) -> tuple[float, ...]:
+    """An angle in degrees, twice where it is at the edge (to what a marker's width shows)."""
+    return (180.0, -180.0) if abs(angle) > 179.75 else (angle,)
+
+
+@dataclass(frozen=True, slots=True)
+class UnknownAxis:
+    """An axis of the picture: an unknown from ``low`` to ``high``, an angle in degrees."""
+
+    name: str
+    low: float
+    high: float
+    is_angle: bool
+    unit: str
+
+    def sampled(self, number: int) -> tuple[Floats, Floats]:
+        """So many values as they are shown, and as the energy takes them."""
+        shown = np.linspace(self.low, self.high, number)
+        return shown, np.radians(shown) if self.is_angle else shown
+
+    @property
+    def label(self) -> str:
+        return with_unit(symbol(self.name), self.unit)
+
+    def share(self, value: float) -> float:
+        """Where a value lies, from 0 to 1."""
+        return (value - self.low) / (self.high - self.low)
+
+    def copies(self, value: float) -> tuple[float, ...]:
+        return copies(value) if self.is_angle else (value,)
+
+
+def sides_of(
+    model: Model, shown: Sequence[Pose], units: Mapping[str, str]
+) -> tuple[UnknownAxis, ...]:
+    """The axes: angles all round, and for each unknown on the line a range that holds all
+    equilibria.
+    """
+    found = [
+        UnknownAxis(name, -180.0, 180.0, True, unit_of_unknown(model, name, units))
+        for name in model.angles
+    ]
+    for k, name in enumerate(model.reals):
+        low, high = (end(float(pose.reals[k]) for pose in shown) for end in (min, max))
+        room = max((high - low) / 2, max(abs(low), abs(high)) / 4) or 1.0
+        found.append(
+            UnknownAxis(name, low - room, high + room, False, unit_of_unknown(model, name, units))
+        )
+    return tuple(found)
+
+
+def place_of(pose: Pose) -> tuple[float, ...]:
+    """The unknowns, angles in degrees."""
+    return tuple(map(float, (*pose.degrees, *pose.reals)))

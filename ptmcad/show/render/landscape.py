@@ -16,8 +16,7 @@ poses.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise, product
 from math import dist
@@ -32,27 +31,19 @@ from matplotlib.lines import Line2D
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import noun
 from ptmcad.errors import ConfigError
-from ptmcad.model import Model
 from ptmcad.model.work import moments_at
 from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import scale_of, symbol, ticks
 from ptmcad.show.render.colours import INK
-from ptmcad.show.render.energy import Energy, drawn, is_cut
+from ptmcad.show.render.energy import Energy, UnknownAxis, copies, drawn, is_cut, place_of, sides_of
 from ptmcad.show.render.inches import axes_at
 from ptmcad.show.render.labels import Box, Label, Position, Stroke, place
 from ptmcad.show.render.legend import Entry, draw_legend, point_mark
-from ptmcad.show.render.posepicture import (
-    TITLE_LINE,
-    describe,
-    empty,
-    heading,
-    kind,
-    titled,
-    value_text,
-)
+from ptmcad.show.render.posepicture import TITLE_LINE, empty, titled
+from ptmcad.show.render.posewords import describe, heading, kind, value_text
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.view import Floats
-from ptmcad.show.units import energy_unit, unit_of_unknown, with_unit
+from ptmcad.show.units import energy_unit, with_unit
 
 SIDE, LEFT, BOTTOM, BAR, KEY, MARGIN = 4.6, 0.85, 0.65, 1.25, 2.2, 0.15
 """In inches: the square's side, the space at its left and below, the colour bar, the legend, the
@@ -83,57 +74,6 @@ _COLUMNS = 90
 _SPACE = "\N{NO-BREAK SPACE}"
 _RING = 5.0
 """Points by which a marker is larger for each other one on its place."""
-
-
-@dataclass(frozen=True, slots=True)
-class UnknownAxis:
-    """An axis of the picture: an unknown from ``low`` to ``high``, an angle in degrees."""
-
-    name: str
-    low: float
-    high: float
-    is_angle: bool
-    unit: str
-
-    def sampled(self, number: int) -> tuple[Floats, Floats]:
-        """So many values as they are shown, and as the energy takes them."""
-        shown = np.linspace(self.low, self.high, number)
-        return shown, np.radians(shown) if self.is_angle else shown
-
-    @property
-    def label(self) -> str:
-        return with_unit(symbol(self.name), self.unit)
-
-    def share(self, value: float) -> float:
-        """Where a value lies, from 0 to 1."""
-        return (value - self.low) / (self.high - self.low)
-
-    def copies(self, value: float) -> tuple[float, ...]:
-        return copies(value) if self.is_angle else (value,)
-
-
-def sides_of(
-    model: Model, shown: Sequence[Pose], units: Mapping[str, str]
-) -> tuple[UnknownAxis, ...]:
-    """The axes: angles all round, and for each unknown on the line a range that holds all
-    equilibria.
-    """
-    found = [
-        UnknownAxis(name, -180.0, 180.0, True, unit_of_unknown(model, name, units))
-        for name in model.angles
-    ]
-    for k, name in enumerate(model.reals):
-        low, high = (end(float(pose.reals[k]) for pose in shown) for end in (min, max))
-        room = max((high - low) / 2, max(abs(low), abs(high)) / 4) or 1.0
-        found.append(
-            UnknownAxis(name, low - room, high + room, False, unit_of_unknown(model, name, units))
-        )
-    return tuple(found)
-
-
-def place_of(pose: Pose) -> tuple[float, ...]:
-    """The unknowns, angles in degrees."""
-    return tuple(map(float, (*pose.degrees, *pose.reals)))
 
 
 def draw_landscape(poses: Poses) -> Figure:
@@ -345,11 +285,6 @@ def _mark(axes: Any, sides: Sequence[UnknownAxis], shown: Sequence[Pose]) -> Non
             x, y, placed.label.text, gid=f"number-{placed.label.text}", **_NUMBER,
             bbox={"boxstyle": "round,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85},
         )  # fmt: skip
-
-
-def copies(angle: float) -> tuple[float, ...]:
-    """An angle in degrees, twice where it is at the edge (to what a marker's width shows)."""
-    return (180.0, -180.0) if abs(angle) > 179.75 else (angle,)
 
 
 def first_copy(sides: Sequence[UnknownAxis], pose: Pose) -> Position:

@@ -17,7 +17,16 @@ from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import count_words, counted, listed, noun
 from ptmcad.question.counts import Shades
 from ptmcad.question.slice import Slice
-from ptmcad.show.render.colours import INK, STRONG, THIN, UNDETERMINED, Fill, Paint, fill_of
+from ptmcad.show.render.colours import (
+    INK,
+    STRONG,
+    THIN,
+    UNDETERMINED,
+    Fill,
+    Paint,
+    fill_of,
+    fills_by_count,
+)
 from ptmcad.show.render.inches import stroke, text_width, write
 from ptmcad.show.render.labels import Position
 from ptmcad.show.style import MIN_FONT, PictureStyle
@@ -104,6 +113,13 @@ class Type:
 def head_of(slice: Slice) -> tuple[str, ...]:
     """What is counted."""
     return tuple(textwrap.wrap(count_words(slice.count.kind.legend, slice.model), COLUMNS))
+
+
+def count_entries(paint: Paint, *results: RegionMap) -> list[Entry]:
+    """What the counts of some maps are filled with, and what they leave undetermined."""
+    found = [Entry((text,), fill) for text, fill in fills_by_count(paint, *results).items()]
+    some = any(result.cover is not None and result.undetermined for result in results)
+    return [*found, Entry(("undetermined",), paint.undetermined)] if some else found
 
 
 def entries(

@@ -12,7 +12,7 @@ Not guaranteed: the shape between the vertices. Nothing but pictures may be deci
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -22,10 +22,11 @@ from math import cos, pi
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import refine
 from ptmcad.answer.regionmap import RegionMap, Stack
 from ptmcad.exact.cad.polyline import critical_shares
-from ptmcad.exact.cad.projection import FibredCurve, by_component, curves_of
+from ptmcad.exact.cad.projection import FibredCurve, by_component, curves_of, lines_of
 from ptmcad.show.render.polylines import simplified_line
 from ptmcad.show.render.view import CellShape, Floats, Interval, Same, Shapes, View, WallShape
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -207,9 +208,9 @@ def _outline(of: Same[RegionMap], view: View, tolerance: float) -> Outline:
         ends = _ends(result, stack, roots)
         if ends[0] < high and ends[1] > low:
             stacks.append(_Tracer(result, view, curves, (number, stack), tolerance).trace(ends))
-    lines = []
+    lines, across = [], lines_of(result.components, base)
     for k, root in enumerate(roots):
-        component = _vertical_component(result, k)
+        component = _vertical_component(result, k, across)
         at = ((root[0] + root[1]) / 2 - low) / (high - low)
         if component is not None and 0 <= at <= 1:
             lines.append((float(at), k, component))
@@ -224,15 +225,15 @@ def _ends(result: RegionMap, stack: Stack, critical: tuple[Interval, ...]) -> In
     return low, high
 
 
-def _vertical_component(result: RegionMap, critical: int) -> int | None:
-    """The component that is a line over this critical abscissa, if there is one."""
-    value = result.critical_values[critical].polynomial
-    for n, c in enumerate(result.components):
-        if not c.left_out and c.polynomial.degrees[1 - result.base] == 0:
-            line = {term[result.base]: term[2] for term in c.polynomial.terms}
-            own = {i: coefficient for i, coefficient in enumerate(value) if coefficient}
-            if line in (own, {i: -coefficient for i, coefficient in own.items()}):
-                return n
+def _vertical_component(
+    result: RegionMap, critical: int, across: Mapping[int, UnivariatePolynomial]
+) -> int | None:
+    """The component that is a line over this critical abscissa, if one of those across the base is."""
+    value = list(result.critical_values[critical].polynomial)
+    for n, line in across.items():
+        own = [int(c) for c in line.coeffs()]
+        if value in (own, [-c for c in own]):
+            return n
     return None
 
 

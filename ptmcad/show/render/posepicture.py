@@ -19,13 +19,11 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.answer.words import assignments, counted, noun, of_what, untold
+from ptmcad.answer.words import assignments, of_what, untold
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, Model, Support
-from ptmcad.model.criterion import critical_point
 from ptmcad.model.joints import torsion_springs
 from ptmcad.model.work import PointForce, loads_at
-from ptmcad.question.slice import merged
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.colours import INK
@@ -40,6 +38,14 @@ from ptmcad.show.render.mechanism import (
     spring_mark,
     symbol_mark,
 )
+from ptmcad.show.render.posewords import (
+    describe,
+    heading,
+    kind,
+    number_text,
+    printed_number,
+    value_text,
+)
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import (
     MAX_ARROW,
@@ -53,16 +59,13 @@ from ptmcad.show.render.sketch import (
 from ptmcad.show.style import Size
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import magnitude, power_of_ten, shortest_text
+from ptmcad.text.numerals import magnitude
 from ptmcad.text.tree import to_text
 
 MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
 """In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of
 the title.
 """
-_DIGITS = 6
-_MAX_VALUE = 14
-"""Longer values of parameters are rounded in the title."""
 
 
 def draw_poses(poses: Poses) -> Figure:
@@ -112,17 +115,6 @@ def draw_poses(poses: Poses) -> Figure:
     return figure
 
 
-def kind(pose: Pose) -> str:
-    """What an equilibrium is, in words; just that where nothing says what is stable."""
-    if pose.multiplicity > 1:
-        return f"degenerate, multiplicity {pose.multiplicity}"
-    if pose.index is None:
-        return {True: "stable", False: "unstable", None: "equilibrium"}[pose.stable]
-    return (
-        "stable (minimum)" if pose.index == 0 else critical_point(pose.index, len(pose.eigenvalues))
-    )
-
-
 def _lines_below(model: Model, pose: Pose) -> list[str]:
     """Energy, if there is one, and unknowns: as many of them on a line as there is room for."""
     angles = (f"{number_text(a)}°" for a in pose.degrees)
@@ -162,93 +154,6 @@ def pose_axes(figure: Figure, corner: Position, frame: PanelFrame, gid: str, str
     for spine in axes.spines.values():
         spine.set(color=INK if strong else "#b5b5b5", linewidth=1.0 if strong else 0.6)
     return axes
-
-
-def number_text(number: Enclosure) -> str:
-    """A certified number rounded to nearest, as it is printed."""
-    return printed_number(number.text(1 if number.told_digits(_DIGITS) is None else _DIGITS))
-
-
-def printed_number(text: str) -> str:
-    """A number as print has it: a true minus, and powers of ten as such."""
-    if " ± " in text:
-        return " ± ".join(map(printed_number, text.split(" ± ")))
-    mantissa, _, exponent = text.replace("-", "−").partition("e")
-    if not exponent:
-        return mantissa
-    power = power_of_ten(int(exponent.replace("−", "-")))
-    return {"1": power, "−1": f"−{power}"}.get(mantissa, f"{mantissa}·{power}")
-
-
-def value_text(value: Fraction) -> str:
-    """A parameter's value, exactly where that is short, else rounded and after the sign for it."""
-    text = shortest_text(value)
-    if len(text) <= _MAX_VALUE and abs(value) < 10**7:
-        return f"=\N{NO-BREAK SPACE}{printed_number(text)}"
-    known = Enclosure(value, value)
-    rounded = known.text(7)
-    exact = Fraction(rounded) == value
-    return f"{'=' if exact else '≈'}\N{NO-BREAK SPACE}{printed_number(rounded)}"
-
-
-def assigned(name: str, value: Fraction) -> str:
-    """A parameter and its value, which no line break parts."""
-    return f"{symbol(name)}\N{NO-BREAK SPACE}{value_text(value)}"
-
-
-def values(poses: Poses) -> list[str]:
-    """The parameters with their values; equal stiffnesses or free lengths as one; loads only where
-    there are any.
-    """
-    model = poses.model
-    shown = merged(poses.parameters, model)
-    loads = {name: value for name, value in shown.items() if name in model.forces}
-    rest = {name: value for name, value in shown.items() if name not in loads}
-    texts = [assigned(name, value) for name, value in rest.items()]
-    texts += [assigned(name, value) for name, value in loads.items() if value]
-    mechanism = model.whole
-    acting = () if mechanism is None else loads_at(mechanism, poses.parameters)
-    return [*texts, "no load"] if acting and not any(components(acting).values()) else texts
-
-
-def heading(poses: Poses, columns: int) -> list[str]:
-    """The title's lines: where the equilibria are."""
-    at = ",  ".join(values(poses))
-    return textwrap.wrap(
-        f"{_count(poses)} at {at}" if at else _count(poses).rstrip(","), max(columns, 30)
-    )
-
-
-def _count(poses: Poses) -> str:
-    if not poses.equilibria:
-        return noun(poses.model).capitalize()
-    stable = "" if poses.known_stable is None else f", {poses.known_stable} stable,"
-    return f"{counted(poses.model, len(poses.equilibria))}{stable}"
-
-
-def describe(poses: Poses) -> str:
-    """What the picture shows, in words."""
-    parts = [
-        f"{n}: {kind(p)}{', flat' if p.flat else ''}, "
-        + ("" if p.energy is None else f"U {number_text(p.energy)}, ")
-        + _unknowns_in_words(poses.model, p)
-        for n, p in enumerate(poses.in_order, 1)
-    ]
-    return (
-        f"{noun(poses.model).capitalize()} of the {poses.model.record_key}, {', '.join(values(poses))}. "
-        + "; ".join(parts)
-        + poses.remark
-    )
-
-
-def _unknowns_in_words(model: Model, pose: Pose) -> str:
-    """Without signs that a screen reader does not know."""
-    angles = [
-        f"{'theta' + name[2:] if name[:2] == 'th' and name[2:].isdigit() else name} {number_text(a)}"
-        for name, a in zip(model.angles, pose.degrees, strict=True)
-    ]
-    reals = [f"{name} {number_text(x)}" for name, x in zip(model.reals, pose.reals, strict=True)]
-    return ", ".join(([", ".join(angles) + " degrees"] if angles else []) + reals)
 
 
 def titled(lines: Sequence[str], size: Size, left: float) -> Figure:
@@ -341,8 +246,8 @@ def torsion_legend(mechanism: Mechanism) -> Iterator[Entry]:
 def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
     """Where the mechanism is held."""
     at = {
-        kind: [symbol(name) for name, of in mechanism.supports.items() if of is kind]
-        for kind in Support
+        support: [symbol(name) for name, of in mechanism.supports.items() if of is support]
+        for support in Support
     }
     if pins := at[Support.PIN]:
         yield Entry(
@@ -350,10 +255,10 @@ def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
         )
     on_base = pins and len(at[Support.SLIDER_X]) == 1
     words = {Support.SLIDER_X: "slider", Support.SLIDER_Y: "vertical slider"}
-    for kind, what in words.items():
-        if names := at[kind]:
+    for slider, what in words.items():
+        if names := at[slider]:
             many = (
-                " on the base" if kind is Support.SLIDER_X and on_base else "s" * (len(names) > 1)
+                " on the base" if slider is Support.SLIDER_X and on_base else "s" * (len(names) > 1)
             )
             yield Entry((f"{what}{many}, at {', '.join(names)}",), symbol_mark("slider"))
 

@@ -30,10 +30,10 @@ from ptmcad.model import Mechanism
 from ptmcad.model.work import loads_at
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import Dress, dress, symbol
-from ptmcad.show.render.colours import INK, fills_by_count, paint_of
+from ptmcad.show.render.colours import INK, paint_of
 from ptmcad.show.render.inches import axes_at, text_width, write
 from ptmcad.show.render.labels import Placed, Position
-from ptmcad.show.render.legend import Entry, Rows, Type, draw_rows, head_of, in_rows
+from ptmcad.show.render.legend import Entry, Rows, Type, count_entries, draw_rows, head_of, in_rows
 from ptmcad.show.render.mappicture import whole_title
 from ptmcad.show.render.mechanism import PALE, STRONG, draw_sketch
 from ptmcad.show.render.outline import shapes
@@ -321,12 +321,5 @@ def _arrows(motion: Motion, mechanism: Mechanism) -> dict[Point, dict[str, float
 def _key(motion: Motion, style: PictureStyle, width: float) -> Rows:
     """The legend in rows: each entry with its distance from the left, in inches."""
     result = motion.result
-    paint = paint_of(style, result)
-    fills = fills_by_count(paint, result)
-    entries = [
-        Entry((head_of(result.slice)[0],)),
-        *(Entry((text,), fill) for text, fill in fills.items()),
-    ]
-    if result.cover is not None and result.undetermined:
-        entries.append(Entry(("undetermined",), paint.undetermined))
+    entries = [Entry((head_of(result.slice)[0],)), *count_entries(paint_of(style, result), result)]
     return in_rows(entries, width + 0.2, TYPE)
