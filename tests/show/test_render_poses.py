@@ -25,7 +25,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.ask.solving import poses_at, solve
 from ptmcad.errors import ConfigError
 from ptmcad.show.render import printing
-from ptmcad.show.render.energy import Energy, copies
+from ptmcad.show.render.energy import Energy
 from ptmcad.show.render.labels import Label, Stroke, crosses, overlap, place, polyline
 from ptmcad.show.render.landscape import contour_levels, draw_landscape
 from ptmcad.show.render.mechanism import PALE, STRONG
