@@ -22,7 +22,7 @@ from ptmcad.errors import ConfigError, shown_path
 from ptmcad.extras import Extra, require, require_ffmpeg
 from ptmcad.process.handover import Topic, send
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
-from ptmcad.question.config.sweeps import load_sweep
+from ptmcad.question.config.sweeps import sweep_from
 from ptmcad.show import render
 from ptmcad.show.style import DEFAULT
 
@@ -111,7 +111,7 @@ def command(
         ptmcad sweep loads.yaml --jobs 2 --no-ranges --out family
         ptmcad sweep loads.yaml --scheduler tcp://localhost:8786
     """
-    question = load_sweep(config)
+    question = sweep_from(config)
     if scheduler is not None:
         require(Extra.distributed, key="--scheduler")
     if "mp4" in formats:

@@ -5,10 +5,9 @@ Guarantee: the angle of its second bar is the one on the branch on which its bar
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
-from ptmcad.model.elements import Element, Kind, Part, Place, squared
+from ptmcad.model.elements import Element, Kind, Part, squared
 from ptmcad.model.trees import cosine_and_sine, negative, total
 from ptmcad.text.tree import Chain, Name, Number, Step, Tree
 
@@ -74,7 +73,8 @@ class XJoint(NamedTuple):
             else Chain(self.direction, (Step("+", angle),))
         )
 
-    def element(self, points: Mapping[str, Place]) -> Element:
+    @property
+    def element(self) -> Element:
         """For traversals."""
         off = total(self.bars, negative(self.length))
         meaning = "the bars of an x-joint are longer or shorter than its base"

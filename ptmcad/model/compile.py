@@ -71,7 +71,7 @@ class CompiledSystem:
     names: tuple[str, ...]
     angles: tuple[int, ...]
     reals: tuple[int, ...]
-    followers: tuple[Follower, ...] = ()
+    followers: tuple[Follower[int, Formula], ...] = ()
     points: Mapping[str, Vector] = field(default_factory=dict, repr=False)
     springs: tuple[ElasticLine, ...] = ()
     torsion: tuple[AngularSpring, ...] = ()
@@ -250,15 +250,15 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
     known = _with_mechanism(known, mechanism, ring)
     if mechanism is model:
         return _of_slopes(known)
-    if not mechanism.xjoints:
-        return _with_loops(known, mechanism, ring)
-    found = _with_followers(known, model, variables)
-    return replace(
-        known, **found._replace(inequalities=known.inequalities + found.inequalities)._asdict()
-    )
+    if mechanism.xjoints:
+        found = _of_followers(known, model, variables)
+    else:
+        found = _of_loops(known, mechanism, ring)
+    inequalities = known.inequalities + found.inequalities
+    return replace(known, **found._replace(inequalities=inequalities)._asdict())
 
 
-def _with_followers(
+def _of_followers(
     known: CompiledSystem, model: Model, variables: Mapping[str, Formula]
 ) -> loops.EquilibriumConditions:
     """What holds in the unknowns alone. It is multiplied out in names, which variables have in
@@ -361,7 +361,9 @@ def _of_slopes(known: CompiledSystem) -> CompiledSystem:
     return replace(known, equations=known.forces, are_slopes=True)
 
 
-def _with_loops(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> CompiledSystem:
+def _of_loops(
+    known: CompiledSystem, mechanism: Mechanism, ring: _Ring
+) -> loops.EquilibriumConditions:
     """Solutions are where loops are closed and balanced."""
     closing = []
     for bar in mechanism.closing:
@@ -371,5 +373,4 @@ def _with_loops(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> Com
         )
     own = len(known.unknowns) - len(mechanism.force_densities)
     tensions = tuple(map(known.graph.variable, known.unknowns[own:]))
-    found = loops.conditions(tuple(closing), known.forces[:own], known.unknowns[:own], tensions)
-    return replace(known, **found._replace(inequalities=known.inequalities)._asdict())
+    return loops.conditions(tuple(closing), known.forces[:own], known.unknowns[:own], tensions)

@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import prod
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.evaluation import values
@@ -31,6 +31,8 @@ from ptmcad.model.evaluate import ByNames
 from ptmcad.model.identities import Polynomial, PolynomialRing
 from ptmcad.model.termbounds import MAX_TERMS, TOO_LARGE
 
+V = TypeVar("V")
+P = TypeVar("P")
 MAX_PRODUCTS = 2_000_000
 """Products of terms while the energy is made: some seconds. Two joints with symbolic lengths take a
 tenth of that.
@@ -39,21 +41,25 @@ MAX_MINOR = 20 * MAX_TERMS
 """Of a condition for stability, multiplied out by the engine."""
 
 
-class Follower(NamedTuple):
-    """An angle that follows from an unknown one: that of an X-joint's second bar.
+class Follower(NamedTuple, Generic[V, P]):
+    """An angle that follows from an unknown one: that of an X-joint's second bar, in formulas or
+    multiplied out.
 
     Attributes
     ----------
-    leader, variable : numbers of the unknown angle, and of its own.
+    leader, variable : the unknown angle, and its own, by numbers or names.
     cosine, sine, below : numerators and the common denominator, positive, in parameters and the
         unknown angle.
     """
 
-    leader: int
-    variable: int
-    cosine: Formula
-    sine: Formula
-    below: Formula
+    leader: V
+    variable: V
+    cosine: P
+    sine: P
+    below: P
+
+
+ExpandedFollower = Follower[str, Polynomial]
 
 
 def second_bar(bars: Any, length: Any, cosine: Any, sine: Any) -> tuple[Any, Any, Any]:
@@ -67,7 +73,7 @@ def second_bar(bars: Any, length: Any, cosine: Any, sine: Any) -> tuple[Any, Any
 
 def conditions(
     energy: Formula,
-    followers: Sequence[Follower],
+    followers: Sequence[Follower[int, Formula]],
     moments: Mapping[str, Formula],
     variables: Mapping[str, Formula],
 ) -> EquilibriumConditions:
@@ -88,7 +94,8 @@ def conditions(
     expanded = ByNames(names, PolynomialRing(MAX_PRODUCTS))
     left, *steady = values([energy, *moments.values()], expanded)
     bars = [
-        _SecondBar(names[f.leader], names[f.variable], *values(f[2:], expanded)) for f in followers
+        Follower(names[f.leader], names[f.variable], *values((f.cosine, f.sine, f.below), expanded))
+        for f in followers
     ]
     equations = _equations(left, bars, dict(zip(moments, steady, strict=True)))
     rows = [[e.derivative(name) for name in moments] for e in equations]
@@ -103,21 +110,11 @@ def conditions(
     )
 
 
-class _SecondBar(NamedTuple):
-    """A `Follower` multiplied out."""
-
-    leader: str
-    angle: str
-    cosine: Polynomial
-    sine: Polynomial
-    below: Polynomial
-
-
 def _equations(
-    energy: Polynomial, bars: Sequence[_SecondBar], moments: Mapping[str, Polynomial]
+    energy: Polynomial, bars: Sequence[ExpandedFollower], moments: Mapping[str, Polynomial]
 ) -> list[Polynomial]:
     """The e_i."""
-    below, powers = energy.ring.constant(Fraction(1)), [_degree(energy, bar.angle) for bar in bars]
+    below, powers = energy.ring.constant(Fraction(1)), [_degree(energy, b.variable) for b in bars]
     for bar, power in zip(bars, powers, strict=True):
         energy = _substituted(energy, bar, power)
         below = _times(below, bar.below, power)
@@ -157,12 +154,15 @@ def _degree(p: Polynomial, angle: str) -> int:
     )
 
 
-def _substituted(p: Polynomial, bar: _SecondBar, power: int) -> Polynomial:
+def _substituted(p: Polynomial, bar: ExpandedFollower, power: int) -> Polynomial:
     """p with cosine and sine of the bar's angle as quotients, times a power of their denominator."""
     parts: dict[tuple[int, int], Polynomial] = {}
     for monomial, c in p.terms.items():
         exponents = dict(monomial)
-        key = exponents.pop(f"cos {bar.angle}", 0), exponents.pop(f"sin {bar.angle}", 0)
+        key = (
+            exponents.pop(f"cos {bar.variable}", 0),
+            exponents.pop(f"sin {bar.variable}", 0),
+        )
         parts.setdefault(key, Polynomial(p.ring, {})).terms[tuple(exponents.items())] = c
     found = Polynomial(p.ring, {})
     for (cosine, sine), part in parts.items():

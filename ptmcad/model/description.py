@@ -19,13 +19,11 @@ from ptmcad.errors import ExpressionError
 from ptmcad.model.antiparallelogram import XJoint
 from ptmcad.model.criterion import CONDITIONS, DEFINITENESS, NOTHING, Criterion, by_hessian
 from ptmcad.model.elements import (
-    NAMES,
     Closing,
     Element,
     Kind,
     Load,
     Moment,
-    Place,
     Spring,
     Support,
     TorsionSpring,
@@ -96,8 +94,9 @@ class Mechanism(Model):
     def whole(self) -> Mechanism:
         return self
 
-    def elements_with(self, points: Mapping[str, Place]) -> Mapping[str, Element]:
-        """What it is made of, by the keys of the description, given the points' coordinates."""
+    @cached_property
+    def elements(self) -> Mapping[str, Element]:
+        """What it is made of, by the keys of the description."""
         found = {
             **_numbered("springs", self.springs),
             **_numbered("torsion", self.torsion),
@@ -106,12 +105,7 @@ class Mechanism(Model):
             **_numbered("closing", self.closing),
             **_named("x-joint", self.xjoints),
         }
-        return {key: each.element(points) for key, each in found.items()}
-
-    @cached_property
-    def elements(self) -> Mapping[str, Element]:
-        """The same with the points' coordinates as names, ``P.x`` and ``P.y``."""
-        return self.elements_with(NAMES)
+        return {key: each.element for key, each in found.items()}
 
     def written(self, kind: Kind) -> tuple[Tree, ...]:
         """What is written for a kind of quantity, element by element."""

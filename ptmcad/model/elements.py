@@ -151,7 +151,8 @@ class Part(NamedTuple):
 
 
 class Element(NamedTuple):
-    """What a traversal of a description needs of one of its elements.
+    """What a traversal of a description needs of one of its elements, the points' coordinates being
+    names, ``P.x`` and ``P.y``.
 
     Attributes
     ----------
@@ -252,9 +253,10 @@ class Spring(NamedTuple):
         """Of its stiffness."""
         return self.law.unit
 
-    def element(self, points: Mapping[str, Place]) -> Element:
-        """For traversals, given the points' coordinates."""
-        square = squared_distance(points, self.start, self.end)
+    @property
+    def element(self) -> Element:
+        """For traversals."""
+        square = squared_distance(NAMES, self.start, self.end)
         is_zero = isinstance(self.free, Number) and not self.free.value
         names = {"k": self.stiffness, "f": self.free, "q": square}
         return Element(
@@ -291,14 +293,15 @@ class Load(NamedTuple):
         """Its components as text: the forces' names where they are parameters."""
         return text_of(self.x), text_of(self.y)
 
-    def element(self, points: Mapping[str, Place]) -> Element:
-        """For traversals, given the points' coordinates."""
+    @property
+    def element(self) -> Element:
+        """For traversals."""
         forces = self.x, self.y
         return Element(
             tuple(Part(key, Kind.FORCE, force) for key, force in zip("12", forces, strict=True)),
             tuple(
                 negative(product(f, place))
-                for f, place in zip(forces, points[self.point], strict=True)
+                for f, place in zip(forces, NAMES[self.point], strict=True)
             ),
         )
 
@@ -314,7 +317,8 @@ class Moment(NamedTuple):
     unknown: str
     value: Tree
 
-    def element(self, points: Mapping[str, Place]) -> Element:
+    @property
+    def element(self) -> Element:
         """For traversals; its work is no energy, or one that takes integration
         (`ptmcad.model.work`).
         """
@@ -328,8 +332,9 @@ class Closing(NamedTuple):
     end: str
     length: Tree
 
-    def element(self, points: Mapping[str, Place]) -> Element:
-        """For traversals, given the points' coordinates."""
+    @property
+    def element(self) -> Element:
+        """For traversals."""
         return Element((Part("length", Kind.LENGTH, self.length),))
 
     def text(self, points: Mapping[str, Place]) -> str:
@@ -381,7 +386,8 @@ class TorsionSpring(NamedTuple):
             total(product(c, sine), negative(product(s, cosine))),
         )
 
-    def element(self, points: Mapping[str, Place]) -> Element:
+    @property
+    def element(self) -> Element:
         """For traversals."""
         return Element(
             (Part("angle", Kind.ANGLE, self.angle), Part("k", Kind.STIFFNESS, self.stiffness)),

@@ -6,14 +6,14 @@ Guarantee: an expression that leaves here has a value in every ring (`ptmcad.mod
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.model.elements import Kind, Parameter, UnknownKind
 from ptmcad.model.evaluate import evaluate, value_at
-from ptmcad.model.termbounds import Size, Sizes
+from ptmcad.model.termbounds import KnownNames
 from ptmcad.model.trees import PI, ZERO, split_angle, without_quarter_turns
 from ptmcad.text.codec import Codec, Key, choice, part, reading, record
 from ptmcad.text.entry import Scalar, as_written
@@ -177,16 +177,16 @@ class Context:
         self.points: dict[str, tuple[Tree, Tree]] = Unread()
 
     @cached_property
-    def fixed(self) -> _Names:
+    def fixed(self) -> KnownNames:
         """The names of which what no unknown moves is made, once parameters and unknowns are read."""
-        return _Names(self.parameters, (), (*self.unknowns, *self.second), self._doubtful)
+        return KnownNames(self.parameters, (), (*self.unknowns, *self.second), self._doubtful)
 
     @cached_property
-    def moving(self) -> _Names:
+    def moving(self) -> KnownNames:
         """The names of which what unknowns move is made."""
         angles = [name for name, kind in self.unknowns.items() if kind.turns]
         lengths = [name for name in self.unknowns if name not in angles or name in self._doubtful]
-        return _Names((*self.parameters, *lengths), (*angles, *self.second), (), self._doubtful)
+        return KnownNames((*self.parameters, *lengths), (*angles, *self.second), (), self._doubtful)
 
     @property
     def _doubtful(self) -> frozenset[str]:
@@ -336,62 +336,6 @@ class Context:
                 if used not in names:
                     raise image.fault(f"unknown name '{used}'{did_you_mean(used, names)}")
         return trees
-
-
-class _Names(Sizes):
-    """The ring of sizes, in which names are refused that have no meaning: of angles when their
-    cosine is asked for.
-
-    Parameters
-    ----------
-    constants : parameters, and unknowns on the line where they may stand.
-    angles : that may stand in cosines and sines.
-    excluded, doubtful : unknowns that may not occur, and those of which nothing more is said.
-    """
-
-    def __init__(
-        self,
-        constants: Iterable[str],
-        angles: Iterable[str],
-        excluded: Iterable[str],
-        doubtful: frozenset[str],
-    ):
-        # dictionaries for their order and for fast look-up: a hostile record has thousands of names
-        self.constants, self.angles, self.excluded = map(
-            dict.fromkeys, (constants, angles, excluded)
-        )
-        self.doubtful = doubtful
-
-    def parameter(self, name: str) -> Size:
-        if name in self.angles and name not in self.doubtful:
-            raise ExpressionError(f"{name} is an angle: it stands inside of cos or sin")
-        self._check(name, self.constants)
-        return super().parameter(name)
-
-    def cos(self, angle: str) -> Size:
-        if angle in self.constants and angle not in self.doubtful:
-            # of a rational angle neither is rational, so that no axis could be one
-            raise ExpressionError(
-                f"{angle} is not an unknown angle: for the cosine and sine of a fixed one use two parameters, given as "
-                "(1 - t^2)/(1 + t^2) and 2*t/(1 + t^2), t the tangent of its half"
-            )
-        self._check(angle, self.angles)
-        return super().cos(angle)
-
-    def _check(self, name: str, known: Mapping[str, None]) -> None:
-        if name in self.doubtful:
-            return
-        if name in self.excluded:
-            raise ExpressionError(f"{name} is an unknown: only points may depend on it")
-        if name == PI:
-            raise ExpressionError(
-                f"pi is no rational number: name a parameter in its place{did_you_mean(name, ())}"
-            )
-        if name not in known:
-            hint = did_you_mean(name, self.constants | self.angles) or (
-                f"; the names are {', '.join(known)}" if known else "; no name is known here"
-            )
-            raise ExpressionError(f"unknown name '{name[:MAX_NAME]}'{hint}")
 
 
 def parsed(entry: Node) -> Tree:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ptmcad.formulas.graph import Formula, length
 from ptmcad.model.elements import Law, Spring
-from ptmcad.model.evaluate import Assignment, Ring, evaluated, value_among
+from ptmcad.model.evaluate import Ring, evaluated, value_among
 from ptmcad.text.tree import Tree
 
 Vector = tuple[Formula, Formula]
@@ -43,8 +43,9 @@ class ElasticLine(NamedTuple):
         stiffness, free = evaluated((spring.stiffness, spring.free), ring)
         names = {"k": stiffness, "f": free, "q": x * x + y * y}
         law = spring.law
-        formulas = Assignment(names, ring.constant)
-        of_law = evaluated((law.smooth, law.pull, law.density), formulas)
+        of_law = (
+            value_among(tree, names, ring.constant) for tree in (law.smooth, law.pull, law.density)
+        )
         return cls(
             spring.name, spring.start, spring.end, law, stiffness, free, (x, y), names["q"], *of_law
         )

@@ -1,5 +1,5 @@
 """How many terms a description has once it is multiplied out, bounded before anything is: what is
-too much is refused.
+too much is refused, and so are names that have no meaning where they stand.
 
 Guarantee: the bound is one. A sum has no more terms than its parts together, a product no more than
 theirs multiplied, and no polynomial of degree d in n variables more than binomial(d + n, n);
@@ -8,12 +8,15 @@ cosines and sines are variables here.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import comb
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model.description import Model
 from ptmcad.model.evaluate import Named, evaluate
+from ptmcad.model.trees import PI
+from ptmcad.text.syntax import did_you_mean
 
 MAX_TERMS = 50_000
 """Of one expression, and of all that a model's equations are made of; to multiply these out takes
@@ -74,6 +77,62 @@ class Sizes:
 
     def sin(self, angle: str) -> Size:
         return Size(1, frozenset({f"sin {angle}"}), 1)
+
+
+class KnownNames(Sizes):
+    """The ring of sizes, in which names are refused that have no meaning: of angles when their
+    cosine is asked for.
+
+    Parameters
+    ----------
+    constants : parameters, and unknowns on the line where they may stand.
+    angles : that may stand in cosines and sines.
+    excluded, doubtful : unknowns that may not occur, and those of which nothing more is said.
+    """
+
+    def __init__(
+        self,
+        constants: Iterable[str],
+        angles: Iterable[str],
+        excluded: Iterable[str],
+        doubtful: frozenset[str],
+    ):
+        # dictionaries for their order and for fast look-up: a hostile record has thousands of names
+        self.constants, self.angles, self.excluded = map(
+            dict.fromkeys, (constants, angles, excluded)
+        )
+        self.doubtful = doubtful
+
+    def parameter(self, name: str) -> Size:
+        if name in self.angles and name not in self.doubtful:
+            raise ExpressionError(f"{name} is an angle: it stands inside of cos or sin")
+        self._check(name, self.constants)
+        return super().parameter(name)
+
+    def cos(self, angle: str) -> Size:
+        if angle in self.constants and angle not in self.doubtful:
+            # of a rational angle neither is rational, so that no axis could be one
+            raise ExpressionError(
+                f"{angle} is not an unknown angle: for the cosine and sine of a fixed one use two parameters, given as "
+                "(1 - t^2)/(1 + t^2) and 2*t/(1 + t^2), t the tangent of its half"
+            )
+        self._check(angle, self.angles)
+        return super().cos(angle)
+
+    def _check(self, name: str, known: Mapping[str, None]) -> None:
+        if name in self.doubtful:
+            return
+        if name in self.excluded:
+            raise ExpressionError(f"{name} is an unknown: only points may depend on it")
+        if name == PI:
+            raise ExpressionError(
+                f"pi is no rational number: name a parameter in its place{did_you_mean(name, ())}"
+            )
+        if name not in known:
+            hint = did_you_mean(name, self.constants | self.angles) or (
+                f"; the names are {', '.join(known)}" if known else "; no name is known here"
+            )
+            raise ExpressionError(f"unknown name '{name[:40]}'{hint}")
 
 
 def check_sizes(model: Model, faults: Faults) -> None:

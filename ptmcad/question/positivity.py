@@ -68,7 +68,8 @@ def decide(expression: Expression, axes: Axes, need: Need) -> Verdict:
     if isinstance(verdict, Witness) and verdict.value:
         denominator = polynomial_value(expression.denominator, *verdict.point)
         if denominator == 0:
-            return Undecided(((_around(verdict.point[0]), _around(verdict.point[1])),))
+            x, y = verdict.point
+            return Undecided((((x, x), (y, y)),))
         return Witness(verdict.point, side * verdict.value / denominator)
     return verdict
 
@@ -267,10 +268,6 @@ def _power_in_bernstein(power: int, degree: int, interval: Interval) -> list[Fra
         )
         for p in range(degree + 1)
     ]
-
-
-def _around(value: Fraction) -> Interval:
-    return (value, value)
 
 
 def _times(terms: tuple[Term, ...], side: int) -> tuple[Term, ...]:

@@ -136,21 +136,21 @@ class Slice:
     @property
     def fixed(self) -> tuple[str, ...]:
         """What is fixed and how parameters depend on the axes, one by one, such as "L1 = 1"."""
-        return tuple(self._fixed())
-
-    def _fixed(self) -> Iterator[str]:
         values = {
             name: expression.to_text(self.axis_names)
             for name, expression in self.parameters.items()
         }
         values = merged(values, self.model)
-        loads = [name for name in values if name in self.model.forces]
+        found = []
         for name, value in values.items():
             if value not in (name, "0"):
                 shown = value if len(value) <= MAX_HEADING_VALUE else self.text.get(name, value)
-                yield f"{name} = {shown if len(shown) <= MAX_HEADING_VALUE else shown[: MAX_HEADING_VALUE - 1] + '…'}"
-        if loads and all(values[name] == "0" for name in loads):
-            yield "no load"
+                if len(shown) > MAX_HEADING_VALUE:
+                    shown = f"{shown[: MAX_HEADING_VALUE - 1]}…"
+                found.append(f"{name} = {shown}")
+        if {values[name] for name in values if name in self.model.forces} == {"0"}:
+            found.append("no load")
+        return tuple(found)
 
 
 _Value = TypeVar("_Value", bound=Hashable)

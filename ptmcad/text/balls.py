@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from flint import arb, ctx
 
-from ptmcad.text.enclosure import Enclosure, settled
+from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import magnitude
 from ptmcad.text.tree import OPERATORS, Call, Name, Number, Power, Step, Tree, interpret
@@ -41,26 +41,19 @@ def enclosed(ball: arb, digits: int) -> Enclosure | None:
         or 10 * ball.rel_accuracy_bits() < 33 * (digits + _GUARD - 2)
     ):
         return None  # the test of the radius below would say so too; most balls that are too wide end here
-    mantissa, exponent = (int(n) for n in ball.mid().man_exp())
-    radius, scale = (int(n) for n in ball.rad().man_exp())
+    middle, radius = exact(ball.mid()), exact(ball.rad())
     # the place of the first digit, to within one: 0.30103 is the logarithm of 2
-    first = (abs(mantissa).bit_length() + exponent - 1) * 30103 // 100000
+    first = (middle.numerator.bit_length() - middle.denominator.bit_length()) * 30103 // 100000
     guard = _GUARD
     while True:
-        place = first - digits - guard
-        numerator, denominator = _in_units(2 * radius, scale, place)
-        if numerator > denominator:
+        unit = Fraction(10) ** (first - digits - guard)
+        if 2 * radius > unit:
             return None
-        numerator, denominator = _in_units(abs(mantissa), exponent, place)
-        center, rest = divmod(2 * numerator + denominator, 2 * denominator)
-        center -= rest == 0 and center % 2  # half a unit goes to the even one
         # within half a unit of the middle's modulus, so within a unit of each number's
-        if _settles(center - 1, center + 1, digits):
-            near, far = (
-                Fraction(n * 10 ** max(place, 0), 10 ** max(-place, 0))
-                for n in (center - 1, center + 1)
-            )
-            return Enclosure(near, far) if mantissa > 0 else Enclosure(-far, -near)
+        center = round(middle / unit)
+        found = Enclosure((center - 1) * unit, (center + 1) * unit)
+        if found.settles(digits):
+            return found
         guard *= 2
 
 
@@ -77,26 +70,6 @@ def bounded(ball: arb) -> Enclosure | None:
         return enclosure_of(ball)
     most = Fraction(10) ** (magnitude(exact(ball.abs_upper())) + 1)
     return Enclosure(-most, most)
-
-
-def _in_units(mantissa: int, exponent: int, place: int) -> tuple[int, int]:
-    """m 2^e divided by 10^place, as numerator and denominator: integers, as no fraction need be
-    reduced.
-    """
-    return (
-        (mantissa << max(exponent, 0)) * 10 ** max(-place, 0),
-        10 ** max(place, 0) << max(-exponent, 0),
-    )
-
-
-def _settles(near: int, far: int, digits: int) -> bool:
-    """What `Enclosure.settles` says of two positive multiples of a power of ten, given by their
-    factors.
-    """
-    unit = 10 ** max(
-        len(str(near)) - digits, 0
-    )  # of the last digit; less than one where all digits are whole
-    return len(str(near)) > digits and near > 0 and settled(-(-2 * near // unit), 2 * far // unit)
 
 
 def ball_of(value: Fraction) -> arb:

@@ -8,7 +8,7 @@ its place. Records are read by codecs too (`part`, `reading`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import MISSING, Field, fields
 from enum import Enum
 from fractions import Fraction
@@ -112,13 +112,9 @@ def listed(
     """
     convert = codec.write
     write = _itself if convert is _itself else lambda values: [convert(v) for v in values]
-    size = {} if length is None else {"minItems": length, "maxItems": length}
-    schema = {
-        "type": "array",
-        "items": codec.schema,
-        **size,
-        **({"maxItems": most} if most else {}),
-    }
+    sizes = {"minItems": length, "maxItems": length or most}
+    limits = {keyword: size for keyword, size in sizes.items() if size is not None}
+    schema = {"type": "array", "items": codec.schema, **limits}
     return Codec(write, lambda node: node.each(codec.read, length, most, like), schema)
 
 
@@ -286,7 +282,7 @@ def record(make: Callable[..., T], like: str = "", /, **keys: Codec[Any] | Key) 
                     raise given[name].fault(f"is not {str(other)[:60]!r}, as the rest says")
         return found
 
-    return Codec(write, read, _schema_of(entries))
+    return Codec(write, read, _schema_of(entries, needed))
 
 
 def _getter(name: str, key: Key) -> Callable[[Any], Any]:
@@ -301,7 +297,7 @@ def _codec(key: Key) -> Codec[Any]:
     return key.codec
 
 
-def _schema_of(entries: Mapping[str, Key]) -> Schema:
+def _schema_of(entries: Mapping[str, Key], needed: Sequence[str]) -> Schema:
     properties: dict[str, Any] = {}
     alternatives: dict[str, Any] = {}
     for name, key in entries.items():
@@ -309,7 +305,6 @@ def _schema_of(entries: Mapping[str, Key]) -> Schema:
         schema: Schema = {"const": True} if flag else _codec(key).schema
         properties |= schema["properties"] if key.beside else {name: schema}
         alternatives |= {"oneOf": schema["oneOf"]} if key.beside else {}
-    needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
     return {
         "type": "object", "properties": properties, "required": needed, "additionalProperties": False, **alternatives,
     }  # fmt: skip
@@ -332,9 +327,7 @@ def codec_of(hint: Any, known: Known = _ALIKE) -> Codec[Any]:
         return found
     kind, parts = get_origin(hint), get_args(hint)
     if NoneType in parts:
-        return optional(
-            codec_of(reduce(or_, (part for part in parts if part is not NoneType)), known)
-        )
+        return optional(codec_of(_without_none(hint), known))
     if kind is tuple:
         return listed(codec_of(parts[0], known), None if parts[-1] is ... else len(parts))
     if kind is Mapping:
@@ -393,13 +386,13 @@ def unless_default(kind: type, *names: str, known: Known = _ALIKE) -> dict[str, 
         if field.name in names:
             hint = hints[field.name]
             default = field.default if field.default_factory is MISSING else field.default_factory()
-            given = (
-                [part for part in get_args(hint) if part is not NoneType]
-                if default is None
-                else [hint]
-            )
-            keys[field.name] = Key(codec_of(given[0], known), default=default)
+            written = _without_none(hint) if default is None else hint
+            keys[field.name] = Key(codec_of(written, known), default=default)
     return keys
+
+
+def _without_none(hint: Any) -> Any:
+    return reduce(or_, (part for part in get_args(hint) if part is not NoneType))
 
 
 def _fields(kind: Any) -> tuple[Field[Any], ...]:

@@ -20,16 +20,6 @@ exponent is used.
 """
 
 
-def settled(first: int, last: int) -> bool:
-    """Whether two ends settle the digits of what lies between, by the first and the last multiple
-    of half a unit there.
-
-    The unit is that of the last digit. A multiple of half of it may be there if it is no number
-    halfway between two texts: an even one.
-    """
-    return first > last or (first == last and first % 2 == 0)
-
-
 @dataclass(frozen=True, slots=True)
 class Enclosure:
     """A closed interval with rational ends; the number is exact when they are equal."""
@@ -82,7 +72,9 @@ class Enclosure:
             return False
         near, far = (self.low, self.high) if self.low > 0 else (-self.high, -self.low)
         half = Fraction(10) ** (magnitude(near) + 1 - digits) / 2
-        return settled(-(-near // half), far // half)
+        first, last = -(-near // half), far // half
+        # an even multiple of half a unit is a text itself, and not halfway between two
+        return first > last or (first == last and first % 2 == 0)
 
     def told_digits(self, digits: int = DIGITS) -> int | None:
         """The fewest digits, from so many on, that the enclosure settles: what `text` writes; None

@@ -118,13 +118,8 @@ def scalars(node: Written) -> Iterator[Scalar]:
     """Those in a tree, in the order in which they are written."""
     if isinstance(node, Scalar):
         yield node
-    for part in (
-        node.entries.values()
-        if isinstance(node, Tree)
-        else node.items
-        if isinstance(node, Sequence)
-        else ()
-    ):
+        return
+    for part in node.entries.values() if isinstance(node, Tree) else node.items:
         yield from scalars(part)
 
 

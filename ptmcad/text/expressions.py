@@ -16,7 +16,7 @@ from math import gcd, lcm
 
 from ptmcad.errors import ExpressionError, PoleError
 from ptmcad.text.numerals import text_of
-from ptmcad.text.plane import terms_text
+from ptmcad.text.plane import plane_text
 
 Term = tuple[int, int, Fraction]
 _Polynomial = dict[tuple[int, int], Fraction]
@@ -95,11 +95,11 @@ class Expression:
     def to_text(self, names: tuple[str, str] = ("x", "y")) -> str:
         """The expression as text that `ptmcad.text.parsing.parse` reads back."""
         if self.is_polynomial:
-            return _terms_text(self.numerator, names)
+            return plane_text(self.numerator, names)
         # the normal form's sign may put a minus first in both, as in (-x)/(-1 + x)
         sign = -1 if self.denominator[0][2] < 0 else 1
         above, below = (
-            _terms_text(tuple((i, j, sign * c) for i, j, c in terms), names)
+            plane_text(tuple((i, j, sign * c) for i, j, c in terms), names)
             for terms in (self.numerator, self.denominator)
         )
         return f"{above if len(self.numerator) == 1 else f'({above})'}/({below})"
@@ -298,7 +298,3 @@ def _exact_quotient(numerator: _Polynomial, divisor: _Polynomial) -> _Polynomial
             else:
                 rest.pop(power, None)
     return quotient
-
-
-def _terms_text(terms: tuple[Term, ...], names: tuple[str, str]) -> str:
-    return terms_text((((i, j), c) for i, j, c in terms), names)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from math import ceil, floor
 from numbers import Rational
 from operator import index
 from typing import Any, SupportsIndex
@@ -242,12 +243,7 @@ def decimal(value: Fraction, up: bool, digits: int = 18) -> str:
         return f"-{decimal(-value, not up, digits)}"
     exponent = magnitude(value) + 1 - digits
     scaled = value / Fraction(10) ** exponent
-    mantissa = (
-        -((-scaled.numerator) // scaled.denominator)
-        if up
-        else scaled.numerator // scaled.denominator
-    )
-    text = str(mantissa)
+    text = str(ceil(scaled) if up else floor(scaled))
     point = len(text) + exponent
     if -7 < point <= max(21, len(text) - 1):
         plain = pointed(text, exponent)
@@ -288,7 +284,7 @@ def rounded(value: Fraction, unit: Fraction, up: bool) -> Fraction:
     >>> rounded(Fraction(-1, 3), Fraction(1, 10), up=True), rounded(Fraction(-1, 3), Fraction(1, 10), up=False)
     (Fraction(-3, 10), Fraction(-2, 5))
     """
-    return (-(-value // unit) if up else value // unit) * unit
+    return (ceil(value / unit) if up else floor(value / unit)) * unit
 
 
 def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:

@@ -59,7 +59,7 @@ class PlanePolynomial:
 
     def text(self, names: tuple[str, str] = ("x", "y")) -> str:
         """The polynomial as text, such as ``2*x^2*y - 1``."""
-        return terms_text((((i, j), c) for i, j, c in self.terms), names)
+        return plane_text(self.terms, names)
 
     def to_sympy(self, names: tuple[str, str] = ("x", "y")) -> Any:
         """The polynomial as a SymPy expression in symbols of these names."""
@@ -144,6 +144,11 @@ def terms_text(terms: Iterable[tuple[Sequence[int], Any]], names: Sequence[str])
     '2*x^2*y - 1/3'
     """
     return " ".join(signed_terms(terms, names, number=_rational_text)) or "0"
+
+
+def plane_text(terms: Iterable[tuple[int, int, Any]], names: Sequence[str]) -> str:
+    """The same of terms ``(i, j, c)`` in two names."""
+    return terms_text((((i, j), c) for i, j, c in terms), names)
 
 
 def _rational_text(value: int | Fraction) -> str:

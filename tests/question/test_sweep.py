@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, point_from_options, slice_from_options
-from ptmcad.question.config.sweeps import load_sweep, sweep_from
+from ptmcad.question.config.sweeps import sweep_from
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
 
@@ -88,7 +88,7 @@ def family_fixture(tmp_path: Path) -> Path:
 
 
 def test_a_member_is_the_slice_that_the_options_ask_for(family: Path) -> None:
-    sweep = load_sweep(family)
+    sweep = sweep_from(family)
     assert [sweep.slice(k) for k in range(len(sweep))] == [
         slice_from_options(family, sets=[f"F={value}"]) for value in (-4, -2, 0, 2, 4)
     ]
@@ -163,7 +163,7 @@ def test_all_faults_have_their_places(tmp_path: Path) -> None:
     path = tmp_path / "bad.yaml"
     path.write_text(FAULTS, encoding="utf-8")
     with pytest.raises(ConfigError) as caught:
-        load_sweep(path)
+        sweep_from(path)
     found = caught.value.faults
     assert [(fault.line, fault.key) for fault in found] == [(line, key) for line, key, _ in PLACES]
     for fault, (_, _, words) in zip(found, PLACES, strict=True):

@@ -1,5 +1,5 @@
 """What the names in a record's values stand for: numbers in place of a family's free parameter or of
-what a sweep goes through, and each parameter as a function of the axes.
+what a sweep goes through, and each parameter as a function of the axes and as it is written.
 
 Guarantee: exact; the record with numbers is the one that a person would get who typed them. What is
 wrong is a `ConfigError` with file, line and key, said once where it stands.
@@ -7,17 +7,19 @@ wrong is a `ConfigError` with file, line and key, said once where it stands.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError, Faults, Place
+from ptmcad.model import Kind
 from ptmcad.question.config.problemrecord import Record, swept_names
 from ptmcad.question.config.scalars import names_in_scalar, number_of, parsed
+from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar
 from ptmcad.text.expressions import Expression, Expressions, constant
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import rational
-from ptmcad.text.syntax import NOT_NUMBERS, did_you_mean, parse
+from ptmcad.text.syntax import NOT_NUMBERS, did_you_mean, names_in, parse
 from ptmcad.text.tree import Number, Tree, names_of, replaced, to_text
 
 
@@ -175,3 +177,34 @@ def resolved(
         return constant(1) if misnamed else parsed(scalar, values)
 
     return {name: value(name, ()) for name in parameters}, faulty
+
+
+def texts_of(names: Iterable[str], record: Record) -> dict[str, str]:
+    """Parameters that are no axes as they are written, and every parameter that such a text names."""
+    texts: dict[str, str] = {}
+    waiting = [*names]
+    while waiting:
+        name = waiting.pop()
+        if name not in texts and name in record.model.parameters and name not in record.axes:
+            texts[name] = _written(name, record)
+            waiting += names_in(texts[name])
+    return texts
+
+
+def written_in(record: Record, member: Slice) -> dict[str, str]:
+    """Each parameter of a family's members as the record writes it, and every parameter that such a
+    text names.
+    """
+    texts = {} if record.free is None else {record.free[0]: Scalar(record.free[0], Place())}
+    return texts_of(member.parameters, record._replace(values={**record.values, **texts}))
+
+
+def _written(name: str, record: Record) -> str:
+    if name in record.axes:
+        return name
+    if name in record.values:
+        return record.values[name].text
+    parameter = record.model.parameters[name]
+    if parameter.alias_of and parameter.kind is Kind.FREE_LENGTH:
+        return _written(parameter.alias_of, record)  # which the slice need not name
+    return parameter.default

@@ -178,13 +178,13 @@ def design_from_options(
         for key, value in asked.items()
         if value is not None
     }
-    conditions = {key: value for key, value in where.items() if value not in (None, (), False)}
+    conditions = {
+        key: from_python(value, Place("--condition" if key == "conditions" else f"--{key}"))
+        for key, value in where.items()
+        if value not in (None, (), False)
+    }
     if conditions:
-        places = {
-            key: Place("--condition" if key == "conditions" else f"--{key}") for key in conditions
-        }
-        parts = {key: from_python(value, places[key]) for key, value in conditions.items()}
-        given["where"] = Tree(parts, next(iter(places.values())))
+        given["where"] = Tree(conditions, next(iter(conditions.values())).place)
     return checked_design(record_tree(config), given)
 
 

@@ -15,14 +15,13 @@ from typing import NamedTuple
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model import Model
-from ptmcad.question.config.binding import bound, member_name
+from ptmcad.question.config.binding import bound, member_name, written_in
 from ptmcad.question.config.problemrecord import Record
 from ptmcad.question.config.resolution import (
     axis_of,
     described_record,
     note_values,
     slice_of,
-    written_in,
 )
 from ptmcad.question.config.scalars import MAX_MEMBERS, Window, check_members, number_of
 from ptmcad.question.slice import Axes, Axis, Slice

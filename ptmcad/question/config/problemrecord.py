@@ -133,8 +133,6 @@ def read_record(tree: Tree, faults: Faults) -> Record:
     with faults:
         described = described_in(tree, faults)
     read: dict[str, Any] = record_codec(None if described is None else described.model).read(node)
-    for key in ("notes", "mechanism", "system"):
-        del read[key]
     if read["members"] is not None and "free" not in tree.entries:
         with faults:
             raise node.at("members").fault(
@@ -182,14 +180,18 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
         title=part(
             reading(title_in, type="string", maxLength=MAX_TITLE), "The picture's title.", ""
         ),
-        notes=part(unread.narrowed(type="string"), "Free text for the reader of the record.", None),
+        notes=part(
+            unread.narrowed(type="string"), "Free text for the reader of the record.", None
+        )._replace(made=False),
         mechanism=part(
             unread,
             "A built-in mechanism's name, a file below the record's folder that describes one, or a description.",
             None,
             shown=ptm().name,
+        )._replace(made=False),
+        system=part(unread, "Another parametric system, in place of a mechanism.", None)._replace(
+            made=False
         ),
-        system=part(unread, "Another parametric system, in place of a mechanism.", None),
         parameters=part(
             reading(
                 lambda node: _values(node, model),
@@ -240,13 +242,13 @@ def _question() -> dict[str, Key]:
             None,
         ),
         "sweep": part(
-            reading(_sweep),
+            _kept((Sequence, Tree), f"parameters with their values, such as {A_SWEEP}"),
             "For ptmcad sweep: parameters, or names that expressions use, with the values that they take, in every "
             "combination; a list of such mappings is one after another.",
             None,
         ),
         "design": part(
-            reading(_design),
+            _kept((Tree,), f"what is designed, such as {A_DESIGN}"),
             "For ptmcad design: what is made as large as possible, over which parameters within which bounds, and "
             "under what conditions. Other commands take the record without it.",
             None,
@@ -315,11 +317,16 @@ def _values(parameters: Node, model: Model | None) -> dict[str, Scalar]:
     return values
 
 
-def _sweep(node: Node) -> Written:
-    sweep: Written = node.value
-    if isinstance(sweep, Scalar):
-        raise node.fault(f"expected parameters with their values, such as {A_SWEEP}")
-    return sweep
+def _kept(kinds: tuple[type[Written], ...], expected: str) -> Codec[Written]:
+    """What is kept as it is written, for the command that asks for it."""
+
+    def read(node: Node) -> Written:
+        if not isinstance(node.value, kinds):
+            raise node.fault(f"expected {expected}")
+        written: Written = node.value
+        return written
+
+    return reading(read)
 
 
 def swept_names(record: Record) -> dict[str, Place]:
@@ -332,13 +339,6 @@ def swept_names(record: Record) -> dict[str, Place]:
         if isinstance(part, Tree)
         for name, entry in part.entries.items()
     }
-
-
-def _design(node: Node) -> Written:
-    design: Written = node.value
-    if not isinstance(design, Tree):
-        raise node.fault(f"expected what is designed, such as {A_DESIGN}")
-    return design
 
 
 def unknown_parameter(name: str, model: Model) -> str:

@@ -15,7 +15,7 @@ from fractions import Fraction
 from ptmcad.errors import ExpressionError, Faults, Place
 from ptmcad.model import Kind, Mechanism, Model
 from ptmcad.model.evaluate import value_at
-from ptmcad.question.config.binding import resolved
+from ptmcad.question.config.binding import resolved, texts_of
 from ptmcad.question.config.problemrecord import Record, read_record, swept_names
 from ptmcad.question.config.scalars import Window, names_in_scalar, number_of
 from ptmcad.question.counts import usual_count
@@ -24,9 +24,9 @@ from ptmcad.question.positivity import window_of
 from ptmcad.question.shipped import AXES
 from ptmcad.question.signs import PROVED, Finding, Subject
 from ptmcad.question.slice import Axes, Axis, Slice, count_fault, have_free_lengths
-from ptmcad.text.entry import Scalar, Tree
+from ptmcad.text.entry import Tree
 from ptmcad.text.expressions import Expression, Expressions, axis, constant
-from ptmcad.text.syntax import did_you_mean, names_in, parse
+from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import names_of
 
 
@@ -107,9 +107,13 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
             )
         record = record._replace(unread=record.unread | swept_names(record).keys())
     if record.free is not None:
+        name, window = record.free
         with faults:
-            refuse_free(*record.free)
-        record = record._replace(unread=record.unread | {record.free[0]})
+            raise window.place.error(
+                f"{name} is free, and the record is one of a family: give it a value with --set {name}=VALUE, or ask "
+                "for its members with ptmcad classify or ptmcad.family"
+            )
+        record = record._replace(unread=record.unread | {name})
     axes, values, signs = _judged(record, faults)
     with faults:
         if not faults.parts & {"mechanism", "system"} and all(
@@ -117,7 +121,9 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
         ):
             if faults.found:
                 _note_unnamed_axes(record, faults)
-            _check_count(record, values)
+            count = record.counting
+            if count is not None and (problem := count_fault(count, record.model, values)):
+                raise record.count_place.error(problem)
     faults.check()
     return _slice(record, axes, values, signs)
 
@@ -150,14 +156,6 @@ def _needed_axes(record: Record) -> tuple[str, ...]:
     parameters.
     """
     return tuple(record.axes) if isinstance(record.model, Mechanism) else ()
-
-
-def refuse_free(name: str, window: Window) -> None:
-    """Refuse a record of a family where one slice is asked for."""
-    raise window.place.error(
-        f"{name} is free, and the record is one of a family: give it a value with --set {name}=VALUE, or ask for its "
-        "members with ptmcad classify or ptmcad.family"
-    )
 
 
 def _judged(record: Record, faults: Faults) -> tuple[Axes, dict[str, Expression], list[Finding]]:
@@ -238,29 +236,24 @@ def _slice(record: Record, axes: Axes, resolved: Expressions, signs: Sequence[Fi
     """The slice of a record whose entries are right one by one."""
     mechanism = record.model
     given = {*record.values, *record.axes}
-    without_free_lengths = not _names_free_lengths(mechanism, resolved)
-    left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)} | {
-        *mechanism.idle
+    # not named: a shorthand of free lengths, and one whose parameters are all given
+    left_out = {
+        name
+        for name, own in mechanism.shorthands.items()
+        if mechanism.kind(name) is Kind.FREE_LENGTH or given.issuperset(own)
     }
-    if without_free_lengths:
+    left_out.update(mechanism.idle)
+    if not _names_free_lengths(mechanism, resolved):
         left_out.update(mechanism.free_lengths)
     effective = {name: expression for name, expression in resolved.items() if name not in left_out}
     _check_shorthands_are_used(record, mechanism, given)
     for index, name in enumerate(_needed_axes(record)):
         if not any(expression.uses(index) for expression in effective.values()):
-            hint = (
-                did_you_mean(name, mechanism.parameters) if name not in mechanism.parameters else ""
-            )
-            other = next(
-                (parameter for parameter in mechanism.parameters if parameter not in record.axes),
-                "",
-            )
-            example = (
-                f"use it in an expression, such as {other}: {name}"
-                if other
-                else "use it in an expression"
-            )
-            remedy = f"no parameter depends on it{hint or ';'} {example}"
+            known = mechanism.parameters
+            hint = "" if name in known else did_you_mean(name, known)
+            other = next((parameter for parameter in known if parameter not in record.axes), "")
+            example = f", such as {other}: {name}" if other else ""
+            remedy = f"no parameter depends on it{hint or ';'} use it in an expression{example}"
             if name in mechanism.shorthands:
                 own = _listed(mechanism.shorthands[name])
                 remedy = f"{own} are all given and none depends on it; use it in one of them"
@@ -277,13 +270,6 @@ def _slice(record: Record, axes: Axes, resolved: Expressions, signs: Sequence[Fi
         units=record.units,
         signs=tuple(sign for sign in signs if sign.subject.part or sign.subject.text in effective),
     )
-
-
-def _check_count(record: Record, resolved: Expressions) -> None:
-    """Refuse a count that makes no sense for the model."""
-    count = record.counting
-    if count is not None and (problem := count_fault(count, record.model, resolved)):
-        raise record.count_place.error(problem)
 
 
 def point_of(record: Record) -> dict[str, Fraction]:
@@ -309,13 +295,9 @@ def without_shorthands(values: Mapping[str, Fraction], mechanism: Model) -> dict
     """The values of what a point is told by: no shorthand, nothing idle, and free lengths only if
     some is not zero.
     """
-    left_out = {
-        *mechanism.shorthands,
-        *mechanism.idle,
-    }  # the parameters that they stand for are there
-    if not _names_free_lengths(
-        mechanism, {name: constant(value) for name, value in values.items()}
-    ):
+    left_out = {*mechanism.shorthands, *mechanism.idle}  # what they stand for is there
+    expressions = {name: constant(value) for name, value in values.items()}
+    if not _names_free_lengths(mechanism, expressions):
         left_out.update(mechanism.free_lengths)
     return {name: value for name, value in values.items() if name not in left_out}
 
@@ -328,13 +310,6 @@ def _names_free_lengths(model: Model, values: Expressions) -> bool:
     return any(value.numerator for value in given) or have_free_lengths(model, values)
 
 
-def _is_left_out(name: str, mechanism: Model, given: set[str]) -> bool:
-    """Whether a slice does not name a shorthand: one of free lengths, or one whose parameters are
-    all given.
-    """
-    return mechanism.kind(name) is Kind.FREE_LENGTH or given.issuperset(mechanism.shorthands[name])
-
-
 def _texts(effective: Iterable[str], record: Record, signs: Iterable[Finding]) -> dict[str, str]:
     """What the parameters were written as, and every name in those texts, but for the axes.
 
@@ -342,7 +317,7 @@ def _texts(effective: Iterable[str], record: Record, signs: Iterable[Finding]) -
     says nothing without it. No engine looks at the sign of such a name, so it has to be proved
     here.
     """
-    written = _reached(effective, record)
+    written = texts_of(effective, record)
     unproved = {
         sign.subject.text: sign.problem for sign in signs if sign.problem and not sign.subject.part
     }
@@ -351,37 +326,6 @@ def _texts(effective: Iterable[str], record: Record, signs: Iterable[Finding]) -
             raise record.place_of(name).error(unproved[name])
     texts = {**written, **{name: name for name in effective if name in record.axes}}
     return {name: texts[name] for name in record.model.parameters if name in texts}
-
-
-def _reached(names: Iterable[str], record: Record) -> dict[str, str]:
-    """Parameters that are no axes as they are written, and every parameter that such a text names."""
-    texts: dict[str, str] = {}
-    waiting = [*names]
-    while waiting:
-        name = waiting.pop()
-        if name not in texts and name in record.model.parameters and name not in record.axes:
-            texts[name] = _written(name, record)
-            waiting += names_in(texts[name])
-    return texts
-
-
-def written_in(record: Record, member: Slice) -> dict[str, str]:
-    """Each parameter of a family's members as the record writes it, and every parameter that such a
-    text names.
-    """
-    texts = {} if record.free is None else {record.free[0]: Scalar(record.free[0], Place())}
-    return _reached(member.parameters, record._replace(values={**record.values, **texts}))
-
-
-def _written(name: str, record: Record) -> str:
-    if name in record.axes:
-        return name
-    if name in record.values:
-        return record.values[name].text
-    parameter = record.model.parameters[name]
-    if parameter.alias_of and parameter.kind is Kind.FREE_LENGTH:
-        return _written(parameter.alias_of, record)  # which the slice need not name
-    return parameter.default
 
 
 def axis_of(name: str, window: Window, model: Model) -> Axis:

@@ -14,7 +14,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
-from pathlib import Path
 from typing import Any
 
 from ptmcad.model import Model
@@ -24,7 +23,7 @@ from ptmcad.question.config.objects import tree_of
 from ptmcad.question.config.problemrecord import Record, swept_names
 from ptmcad.question.config.resolution import check_number, described_record, note_values, slice_of
 from ptmcad.question.config.scalars import AXIS_NAME, check_axis_name, number_of, number_text
-from ptmcad.question.shipped import A_SWEEP, FIRST, RecordSource, record_tree
+from ptmcad.question.shipped import A_SWEEP, FIRST, RecordSource
 from ptmcad.question.slice import Slice
 from ptmcad.text.codec import Codec, part, reading, record
 from ptmcad.text.entry import Sequence, Tree
@@ -126,24 +125,13 @@ def with_values(record: Record, values: Mapping[str, Fraction]) -> Record:
     return with_numbers(record, values, {})._replace(sweep=None, title="", reference={})
 
 
-def load_sweep(path: str | Path) -> Sweeping:
-    """Read a record with a sweep.
-
-    Raises
-    ------
-    ConfigError
-        For anything wrong in it, with file, line and key; its ``faults`` are all there are.
-    """
-    return checked_sweep(record_tree(path))
-
-
 def sweep_from(question: RecordSource | Sweeping) -> Sweeping:
     """The sweep that is meant by a record's file, by a mapping like a record, or by itself.
 
     Raises
     ------
     ConfigError
-        For anything wrong.
+        For anything wrong, with file, line and key; its ``faults`` are all there are.
     """
     if isinstance(question, Sweeping):
         return question

@@ -30,7 +30,7 @@ import sympy as sp
 from ptmcad.answer.poses import Poses
 from ptmcad.ask.solving import solve
 from ptmcad.model import ptm
-from ptmcad.model.evaluate import evaluate
+from ptmcad.model.evaluate import Named, evaluate
 from ptmcad.studies.byhand import on_circle
 from ptmcad.studies.texts import texts_beside
 
@@ -85,9 +85,10 @@ def potential() -> Expr:
     total = sum(
         k / 2 * (square - 2 * l0 * x + l0**2) for x, square in zip(LENGTHS, squares(), strict=True)
     )
-    for element in _MECHANISM.elements_with(_MECHANISM.points).values():
+    placed = Named(_RING, _MECHANISM.coordinates)
+    for element in _MECHANISM.elements.values():
         if element.root is None:  # those that have one are the springs
-            total += sum(evaluate(tree, _RING) for tree in element.energies)
+            total += sum(evaluate(tree, placed) for tree in element.energies)
     return sp.expand(total)
 
 

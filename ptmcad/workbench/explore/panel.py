@@ -13,10 +13,10 @@ from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError, Place, shown
 from ptmcad.model import Kind, Model
-from ptmcad.question.config.binding import bound, member_name
+from ptmcad.question.config.binding import bound, member_name, written_in
 from ptmcad.question.config.familyquestion import family_of
 from ptmcad.question.config.problemrecord import Record
-from ptmcad.question.config.resolution import slice_of, written_in
+from ptmcad.question.config.resolution import slice_of
 from ptmcad.question.config.scalars import number_of
 from ptmcad.question.config.typed import ranges_of
 from ptmcad.question.slice import Slice
