@@ -13,7 +13,7 @@ import yaml
 
 import ptmcad
 from ptmcad.errors import ConfigError
-from ptmcad.model.antiparallelogram import second_bar
+from ptmcad.model.crossed import second_bar
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
 
