@@ -16,6 +16,7 @@ from ptmcad.workbench.designs.designlines import (
     longest,
     measure,
     refined,
+    root_bound,
 )
 
 WINDOW = (fmpq(0), fmpq(1))
@@ -105,3 +106,11 @@ def test_runs_that_are_short_enough_still_count() -> None:
     _, _, state = bounder.over(place, bounder.whole(), fmpq(1), fmpq(1, 10))
     for enough in (fmpq(3, 10), fmpq(1, 2)):
         assert bounder.over(place, state, fmpq(1), enough)[0] == fmpq(3, 8)
+
+
+def test_roots_are_rounded_outwards() -> None:
+    for value in (fmpq(2), fmpq(1, 3), fmpq(9, 4), fmpq(0)):
+        low, high = root_bound(value, 2, up=False), root_bound(value, 2, up=True)
+        assert low**2 <= value <= high**2 and high - low <= fmpq(1, 2**64)
+        assert (low == high) == (value in (fmpq(9, 4), fmpq(0)))
+        assert root_bound(value, 1, up=True) == value
