@@ -36,9 +36,11 @@ from ptmcad.algebra.quotient_algebra import (
     trace_form,
 )
 from ptmcad.algebra.real_roots import (
+    RealRoot,
     disjoint,
     has_root_between,
     isolate,
+    order,
     refine,
     sign_at,
     squarefree_part,
@@ -150,6 +152,18 @@ def test_roots_in_intervals_of_any_length(reach: int, unit: Fraction) -> None:
         assert len(found) == len(inside)
         for root, value in zip(found, inside, strict=True):
             assert to_fraction(root.low) <= value <= to_fraction(root.high)
+
+
+def test_where_numbers_lie_against_a_root() -> None:
+    """Also at the ends of its isolating interval, and where a rational root is not known as such."""
+    (root,) = isolate(fmpz_poly([-2, 0, 1]), fmpq(1), fmpq(2))
+    assert root.low < root.high
+    for number in (fmpq(0), root.low, fmpq(141, 100), fmpq(142, 100), root.high, fmpq(3)):
+        assert order(number, root) == (1 if number * number > 2 else -1)
+    plain = RealRoot(fmpz_poly([-3, 2]), fmpq(1), fmpq(2))
+    assert [order(fmpq(n, 2), plain) for n in (2, 3, 4)] == [-1, 0, 1]
+    known = RealRoot(fmpz_poly([-3, 2]), fmpq(3, 2), fmpq(3, 2))
+    assert [order(fmpq(n, 2), known) for n in (2, 3, 4)] == [-1, 0, 1]
 
 
 def test_roots_at_the_ends_of_the_interval_are_outside() -> None:

@@ -189,6 +189,31 @@ def test_the_table_tells_what_is_open() -> None:
 # --------------------------------------------------------------------------------------------------- what is refused
 
 
+@pytest.mark.parametrize(
+    ("options", "key", "part"),
+    [
+        (
+            {"engine": "exact"},
+            "engine",
+            "an exact map is not computed for springs with a free length",
+        ),
+        ({"engine": "certifed"}, "engine", "did you mean 'certified'?"),
+        ({"tolerance": 0}, "tolerance", "0 is not between 0 and 1"),
+        ({"tolerance": "x"}, "tolerance", "unknown name 'x'"),
+        ({"tolerance": float("nan")}, "tolerance", "is not a number"),
+        ({"area_tolerance": "1e-3"}, "area_tolerance", "give tolerance instead"),
+        ({"without": frozenset(("axis-order",))}, "without", "a saving of the exact engine"),
+        ({"count": "most"}, "count", "most"),
+    ],
+    ids=str,
+)
+def test_options_that_do_not_fit_are_refused(options: dict[str, Any], key: str, part: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        ptmcad.classify(free_slice(), **options)
+    assert caught.value.key == key
+    assert part in caught.value.message
+
+
 @pytest.mark.parametrize("engine", ["auto", "exact", "certified"])
 def test_admissible_asks_for_free_lengths(engine: str) -> None:
     slice = ptmcad.slice_from_options(slice="L2,rho")
