@@ -27,8 +27,13 @@ import numpy as np
 
 from ptmcad.verification.certified import freearea
 from ptmcad.verification.certified.freearea import MAX_EFFORT, check_free_area, pieces_of
+from ptmcad.verification.exclusion import running
+from ptmcad.verification.exclusion.boxsearch import look
+from ptmcad.verification.exclusion.criticalsystems import systems_of
 from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate, tape_of
 from ptmcad.verification.exclusion.holding import holds
+from ptmcad.verification.exclusion.pieces import no_pieces
+from ptmcad.verification.exclusion.running import search
 from ptmcad.verification.normalform.operations import MAX_VARIABLES, Formulas
 
 ZEEMAN: dict[str, Any] = {
@@ -272,6 +277,58 @@ def test_a_shortened_tape_has_the_values_of_the_whole_one() -> None:
         for t, found in zip((tape, kept), forms, strict=True):
             evaluate(t, box, found, 0, len(t.code))
         assert np.array_equal(forms[0][places[::3]], forms[1][where])
+
+
+def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    claims = CertifiedClaims(a_map("loop"))
+    system, pieces = systems_of(claims.lattice)[0], no_pieces(claims.sweep.steps)
+
+    def left() -> tuple[int, set[bytes]]:
+        unseen, _, looked = search(system, pieces, system.start[None], 4_000, 2.0**-20)
+        return looked, {box.tobytes() for box in unseen}
+
+    monkeypatch.setattr(running, "LEARNT_FROM", 10**9)
+    all_at_once = left()
+    assert len(all_at_once[1]) > 300
+    monkeypatch.setattr(running, "LEARNT_FROM", 0)
+    monkeypatch.setattr(running, "WORTH", 0.0)
+    assert left() == all_at_once
+
+
+def test_formulas_that_exclude_nothing_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search looks at hardly more boxes then, and evaluates much less; what it leaves for good
+    was tried by all.
+    """
+    claims = CertifiedClaims(a_map("loop"))
+    system, pieces, tapes = (
+        systems_of(claims.lattice)[0],
+        no_pieces(claims.sweep.steps),
+        list[int](),
+    )
+    tried_by_all = set[bytes]()
+
+    def watched(*arguments: Any) -> None:
+        look(*arguments)
+        tapes.append(len(arguments[1].code))
+        if tapes[-1] == len(system.tape.code):
+            tried_by_all.update(box.tobytes() for box in arguments[3])
+
+    def done() -> tuple[Any, Any, int]:
+        return search(system, pieces, system.start[None], 50_000, 2.0**-6)
+
+    found = done()
+    monkeypatch.setattr(running, "LEARNT_FROM", 10**9)
+    by_all = done()
+    assert len(found[0]) == 0 == len(by_all[0])
+    assert found[2] < 1.2 * by_all[2]
+    monkeypatch.undo()
+    monkeypatch.setattr(running, "look", watched)
+    left = {box.tobytes() for box in done()[1]}
+    assert len(left) > 100
+    assert left <= tried_by_all
+    assert min(tapes) < max(tapes) == len(system.tape.code)
 
 
 @pytest.mark.parametrize("drawn", [1_000, pytest.param(20_000, marks=pytest.mark.slow)])
