@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import product
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.verification.coordinates import CoordinateRing, circle_names, evaluated
-from ptmcad.verification.derivation import Derivation, derivation_of
+from ptmcad.verification.derivation import Derivation, SpringVector, derivation_of
 from ptmcad.verification.kinds import has_margins
 from ptmcad.verification.normalform.springlines import SpringLine, Vanishes, line_of
 
@@ -264,16 +264,14 @@ def _form(model: Model, values: tuple[tuple[str, Expression], ...], count: Count
         tuple(stability),
         tuple(multiples),
         closing,
-        tuple(_margins(ring, true)) if has_margins(count) else (),
+        tuple(map(partial(_margin, ring), true.springs)) if has_margins(count) else (),
     )
 
 
-def _margins(ring: _Exponentials, true: Derivation) -> Iterable[SpringMargin]:
-    nothing = ring.numbers.constant(0)
-    for spring in true.springs:
-        free = next(iter(ring.waves(spring.free).values()), nothing)
-        value = ring.waves(spring.squared - spring.free**2)
-        yield SpringMargin(value, ring.vector(spring.vector), free)
+def _margin(ring: _Exponentials, spring: SpringVector) -> SpringMargin:
+    free = next(iter(ring.waves(spring.free).values()), ring.numbers.constant(0))
+    value = ring.waves(spring.squared - spring.free**2)
+    return SpringMargin(value, ring.vector(spring.vector), free)
 
 
 def _divided(f: Waves, inequalities: Iterable[Waves]) -> Waves:
