@@ -28,8 +28,12 @@ import numpy as np
 
 from ptmcad.verification.certified import freearea
 from ptmcad.verification.certified.freearea import MAX_EFFORT, check_free_area, pieces_of
+from ptmcad.verification.exclusion import running
+from ptmcad.verification.exclusion.criticalsystems import systems_of
 from ptmcad.verification.exclusion.forms import CENTER, ERROR, HIGH, LOW, WIDTH, evaluate, tape_of
 from ptmcad.verification.exclusion.holding import holds
+from ptmcad.verification.exclusion.pieces import no_pieces
+from ptmcad.verification.exclusion.running import search
 from ptmcad.verification.normalform.operations import MAX_VARIABLES, Formulas
 
 ZEEMAN: dict[str, Any] = yaml.safe_load("""
@@ -205,6 +209,24 @@ def test_affine_forms_hold_the_values() -> None:
             assert abs(value - wide[CENTER] - wide[:MAX_VARIABLES] @ e) <= wide[ERROR] + lost
             checked += 1
     assert checked > 1000
+
+
+def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    claims = CertifiedClaims(a_map("loop"))
+    system, pieces = systems_of(claims.lattice)[0], no_pieces(claims.sweep.steps)
+
+    def left() -> tuple[int, set[bytes]]:
+        unseen, _, looked = search(system, pieces, system.start[None], 4_000, 2.0**-20)
+        return looked, {box.tobytes() for box in unseen}
+
+    monkeypatch.setattr(running, "LEARNT_FROM", 10**9)
+    all_at_once = left()
+    assert len(all_at_once[1]) > 300
+    monkeypatch.setattr(running, "LEARNT_FROM", 0)
+    monkeypatch.setattr(running, "WORTH", 0.0)
+    assert left() == all_at_once
 
 
 @pytest.mark.parametrize("drawn", [1_000, pytest.param(20_000, marks=pytest.mark.slow)])

@@ -42,7 +42,9 @@ _MIN_SHARE = 0.1
 
 
 @compiled
-def look(system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any) -> None:
+def look(
+    system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any, told: Any
+) -> None:
     """Treat boxes one by one.
 
     Parameters
@@ -51,11 +53,13 @@ def look(system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: An
     boxes : (number, variables, 2), made smaller; outcome : (number,), as above.
     rest : (number, variables, 2), the second halves of those that are `HALVED`; `boxes` has the
         first ones.
+    told : (formulas), those that are zero and then those that are not negative: how many boxes each
+        of them has excluded is added.
     """
     forms, rows, solved_for = _room(system, tape, boxes.shape[1])
     for n in range(len(boxes)):
         box = boxes[n]
-        outcome[n] = _look_at(system, tape, pieces, box, forms, rows, solved_for)
+        outcome[n] = _look_at(system, tape, pieces, box, forms, rows, solved_for, told)
         if outcome[n] == HALVED:
             k, half = _halving(system, forms, box)
             if k < 0:
@@ -103,6 +107,7 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
     """
     most, nv = boxes.shape[0], boxes.shape[1]
     forms, rows, solved_for = _room(system, tape, nv)
+    told = np.zeros(len(rows))
     box, stuck, waiting = (
         np.empty((nv, 2)),
         0,
@@ -113,7 +118,7 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
             break
         waiting -= 1
         box[:] = boxes[stuck + waiting]
-        outcome = _look_at(system, tape, pieces, box, forms, rows, solved_for)
+        outcome = _look_at(system, tape, pieces, box, forms, rows, solved_for, told)
         if outcome == GONE:
             continue
         k, half = _halving(system, forms, box) if outcome == HALVED else (-1, 0.0)
@@ -131,17 +136,22 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
 
 @compiled
 def _look_at(
-    system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: Any, solved_for: Any
+    system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: Any, solved_for: Any, told: Any
 ) -> int:
     """What becomes of one box."""
     nv = box.shape[0]
     before = np.empty((nv, 2))
     for _ in range(_ROUNDS):
         evaluate(tape, box, forms, 0, system.first)
-        if _excludes(system.zero[: system.early], forms, False):
+        if _excluding(system.zero[: system.early], forms, False) >= 0:
             return GONE
         evaluate(tape, box, forms, system.first, len(tape.code))
-        if _excludes(system.zero, forms, False) or _excludes(system.not_negative, forms, True):
+        excluding = _excluding(system.zero, forms, False)
+        if excluding < 0:
+            excluding = _excluding(system.not_negative, forms, True)
+            excluding += len(system.zero) if excluding >= 0 else 0
+        if excluding >= 0:
+            told[excluding] += 1
             return GONE
         before[:] = box
         number = _eliminated(system, forms, nv, rows, solved_for)
@@ -169,12 +179,15 @@ def _look_at(
 
 
 @compiled
-def _excludes(which: Any, forms: Any, above: bool) -> bool:
-    """Whether one of some formulas is not zero, or is negative where it may be ``above``."""
-    for n in which:  # noqa: SIM110 - compiled code has no generators
+def _excluding(which: Any, forms: Any, above: bool) -> int:
+    """The first of some formulas that is not zero, or that is negative where it may be ``above``;
+    -1 where none is.
+    """
+    for k in range(len(which)):
+        n = which[k]
         if forms[n, HIGH] < 0 or (not above and forms[n, LOW] > 0):
-            return True
-    return False
+            return k
+    return -1
 
 
 @compiled

@@ -64,11 +64,15 @@ class CriticalSystem:
 
     Attributes
     ----------
-    tape : its formulas, with the values of ``zero`` and ``not_negative``.
+    formulas : which those of ``zeros`` and ``signs`` are of, and which the tape has at ``zero`` and
+        ``not_negative``.
     early, first : as above; start : (variables, 2), a box that has all solutions over the window.
     """
 
     name: str
+    formulas: Formulas
+    zeros: tuple[int, ...]
+    signs: tuple[int, ...]
     tape: IntervalTape
     zero: tuple[int, ...]
     not_negative: tuple[int, ...]
@@ -87,6 +91,24 @@ class CriticalSystem:
         """How many of the formulas that are zero tell what is halved; over a place one less."""
         return len(self.start) - 1
 
+    def with_some(self, chosen: Any) -> CriticalSystem:
+        """The same without some of its formulas, of which none is claimed then.
+
+        Parameters
+        ----------
+        chosen : for each formula that is zero, and then for each that is not negative, whether it
+            is kept; the first ones are.
+        """
+        chosen = chosen | (np.arange(len(chosen)) < max(self.early, self.measured))
+        zeros, signs = (
+            [n for n, kept in zip(some, which, strict=True) if kept]
+            for some, which in (
+                (self.zeros, chosen[: len(self.zeros)]),
+                (self.signs, chosen[len(self.zeros) :]),
+            )
+        )
+        return _of_formulas(self.name, self.formulas, zeros, signs, self.early, self.start)
+
     def compiled(self, smallest: float, over_place: bool = False) -> Compiled:
         """In arrays, to be looked at over boxes of the window that are wider than a share of it.
 
@@ -104,6 +126,22 @@ class CriticalSystem:
         return Compiled(
             zero, not_negative, measured, self.early, self.first, units, least, 2 * over_place
         )
+
+
+def _of_formulas(
+    name: str,
+    formulas: Formulas,
+    zeros: Sequence[int],
+    signs: Sequence[int],
+    early: int,
+    start: Any,
+) -> CriticalSystem:
+    """That of some formulas, of which the first ones are evaluated before all others."""
+    tape, first, places = tape_of(formulas, zeros[:early], [*zeros[early:], *signs])
+    zero, not_negative = places[: len(zeros)], places[len(zeros) :]
+    return CriticalSystem(
+        name, formulas, (*zeros,), (*signs,), tape, (*zero,), (*not_negative,), early, first, start
+    )
 
 
 _ANGLE = (-pi - 1e-6, pi + 1e-6)
@@ -378,14 +416,11 @@ class _Systems:
             ranges += [(-half, half) for half in self._halves] + [_ANGLE] * (
                 number - self.form.size
             )
-        zeros = [*first, *zero]
-        tape, count, places = tape_of(self.model.list, first, [*zero, *not_negative])
-        return CriticalSystem(
+        return _of_formulas(
             name + self.where,
-            tape,
-            (*places[: len(zeros)],),
-            (*places[len(zeros) :],),
+            self.model.list,
+            [*first, *zero],
+            not_negative,
             len(first),
-            count,
             np.array(ranges),
         )

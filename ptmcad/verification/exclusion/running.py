@@ -19,6 +19,12 @@ MAX_WAITING = 1_000_000
 """Boxes: with more of them the youngest are looked at first."""
 AT_ONCE = 16_384
 GRID = 512
+LEARNT_FROM, SAMPLE = 1024, 16
+"""Boxes over which all formulas are evaluated; and one of so many of the others ..."""
+FORGETTING = 0.5
+"""... of which the older ones count less, generation by generation."""
+WORTH = 0.01
+"""Share of the boxes that any formula excludes: those that exclude fewer are left out."""
 
 
 def search(
@@ -43,7 +49,7 @@ def search(
     The boxes that were not looked at, those that were not halved any more, and how many were looked
     at.
     """
-    compiled = system.compiled(smallest)
+    choice = _Choice(system, pieces, smallest)
     waiting, stuck, looked, number = [start.copy()], [start[:0]], 0, len(start)
     whole, gone = float(_volumes(start).sum()), 0.0
     while waiting:
@@ -54,8 +60,7 @@ def search(
         for k in range(0, len(boxes), AT_ONCE):
             some = boxes[k : k + AT_ONCE]
             before = _volumes(some)
-            outcome, other = np.full(len(some), GONE), np.empty_like(some)
-            look(compiled, system.tape, pieces, some, outcome, other)
+            some, outcome, other = choice.look(some)
             halved = outcome == HALVED
             children = np.concatenate([some[halved], other[halved]])
             stuck.append(some[outcome == STUCK].copy())
@@ -65,6 +70,53 @@ def search(
                 waiting.append(children)
             report(gone / whole if whole else 1.0)
     return np.concatenate([start[:0], *waiting]), np.concatenate(stuck), looked
+
+
+class _Choice:
+    """A system with those of its formulas that have lately excluded boxes: most of them hardly ever
+    do.
+
+    All of them are evaluated over the first boxes, over some of all others, which tells what is
+    worth it, and over those that would not be halved any more.
+    """
+
+    def __init__(self, system: CriticalSystem, pieces: Pieces, smallest: float):
+        self._all, self._pieces, self._smallest = system, pieces, smallest
+        self._some, self._chosen = (
+            system,
+            np.ones(len(system.zero) + len(system.not_negative), dtype=bool),
+        )
+        self._told, self._looked = np.zeros(len(self._chosen)), 0
+
+    def look(self, boxes: Any) -> tuple[Any, Any, Any]:
+        """Boxes in another order, what becomes of them, and the second halves, as `search.look` has
+        them.
+        """
+        parts = 1 if self._looked < LEARNT_FROM else SAMPLE
+        boxes = boxes[np.argsort(np.arange(len(boxes)) % parts, kind="stable")]
+        outcome, other = np.full(len(boxes), GONE), np.empty_like(boxes)
+        tried = -(-len(boxes) // parts)
+        self._told *= FORGETTING
+        self._look(self._all, boxes[:tried], outcome[:tried], other[:tried], self._told)
+        self._look(self._some, boxes[tried:], outcome[tried:], other[tried:])
+        small = tried + np.flatnonzero(outcome[tried:] == STUCK)
+        left, anew = boxes[small], outcome[small]
+        self._look(self._all, left, anew, other[small])
+        boxes[small], outcome[small] = left, anew
+        self._looked += len(boxes)
+        chosen = self._told >= WORTH * self._told.sum()
+        if self._looked >= LEARNT_FROM and (chosen != self._chosen).any():
+            self._chosen, self._some = chosen, self._all.with_some(chosen)
+        return boxes, outcome, other
+
+    def _look(
+        self, system: CriticalSystem, boxes: Any, outcome: Any, other: Any, told: Any = None
+    ) -> None:
+        if told is None:
+            told = np.zeros(len(system.zero) + len(system.not_negative))
+        look(
+            system.compiled(self._smallest), system.tape, self._pieces, boxes, outcome, other, told
+        )
 
 
 def _volumes(boxes: Any) -> Any:
