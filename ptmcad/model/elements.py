@@ -151,8 +151,7 @@ class Part(NamedTuple):
 
 
 class Element(NamedTuple):
-    """What a traversal of a description needs of one of its elements, the points' coordinates being
-    names, ``P.x`` and ``P.y``.
+    """What a traversal of a description needs of an element; coordinates are names, ``P.x``.
 
     Attributes
     ----------
@@ -296,19 +295,16 @@ class Load(NamedTuple):
     @property
     def element(self) -> Element:
         """For traversals."""
-        forces = self.x, self.y
+        x, y = NAMES[self.point]
         return Element(
-            tuple(Part(key, Kind.FORCE, force) for key, force in zip("12", forces, strict=True)),
-            tuple(
-                negative(product(f, place))
-                for f, place in zip(forces, NAMES[self.point], strict=True)
-            ),
+            (Part("1", Kind.FORCE, self.x), Part("2", Kind.FORCE, self.y)),
+            (negative(product(self.x, x)), negative(product(self.y, y))),
         )
 
     def text(self, points: Mapping[str, Place]) -> str:
         """What its work takes off the energy, as problem records write it."""
-        pairs = zip((self.x, self.y), points[self.point], strict=True)
-        return "".join(f" - {factor(force)}*{factor(coordinate)}" for force, coordinate in pairs)
+        x, y = map(factor, points[self.point])
+        return f" - {factor(self.x)}*{x} - {factor(self.y)}*{y}"
 
 
 class Moment(NamedTuple):
@@ -319,9 +315,7 @@ class Moment(NamedTuple):
 
     @property
     def element(self) -> Element:
-        """For traversals; its work is no energy, or one that takes integration
-        (`ptmcad.model.work`).
-        """
+        """For traversals; its work is in no energy that is written (`ptmcad.model.work`)."""
         return Element((Part("", Kind.NUMBER, self.value),))
 
 
