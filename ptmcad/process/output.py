@@ -26,6 +26,7 @@ import fcntl
 import json
 import math
 import os
+import stat
 import time
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -168,8 +169,12 @@ def _check_kinds(targets: Iterable[Path]) -> None:
         With the path and what is there.
     """
     for target in targets:
-        if os.path.exists(target) and not os.path.isfile(target):
-            kind = "a folder" if os.path.isdir(target) else "no regular file"
+        try:
+            mode = os.stat(target).st_mode  # once: another run may move it in between
+        except (OSError, ValueError):
+            continue
+        if not stat.S_ISREG(mode):
+            kind = "a folder" if stat.S_ISDIR(mode) else "no regular file"
             raise OutputError(
                 f"{target} is {kind}, so no file can be written there; choose another --out"
             )
