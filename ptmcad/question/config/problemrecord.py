@@ -158,7 +158,6 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
     ----------
     model : what the record is about; it has been read.
     """
-    unread = reading(lambda node: None)
     unit = reading(_unit, type="string", minLength=1, maxLength=MAX_UNIT)
     units = {
         "type": "object",
@@ -180,18 +179,12 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
         title=part(
             reading(title_in, type="string", maxLength=MAX_TITLE), "The picture's title.", ""
         ),
-        notes=part(
-            unread.narrowed(type="string"), "Free text for the reader of the record.", None
-        )._replace(made=False),
-        mechanism=part(
-            unread,
+        notes=_elsewhere("Free text for the reader of the record.", type="string"),
+        mechanism=_elsewhere(
             "A built-in mechanism's name, a file below the record's folder that describes one, or a description.",
-            None,
             shown=ptm().name,
-        )._replace(made=False),
-        system=part(unread, "Another parametric system, in place of a mechanism.", None)._replace(
-            made=False
         ),
+        system=_elsewhere("Another parametric system, in place of a mechanism."),
         parameters=part(
             reading(
                 lambda node: _values(node, model),
@@ -214,6 +207,12 @@ def record_codec(model: Model | None) -> Codec[dict[str, Any]]:
             {},
         ),
     )
+
+
+def _elsewhere(help: str, shown: object = ..., **schema: Any) -> Key:
+    """A key that is read elsewhere, or by nobody."""
+    unread = reading(lambda node: None, **schema)
+    return part(unread, help, None, shown=shown)._replace(made=False)
 
 
 def _question() -> dict[str, Key]:
