@@ -23,7 +23,6 @@ from ptmcad.cli.range import command
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, slice_from_options
 from ptmcad.show.ranges.linetable import table
-from ptmcad.show.render.landscape import energy_of
 
 SCHEMA = json.loads(
     (Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8")
@@ -246,11 +245,6 @@ def test_range_on_the_command_line(tmp_path: Path) -> None:
     drawn = [*options, "--format", "svg", "--out", str(tmp_path), "--name", "x"]
     assert CliRunner().invoke(command, drawn).exit_code == 0
     assert (tmp_path / "x.svg").exists()
-
-
-def test_energy_has_no_free_length_unless_asked_for() -> None:
-    plain = solve(rho=Q(1), L2=Q(3, 2))
-    assert energy_of(plain.model, plain.parameters).roots == ()
 
 
 def test_a_free_length_of_zero_beside_one_that_is_a_number() -> None:

@@ -11,7 +11,6 @@ import pytest
 from flint import arb, ctx, fmpq, fmpq_poly, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from ptmcad.verification.sturm import roots_between
 from support.examples import examples
 
 import ptmcad
@@ -21,6 +20,7 @@ from ptmcad.algebra.real_roots import RealRoot, isolate
 from ptmcad.answer.regionmap import Status
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.verification.rootcounts import roots_between
 
 
 def polynomial(roots: list[Fraction]) -> fmpz_poly:

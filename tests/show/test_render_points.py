@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 
 import pytest
@@ -11,17 +12,19 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.lines import Line2D
-from ptmcad.show.render.leaders import Berth, meet, routed
+from matplotlib.path import Path as Course
+from matplotlib.text import Text
 from support.maps import shipped
 
 from ptmcad.cli import run
 from ptmcad.cli.plot import measured, places, poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.around import draw_around
+from ptmcad.show.render.labels import Stroke, crosses
 from ptmcad.show.render.mappicture import MapDrawing
 from ptmcad.show.render.overlay import Agreement
 from ptmcad.show.render.printing import settings
-from ptmcad.show.style import MIN_FONT, PictureStyle, styled
+from ptmcad.show.style import MIN_FONT, PAGE_HEIGHT, PictureStyle, styled
 
 AT = ("rho=1,L2=3/2", "rho=3/2,L2=1/2", "rho=0.1,L2=1.8", "rho=1/4,L2=1/4")
 
@@ -82,19 +85,65 @@ def test_poses_without_room_are_refused_with_the_least_width(
     assert imread(tmp_path / "fig4.png").shape[:2] == (600, 840)
 
 
-def test_lines_are_untangled_by_the_order_beside_the_map() -> None:
-    targets = [(1.0, 3.0), (3.0, 2.9), (2.0, 1.0)]
+@pytest.mark.slow
+def test_poses_that_are_too_tall_are_refused_by_the_option_with_a_size_that_does(
+    stored: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    points = [word for text in AT[:2] for word in ("--at", text)]
+    assert run(["plot", stored, "--style", "beamer", *points]) == 2
+    said = capsys.readouterr().err
+    assert re.search(
+        r"error: --size: poses at 2 points need a height of [\d.]+ inches, and there are 2.76", said
+    )
+    (size,) = re.findall(r"such as ([\d.]+x[\d.]+in)", said)
+    assert run(["plot", stored, "--style", "beamer", "--size", size, "--dpi", "50", *points]) == 0
 
-    def berths(order: tuple[int, ...]) -> list[Berth]:
-        return [Berth(0.0, 2.4 - k, 2.6 - k, 0.1) for k in range(len(order))]
 
-    order, courses = routed(targets, berths, [(0.2, 0.4, 0.4, 2.2)], (0.0, 3.0))
-    assert order == (0, 1, 2)
-    assert not any(meet(a, b) for a, b in combinations(courses, 2))
-    swapped, _ = routed([targets[1], targets[0]], berths, [], (0.0, 3.0))
-    assert swapped == (1, 0)
-    # the box before the lower two is passed above, which takes a bend
-    assert len(courses[2]) == 3
+def test_in_a_journals_style_poses_are_as_wide_as_two_columns(
+    stored: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    points = [word for text in ("rho=1,L2=3/2", "rho=1/2,L2=1/2", "rho=3/2,L2=1/2", "rho=1/2,L2=7/4")
+              for word in ("--at", text)]  # fmt: skip
+    assert run(["plot", stored, *points, "--style", "ieee", "--dpi", "100"]) == 0
+    assert "over two columns, 7.16 inches wide" in capsys.readouterr().err
+    high, wide = imread(tmp_path / "fig4.png").shape[:2]
+    assert wide == 716 and 400 < high <= 100 * PAGE_HEIGHT
+
+
+@pytest.mark.slow
+def test_lines_to_points_do_not_cross_and_hardly_cover_text() -> None:
+    # for points in a row from above, straight lines from blocks beside them cross; and some lie
+    # beside the legend
+    texts = (
+        "rho=1,L2=3/2",
+        "rho=3/2,L2=1/2",
+        "rho=1/2,L2=1/2",
+        "rho=1/2,L2=7/4",
+        "rho=7/4,L2=7/4",
+        "rho=4/5,L2=1",
+    )
+    made = around(texts, styled())
+    leaders = {
+        a.get_gid(): a for a in made.findobj(Line2D) if str(a.get_gid()).startswith("leader-")
+    }
+    courses = [tuple(zip(*leader.get_data(), strict=True)) for leader in leaders.values()]
+    assert len(courses) == len(texts)
+    lines = [Course(course) for course in courses]
+    assert not any(a.intersects_path(b, filled=False) for a, b in combinations(lines, 2))
+    renderer = made.canvas.get_renderer()  # type: ignore[attr-defined]
+    said = [text for text in made.findobj(Text) if text.get_text().strip() and text.get_visible()]
+    boxes = [
+        text.get_window_extent(renderer)
+        for text in said
+        if text.axes is None or text.axes.get_gid() == "map"
+    ]
+    strokes = [Stroke(*pair, 0.0) for course in courses for pair in pairwise(course)]
+    covering = [
+        s
+        for s in strokes
+        if any(crosses(s, tuple(v / made.dpi for v in (b.x0, b.y0, b.x1, b.y1))) for b in boxes)
+    ]
+    assert len(covering) <= 1
 
 
 @pytest.mark.parametrize(

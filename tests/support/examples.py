@@ -16,4 +16,4 @@ FEW = 12
 
 def examples(number: int) -> int:
     """A test's own number, less in the fast profile by as much as that of a test without one."""
-    return number * settings().max_examples // ALL
+    return max(1, number * settings().max_examples // ALL)

@@ -88,7 +88,7 @@ def at_random(claims: CertifiedClaims, rng: random.Random) -> tuple[Fraction, Fr
 
 
 @pytest.mark.parametrize(("name", "count"), CASES)
-@pytest.mark.fast_cases("truss-index", "apart-index", "sliding-index")
+@pytest.mark.fast_cases("truss-index", "sliding-index")
 def test_places_over_a_box_have_those_over_its_points(name: str, count: str) -> None:
     claims, rng, told = CertifiedClaims(a_map(name, count)), random.Random(name), 0
     found, counting = SolutionPlaces(claims.lattice), claims.counting
