@@ -60,7 +60,7 @@ def test_poses_agree_with_the_energy_written_out_again(number: int) -> None:
     seen = dense_search(values, 60)
     assert (seen["total"], seen["stable"]) == (len(poses.equilibria), poses.stable)
     assert seen["admissible"] == sum(pose.admissible is True for pose in poses.equilibria)
-    energy = energy_of(poses.model, poses.parameters)
+    energy = Energy(poses.model, poses.parameters)
     for pose in poses.equilibria:
         a, b = (np.array([float(x.center)]) for x in pose.angles)
         g1, g2, h11, h12, h22, lengths = derivatives(values, a, b)
