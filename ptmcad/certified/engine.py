@@ -292,13 +292,17 @@ class _MapSearch:
         pieces = max(self.boxes(), len(cover.rectangles))
         return SAFETY * (self.pace.map.of(pieces) + self.pace.text.of(pieces)) < self.pace.left()
 
-    def _late(self) -> bool:
-        """Whether the search has to end for the last map; between its tasks maps are handed over. A
-        process that is to leave ends here.
+    def _must_end(self, boxes: int) -> bool:
+        """Whether the search has to end for the last map of so many boxes; a process that is to
+        leave ends here.
         """
         leave_if_asked()
+        return self.pace.late(boxes)
+
+    def _late(self) -> bool:
+        """Whether the search has to end for the last map; between its tasks maps are handed over."""
         boxes = self.boxes()
-        if self.pace.late(boxes):
+        if self._must_end(boxes):
             self._thinned = None
             return True
         if self.options.partial is not None and self.pace.due(boxes):

@@ -161,14 +161,16 @@ def test_bars_that_turn_by_one_angle_leave_the_base_only() -> None:
     assert free.factor == axis(0)
 
 
-def test_determinants_by_turning_hold_at_equilibria() -> None:
+def test_determinants_by_turning_and_levelled_hold_at_equilibria() -> None:
     _, at = charts(PLAIN_PTM)
     (by_turning,) = at.determinants_by_turning()
     for point in equilibria(at, 4):
         determinant = np.linalg.det(matrix(at, point))
-        _, second = values(at.scales, point)
-        (found,) = values(_open([by_turning]), point)
-        assert found == pytest.approx(determinant * second, rel=1e-4, abs=1e-4)
+        lengths, (_, second) = values(at.lengths, point), values(at.scales, point)
+        found = values(_open([by_turning, at.levelled()]), point)
+        assert found == pytest.approx(
+            [determinant * second, determinant * lengths.prod()], rel=1e-4, abs=1e-4
+        )
 
 
 def test_a_matrix_that_is_not_symmetric_has_no_determinant_by_turning() -> None:

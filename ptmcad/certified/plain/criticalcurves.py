@@ -200,6 +200,7 @@ def _dependent(search: CurveSearch, at: SpringChart) -> tuple[Sequence[Formula],
         *at.balances,
         *([at.determinant(at_equilibrium=True)] if at.cones else []),
         *at.determinants_by_turning(),
+        *([at.levelled()] if at.cones and not search.stable else []),
     )
 
 

@@ -117,6 +117,13 @@ class SpringChart:
         unit = bends[self.short]._replace(factor=self.equations[0].graph.constant(1))
         return chosen.extent * whole - chosen.pull * bent(rigid, others, self.scales, by=unit)
 
+    def levelled(self) -> Formula:
+        """The determinant times the lengths of all springs, where the equations vanish: finite
+        everywhere.
+        """
+        bends = [Bent(at.pull, there, at) for at, there in zip(self.cones, self.there, strict=True)]
+        return bent(self.rigid(), bends, self.scales, extents=[at.extent for at in self.cones])
+
     def determinants_by_turning(self) -> Iterator[Formula]:
         """Of two unknowns: the determinant by one of them and both turned, where the equations
         vanish.
@@ -287,6 +294,7 @@ def bent(
     bends: Sequence[Bent],
     scales: Sequence[Formula],
     by: Bent | None = None,
+    extents: Sequence[Formula] | None = None,
 ) -> Formula:
     """det(M - sum of factor_s v_s (g v_s)^T), g being the scales.
 
@@ -301,13 +309,13 @@ def bent(
     """
     size = len(matrix)
     entries = [list(row) for row in matrix]
-    for bend in bends:
+    for bend in bends if extents is None else ():
         if len(bend.spring.active) == 1:
             (i,) = bend.spring.active
             row = zip(entries[i], scales, bend.products[i], strict=True)
             entries[i] = [m - bend.factor * (g * p) for m, g, p in row]
     rigid = tuple(map(tuple, entries))
-    shared = [bend for bend in bends if len(bend.spring.active) > 1]
+    shared = [bend for bend in bends if len(bend.spring.active) > 1 or extents is not None]
     total = matrix[0][0].graph.constant(0)
     orders = range(size + 1) if by is None else range(size)
     for order in orders:
@@ -316,6 +324,10 @@ def bent(
             factor = matrix[0][0].graph.constant(1)
             for bend in among:
                 factor = factor * bend.factor
+            if extents is not None:
+                for bend, extent in zip(bends, extents, strict=True):
+                    if bend not in chosen:
+                        factor = factor * extent
             part = factor * _complement(rigid, among, scales)
             total = total + part if order % 2 == 0 else total - part
     return total

@@ -110,7 +110,7 @@ def _fixed(exact: FactoredProblem, frame: MirrorFrame) -> Iterator[SymmetricFold
             else "a minimum meets a saddle, and both are their own images",
             at,
             (*balance, zero),
-            ((), (known,)),
+            ((), (known, at.levelled())),
             (
                 *(() if parting else across),
                 *principal_minors(frame.block(there, block, at.scales, over=True)),
