@@ -267,9 +267,8 @@ def test_what_algebra_alone_answers_is_refused_in_one_line(
         exact_map,
         ptmcad.slice_variety,
         lambda slice: strips(slice, "rho"),
-        lambda slice: ptmcad.operation_widths(slice, "rho"),
     ],
-    ids=["exact map", "variety", "strips", "widths"],
+    ids=["exact map", "variety", "strips"],
 )
 def test_no_function_of_the_exact_engine_leaves_free_lengths_out(
     ask: Callable[[Slice], object],

@@ -88,7 +88,7 @@ def test_what_is_met_on_a_line_is_named_as_the_record_names_it(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     out = said(record, tmp_path, capsys, "range", "--along", line[0], "--at", line[1])
-    met = out.partition("what is met\n")[2].splitlines()
+    met = out.partition("what is met\n")[2].partition("\n\n")[0].splitlines()
     assert {re.split("  +", row)[1] for row in met} == words
 
 
