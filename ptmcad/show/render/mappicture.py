@@ -300,7 +300,7 @@ def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
     found = []
     lost, drawn = len(seen.views) + seen.unnamed, len(layout.insets)
     if lost > drawn and not drawn:
-        found.append(f"{several(lost, 'zoomed view')} of parts that are too thin to be seen")
+        found.append(f"{several(lost, 'inset')} of parts that are too thin to be seen")
     if seen.unnamed:
         found.append("labels of such parts, in which unstable ones differ")
     if layout.shortened:
