@@ -1,4 +1,4 @@
-"""Exact region maps of planar tensegrity mechanisms.
+"""Proved region maps of planar mechanisms and parametric systems.
 
 >>> import ptmcad
 >>> result = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))

@@ -38,13 +38,13 @@ COMMANDS = {
     "explore": "ptmcad.cli.explore",
     "init": "ptmcad.cli.init",
     "mechanisms": "ptmcad.cli.mechanisms",
-    "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",
     "map": "ptmcad.cli.map",
     "paper": "ptmcad.cli.paper",
     "plot": "ptmcad.cli.plot",
     "range": "ptmcad.cli.range",
     "report": "ptmcad.cli.report",
+    "solve": "ptmcad.cli.solve",
     "stress": "ptmcad.cli.stress",
     "sweep": "ptmcad.cli.sweep",
     "variety": "ptmcad.cli.variety",
@@ -86,9 +86,10 @@ class _LazyGroup(click.Group):
               callback=lambda context, _parameter, value: _show_version(context, value),
               help="Show the version and exit.")  # fmt: skip
 def group() -> None:
-    """Exact region maps of planar tensegrity mechanisms.
+    """Proved region maps of planar mechanisms and parametric systems.
 
-    Over a 2-D slice of parameters: how many (stable) equilibria, and where does that number change?
+    Over a two-parameter slice, how many equilibria are there, how many of them are stable, and
+    where do these numbers change?
 
     \b
     Examples: the paper's figure 4, its figure 2, a record of your own

@@ -78,14 +78,14 @@ def command(
     """Show the mechanism moving along a path of parameters, and where it snaps.
 
     CONFIG is a problem record, or a stored result of `ptmcad classify`. The map is at the left, with the point that
-    moves; at the right the mechanism, and below the energy of its pose. Each picture is an equilibrium, one of as many
-    as the exact map counts there; where the pose vanishes, the pictures show the way down to the next one by steepest
+    moves; at the right the mechanism, and below the energy of its pose. Each frame shows an equilibrium, one of as many
+    as the exact map counts there. Where the pose vanishes, the frames show the way down to the next one by steepest
     descent, and say so.
 
     \b
     Examples:
-        ptmcad animate --slice rho,L2 --set F3=-10 --set F4=-10 --path rho=3/4:6/5,L2=3/2 --pose stable:2 --frames 40
-        ptmcad animate --slice L2,rho --path L2=3/2:2/3:3/2,rho=1 --fps 10 --size 8x5in --frames 30
+        ptmcad animate fig4 --path rho=3/4:6/5,L2=3/2 --pose stable:2
+        ptmcad animate --slice L2,rho --path L2=3/2:2/3:3/2,rho=1 --fps 10
     """
     if "mp4" in formats:
         require_ffmpeg()  # where it is missing, that is said before anything is computed
@@ -117,7 +117,7 @@ def summary(motion: Motion) -> str:
     still = sum(not step.falling for step in motion.steps)
     counted = "each" if motion.counted == still else f"{motion.counted} of them"
     lines = [
-        f"{motion.pose}: {len(motion.steps)} pictures, {still} of equilibria, {counted} one of as many as are counted "
+        f"{motion.pose}: {len(motion.steps)} frames, {still} of equilibria, {counted} one of as many as are counted "
         "exactly there"
     ]
     lines += [_in_words(motion, fall) for fall in motion.falls]

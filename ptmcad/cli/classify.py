@@ -12,6 +12,7 @@ import click
 
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.timings import with_compilation
+from ptmcad.answer.words import several
 from ptmcad.ask.engines import is_certified
 from ptmcad.cli.commonoptions import (
     Idle,
@@ -302,8 +303,9 @@ def _classify_family(
     single = [kind for kind in output.formats if kind not in (*PICTURES, *MESHES)]
     files = sum(len(names_of("", (kind,))) for kind in single) * len(result.values)
     if files:
+        more = " and so on" if files > 1 else ""
         click.echo(
-            f"          and {files} files of the members, {result.members[0].slice.name} and so on"
+            f"          and {several(files, 'file')} of the members, {result.members[0].slice.name}{more}"
         )
 
 
@@ -382,10 +384,10 @@ def command(
     With a third parameter (--free, or `free:` in the record) there is a map for each of its --members, computed from
     what they have in common: NAME.png shows them side by side, NAME-3d.png one above the other, and NAME.json names the
     files of the members' own maps. --changes says at which values the arrangement of the regions changes: exactly and
-    with proof where algebra can eliminate, else enclosed. --surface draws the surface between regions of different
+    with proof if elimination is feasible, otherwise by enclosures. --surface draws the surface between regions of different
     counts, from exact members between which it is interpolated; --format obj,ply writes it as a mesh.
 
-    Springs with a free length (--set l0=1/5) are the certified engine's: it leaves a part of the window undetermined,
+    Springs with a free length (--set l0=1/5) need the certified engine. It leaves a part of the window undetermined,
     which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the best map so far, from the first level of the
     search on, and says how much of it is undetermined; --resume goes on from there. In its first run on a machine it
     compiles its inner loops, up to a minute that --timeout does not count; `ptmcad warm-up` does so beforehand.
@@ -394,12 +396,12 @@ def command(
     Examples:
         ptmcad classify fig4
         ptmcad classify --slice L2,rho
-        ptmcad classify --slice rho,L2 --range rho=0:2 --range L2=0:2 --set F3=-10 --set F4=-10 --out fig4
-        ptmcad classify --slice rho,F --range rho=0:2 --range F=-10:0 --set F3=F --set F4=F --format json
-        ptmcad classify --slice rho,L2 --set F3=F --set F4=F --free F=-40:0 --members -40,-20,-10,-1
-        ptmcad classify --slice rho,L2 --set F3=F --set F4=2*F --free F=-40:0 --changes --members between
-        ptmcad classify --slice rho,L2 --set F3=F --set F4=F --free F=-40:0 --surface --format json,png,ply
-        ptmcad classify --slice rho,L2 --range rho=1/20:2 --range L2=0:2 --set l0=1/5 --set F3=-10 --set F4=-10
+        ptmcad classify --slice rho,L2 --set F3=-10 --set F4=-10 --out loaded
+        ptmcad classify --slice rho,F --range F=-10:0 --set F3=F --set F4=F
+        ptmcad classify fig4 --set F3=F --set F4=F --free F=-40:0 --members 5
+        ptmcad classify fig4 --set F3=F --set F4=2*F --free F=-40:0 --changes
+        ptmcad classify equal-loads --surface --format json,png,ply
+        ptmcad classify free02 --tolerance 1/50
     """
     slice = question_asked(asked, count, third)
     options = replace(options, timeout=limits.timeout)

@@ -99,9 +99,9 @@ def command(
     \b
     Examples:
         ptmcad design fig4 --maximise range --along rho --over L2=1/3:5/3
-        ptmcad design fig4 --over L1=1/2:2 --over L2=1/2:2 --condition 'L1+L2<=2' --format json,png
+        ptmcad design fig4 --over L1=1/2:2 --over L2=1/2:2 --condition 'L1+L2<=2'
         ptmcad design fig4 --maximise area --over L1=1/2:1 --tolerance 1/10
-        ptmcad design fig4 --maximise barrier --pose stable:2 --over rho=1/4:2 --over L2=1/4:2
+        ptmcad design fig4 --maximise barrier --over rho=1/4:2 --over L2=1/4:2
     """
     question = design_from_options(where=where, **asked)
     stem = question.name if name is None else file_name(name, "--name")

@@ -270,7 +270,7 @@ def style_options(command: F) -> F:
     command = gathered(style=(STYLE, style_of))(command)
     for option in (
         click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
-                     help="Resolution of a PNG; regions of a map that it hides are shown zoomed, in every format."),
+                     help="Resolution of a PNG; regions of a map that are too thin for it get insets, in every format."),
         click.option("--thin-lines", type=click.Choice(LINES),
                      help="Curves of the variety where the count does not change.  [default: solid]"),
         click.option("--line-width", metavar="PT", help="Width of curves where the count changes, in points."),

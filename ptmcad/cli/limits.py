@@ -103,8 +103,8 @@ def limit_options(command: F) -> F:
                                 "too little to start with).  "
                                 "[default: 9/10 of the machine's]")(command)  # fmt: skip
     return click.option("--timeout", type=float, callback=reading(seconds_of), metavar="S",
-                        help="Stop after S seconds (exit status 3); loading the certified engine, and compiling it, "
-                             "once for a machine, is no part of them.")(command)  # fmt: skip
+                        help="Stop after S seconds (exit status 3); loading the certified engine, and compiling it "
+                             "once on a machine, are not counted.")(command)  # fmt: skip
 
 
 def report_deadline(timeout: float | None, spent: float = 0.0) -> None:

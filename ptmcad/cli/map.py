@@ -86,8 +86,8 @@ def command(
     \b
     Examples:
         ptmcad map --slice L2,rho --value stiffness --pixels 100
-        ptmcad map --slice rho,L2 --set F3=-10 --set F4=-10 --value barrier --pose stable:2 --pixels 60
-        ptmcad map --slice L2,rho --value length:k1 --pose stable:2 --format png,csv --pixels 50
+        ptmcad map fig4 --value barrier --pose stable:2 --pixels 60
+        ptmcad map --slice L2,rho --value length:k1 --format png,csv --pixels 50
     """
     stored = stored_map(asked)
     slice = _counted(asked, value, pose) if stored is None else stored.slice

@@ -360,7 +360,7 @@ def command(
         ptmcad plot slice-L2-rho.json --format png,svg --dpi 300
         ptmcad plot slice-L2-rho.json --format csv
         ptmcad plot slice-L2-rho.json --style ieee --legend below --format pdf
-        ptmcad plot slice-L2-rho.json --at L2=1,rho=1 --at L2=3,rho=1/2 --format pdf
+        ptmcad plot slice-L2-rho.json --at L2=1,rho=1 --at L2=3,rho=1/2
         ptmcad plot slice-L2-rho.json --overlay measured.csv
         ptmcad plot slice-L2-rho.json --compare heavier.json
         ptmcad plot loads.json --surface --format pdf,ply

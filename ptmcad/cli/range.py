@@ -205,9 +205,9 @@ def command(
     formats: Formats,
     limits: ResourceLimits,
 ) -> None:
-    """Find the intervals of constant count along one axis, and the operation range, where the most are stable.
+    """Find the intervals of constant count along one axis, and the operation range, where the most equilibria are stable.
 
-    Of the paper's mechanism these are two equilibria; where nothing says what is stable, all solutions are counted.
+    For the paper's mechanism, two are stable there. If the model does not define stability, all solutions are counted.
 
     Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. With free lengths
     they are enclosed by interval arithmetic, and what could not be decided is reported. All digits of the
@@ -218,9 +218,9 @@ def command(
     \b
     Examples:
         ptmcad range --along rho --at L2=3/2
-        ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --path 7/10 --format json,svg
+        ptmcad range fig4 --along rho --at L2=3/2 --path 7/10 --format json,svg
         ptmcad range --along rho --over L2 --range L2=0:2 --at F3=-10,F4=-10
-        ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --quantity th1 --quantity energy --format png
+        ptmcad range fig4 --along rho --at L2=3/2 --quantity th1 --format png
     """
     slice, fixed = slice_and_line(typed, along, {} if at is None else point_of(at), asked["over"])
     request = request_of(along, fixed, **asked)

@@ -118,16 +118,16 @@ def command(
 ) -> int:
     """Find every equilibrium, or solution of a system, at one point, with stability, spring forces and energy.
 
-    CONFIG is a problem record, by file or name, for what --at and --set leave open. Without it, parameters that are not
-    given have their defaults: L1 = L2 = rho = 1, k = 100, no load. Every digit that is shown is right; a zero or
-    another number that is shown without trailing digits is exact; a degenerate equilibrium is named, with its
-    multiplicity. Where not all equilibria are found, as where there are infinitely many, the answer says why, and the
-    exit status is 3.
+    CONFIG is a problem record, by file or name. It gives the parameters that --at and --set do not. Without it,
+    parameters that are not given have their defaults: L1 = L2 = rho = 1, k = 100, no load. Every digit that is shown is
+    right; a zero or another number that is shown without trailing digits is exact; a degenerate equilibrium is named,
+    with its multiplicity. Where not all equilibria are found, as where there are infinitely many, the answer says why,
+    and the exit status is 3.
 
     \b
     Examples:
         ptmcad solve --at rho=1,L2=3/2
-        ptmcad solve --at rho=7/10,L2=3/2,F3=-10,F4=-10 --format table,json,svg --out poses
+        ptmcad solve fig4 --at rho=7/10,L2=3/2 --format table,json,svg
         ptmcad solve fig4 --at rho=7/10,L2=3/2 --digits 30
     """
     if at is None and not sets and config is None:

@@ -47,21 +47,20 @@ _MORE_DIGITS = 10
 @click.option("--seed", type=click.IntRange(min=0), metavar="N",
               help="Seed of the random points and of the random boxes.  [default: a fresh one, printed]")  # fmt: skip
 @click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
-              help="Random boxes of the free area of a certified map.  [default: 16]")  # fmt: skip
+              help="Random boxes of the free area (outside the cover) of a certified map.  [default: 16]")  # fmt: skip
 @click.option("--effort", type=click.IntRange(0, 10), metavar="N",
-              help="How much of a certified map's free area is to be proved free of critical curves: 0 nothing, each "
-                   "number more four times the work, 10 all of it.  [default: 2]")  # fmt: skip
+              help="How much of the free area (outside the cover) of a certified map is to be proved free of critical "
+                   "curves: 0 none; each step quadruples the work; 10 all.  [default: 2]")  # fmt: skip
 @limit_options
 def command(
     *, result: Path, seed: int | None, boxes: int | None, effort: int | None, limits: ResourceLimits
 ) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, `solve`, `range` or `design`, or the folder of a sweep.
 
-    What is checked is proved by code that shares no mathematics with what made it, as far as a row says how; other
-    entries are answered anew and compared. Of a family and of a sweep each member is checked. The last line is the
-    verdict. The exit status is 0 when every check passed, 1 when one failed (the first violated claim is
-    printed with a witness), 2 when the file cannot be read, 3 when a limit was reached before that; the table then
-    names what was checked so far.
+    The claim of a row is proved by the method that the row names, without the engine's code; all other entries are
+    computed again and compared. Each member of a family or sweep is checked. The last line is the verdict. The exit
+    status is 0 when no check failed, 1 when one did (the first violated claim is printed with a witness), 2 when the
+    file cannot be read, 3 when a limit was reached before that; the table then names what was checked so far.
 
     \b
     Example:

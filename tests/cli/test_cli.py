@@ -374,10 +374,10 @@ surfaces run too.
     for e in help_examples() if not e.startswith(("classify", "explore", "paper")) and "--scheduler" not in e
 ])  # fmt: skip
 @pytest.mark.slow_cases(
-    "solve --at rho=7/10,L2=3/2,F3=-10,F4=-10 --format table,json,svg --out poses",
+    "solve fig4 --at rho=7/10,L2=3/2 --format table,json,svg",
     "plot slice-L2-rho.json --format png,svg --dpi 300",
     "plot slice-L2-rho.json --style ieee --legend below --format pdf",
-    "plot slice-L2-rho.json --at L2=1,rho=1 --at L2=3,rho=1/2 --format pdf",
+    "plot slice-L2-rho.json --at L2=1,rho=1 --at L2=3,rho=1/2",
     "sweep loads.yaml --format csv,html",
 )
 def test_help_examples_about_a_result_run(
@@ -440,7 +440,12 @@ def test_help_examples_have_known_options(monkeypatch: pytest.MonkeyPatch, tmp_p
 
 
 @pytest.mark.parametrize(
-    "example", [e for e in help_examples() if e.startswith("classify") and "--free" not in e]
+    "example",
+    [
+        e
+        for e in help_examples()
+        if e.startswith("classify") and not ("--free" in e or "--surface" in e)
+    ],
 )
 def test_help_examples_run(
     engine: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, example: str

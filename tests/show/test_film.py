@@ -174,7 +174,7 @@ def test_the_command_writes_a_film_and_says_where_it_snaps(
     assert run(["animate", stored, "--path", PATH, *asked]) == 0
     out = capsys.readouterr().out
     assert (
-        "stable:2: 14 pictures, 2 of equilibria, each one of as many as are counted exactly there\n"
+        "stable:2: 14 frames, 2 of equilibria, each one of as many as are counted exactly there\n"
         in out
     )
     assert "snap at rho = 1.04143, L2 = 1.5: the pose vanishes and falls to th1 = -47.52" in out

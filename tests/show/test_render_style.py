@@ -318,7 +318,7 @@ def test_a_line_in_the_legend_has_something_to_show_and_what_is_shown_has_a_line
         drawing.draw_parts(page, bare, layout)
     assert not thin_curves(page)
     assert left_out(bare, layout) == (
-        "1 zoomed view of parts that are too thin to be seen", "labels of such parts, in which unstable ones differ"
+        "1 inset of parts that are too thin to be seen", "labels of such parts, in which unstable ones differ"
     )  # fmt: skip
     tiny = seen.with_room((30.0, 30.0), 8.0)
     assert tiny.unnamed == 1 and not tiny.thin_lines and not tiny.views

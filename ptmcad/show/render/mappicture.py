@@ -53,7 +53,7 @@ from ptmcad.show.table import area_text, areas_are_known, count_text, region_are
 
 TITLE_COLUMNS, TITLE_LINES = 80, 3
 _ZOOMED_COLUMNS = 34
-"""Characters over a zoomed view, most of them digits: as many as there is room for."""
+"""Characters over an inset, most of them digits: as many as there is room for."""
 
 
 def draw(
@@ -300,7 +300,7 @@ def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
     found = []
     lost, drawn = len(seen.views) + seen.unnamed, len(layout.insets)
     if lost > drawn and not drawn:
-        found.append(f"{several(lost, 'zoomed view')} of parts that are too thin to be seen")
+        found.append(f"{several(lost, 'inset')} of parts that are too thin to be seen")
     if seen.unnamed:
         found.append("labels of such parts, in which unstable ones differ")
     if layout.shortened:
@@ -348,7 +348,7 @@ def _name_of(result: RegionMap, sliver: Sliver, number: int | None) -> str:
 def _inset(
     figure: Figure, zoom: Zoom, names: Sequence[str], box: Box, layout: Layout, paint: Paint
 ) -> None:
-    """Axes with the zoomed view of one or more slivers."""
+    """Axes with the inset of one or more slivers."""
     result = zoom.outline.result
     number = zoom.slivers[0].region
     axes = axes_at(figure, box, f"sliver-{number}")
@@ -364,7 +364,7 @@ def _inset(
 
 
 def _zoomed(name: str, area: str) -> str:
-    """The two lines over the zoomed view of a region, as long as there is room for."""
+    """The two lines over the inset of a region, as long as there is room for."""
     if not area:
         return f"{name}\nzoomed"
     if len(f"area {area}, zoomed") <= _ZOOMED_COLUMNS:
