@@ -30,7 +30,7 @@ from ptmcad.verification import kinds
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.coversweep import sweep
 from ptmcad.verification.certified.sampling import _beside, _by_area
-from ptmcad.verification.normalform.boxes import Unproved
+from ptmcad.verification.normalform.boxes import Unproved, halves
 
 pytest.importorskip("numba")
 
@@ -415,3 +415,15 @@ def test_conditions_that_are_numbers_all_over_a_slice_are_none() -> None:
     )
     assert {cell.stable for cell in found.cells} == {0, 1, 2}
     assert ptmcad.verify(found).ok
+
+
+@pytest.mark.parametrize(("m", "r"), [(0.3, 1e-9), (3.0322134878826974, 2.8e-15)])
+def test_halves_cover_the_box(m: float, r: float) -> None:
+    found = halves(((0.0, m), (1.0, r)), [1, 0], [0.0, 0.0])
+    assert found is not None
+    (low, half), (high, other) = (
+        (Fraction(middle[1]), Fraction(width[1])) for middle, width in found
+    )
+    assert low - half <= Fraction(m) - Fraction(r) < Fraction(m) + Fraction(r) <= high + other
+    assert high - other <= low + half
+    assert halves(((0.0, 3.0), (0.0, 2.0**-51)), [1, 0], [1.0, 0.0]) is None
