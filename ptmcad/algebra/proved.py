@@ -45,9 +45,10 @@ def quotient_by_msolve(
 
     Raises
     ------
-    MsolveError When msolve gives no basis in time, or it is not proved to be one: then it may be
-        right or wrong. Also where the quotient by it is not finite: nothing that is claimed then is
-        proved here.
+    MsolveError
+        When msolve gives no basis in time, or it is not proved to be one: then it may be right or
+        wrong. Also where the quotient by it is not finite: nothing that is claimed then is proved
+        here.
     LimitReached
         When there are more solutions than wanted, as far as msolve is right.
     """

@@ -37,8 +37,9 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
 
     Raises
     ------
-    ConfigError When they are not such maps; where one of them contradicts itself, the error's key
-        is ``first`` or ``second``.
+    ConfigError
+        When they are not such maps; where one of them contradicts itself, the error's key is
+        ``first`` or ``second``.
     """
     expect(second, RegionMap, "other", A_MAP)
     _check(first, second)

@@ -87,8 +87,9 @@ def picture_of(
     ------
     ConfigError
         When springs have a free length.
-    HypothesisError When the slice is degenerate, has infinitely many equilibria, or leaves the
-        domain of the geometry.
+    HypothesisError
+        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the
+        geometry.
     """
     without_free_lengths(slice.model, slice.parameters, "an arrangement is")
     problem = problem_of(proved(slice))._replace(known=known)
