@@ -91,7 +91,7 @@ class Variety(NamedTuple):
     Attributes
     ----------
     curves : the components that are used, but for lines across the base.
-    lines : these, by the components' numbers.
+    lines : the lines across the base, as polynomials in u by the components' numbers.
     costs : predicted for each of the two base axes.
     excludes : whether solutions at which an inequality's polynomial is zero were left out, as they
         are in the way.
@@ -137,7 +137,7 @@ class Decomposition(NamedTuple):
 
     @property
     def fibre(self) -> Interval:
-        """The range of the other one."""
+        """The range of the axis along which the cells of a stack lie."""
         return self.window[1 - self.variety.base]
 
     @property
@@ -200,9 +200,10 @@ def projection_of(
 
 
 def stacks_of(window: Window, variety: Variety, projection: Projection) -> Decomposition:
-    """The stacks between them, with samples."""
+    """The stacks between the critical abscissae, with samples."""
     base = variety.base
-    # there real solutions stay regular but complex ones are lost, and a fibre may not be finite
+    # on these real solutions stay regular, but complex ones are lost, and the solutions over a point
+    # may not be finitely many; curves left out for want of a point in the window contain no sample
     lines = lines_of(variety.components, base, HARMLESS)
     stacks = lift(
         variety.curves,
@@ -221,7 +222,7 @@ def stacks_of(window: Window, variety: Variety, projection: Projection) -> Decom
 
 
 def cut_along(window: Window, variety: Variety, check: Check = nothing) -> Decomposition:
-    """The window cut along a variety: the last two stages in one."""
+    """The window cut along a variety: projection and stacks in one."""
     return stacks_of(window, variety, projection_of(window, variety, check=check))
 
 
@@ -256,12 +257,12 @@ def neighbours_of(
 
 
 def joined_cells(cut: Decomposition, crossings: Sequence[Crossing]) -> tuple[int, ...]:
-    """The component of the variety's complement in which each cell lies, as far as it is proved
-    that cells are joined.
+    """The connected part of the variety's complement in which each cell lies, as far as it is
+    proved that cells are joined.
 
-    Components are numbered in the order of their first cells. Within one there is a path that meets
-    the variety nowhere, on which no solution comes, goes, or changes its signs: counts are equal in
-    all its cells.
+    Parts are numbered in the order of their first cells. Any two cells of one are joined by a path
+    that does not meet the variety. On it no solution comes, goes, or changes its signs, so that
+    counts are equal in all cells of the part.
     """
     keys = [()] * len(cut.points)
     links = adjacencies_of(cut, crossings, keys)
@@ -292,7 +293,7 @@ def adjacencies_of(
 
 
 def segment_of(separator: Separator) -> Segment:
-    """The open segment that proves a separator."""
+    """The open segment by which a separator joins two cells, as answers have it."""
     return (to_fraction(separator.low), to_fraction(separator.high), to_fraction(separator.height))
 
 

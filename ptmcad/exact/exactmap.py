@@ -1,6 +1,20 @@
 """The exact engine: from a slice without free lengths to its region map, the stages in order, each
 timed.
 
+| stage      | function                         | result                                  |
+|------------|----------------------------------|-----------------------------------------|
+|            | `stages.problem_of`              | `SliceProblem`                          |
+| variety    | `stages.variety_of`              | `decomposition.Variety`                 |
+| projection | `decomposition.projection_of`    | `cad.projection.Projection`             |
+| stacks     | `decomposition.stacks_of`        | `Decomposition`                         |
+| counts     | `stages.counts_of`               | `SampleCounts`                          |
+| adjacency  | `decomposition.crossings_of`     | a `cad.crossings.Crossing` per abscissa |
+|            | `decomposition.neighbours_of`    | `Neighbours`, regions included          |
+| areas      | `regionareas.areas_of`           | `stages.Areas`                          |
+|            | `mapassembly.assemble`           | `answer.regionmap.RegionMap`            |
+
+With `Options.sparing` adjacency comes before counts, and `stages.counts_by_component` makes these.
+
 Guarantee: the map is exact (`Status.EXACT`): no step decides anything by rounding without an error
 bound.
 """

@@ -1,7 +1,7 @@
-"""From what the engine's stages have found to the engine-neutral `RegionMap`, made once, of as much
-as there is.
+"""From what the engine's stages have found to the engine-neutral `RegionMap`, made anew after the
+variety, the counts and the areas, of as much as there is.
 
-Guarantee: nothing is decided here; numbers are copied exactly.
+Guarantee: no number is computed here; numbers are copied exactly.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from ptmcad.version import __version__
 
 
 class PartialMap(NamedTuple):
-    """What there is by now; None what there is not."""
+    """What the stages have found so far, from which any map is made; None is not there yet."""
 
     variety: Variety
     cells: Cells | None = None

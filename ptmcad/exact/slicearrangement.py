@@ -356,7 +356,7 @@ class BoundaryStrips:
 
 
 def _abscissa(strip: BoundaryStrip, share: float) -> fmpq:
-    """One with few digits, very near to the share."""
+    """An abscissa of a strip with few digits, very near to the one at a share of it."""
     low, high = strip.low, strip.high
     if share in (0, 1):
         return high if share else low

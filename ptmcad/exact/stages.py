@@ -1,12 +1,11 @@
-"""The stages of the exact engine, each a function of what it needs to a result with a name.
+"""A slice as the exact engine reads it, and two of the engine's stages: its variety, and the counts
+at samples. `exactmap` has the sequence of all stages.
 
-Guarantee: no stage decides anything by rounding without an error bound, and none looks at a later
-one.
+Guarantee: no stage decides anything by rounding without an error bound.
 
-    SliceProblem -> Variety -> Projection -> Stacks -> SampleCounts -> Neighbours -> Areas
-
-Counts are made at every sample, or once for all cells that are proved to be joined off the variety:
-that is a quarter of the work, but not the check of the decomposition that counting everywhere is.
+Counts are made at every sample, or once for all cells that are proved to be joined off the variety.
+The second way is about a quarter of the work, but does not check the decomposition as the first
+does.
 """
 
 from collections.abc import Sequence
@@ -49,7 +48,7 @@ class SliceProblem(NamedTuple):
     ----------
     on : its system, on the axes x and y.
     window : the ranges of x and y.
-    known : what is known of the equations from a family that the slice is of.
+    known : what gives a family's knowledge of the equations, where the slice is of one.
     """
 
     slice: Slice
@@ -59,7 +58,7 @@ class SliceProblem(NamedTuple):
 
     @property
     def system(self) -> ParametricSystem:
-        """Of the model, with all parameters symbolic."""
+        """The model's system, with all parameters symbolic."""
         return self.on.system
 
     @property
@@ -150,7 +149,7 @@ def variety_of(
 def decomposition_of(
     problem: SliceProblem, base: int | None = None, check: Check = nothing
 ) -> Decomposition:
-    """The window cut along the variety, over a base axis: the first stages in one."""
+    """The window cut along the variety, over a base axis: variety, projection and stacks in one."""
     return cut_along(problem.window, variety_of(problem, base=base), check)
 
 
@@ -216,15 +215,20 @@ def count_at(where: str, on: SystemOnAxes, at: Sequence[fmpq]) -> Equilibria:
     Raises
     ------
     GeometryError
-        When a length or stiffness is not positive there.
+        When a parameter is negative there, or zero where it must be positive.
     DegenerateSliceError
         When some equilibrium is singular there.
     """
     system, values = on.system, on.values(at)
     for name in (*system.positive, *system.nonnegative):
         if values[name] < 0 or (values[name] == 0 and name in system.positive):
+            must = (
+                "be positive in the whole window"
+                if name in system.positive
+                else "not be negative anywhere in the window"
+            )
             raise GeometryError(
-                f"{name} = {values[name]} at {where}, but it must be positive in the whole window; "
+                f"{name} = {values[name]} at {where}, but it must {must}; "
                 f"narrow the range or change {name}"
             )
     try:
@@ -241,8 +245,13 @@ def counts_by_component(
     component_of: Sequence[int],
     report: Report = unreported,
 ) -> SampleCounts:
-    """The counts of every cell, and the equilibria at one sample of each component, that of least
-    height.
+    """The counts of every cell, and the equilibria at one sample of each component, the sample with
+    the shortest numbers.
+
+    Parameters
+    ----------
+    component_of : of each cell, the connected part of the variety's complement, as in
+        `joined_cells`.
     """
     found: list[Equilibria | None] = [None] * len(cut.points)
     components = members(component_of)

@@ -40,8 +40,8 @@ _ROUGH_BITS = 8
 _PANELS = 16
 """Twice the number of panels that a border may take, about."""
 _HOPELESS_RATIO = 2**8
-"""So much larger than allowed are strips against rough areas, when it is pointless to find out
-about the exact ones.
+"""Strips that are wider than rough areas allow by more than this are made narrower at once: it is
+pointless to compute the exact areas first.
 """
 _MIN_ORDER = 6
 """Of series, in addition to the tolerance's digits."""

@@ -61,8 +61,8 @@ class PointsOver:
 
         Parameters
         ----------
-        bottom, top : no points, but for those that are among the edges.
-        edges : which are points.
+        bottom, top : heights that are points of the curves only if they are among ``edges``.
+        edges : the ends of the interval that are points of the curves.
         """
         for bits in _BITS:
             self.check()

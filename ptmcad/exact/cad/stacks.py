@@ -20,7 +20,14 @@ from ptmcad.text.flint_numbers import simplest_between
 
 
 class BaseEnd(NamedTuple):
-    """An end of a stack: the window's edge (``root`` None, at ``value``) or a critical abscissa."""
+    """An end of a stack: the window's edge or a critical abscissa.
+
+    Attributes
+    ----------
+    value : the edge, exactly; of an abscissa the middle of an interval that contains it.
+    root : the abscissa; None at the window's edge.
+    critical : the abscissa's number; None at the window's edge.
+    """
 
     value: fmpq
     root: RealRoot | None
@@ -28,11 +35,12 @@ class BaseEnd(NamedTuple):
 
     @property
     def low(self) -> fmpq:
-        """Of the root's interval, or the edge."""
+        """The lower end of the root's interval, or the edge."""
         return self.root.low if self.root else self.value
 
     @property
     def high(self) -> fmpq:
+        """The upper end of the root's interval, or the edge."""
         return self.root.high if self.root else self.value
 
 
