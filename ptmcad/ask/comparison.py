@@ -159,7 +159,7 @@ def _as_map(
         base=cut.variety.base,
         components=tuple(components),
         critical_values=critical_values_of(cut.projection),
-        stacks=stacks_of_cells(cut.stacks),
+        stacks=stacks_of_cells(cut),
         cells=cells,
         adjacencies=(),
         non_adjacencies=(),

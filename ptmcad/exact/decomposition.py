@@ -8,7 +8,7 @@ the base.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
-from itertools import islice, pairwise
+from itertools import accumulate, islice, pairwise
 from typing import NamedTuple, TypeVar
 
 from flint import fmpq
@@ -141,6 +141,11 @@ class Decomposition(NamedTuple):
         return self.window[1 - self.variety.base]
 
     @property
+    def first_cells(self) -> list[int]:
+        """The number of each stack's lowest cell, and at the end the number of all cells."""
+        return list(accumulate((len(stack.heights) for stack in self.stacks), initial=0))
+
+    @property
     def places(self) -> list[tuple[int, int]]:
         """The stack of every cell, and its level there."""
         return [
@@ -170,7 +175,7 @@ class Decomposition(NamedTuple):
         sides = [order(u, r) for r in self.projection.abscissae]
         if 0 in sides or any(sign_at(c.fibre(u), v) == 0 for c in self.variety.curves):
             return None
-        first = sum(len(stack.heights) for stack in self.stacks[: sides.count(1)])
+        first = self.first_cells[sides.count(1)]
         return first + level_at(self.variety.curves, u, v, self.fibre)
 
 
@@ -281,15 +286,13 @@ def adjacencies_of(
             kind = Merge.EQUAL_COUNT if keys[first] == keys[second] else Merge.SEPARATED
         return Adjacency(first, second, component, segment, kind)
 
-    first, across = 0, cut.lines_across
-    for s, stack in enumerate(cut.stacks):
-        for level, wall in enumerate(stack.walls):
+    across = cut.lines_across
+    for s, (first, following) in enumerate(pairwise(cut.first_cells)):
+        for level, wall in enumerate(cut.stacks[s].walls):
             yield link(first + level, first + level + 1, wall.component, None)
-        following = first + len(stack.heights)
         if s < len(crossings):
             for p in crossings[s].separators:
                 yield link(first + p.left, following + p.right, across[s], segment_of(p))
-        first = following
 
 
 def segment_of(separator: Separator) -> Segment:

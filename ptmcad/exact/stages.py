@@ -16,7 +16,7 @@ from flint import fmpq
 
 from ptmcad.algebra.real_roots import Window
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.answer.counts import Counts
+from ptmcad.answer.counts import counted_by
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
 from ptmcad.exact.counting import Equilibria, equilibria
 from ptmcad.exact.decomposition import (
@@ -35,7 +35,6 @@ from ptmcad.exact.models import ParametricSystem, system_counted
 from ptmcad.exact.models.system import SystemOnAxes, on_axes
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.model.involutions import Involution, involutions
-from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.flint_numbers import interval_of, to_fraction
 from ptmcad.text.numerals import short_text
@@ -195,14 +194,9 @@ def with_keys(problem: SliceProblem, found: Sequence[Equilibria]) -> SampleCount
     """The equilibria with the keys that distinguish regions."""
     count = problem.slice.count
     is_predicate = count.kind.predicate is not None
-    keys = ((e.held,) if is_predicate else count_key(e.counts, count) for e in found)
-    return SampleCounts(tuple(found), tuple(keys))
-
-
-def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
-    """The count that distinguishes regions."""
-    known = counts.number(count)
-    return (counts.total,) if known is None else known if isinstance(known, tuple) else (known,)
+    keys = tuple((e.held,) if is_predicate else counted_by(e.counts, count) for e in found)
+    assert (-1,) not in keys, "a count that the model does not have is refused before"
+    return SampleCounts(tuple(found), keys)
 
 
 def count_at(where: str, on: SystemOnAxes, at: Sequence[fmpq]) -> Equilibria:
@@ -253,7 +247,7 @@ def counts_by_component(
     component_of : of each cell, the connected part of the variety's complement, as in
         `joined_cells`.
     """
-    found: list[Equilibria | None] = [None] * len(cut.points)
+    found: dict[int, Equilibria] = {}
     components = members(component_of)
     for k, cells in enumerate(components):
         report(k, len(components))
@@ -261,7 +255,7 @@ def counts_by_component(
         there = problem.solved_at(cut.points[first])
         for n in cells:
             found[n] = there if n == first else there._replace(solutions=())
-    return with_keys(problem, [e for e in found if e is not None])
+    return with_keys(problem, [found[n] for n in range(len(cut.points))])
 
 
 def _height(at: Sample) -> int:
