@@ -221,11 +221,11 @@ def _region(
         index=common([c.index for c in counts]),
         area=area,
         cells=cells,
-        sample=min((samples[n] for n in cells), key=_height),
+        sample=min((samples[n] for n in cells), key=_simplicity),
     )
 
 
-def _height(point: Point) -> tuple[int, ...]:
+def _simplicity(point: Point) -> tuple[int, ...]:
     x, y = point[0], point[1]
     return (
         max(abs(x.numerator), x.denominator, abs(y.numerator), y.denominator),

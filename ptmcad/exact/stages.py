@@ -251,13 +251,13 @@ def counts_by_component(
     components = members(component_of)
     for k, cells in enumerate(components):
         report(k, len(components))
-        first = min(cells, key=lambda n: _height(cut.points[n]))
+        first = min(cells, key=lambda n: _length(cut.points[n]))
         there = problem.solved_at(cut.points[first])
         for n in cells:
             found[n] = there if n == first else there._replace(solutions=())
     return with_keys(problem, [found[n] for n in range(len(cut.points))])
 
 
-def _height(at: Sample) -> int:
+def _length(at: Sample) -> int:
     """How long a sample's numbers are."""
     return max(int(n).bit_length() for x in at for n in (x.p, x.q))

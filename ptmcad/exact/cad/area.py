@@ -133,9 +133,9 @@ class _Frame(NamedTuple):
     lost: fmpq
     allowed: Sequence[fmpq]
 
-    def bounds(self, panels: Sequence[WallPanel]) -> Bounds:
+    def bounds(self, wall_panels: Sequence[WallPanel]) -> Bounds:
         totals = [arb(f) for f in self.fixed]
-        for p in panels:
+        for p in wall_panels:
             totals[p.border.below] += p.integral
             totals[p.border.above] -= p.integral
         totals = self.parts.whole(totals)
@@ -343,22 +343,26 @@ def _edges(spans: Sequence[Interval], parts: RegionStacks) -> list[fmpq]:
 
 
 def _refine(
-    panels: list[WallPanel], frame: _Frame, tolerance: Fraction, effort: PanelEffort, check: Check
+    wall_panels: list[WallPanel],
+    frame: _Frame,
+    tolerance: Fraction,
+    effort: PanelEffort,
+    check: Check,
 ) -> Bounds:
     """Halve panels until every region is known well enough."""
     while True:
-        bounds = frame.bounds(panels)
+        bounds = frame.bounds(wall_panels)
         poor = {i for i, (low, high) in enumerate(bounds) if high - low > tolerance * low}
         if not poor:
             return bounds
         if any(to_fraction(frame.lost) * 4 > tolerance * bounds[i][1] for i in poor):
             raise _StripsTooWide
-        load = Counter(i for p in panels for i in frame.parts.beside(p.border))
+        load = Counter(i for p in wall_panels for i in frame.parts.beside(p.border))
         target = {
             i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor
         }
         refined: list[WallPanel] = []
-        for p in panels:
+        for p in wall_panels:
             allowed = min((target[i] for i in poor & frame.parts.beside(p.border)), default=p.width)
             if p.width > allowed:
                 check()
@@ -368,4 +372,4 @@ def _refine(
                 refined += halves(p, effort, min(least, from_fraction(allowed) / 4))
             else:
                 refined.append(p)
-        panels = refined
+        wall_panels = refined

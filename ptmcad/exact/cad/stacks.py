@@ -103,23 +103,19 @@ def lift(
     for left, right in pairwise(ends):
         sample = _simplest_off(left.high, right.low, lines)
         roots = roots_over(curves, sample, fibre)
-        heights = heights_between(roots, fibre, [c.fibre(sample) for c in avoided])
+        heights = heights_between([r for _, r in roots], fibre, [c.fibre(sample) for c in avoided])
         stacks.append(StackData(left, right, sample, tuple(w for w, _ in roots), heights))
     return tuple(stacks)
 
 
 def heights_between(
-    roots: Sequence[tuple[Wall, RealRoot]],
-    fibre: Interval,
-    avoided: Sequence[UnivariatePolynomial] = (),
+    roots: Sequence[RealRoot], fibre: Interval, avoided: Sequence[UnivariatePolynomial] = ()
 ) -> tuple[fmpq, ...]:
     """Simple rational heights below, between and above the given roots, within the fibre interval.
 
     None is a root of the polynomials to be avoided.
     """
-    return tuple(
-        _simplest_off(*gap, avoided) for gap in gaps(inside([r for _, r in roots], fibre), fibre)
-    )
+    return tuple(_simplest_off(*gap, avoided) for gap in gaps(inside(roots, fibre), fibre))
 
 
 def _simplest_off(low: fmpq, high: fmpq, avoided: Sequence[UnivariatePolynomial]) -> fmpq:
