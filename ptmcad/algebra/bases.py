@@ -13,11 +13,11 @@ from collections.abc import Sequence
 
 from ptmcad.algebra.fibre_algebra import (
     FibreAlgebra,
-    RationalPolynomial,
     WorkLimit,
     bezout_bound,
     fibre,
 )
+from ptmcad.algebra.membership import RationalPolynomial
 from ptmcad.errors import LimitReached, PtmcadWarning
 
 MANY = 128

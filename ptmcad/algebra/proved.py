@@ -16,12 +16,11 @@ from flint import fmpq, fmpq_mat
 
 from ptmcad.algebra.fibre_algebra import (
     FibreAlgebra,
-    RationalPolynomial,
     bezout_bound,
     fibre_of_rules,
 )
 from ptmcad.algebra.groebner import divides, grevlex_key, powers_of
-from ptmcad.algebra.membership import Rules, lies_in_ideal
+from ptmcad.algebra.membership import RationalPolynomial, Rules, lies_in_ideal
 from ptmcad.algebra.msolve import MsolveError, Terms, groebner_basis
 from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient_algebra import standard_monomials

@@ -17,7 +17,7 @@ from math import prod
 from flint import fmpq
 
 from ptmcad.algebra.arcs import on_graph
-from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
+from ptmcad.algebra.polynomials import RationalUnivariate, UnivariatePolynomial
 from ptmcad.algebra.real_roots import (
     RealRoot,
     disjoint,
@@ -91,10 +91,10 @@ def _half(parts: RegionStacks, change: Involution, base: int) -> RegionStacks:
     shift = from_fraction(change.shifts[base])
     if change.axes == (1, 0):  # the points are fixed where v = sign (u - shift)
         sign = change.axis_signs[base]
-        return below(parts, RationalPolynomial([-sign * shift, sign]))
+        return below(parts, RationalUnivariate([-sign * shift, sign]))
     if change.axis_signs[base] < 0:
         return before(parts, shift / 2)
-    return below(parts, RationalPolynomial([from_fraction(change.shifts[1 - base]) / 2]))
+    return below(parts, RationalUnivariate([from_fraction(change.shifts[1 - base]) / 2]))
 
 
 def _images(cells: Cells, change: Involution) -> tuple[int, ...] | None:
@@ -139,7 +139,7 @@ def before(parts: RegionStacks, middle: fmpq) -> RegionStacks:
     return parts._replace(stacks=stacks, regions=rows)
 
 
-def below(parts: RegionStacks, line: RationalPolynomial) -> RegionStacks:
+def below(parts: RegionStacks, line: RationalUnivariate) -> RegionStacks:
     """The half below a line, which is within the window: its stacks end where walls cross the line,
     too.
     """

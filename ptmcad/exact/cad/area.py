@@ -19,7 +19,7 @@ from typing import NamedTuple, TypeVar
 from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.curve_branches import TooFewBits
-from ptmcad.algebra.polynomials import RationalPolynomial
+from ptmcad.algebra.polynomials import RationalUnivariate
 from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.exact.cad.panels import Border, PanelEffort, WallPanel, halves, panels
@@ -76,7 +76,7 @@ class RegionStacks(NamedTuple):
     base: Interval
     fibre: Interval
     images: Sequence[int] = ()
-    ceiling: RationalPolynomial | None = None
+    ceiling: RationalUnivariate | None = None
 
     @property
     def number(self) -> int:
@@ -84,9 +84,9 @@ class RegionStacks(NamedTuple):
         return len(self.images) or 1 + max(max(row) for row in self.regions)
 
     @property
-    def top(self) -> RationalPolynomial:
+    def top(self) -> RationalUnivariate:
         """Up to which the last cells reach."""
-        return RationalPolynomial([self.fibre[1]]) if self.ceiling is None else self.ceiling
+        return RationalUnivariate([self.fibre[1]]) if self.ceiling is None else self.ceiling
 
     def whole(self, parts: Sequence[_Sum]) -> list[_Sum]:
         """What belongs to each region, from what belongs to it in the half."""
