@@ -128,8 +128,9 @@ def _map_plot(
 
     Raises
     ------
-    ConfigError For an unknown style or option, a value that cannot be drawn, or what does not fit
-        into the size.
+    ConfigError
+        For an unknown style or option, a value that cannot be drawn, or what does not fit into the
+        size.
 
     >>> import ptmcad
     >>> figure = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho")).plot(style="ieee", legend="below")
@@ -179,8 +180,9 @@ def _motion_save(
 
     Raises
     ------
-    ConfigError For a system, which cannot be drawn, another suffix, a size that is too small, or
-        MP4 without ffmpeg.
+    ConfigError
+        For a system, which cannot be drawn, another suffix, a size that is too small, or MP4
+        without ffmpeg.
     OSError
         When the file cannot be written.
     """

@@ -1,6 +1,7 @@
 """Exact algebra: polynomials, Groebner bases over Q(x, y), quotient algebras, real roots, rational
 fibres.
 
-This package is the only importer of FLINT's polynomials. Its functions are exact, or return
-enclosures that are proved.
+FLINT's polynomials stay in this package, but for `verification`, which must not use it, studies that
+eliminate by hand, and `certified/plain/divisors`. Its functions are exact, or return enclosures that
+are proved.
 """

@@ -13,11 +13,11 @@ from collections.abc import Sequence
 
 from ptmcad.algebra.fibre_algebra import (
     FibreAlgebra,
-    RationalPolynomial,
     WorkLimit,
     bezout_bound,
     fibre,
 )
+from ptmcad.algebra.membership import RationalPolynomial
 from ptmcad.errors import LimitReached, PtmcadWarning
 
 MANY = 128
@@ -62,8 +62,9 @@ def quotient(
 
     Raises
     ------
-    LimitReached When it is more work than `most`, and msolve is missing, its basis is not proved,
-        or is too large.
+    LimitReached
+        When it is more work than `most`, and msolve is missing, its basis is not proved, or is too
+        large.
     """
     if not is_large(equations) or (most is not None and not most.by_msolve):
         return fibre(equations, unknowns, most)

@@ -155,8 +155,9 @@ def tangent_resultant(p: Coefficient, direction: Direction) -> fmpz_poly:
 
     Raises
     ------
-    ArithmeticError When there are infinitely many: the curve contains a line of that direction, or
-        a multiple component.
+    ArithmeticError
+        When there are infinitely many: the curve contains a line of that direction, or a multiple
+        component.
     """
     tangent = p.derivative(0) * direction[0] + p.derivative(1) * direction[1]
     eliminated = resultant(coefficients_in(p, 0), coefficients_in(tangent, 0))

@@ -286,8 +286,8 @@ def _cluster(q: fmpz_poly, bound: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
 
 
 def _edge(q: fmpz_poly, bound: int, right: bool, bits: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
-    """The same for the part 2^-bits of (0, 1) at its right or left end, unless it does not hold all
-    the roots.
+    """q on the part 2^-bits of (0, 1) at its right or left end, with the part's start and width;
+    None if it is not proved to hold all roots.
     """
     share = fmpq(1, 2**bits)
     return _holding(q, bound, 1 - share if right else fmpq(0), fmpq(1) if right else share)

@@ -10,7 +10,7 @@ representation, AAECC 9 (1999).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from flint import (
@@ -28,13 +28,11 @@ from flint import (
 )
 
 from ptmcad.algebra.groebner import grevlex_key, shifted
-from ptmcad.algebra.membership import Rules
+from ptmcad.algebra.membership import RationalPolynomial, Rules
 from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient_algebra import border_of, divided, standard_monomials
 from ptmcad.algebra.real_roots import RealRoot, newton_ball
 from ptmcad.errors import LimitReached
-
-RationalPolynomial = Mapping[Monomial, fmpq]
 
 
 class FibreAlgebra(NamedTuple):

@@ -18,9 +18,9 @@ from flint import fmpq, fmpq_poly, fmpz_poly
 from ptmcad.algebra.descartes import root_bound
 from ptmcad.algebra.fibre_algebra import (
     FibreAlgebra,
-    RationalPolynomial,
     univariate_representation,
 )
+from ptmcad.algebra.membership import RationalPolynomial
 from ptmcad.algebra.number_field import Expression, FieldElement, Modulus, RealField, polynomial_at
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 

@@ -25,8 +25,8 @@ from ptmcad.algebra.groebner import grevlex_key, shifted
 from ptmcad.algebra.polynomials import Monomial
 from ptmcad.algebra.resultants import Check, primes
 
-Rational = Mapping[Monomial, fmpq]
-Rules = Mapping[Monomial, Rational]
+RationalPolynomial = Mapping[Monomial, fmpq]
+Rules = Mapping[Monomial, RationalPolynomial]
 """A leading monomial to what it is equal to."""
 _Sparse = dict[Monomial, Any]
 _Source = tuple[int, Monomial]
@@ -51,7 +51,7 @@ class _Level(NamedTuple):
 
 
 def lies_in_ideal(
-    equations: Sequence[Rational], rules: Rules, basis: Sequence[Monomial], pause: Check
+    equations: Sequence[RationalPolynomial], rules: Rules, basis: Sequence[Monomial], pause: Check
 ) -> bool:
     """Whether all elements of a basis are proved to be in the ideal that the equations generate.
 
@@ -64,8 +64,8 @@ def lies_in_ideal(
     pause : called now and then; it may raise to end the search.
     """
     width = len(next(iter(rules)))
-    proved: dict[Monomial, Rational] = {}
-    falls: list[Rational] = []
+    proved: dict[Monomial, RationalPolynomial] = {}
+    falls: list[RationalPolynomial] = []
     degree = 1
     last = max(max(map(sum, p), default=0) for p in (*equations, rules)) + BEYOND
     while degree <= last:
@@ -105,8 +105,8 @@ def _level(width: int, degree: int, proved: Rules, staircase: frozenset[Monomial
 
 
 def _settled(
-    level: _Level, known: Sequence[Rational], basis: Sequence[Monomial], pause: Check
-) -> tuple[int, list[Rational]]:
+    level: _Level, known: Sequence[RationalPolynomial], basis: Sequence[Monomial], pause: Check
+) -> tuple[int, list[RationalPolynomial]]:
     """Up to which degree the basis is proved by multiples of known polynomials, and what falls
     below the level's.
 
@@ -132,7 +132,7 @@ def _settled(
     low = next(
         (j for j, m in enumerate(level.columns) if sum(m) < level.degree), len(level.columns)
     )
-    falls: list[Rational] = []
+    falls: list[RationalPolynomial] = []
     for i in range(rank):
         row = [echelon[i, j] for j in range(len(order))]
         if not any(row[:low]):
@@ -144,7 +144,9 @@ def _settled(
     return settled, falls
 
 
-def _independent(level: _Level, polynomials: Sequence[Rational], pause: Check) -> list[_Source]:
+def _independent(
+    level: _Level, polynomials: Sequence[RationalPolynomial], pause: Check
+) -> list[_Source]:
     """Reduced multiples that are independent modulo a prime by their entries in the columns, as
     many as there are.
     """
@@ -192,7 +194,7 @@ class _Reduction:
         for m in level.monomials:  # smaller ones first
             self._table[m] = self._reduced(m)
 
-    def rows(self, polynomials: Sequence[Rational]) -> Iterator[tuple[_Source, _Sparse]]:
+    def rows(self, polynomials: Sequence[RationalPolynomial]) -> Iterator[tuple[_Source, _Sparse]]:
         """The reduced multiples that are not zero, up to the degree."""
         width = len(self._level.monomials[0])
         for number, p in enumerate(polynomials):
@@ -205,7 +207,7 @@ class _Reduction:
                 if row:
                     yield (number, shift), row
 
-    def multiple(self, polynomials: Sequence[Rational], source: _Source) -> _Sparse:
+    def multiple(self, polynomials: Sequence[RationalPolynomial], source: _Source) -> _Sparse:
         """One reduced multiple."""
         number, shift = source
         total: _Sparse = {}

@@ -65,8 +65,9 @@ def real_solutions(
 
     Raises
     ------
-    MsolveError When msolve is not found, does not end within ``timeout`` seconds, or finds
-        infinitely many complex solutions.
+    MsolveError
+        When msolve is not found, does not end within ``timeout`` seconds, or finds infinitely many
+        complex solutions.
     """
     return parsed(_answer(names, equations, (), timeout), len(names))
 
@@ -83,8 +84,9 @@ def groebner_basis(
 
     Raises
     ------
-    MsolveError When msolve is not found, does not end within ``timeout`` seconds, or says no list
-        of polynomials.
+    MsolveError
+        When msolve is not found, does not end within ``timeout`` seconds, or says no list of
+        polynomials.
     """
     return parsed_basis(
         _answer([f"u{k}" for k in range(unknowns)], equations, ("-g", "2"), timeout), unknowns

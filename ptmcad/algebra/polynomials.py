@@ -40,7 +40,7 @@ Coefficient = fmpz_mpoly
 """An element of Z[x, y], or of Z[x, y, z]."""
 UnivariatePolynomial = fmpz_poly
 """An element of Z[u] or Z[v], the polynomials in one axis."""
-RationalPolynomial = fmpq_poly
+RationalUnivariate = fmpq_poly
 """An element of Q[u]."""
 Monomial = tuple[int, ...]
 """Exponents of the unknowns."""

@@ -16,12 +16,11 @@ from flint import fmpq, fmpq_mat
 
 from ptmcad.algebra.fibre_algebra import (
     FibreAlgebra,
-    RationalPolynomial,
     bezout_bound,
     fibre_of_rules,
 )
 from ptmcad.algebra.groebner import divides, grevlex_key, powers_of
-from ptmcad.algebra.membership import Rules, lies_in_ideal
+from ptmcad.algebra.membership import RationalPolynomial, Rules, lies_in_ideal
 from ptmcad.algebra.msolve import MsolveError, Terms, groebner_basis
 from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient_algebra import standard_monomials
@@ -45,9 +44,10 @@ def quotient_by_msolve(
 
     Raises
     ------
-    MsolveError When msolve gives no basis in time, or it is not proved to be one: then it may be
-        right or wrong. Also where the quotient by it is not finite: nothing that is claimed then is
-        proved here.
+    MsolveError
+        When msolve gives no basis in time, or it is not proved to be one: then it may be right or
+        wrong. Also where the quotient by it is not finite: nothing that is claimed then is proved
+        here.
     LimitReached
         When there are more solutions than wanted, as far as msolve is right.
     """

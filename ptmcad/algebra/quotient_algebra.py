@@ -73,7 +73,7 @@ def border_of(basis: Collection[Monomial]) -> set[Monomial]:
 
 
 def divided(monomial: Monomial, known: Container[Monomial]) -> tuple[int, Monomial]:
-    """The first unknown that a monomial is a multiple of by one that is known, and that one."""
+    """The first unknown by which a monomial can be divided to a known one, and the known one."""
     divisors = ((k, shifted(monomial, k, -1)) for k, e in enumerate(monomial) if e)
     return next((k, below) for k, below in divisors if below in known)
 
@@ -267,9 +267,8 @@ def poles(
         for line, asked in (((x, x + LINE), (*suspects, *remarks)), ((x, y), suspects)):
             on_line = [scale.compose(*line) for scale in scales]
             left = [f for f in asked if f not in found and (_least_order(vectors, f) or 0) < 0]
-            if not left or any(
-                scale.is_zero() for scale in on_line
-            ):  # so no curve of a pole is this line
+            # a line on which a denominator vanishes shows nothing
+            if not left or any(scale.is_zero() for scale in on_line):
                 continue
             coefficients = characteristic(
                 [[c.compose(*line) for c in row] for row in rows], on_line

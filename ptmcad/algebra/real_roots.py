@@ -278,14 +278,14 @@ def inside(roots: Sequence[RealRoot], interval: Interval) -> tuple[RealRoot, ...
     return tuple(inner)
 
 
-def gaps(isolated: Sequence[Any], window: tuple[Any, Any]) -> list[tuple[Any, Any]]:
-    """The parts of a window between the intervals of numbers in it, which are disjoint and in
+def gaps(isolated: Sequence[Any], interval: tuple[Any, Any]) -> list[tuple[Any, Any]]:
+    """The parts of an interval between the intervals of numbers in it, which are disjoint and in
     increasing order.
     """
     ends = [
-        window[0],
+        interval[0],
         *(end for number in isolated for end in (number.low, number.high)),
-        window[1],
+        interval[1],
     ]
     return list(zip(ends[::2], ends[1::2], strict=True))
 

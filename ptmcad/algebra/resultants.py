@@ -2,9 +2,9 @@
 interpolation.
 
 Guarantee: exact. The number of evaluation points comes from a proved bound for the degree: nothing
-is left to chance. Long values are taken modulo primes, as many as a proved bound
-for the coefficients asks for; no prime is a bad one, as the formal discriminant commutes with every
-map of rings. Of a long polynomial that a reflection v to 2 m(u) - v maps to itself, the
+is left to chance. Long values are taken modulo primes, as many as a proved bound for the
+coefficients asks for; no prime is a bad one, as the formal discriminant commutes with every map of
+rings. Of a long polynomial that a reflection v to 2 m(u) - v maps to itself, the
 discriminant in (v - m)^2 is computed, of half the degree; where m = 0 that is left to the caller.
 
 The degree is the negative of the order o at infinity. That extends to the roots of
@@ -14,9 +14,9 @@ disc p = c_n^(2n-2) prod_{i<j} (r_i - r_j)^2 and res(p, q) = c_n^m d_m^n prod (r
 o(r - s) is at least the smaller one of o(r) and o(s). The bound is sharp where roots of the same
 order have different leading terms.
 
-The bound for coefficients: one in Z[u] is at most the largest value on the circle |u| = 1, where |c(u)| is
-at most the sum
-|c|_1 of c's absolute coefficients. There Hadamard's inequality for Sylvester's matrix, with t v in place of v, says
+The bound for coefficients: a coefficient of a polynomial in Z[u] is at most the polynomial's largest
+value on the circle |u| = 1, where |c(u)| is at most the sum |c|_1 of c's absolute coefficients.
+There Hadamard's inequality for Sylvester's matrix, with t v in place of v, says
 
     |res_v(p, q)| <= t^(-n m) (sum_i |p_i|_1^2 t^(2i))^(m/2) (sum_j |q_j|_1^2 t^(2j))^(n/2)    for every t > 0,
 

@@ -253,8 +253,8 @@ class Adjacency:
 
 
 class Reason(Enum):
-    """Why two or more half-branches leave no gap between them where they reach the line over a
-    critical value.
+    """Why the half-branches between two segments, or a segment and the window's edge, run into one
+    point at most of the line over a critical value.
 
     PAIR: there are two of them, and an even number runs into each inner point of the window.
     EDGE: there is a single one, so it ends on the window's edge.

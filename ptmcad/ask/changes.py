@@ -63,10 +63,12 @@ def changes(
 
     Raises
     ------
-    ConfigError For anything wrong with the record or the tolerance, and for a family that the exact
-        engine does not take.
-    HypothesisError When members are degenerate, have infinitely many equilibria, or leave the
-        domain of the geometry.
+    ConfigError
+        For anything wrong with the record or the tolerance, and for a family that the exact engine
+        does not take.
+    HypothesisError
+        When members are degenerate, have infinitely many equilibria, or leave the domain of the
+        geometry.
 
     >>> import ptmcad
     >>> found = ptmcad.changes({"system": {"unknowns": {"u": "real"}, "equations": ["u^2 - c + a^2 + b^2"]},
@@ -143,8 +145,9 @@ class Members:
 
         Raises
         ------
-        HypothesisError When the member is degenerate, has infinitely many equilibria, or leaves the
-            domain of the geometry.
+        HypothesisError
+            When the member is degenerate, has infinitely many equilibria, or leaves the domain of
+            the geometry.
         """
         if value not in self._known:
             variety = self.common.variety

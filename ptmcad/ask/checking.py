@@ -119,9 +119,10 @@ def check(slice: Slice, sized: bool = True) -> CheckedSlice:
         When no engine takes the model.
     GeometryError
         When a parameter is not in the whole window what it needs to be, or that is not proved.
-    DegenerateSliceError, InfiniteSolutionsError When some solution is multiple at every point of
-        the slice, there are infinitely many, or there is none that counts; with a point that shows
-        it. Where a proof would take long, the cost says what was seen.
+    DegenerateSliceError, InfiniteSolutionsError
+        When some solution is multiple at every point of the slice, there are infinitely many, or
+        there is none that counts; with a point that shows it. Where a proof would take long, the
+        cost says what was seen.
     """
     slice = proved(slice)
     # thirds and sevenths of the window: rarely on a curve that a person has in mind

@@ -77,11 +77,13 @@ def classify(
 
     Raises
     ------
-    ConfigError For an unknown engine or count, a tolerance out of range, an option that the engine
-        does not have, a slice that the engine does not take, or a map to go on from that is not of
-        this slice.
-    HypothesisError When the slice is degenerate, has infinitely many equilibria, or leaves the
-        domain of the geometry.
+    ConfigError
+        For an unknown engine or count, a tolerance out of range, an option that the engine does not
+        have, a slice that the engine does not take, or a map to go on from that is not of this
+        slice.
+    HypothesisError
+        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the
+        geometry.
     LimitReached
         After ``timeout`` seconds, with what there is of the map as ``partial``.
     """
@@ -183,8 +185,9 @@ def prepare(slice: Slice, options: Options) -> float:
 
     Raises
     ------
-    ConfigError Where the certified engine is wanted and numba is missing, or the memory limit
-        leaves it no room.
+    ConfigError
+        Where the certified engine is wanted and numba is missing, or the memory limit leaves it no
+        room.
     """
     if is_certified(slice, options.engine):
         if "imports" in options.without:

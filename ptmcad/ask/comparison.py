@@ -37,8 +37,9 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
 
     Raises
     ------
-    ConfigError When they are not such maps; where one of them contradicts itself, the error's key
-        is ``first`` or ``second``.
+    ConfigError
+        When they are not such maps; where one of them contradicts itself, the error's key is
+        ``first`` or ``second``.
     """
     expect(second, RegionMap, "other", A_MAP)
     _check(first, second)
@@ -158,7 +159,7 @@ def _as_map(
         base=cut.variety.base,
         components=tuple(components),
         critical_values=critical_values_of(cut.projection),
-        stacks=stacks_of_cells(cut.stacks),
+        stacks=stacks_of_cells(cut),
         cells=cells,
         adjacencies=(),
         non_adjacencies=(),

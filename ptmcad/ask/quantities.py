@@ -98,8 +98,9 @@ def named(model: Model, text: str, key: str) -> Quantity | None:
 
     Raises
     ------
-    ConfigError When the model has no energy, or no such part; its key is the option that the text
-        was given to.
+    ConfigError
+        When the model has no energy, or no such part; its key is the option that the text was given
+        to.
     """
     word, colon, name = (part.strip() for part in text.partition(":"))
     if not colon:

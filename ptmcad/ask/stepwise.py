@@ -101,8 +101,9 @@ def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object
 
     Raises
     ------
-    ConfigError For a name or a value that is wrong, with the name; also for springs that have a
-        free length.
+    ConfigError
+        For a name or a value that is wrong, with the name; also for springs that have a free
+        length.
     HypothesisError
         When some solution is singular, or there are infinitely many.
     LimitReached

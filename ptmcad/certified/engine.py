@@ -96,8 +96,9 @@ def certified_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
 
     Raises
     ------
-    GeometryError When a parameter is not in the whole window what the proofs ask for, or that could
-        not be proved.
+    GeometryError
+        When a parameter is not in the whole window what the proofs ask for, or that could not be
+        proved.
     LimitReached
         At the deadline, or when doubles are exhausted, with the map so far as ``partial``.
     """

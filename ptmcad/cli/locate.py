@@ -82,8 +82,9 @@ def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Ite
 
     Raises
     ------
-    ConfigError When the file cannot be read, an axis has no column, two columns or no value, or a
-        row is longer than `MAX_ROW`.
+    ConfigError
+        When the file cannot be read, an axis has no column, two columns or no value, or a row is
+        longer than `MAX_ROW`.
     """
     names = result.slice.axis_names
     number = size = 0  # of the lines, and characters since the last row

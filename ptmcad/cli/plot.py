@@ -109,8 +109,9 @@ def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:
 
     Raises
     ------
-    ConfigError When the file is not such a table or has no points, a value is no exact number or no
-        count, or there are more than `MAX_ROWS` points.
+    ConfigError
+        When the file is not such a table or has no points, a value is no exact number or no count,
+        or there are more than `MAX_ROWS` points.
     """
     from ptmcad.show.render.overlay import Measured
 

@@ -1,9 +1,9 @@
 """Curves of a slice on which there are infinitely many solutions.
 
 Guarantee: what is PROVED is. Where an equation of one unknown vanishes identically on a curve,
-every value solves it. A potential on a torus that stays as it is there where some angles turn
-together has a minimum, as every function on a torus has, and all that it is turned to are minima.
-POSSIBLE is said of a curve on which an equation vanishes, and of a line with points at which
+every value solves it. Where a potential on a torus does not change when some angles turn together,
+it has infinitely many minima: one, as every function on a torus has, and all to which that is
+turned. POSSIBLE is said of a curve on which an equation vanishes, and of a line with points at which
 complex solutions are infinitely many.
 """
 
@@ -104,9 +104,7 @@ def _points(line: Coefficient) -> Iterator[tuple[fmpq, fmpq]]:
 
 
 def has_minima(system: ParametricSystem) -> bool:
-    """Whether the equations are the slopes of a function on a torus, or there is one that may
-    vanish everywhere.
-    """
+    """Whether the equations are the slopes of a function on a torus, or there is one alone."""
     return system.is_on_torus and (system.dimension == 1 or _is_gradient(system))
 
 

@@ -128,10 +128,10 @@ def _enclosed(
             signs = _condition_signs(conditions, root, unknowns, zeros)
             if signs is None:
                 return None
-            inequalities = len(point.inequalities)
-            if signs[:inequalities].strip("+"):
+            inequality_count = len(point.inequalities)
+            if signs[:inequality_count].strip("+"):
                 continue
-            signs = signs[inequalities:]
+            signs = signs[inequality_count:]
             is_held = not signs.strip("+")
             if hessian:
                 negative = _negative_eigenvalues(hessian, size, unknowns)
@@ -144,7 +144,7 @@ def _enclosed(
             center, radius = box
             around = [arb(x, arb(_ROOM * radius)) for x in center]
             # where all inequalities hold there is no solution that does not count
-            if not all(_value(p, around) > 0 for p in conditions[:inequalities]):
+            if not all(_value(p, around) > 0 for p in conditions[:inequality_count]):
                 return None
             found.append((center, radius, signs))
             held += is_held and not signs.strip("+")

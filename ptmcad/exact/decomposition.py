@@ -8,7 +8,7 @@ the base.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
-from itertools import islice, pairwise
+from itertools import accumulate, islice, pairwise
 from typing import NamedTuple, TypeVar
 
 from flint import fmpq
@@ -91,7 +91,7 @@ class Variety(NamedTuple):
     Attributes
     ----------
     curves : the components that are used, but for lines across the base.
-    lines : these, by the components' numbers.
+    lines : the lines across the base, as polynomials in u by the components' numbers.
     costs : predicted for each of the two base axes.
     excludes : whether solutions at which an inequality's polynomial is zero were left out, as they
         are in the way.
@@ -137,8 +137,13 @@ class Decomposition(NamedTuple):
 
     @property
     def fibre(self) -> Interval:
-        """The range of the other one."""
+        """The range of the axis along which the cells of a stack lie."""
         return self.window[1 - self.variety.base]
+
+    @property
+    def first_cells(self) -> list[int]:
+        """The number of each stack's lowest cell, and at the end the number of all cells."""
+        return list(accumulate((len(stack.heights) for stack in self.stacks), initial=0))
 
     @property
     def places(self) -> list[tuple[int, int]]:
@@ -170,7 +175,7 @@ class Decomposition(NamedTuple):
         sides = [order(u, r) for r in self.projection.abscissae]
         if 0 in sides or any(sign_at(c.fibre(u), v) == 0 for c in self.variety.curves):
             return None
-        first = sum(len(stack.heights) for stack in self.stacks[: sides.count(1)])
+        first = self.first_cells[sides.count(1)]
         return first + level_at(self.variety.curves, u, v, self.fibre)
 
 
@@ -200,9 +205,10 @@ def projection_of(
 
 
 def stacks_of(window: Window, variety: Variety, projection: Projection) -> Decomposition:
-    """The stacks between them, with samples."""
+    """The stacks between the critical abscissae, with samples."""
     base = variety.base
-    # there real solutions stay regular but complex ones are lost, and a fibre may not be finite
+    # on these real solutions stay regular, but complex ones are lost, and the solutions over a point
+    # may not be finitely many; curves left out for want of a point in the window contain no sample
     lines = lines_of(variety.components, base, HARMLESS)
     stacks = lift(
         variety.curves,
@@ -221,7 +227,7 @@ def stacks_of(window: Window, variety: Variety, projection: Projection) -> Decom
 
 
 def cut_along(window: Window, variety: Variety, check: Check = nothing) -> Decomposition:
-    """The window cut along a variety: the last two stages in one."""
+    """The window cut along a variety: projection and stacks in one."""
     return stacks_of(window, variety, projection_of(window, variety, check=check))
 
 
@@ -256,12 +262,12 @@ def neighbours_of(
 
 
 def joined_cells(cut: Decomposition, crossings: Sequence[Crossing]) -> tuple[int, ...]:
-    """The component of the variety's complement in which each cell lies, as far as it is proved
-    that cells are joined.
+    """The connected part of the variety's complement in which each cell lies, as far as it is
+    proved that cells are joined.
 
-    Components are numbered in the order of their first cells. Within one there is a path that meets
-    the variety nowhere, on which no solution comes, goes, or changes its signs: counts are equal in
-    all its cells.
+    Parts are numbered in the order of their first cells. Any two cells of one are joined by a path
+    that does not meet the variety. On it no solution comes, goes, or changes its signs, so that
+    counts are equal in all cells of the part.
     """
     keys = [()] * len(cut.points)
     links = adjacencies_of(cut, crossings, keys)
@@ -280,19 +286,17 @@ def adjacencies_of(
             kind = Merge.EQUAL_COUNT if keys[first] == keys[second] else Merge.SEPARATED
         return Adjacency(first, second, component, segment, kind)
 
-    first, across = 0, cut.lines_across
-    for s, stack in enumerate(cut.stacks):
-        for level, wall in enumerate(stack.walls):
+    across = cut.lines_across
+    for s, (first, following) in enumerate(pairwise(cut.first_cells)):
+        for level, wall in enumerate(cut.stacks[s].walls):
             yield link(first + level, first + level + 1, wall.component, None)
-        following = first + len(stack.heights)
         if s < len(crossings):
             for p in crossings[s].separators:
                 yield link(first + p.left, following + p.right, across[s], segment_of(p))
-        first = following
 
 
 def segment_of(separator: Separator) -> Segment:
-    """The open segment that proves a separator."""
+    """The open segment by which a separator joins two cells, as answers have it."""
     return (to_fraction(separator.low), to_fraction(separator.high), to_fraction(separator.height))
 
 

@@ -117,6 +117,8 @@ def discriminant_variety(
         for f in irreducible_factors(multiplication_denominator(algebra))
         if to_plane(f) not in seen.found
     ]
+    # hidden ones have no point in the window; on proved ones the Jacobian's determinant stays away from
+    # zero; doubtful are the rest. Of each only those with a pole belong to the variety
     hidden = [f for f in suspects if seen.outside(f)]
     visible = [f for f in suspects if f not in hidden]
     tried = visible if settles(equations) and "infinity" not in without else []

@@ -72,8 +72,9 @@ def slice_variety(slice: Slice, without: frozenset[str] = frozenset()) -> SliceV
     ------
     ConfigError
         When springs have a free length: then the variety is out of algebra's reach.
-    HypothesisError When the slice is degenerate, has infinitely many equilibria, or leaves the
-        domain of the geometry.
+    HypothesisError
+        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the
+        geometry.
     """
     expect(slice, Slice, "slice", A_SLICE)
     without_free_lengths(slice.model, slice.parameters, "the discriminant variety is")

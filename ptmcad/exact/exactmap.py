@@ -1,6 +1,20 @@
 """The exact engine: from a slice without free lengths to its region map, the stages in order, each
 timed.
 
+| stage      | function                         | result                                  |
+|------------|----------------------------------|-----------------------------------------|
+|            | `stages.problem_of`              | `SliceProblem`                          |
+| variety    | `stages.variety_of`              | `decomposition.Variety`                 |
+| projection | `decomposition.projection_of`    | `cad.projection.Projection`             |
+| stacks     | `decomposition.stacks_of`        | `Decomposition`                         |
+| counts     | `stages.counts_of`               | `SampleCounts`                          |
+| adjacency  | `decomposition.crossings_of`     | a `cad.crossings.Crossing` per abscissa |
+|            | `decomposition.neighbours_of`    | `Neighbours`, regions included          |
+| areas      | `regionareas.areas_of`           | `stages.Areas`                          |
+|            | `mapassembly.assemble`           | `answer.regionmap.RegionMap`            |
+
+With `Options.sparing` adjacency comes before counts, and `stages.counts_by_component` makes these.
+
 Guarantee: the map is exact (`Status.EXACT`): no step decides anything by rounding without an error
 bound.
 """
@@ -42,7 +56,11 @@ AREA_TOLERANCE = Fraction(1, 10_000)
 
 
 class _Clock:
-    """Stage times, the deadline, and the caller's progress report."""
+    """Stage times, the deadline, and the caller's progress report.
+
+    The limit is checked where a stage begins and within it, never at its end: what is finished
+    counts.
+    """
 
     def __init__(self, options: Options) -> None:
         self.options = options
@@ -59,12 +77,17 @@ class _Clock:
             self.options.progress(stage, done, total)
 
     def stage(self, name: str) -> None:
+        """The end of a stage, and the beginning of the next one."""
         now = perf_counter()
         self.seconds[name] = now - self.last
         self.last = now
-        self.check()
+
+    def resume(self) -> None:
+        """The beginning of a stage after a pause, in which the caller had the map so far."""
+        self.last = perf_counter()
 
     def times(self) -> dict[str, float]:
+        """The seconds of each stage, and of all with the pauses."""
         return {**self.seconds, "total": perf_counter() - self.started}
 
 
@@ -81,8 +104,9 @@ def exact_map(slice: Slice, options: Options = DEFAULTS, known: Known | None = N
     ------
     ConfigError
         When springs have a free length.
-    HypothesisError When the slice is degenerate, has infinitely many equilibria, or leaves the
-        domain of the geometry.
+    HypothesisError
+        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the
+        geometry.
     LimitReached
         At the deadline, with what there is of the map as ``partial``.
     """
@@ -110,8 +134,9 @@ def _stages(problem: SliceProblem, options: Options, clock: _Clock) -> Iterator[
     without = options.without
     clock.report("variety")
     variety = variety_of(problem, without)
-    yield PartialMap(variety)
     clock.stage("variety")
+    yield PartialMap(variety)
+    clock.resume()
     clock.report("projection")
     projection = projection_of(problem.window, variety, without, clock.check)
     clock.stage("projection")
@@ -137,6 +162,7 @@ def _counted(
         clock.stage(stage)
     cells = Cells(cut, counts, neighbours_of(cut, counts.keys, crossings))
     yield PartialMap(cut.variety, cells)
+    clock.resume()
     if options.areas:
         clock.report("areas")
         tolerance = options.area_tolerance or AREA_TOLERANCE

@@ -1,7 +1,7 @@
-"""From what the engine's stages have found to the engine-neutral `RegionMap`, made once, of as much
-as there is.
+"""From what the engine's stages have found to the engine-neutral `RegionMap`, made anew after the
+variety, the counts and the areas, of as much as there is.
 
-Guarantee: nothing is decided here; numbers are copied exactly.
+Guarantee: no number is computed here; numbers are copied exactly.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import flint
@@ -28,8 +29,7 @@ from ptmcad.answer.regionmap import (
 )
 from ptmcad.exact.cad.crossings import Crossing
 from ptmcad.exact.cad.projection import Projection
-from ptmcad.exact.cad.stacks import StackData
-from ptmcad.exact.decomposition import Variety, members, segment_of
+from ptmcad.exact.decomposition import Decomposition, Variety, members, segment_of
 from ptmcad.exact.exactplan import plan_of
 from ptmcad.exact.models.modelsystem import system_text
 from ptmcad.exact.stages import Areas, Cells, SliceProblem
@@ -40,7 +40,7 @@ from ptmcad.version import __version__
 
 
 class PartialMap(NamedTuple):
-    """What there is by now; None what there is not."""
+    """What the stages have found so far, from which any map is made; None is not there yet."""
 
     variety: Variety
     cells: Cells | None = None
@@ -74,12 +74,12 @@ def assemble(
         if cells is None
         else tuple(replace(c, separates=n in separating) for n, c in enumerate(variety.components)),
         critical_values=() if cells is None else critical_values_of(cells.cut.projection),
-        stacks=() if cells is None else stacks_of_cells(cells.cut.stacks),
+        stacks=() if cells is None else stacks_of_cells(cells.cut),
         cells=() if cells is None else tuple(_cells(problem, cells, samples)),
         adjacencies=adjacencies,
         non_adjacencies=()
         if cells is None
-        else _non_adjacencies(cells.cut.stacks, cells.neighbours.crossings),
+        else _non_adjacencies(cells.cut, cells.neighbours.crossings),
         regions=() if cells is None else _regions(problem, cells, samples, areas),
         plan=(
             *plan_of(
@@ -153,43 +153,42 @@ def _cells(problem: SliceProblem, cells: Cells, samples: Sequence[Point]) -> Ite
         )
 
 
-def _non_adjacencies(
-    stacks: Sequence[StackData], crossings: Sequence[Crossing]
-) -> tuple[NonAdjacency, ...]:
-    found, first = [], 0
+def _non_adjacencies(cut: Decomposition, crossings: Sequence[Crossing]) -> tuple[NonAdjacency, ...]:
+    found = []
+    firsts = cut.first_cells
     for s, crossing in enumerate(crossings):
-        following = first + len(stacks[s].heights)
-        found += [
-            NonAdjacency(
-                critical_value=s,
-                left=tuple(range(first + gap.left[0], first + gap.left[1] + 1)),
-                right=tuple(range(following + gap.right[0], following + gap.right[1] + 1)),
-                below=None if gap.below is None else segment_of(gap.below),
-                above=None if gap.above is None else segment_of(gap.above),
-                reason=gap.reason,
+        for gap in crossing.gaps:
+            # `cross` ends only when it knows the reason of every gap
+            assert gap.reason is not None
+            found.append(
+                NonAdjacency(
+                    critical_value=s,
+                    left=_cells_between(firsts[s], gap.left),
+                    right=_cells_between(firsts[s + 1], gap.right),
+                    below=None if gap.below is None else segment_of(gap.below),
+                    above=None if gap.above is None else segment_of(gap.above),
+                    reason=gap.reason,
+                )
             )
-            for gap in crossing.gaps
-            if gap.reason is not None
-        ]
-        first = following
     return tuple(found)
 
 
-def stacks_of_cells(stacks: Sequence[StackData]) -> tuple[Stack, ...]:
-    result, first = [], 0
-    for stack in stacks:
-        cells = tuple(range(first, first + len(stack.heights)))
-        result.append(
-            Stack(
-                stack.left.critical,
-                stack.right.critical,
-                to_fraction(stack.sample),
-                stack.walls,
-                cells,
-            )
+def _cells_between(first: int, levels: tuple[int, int]) -> tuple[int, ...]:
+    """The cells from one level of a stack to another, both included."""
+    return tuple(range(first + levels[0], first + levels[1] + 1))
+
+
+def stacks_of_cells(cut: Decomposition) -> tuple[Stack, ...]:
+    return tuple(
+        Stack(
+            stack.left.critical,
+            stack.right.critical,
+            to_fraction(stack.sample),
+            stack.walls,
+            tuple(range(first, following)),
         )
-        first += len(cells)
-    return tuple(result)
+        for stack, (first, following) in zip(cut.stacks, pairwise(cut.first_cells), strict=True)
+    )
 
 
 def _regions(
@@ -222,11 +221,11 @@ def _region(
         index=common([c.index for c in counts]),
         area=area,
         cells=cells,
-        sample=min((samples[n] for n in cells), key=_height),
+        sample=min((samples[n] for n in cells), key=_simplicity),
     )
 
 
-def _height(point: Point) -> tuple[int, ...]:
+def _simplicity(point: Point) -> tuple[int, ...]:
     x, y = point[0], point[1]
     return (
         max(abs(x.numerator), x.denominator, abs(y.numerator), y.denominator),

@@ -17,7 +17,7 @@ from math import prod
 from flint import fmpq
 
 from ptmcad.algebra.arcs import on_graph
-from ptmcad.algebra.polynomials import RationalPolynomial, UnivariatePolynomial
+from ptmcad.algebra.polynomials import RationalUnivariate, UnivariatePolynomial
 from ptmcad.algebra.real_roots import (
     RealRoot,
     disjoint,
@@ -39,7 +39,7 @@ from ptmcad.text.numerals import decimal, fraction_of
 
 
 def areas_of(
-    problem: SliceProblem, known: Cells, tolerance: Fraction, without: frozenset[str], check: Check
+    problem: SliceProblem, cells: Cells, tolerance: Fraction, without: frozenset[str], check: Check
 ) -> Areas:
     """Bounds of the regions' areas.
 
@@ -47,22 +47,24 @@ def areas_of(
     ----------
     tolerance : largest relative width of each region's bounds before they are written in decimals.
     """
-    base, region_of = known.cut.variety.base, known.neighbours.region_of
+    base, region_of = cells.cut.variety.base, cells.neighbours.region_of
     alone = "equal-counts" in without
-    parts = region_stacks(known.cut, range(len(region_of)) if alone else region_of)
+    parts = region_stacks(cells.cut, range(len(region_of)) if alone else region_of)
     # the halves before and behind an abscissa need no cuts, and are the cheapest
     reflections = sorted(
         problem.reflections, key=lambda change: (change.axes, change.axis_signs[base])
     )
-    used = None
-    for change in () if alone else reflections[:1]:
-        images = _images(known, change)
+    used: Involution | None = None
+    if reflections and not alone:
+        images = _images(cells, reflections[0])
         if images is not None:
-            parts, used = _half(parts._replace(images=images), change, base), change
+            used = reflections[0]
+            parts = _half(parts._replace(images=images), used, base)
     bounds, bits = region_areas(parts, tolerance, check)
     if alone:
         bounds = tuple(
-            _sum_of([bounds[n] for n in cells], problem.slice.area) for cells in members(region_of)
+            _sum_of([bounds[n] for n in region], problem.slice.area)
+            for region in members(region_of)
         )
     rounded = (
         (fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True)))
@@ -86,16 +88,16 @@ def _sum_of(
 
 def _half(parts: RegionStacks, change: Involution, base: int) -> RegionStacks:
     """The half of the window that an involution, which moves some points, maps to the other one."""
-    fixed = from_fraction(change.shifts[base])
+    shift = from_fraction(change.shifts[base])
     if change.axes == (1, 0):  # the points are fixed where v = sign (u - shift)
         sign = change.axis_signs[base]
-        return below(parts, RationalPolynomial([-sign * fixed, sign]))
+        return below(parts, RationalUnivariate([-sign * shift, sign]))
     if change.axis_signs[base] < 0:
-        return before(parts, fixed / 2)
-    return below(parts, RationalPolynomial([from_fraction(change.shifts[1 - base]) / 2]))
+        return before(parts, shift / 2)
+    return below(parts, RationalUnivariate([from_fraction(change.shifts[1 - base]) / 2]))
 
 
-def _images(known: Cells, change: Involution) -> tuple[int, ...] | None:
+def _images(cells: Cells, change: Involution) -> tuple[int, ...] | None:
     """The image of each region; None where all samples of one have their images on lines over
     critical abscissae.
 
@@ -104,18 +106,18 @@ def _images(known: Cells, change: Involution) -> tuple[int, ...] | None:
     ArithmeticError
         When the decomposition or the counts contradict the involution.
     """
-    region_of, keys = known.neighbours.region_of, known.counts.keys
+    region_of, keys = cells.neighbours.region_of, cells.counts.keys
     images = []
-    for cells in members(region_of):
+    for region in members(region_of):
         points = (
             change.at((to_fraction(x), to_fraction(y)))
-            for x, y in (known.cut.points[n] for n in cells)
+            for x, y in (cells.cut.points[n] for n in region)
         )
-        places = (known.cut.cell_at((from_fraction(x), from_fraction(y))) for x, y in points)
+        places = (cells.cut.cell_at((from_fraction(x), from_fraction(y))) for x, y in points)
         image = next((n for n in places if n is not None), None)
         if image is None:
             return None
-        if keys[image] != keys[cells[0]]:
+        if keys[image] != keys[region[0]]:
             raise ArithmeticError("a region's mirror image is no region of the same count")
         images.append(region_of[image])
     if any(images[images[i]] != i for i in images):
@@ -137,7 +139,7 @@ def before(parts: RegionStacks, middle: fmpq) -> RegionStacks:
     return parts._replace(stacks=stacks, regions=rows)
 
 
-def below(parts: RegionStacks, line: RationalPolynomial) -> RegionStacks:
+def below(parts: RegionStacks, line: RationalUnivariate) -> RegionStacks:
     """The half below a line, which is within the window: its stacks end where walls cross the line,
     too.
     """

@@ -51,9 +51,6 @@ from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice, without_free_lengths
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
-_NO_WALL = Wall(0, 0)
-"""Of points on the window's edge, which are none of a stack's."""
-
 
 class Picture(NamedTuple):
     """A slice's arrangement with the decomposition in which points are found."""
@@ -87,8 +84,9 @@ def picture_of(
     ------
     ConfigError
         When springs have a free length.
-    HypothesisError When the slice is degenerate, has infinitely many equilibria, or leaves the
-        domain of the geometry.
+    HypothesisError
+        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the
+        geometry.
     """
     without_free_lengths(slice.model, slice.parameters, "an arrangement is")
     problem = problem_of(proved(slice))._replace(known=known)
@@ -136,7 +134,7 @@ def _levels_at(
     product = prod((c.fibre(edge) for c in curves), start=UnivariatePolynomial([1]))
     roots = disjoint(isolate(squarefree_part(product), *fibre))
     levels = []
-    for height in heights_between([(_NO_WALL, r) for r in roots], fibre):
+    for height in heights_between(roots, fibre):
         traces = [c.trace(height) for c in curves]
         u = stack.sample
         while any(has_root_between(p, min(u, edge), max(u, edge)) for p in traces):
@@ -247,7 +245,7 @@ class BoundaryStrips:
     def __init__(self, picture: Picture) -> None:
         self.base = picture.cut.variety.base
         self._curves = by_component(picture.cut.variety.curves)
-        self._window: Interval = picture.cut.base
+        self._base_range: Interval = picture.cut.base
         self._fibre: Interval = picture.cut.fibre
         self._keys = picture.arrangement.keys
         self._known: dict[tuple[int, float], Column] = {}
@@ -313,7 +311,7 @@ class BoundaryStrips:
         unit square.
         """
         near = min(left.high - left.low, right.high - right.low) * _BESIDE
-        scale = [float(to_fraction(b - a)) for a, b in (self._window, self._fibre)]
+        scale = [float(to_fraction(b - a)) for a, b in (self._base_range, self._fibre)]
         places = (
             (left, left.high - near),
             (left, left.high),
@@ -355,7 +353,7 @@ class BoundaryStrips:
 
 
 def _abscissa(strip: BoundaryStrip, share: float) -> fmpq:
-    """One with few digits, very near to the share."""
+    """An abscissa of a strip with few digits, very near to the one at a share of it."""
     low, high = strip.low, strip.high
     if share in (0, 1):
         return high if share else low

@@ -1,12 +1,11 @@
-"""The stages of the exact engine, each a function of what it needs to a result with a name.
+"""A slice as the exact engine reads it, and two of the engine's stages: its variety, and the counts
+at samples. `exactmap` has the sequence of all stages.
 
-Guarantee: no stage decides anything by rounding without an error bound, and none looks at a later
-one.
+Guarantee: no stage decides anything by rounding without an error bound.
 
-    SliceProblem -> Variety -> Projection -> Stacks -> SampleCounts -> Neighbours -> Areas
-
-Counts are made at every sample, or once for all cells that are proved to be joined off the variety:
-that is a quarter of the work, but not the check of the decomposition that counting everywhere is.
+Counts are made at every sample, or once for all cells that are proved to be joined off the variety.
+The second way is about a quarter of the work, but does not check the decomposition as the first
+does.
 """
 
 from collections.abc import Sequence
@@ -17,7 +16,7 @@ from flint import fmpq
 
 from ptmcad.algebra.real_roots import Window
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.answer.counts import Counts
+from ptmcad.answer.counts import counted_by
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
 from ptmcad.exact.counting import Equilibria, equilibria
 from ptmcad.exact.decomposition import (
@@ -36,7 +35,6 @@ from ptmcad.exact.models import ParametricSystem, system_counted
 from ptmcad.exact.models.system import SystemOnAxes, on_axes
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.model.involutions import Involution, involutions
-from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.flint_numbers import interval_of, to_fraction
 from ptmcad.text.numerals import short_text
@@ -49,7 +47,7 @@ class SliceProblem(NamedTuple):
     ----------
     on : its system, on the axes x and y.
     window : the ranges of x and y.
-    known : what is known of the equations from a family that the slice is of.
+    known : what gives a family's knowledge of the equations, where the slice is of one.
     """
 
     slice: Slice
@@ -59,7 +57,7 @@ class SliceProblem(NamedTuple):
 
     @property
     def system(self) -> ParametricSystem:
-        """Of the model, with all parameters symbolic."""
+        """The model's system, with all parameters symbolic."""
         return self.on.system
 
     @property
@@ -150,7 +148,7 @@ def variety_of(
 def decomposition_of(
     problem: SliceProblem, base: int | None = None, check: Check = nothing
 ) -> Decomposition:
-    """The window cut along the variety, over a base axis: the first stages in one."""
+    """The window cut along the variety, over a base axis: variety, projection and stacks in one."""
     return cut_along(problem.window, variety_of(problem, base=base), check)
 
 
@@ -196,14 +194,9 @@ def with_keys(problem: SliceProblem, found: Sequence[Equilibria]) -> SampleCount
     """The equilibria with the keys that distinguish regions."""
     count = problem.slice.count
     is_predicate = count.kind.predicate is not None
-    keys = ((e.held,) if is_predicate else count_key(e.counts, count) for e in found)
-    return SampleCounts(tuple(found), tuple(keys))
-
-
-def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
-    """The count that distinguishes regions."""
-    known = counts.number(count)
-    return (counts.total,) if known is None else known if isinstance(known, tuple) else (known,)
+    keys = tuple((e.held,) if is_predicate else counted_by(e.counts, count) for e in found)
+    assert (-1,) not in keys, "a count that the model does not have is refused before"
+    return SampleCounts(tuple(found), keys)
 
 
 def count_at(where: str, on: SystemOnAxes, at: Sequence[fmpq]) -> Equilibria:
@@ -216,15 +209,20 @@ def count_at(where: str, on: SystemOnAxes, at: Sequence[fmpq]) -> Equilibria:
     Raises
     ------
     GeometryError
-        When a length or stiffness is not positive there.
+        When a parameter is negative there, or zero where it must be positive.
     DegenerateSliceError
         When some equilibrium is singular there.
     """
     system, values = on.system, on.values(at)
     for name in (*system.positive, *system.nonnegative):
         if values[name] < 0 or (values[name] == 0 and name in system.positive):
+            must = (
+                "be positive in the whole window"
+                if name in system.positive
+                else "not be negative anywhere in the window"
+            )
             raise GeometryError(
-                f"{name} = {values[name]} at {where}, but it must be positive in the whole window; "
+                f"{name} = {values[name]} at {where}, but it must {must}; "
                 f"narrow the range or change {name}"
             )
     try:
@@ -241,20 +239,25 @@ def counts_by_component(
     component_of: Sequence[int],
     report: Report = unreported,
 ) -> SampleCounts:
-    """The counts of every cell, and the equilibria at one sample of each component, that of least
-    height.
+    """The counts of every cell, and the equilibria at one sample of each component, the sample with
+    the shortest numbers.
+
+    Parameters
+    ----------
+    component_of : of each cell, the connected part of the variety's complement, as in
+        `joined_cells`.
     """
-    found: list[Equilibria | None] = [None] * len(cut.points)
+    found: dict[int, Equilibria] = {}
     components = members(component_of)
     for k, cells in enumerate(components):
         report(k, len(components))
-        first = min(cells, key=lambda n: _height(cut.points[n]))
+        first = min(cells, key=lambda n: _length(cut.points[n]))
         there = problem.solved_at(cut.points[first])
         for n in cells:
             found[n] = there if n == first else there._replace(solutions=())
-    return with_keys(problem, [e for e in found if e is not None])
+    return with_keys(problem, [found[n] for n in range(len(cut.points))])
 
 
-def _height(at: Sample) -> int:
+def _length(at: Sample) -> int:
     """How long a sample's numbers are."""
     return max(int(n).bit_length() for x in at for n in (x.p, x.q))

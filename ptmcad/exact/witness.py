@@ -18,6 +18,7 @@ from flint import fmpq
 
 from ptmcad.algebra.bases import quotient
 from ptmcad.algebra.polynomials import Values
+from ptmcad.algebra.real_roots import Window
 from ptmcad.algebra.trigonometric_ring import TrigonometricPolynomial
 from ptmcad.errors import (
     DegenerateSliceError,
@@ -54,7 +55,7 @@ Solutions = tuple[int, int]
 def with_witness(
     error: DegenerateSliceError | InfiniteSolutionsError,
     on: SystemOnAxes,
-    window: Sequence[Point],
+    window: Window,
     place: Callable[[Point], str],
 ) -> DegenerateSliceError | InfiniteSolutionsError:
     """The error, with a point of the window that shows it added to its words; as it is where none
@@ -112,7 +113,7 @@ def _nothing(system: ParametricSystem, values: Values) -> str:
     )
 
 
-def points(window: Sequence[Point]) -> Iterator[Point]:
+def points(window: Window) -> Iterator[Point]:
     """Some points of a window."""
     for shares in SHARES:
         x, y = (

@@ -82,8 +82,9 @@ def values(formulas: Sequence[Formula], arithmetic: Arithmetic[Any]) -> list[Any
 
     Raises
     ------
-    AttributeError Where a node is none of which the arithmetic has a value: a quotient, or the
-        cosine of a sum.
+    AttributeError
+        Where a node is none of which the arithmetic has a value: a quotient, or the cosine of a
+        sum.
     """
     known: dict[int, Any] = {}
 

@@ -85,9 +85,10 @@ def evaluate(tree: Tree, ring: Ring[E]) -> E:
 
     Raises
     ------
-    ExpressionError With the position of what has no meaning: a name that the ring refuses, a
-        division by what is no constant or zero, an exponent that is no whole number from 0 to
-        `MAX_EXPONENT`, an argument of a function that is no sum of whole multiples of angles.
+    ExpressionError
+        With the position of what has no meaning: a name that the ring refuses, a division by what
+        is no constant or zero, an exponent that is no whole number from 0 to `MAX_EXPONENT`, an
+        argument of a function that is no sum of whole multiples of angles.
     """
     return evaluated([tree], ring)[0]
 

@@ -69,9 +69,10 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
 
     Raises
     ------
-    ConfigError With the key of what is wrong: an unknown key, kind, name or point, a name that is
-        given twice, a text that is no expression, or one that has no value in every ring; a bar
-        whose length varies, an unknown that no equation holds. Its ``faults`` are all of these.
+    ConfigError
+        With the key of what is wrong: an unknown key, kind, name or point, a name that is given
+        twice, a text that is no expression, or one that has no value in every ring; a bar whose
+        length varies, an unknown that no equation holds. Its ``faults`` are all of these.
     """
     faults = Faults()
     found = read_mechanism(record, faults, proved)

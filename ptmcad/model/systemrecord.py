@@ -32,8 +32,9 @@ def described_system(record: Mapping[str, Any]) -> System:
 
     Raises
     ------
-    ConfigError With the key of what is wrong; also where there are not as many equations as
-        unknowns, or where an unknown stands in no equation. Its ``faults`` are all that is wrong.
+    ConfigError
+        With the key of what is wrong; also where there are not as many equations as unknowns, or
+        where an unknown stands in no equation. Its ``faults`` are all that is wrong.
     """
     faults = Faults()
     found = read_system(record, faults)

@@ -74,8 +74,9 @@ def split_angle(tree: Tree) -> tuple[Tree, int]:
 
     Raises
     ------
-    ExpressionError When the angle is no sum of multiples of names, or what is added to it is no
-        multiple of pi/2.
+    ExpressionError
+        When the angle is no sum of multiples of names, or what is added to it is no multiple of
+        pi/2.
     """
     parts, positions = multiples_with_positions(tree)
     turns = 2 * parts.get(PI, Fraction(0))

@@ -83,8 +83,9 @@ def loading(what: str = "") -> Iterator[None]:
 
     Raises
     ------
-    MemoryError When a library says that it cannot be loaded for lack of memory, whatever it raises,
-        or just that it cannot be loaded, under a small limit of the caller's.
+    MemoryError
+        When a library says that it cannot be loaded for lack of memory, whatever it raises, or just
+        that it cannot be loaded, under a small limit of the caller's.
     ConfigError
         That names the least bound that would do.
     """

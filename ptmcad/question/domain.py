@@ -124,8 +124,9 @@ def proved(slice: Slice) -> Slice:
 
     Raises
     ------
-    GeometryError With the parameter, or the part of the description, and the place where it is not,
-        or where that could not be decided.
+    GeometryError
+        With the parameter, or the part of the description, and the place where it is not, or where
+        that could not be decided.
     """
     found = []
     for sign in signs_of(slice):

@@ -46,8 +46,9 @@ def varying_axis(slice: Slice, along: str, at: Mapping[str, Any]) -> tuple[int, 
 
     Raises
     ------
-    ConfigError When ``along`` is no axis, or ``at`` does not name exactly the other one with an
-        exact number.
+    ConfigError
+        When ``along`` is no axis, or ``at`` does not name exactly the other one with an exact
+        number.
     """
     expect(slice, Slice, "slice", A_SLICE)
     names = slice.axis_names
@@ -77,9 +78,10 @@ def line_of(slice: Slice, along: str, at: Mapping[str, Any], *, free: bool = Fal
 
     Raises
     ------
-    ConfigError When ``along`` is no axis, ``at`` does not name exactly the other one, its value is
-        not an exact number, a parameter is not defined on the line, or springs have a free length
-        on it that they may not have.
+    ConfigError
+        When ``along`` is no axis, ``at`` does not name exactly the other one, its value is not an
+        exact number, a parameter is not defined on the line, or springs have a free length on it
+        that they may not have.
     """
     varying, other, value = varying_axis(slice, along, at)
     try:

@@ -67,8 +67,9 @@ def from_python(
 
     Raises
     ------
-    ConfigError For any other type, for a float that is no number, and for data that is nested
-        deeper than a file may be, as what contains itself is.
+    ConfigError
+        For any other type, for a float that is no number, and for data that is nested deeper than a
+        file may be, as what contains itself is.
     """
     if depth > MAX_DEPTH:
         raise place.error(f"more than {MAX_DEPTH} levels of nesting, or data that contains itself")

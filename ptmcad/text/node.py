@@ -332,8 +332,9 @@ def opened(text: str, expected: str, longest: int, command: str) -> Node:
 
     Raises
     ------
-    ValueError For text that is too long, no JSON or nested too deeply, for a key that occurs twice,
-        and for another format.
+    ValueError
+        For text that is too long, no JSON or nested too deeply, for a key that occurs twice, and
+        for another format.
     """
     if len(text) > longest:
         raise ValueError(f"the document has {len(text)} characters, more than {longest}")

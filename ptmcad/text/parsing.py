@@ -50,9 +50,10 @@ def parse(text: object, names: Expressions | None = None) -> Expression:
 
     Raises
     ------
-    ExpressionError With the position of the offending character: not arithmetic, an unknown name, a
-        division by zero, or one of the limits (length, depth, digits, exponent, degree, number of
-        terms, size of numbers).
+    ExpressionError
+        With the position of the offending character: not arithmetic, an unknown name, a division by
+        zero, or one of the limits (length, depth, digits, exponent, degree, number of terms, size
+        of numbers).
     """
     if isinstance(text, str | Decimal):  # a Decimal's exponent may be huge: a text has limits
         return interpret(tree_of(str(text)), _InTheAxes(names or {}))

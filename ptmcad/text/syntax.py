@@ -95,8 +95,9 @@ def parse(text: str, functions: Collection[str] = FUNCTIONS, longest: int = MAX_
 
     Raises
     ------
-    ExpressionError With the position of the offending character: not arithmetic, or one of the
-        limits of this module (length, depth, digits, decimal exponent).
+    ExpressionError
+        With the position of the offending character: not arithmetic, or one of the limits of this
+        module (length, depth, digits, decimal exponent).
     """
     return _Parser(text, functions, longest).run()
 

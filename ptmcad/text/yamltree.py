@@ -33,8 +33,9 @@ def read_file(path: str | Path) -> Tree:
 
     Raises
     ------
-    ConfigError If the file is missing, is no regular file, cannot be read, is larger than
-        `MAX_BYTES`, is not UTF-8 text, is not YAML, or uses what the module's docstring excludes.
+    ConfigError
+        If the file is missing, is no regular file, cannot be read, is larger than `MAX_BYTES`, is
+        not UTF-8 text, is not YAML, or uses what the module's docstring excludes.
     """
     return read_text(
         textfile.read_text(path, MAX_BYTES, "a problem record (a YAML file)"), str(path)

@@ -69,8 +69,9 @@ def boundary_surface(
 
     Raises
     ------
-    ConfigError When the family's changes are not known, for a family that the exact engine does not
-        take, and for a tolerance that is not between 0 and 1.
+    ConfigError
+        When the family's changes are not known, for a family that the exact engine does not take,
+        and for a tolerance that is not between 0 and 1.
     """
     share = share_for("tolerance", tolerance)
     if max_members < 2:

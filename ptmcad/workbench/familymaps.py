@@ -44,8 +44,9 @@ def family(
     ------
     ConfigError
         For anything wrong with the record, or a value outside of the free parameter's range.
-    HypothesisError When a member is degenerate, has infinitely many equilibria, or leaves the
-        domain of the geometry.
+    HypothesisError
+        When a member is degenerate, has infinitely many equilibria, or leaves the domain of the
+        geometry.
 
     >>> import ptmcad
     >>> found = ptmcad.family({"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": "F", "F4": "F"},

@@ -8,6 +8,7 @@ import random
 from fractions import Fraction
 
 import pytest
+from flint import fmpq
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support import oracle
@@ -19,7 +20,10 @@ from support.shipped_records import EXACT
 from support.signatures import count_by_isolation, count_by_signature
 
 from ptmcad import load
+from ptmcad.ask.stepwise import slice_from
+from ptmcad.errors import GeometryError
 from ptmcad.exact.point_system import DegeneratePoint
+from ptmcad.exact.stages import problem_of
 from ptmcad.text.flint_numbers import from_fraction
 
 SYSTEM = system_of("ptm")
@@ -227,3 +231,18 @@ def test_oracle_is_independent() -> None:
         lines = [line for line in file if line.startswith(("import", "from"))]
     assert lines
     assert not any("ptmcad" in line or "flint" in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("rho", "length", "must"),
+    [
+        (1, 0, "L2 = 0 at .* must be positive in the whole window"),
+        (-1, 1, "rho = -1 at .* must not be negative anywhere in the window"),
+    ],
+)
+def test_a_point_without_geometry_is_refused_with_its_bound(
+    rho: int, length: int, must: str
+) -> None:
+    slice = slice_from({"name": "lengths", "axes": {"rho": [0, 2], "L2": [0, 2]}})
+    with pytest.raises(GeometryError, match=must):
+        problem_of(slice).solved_at((fmpq(rho), fmpq(length)))

@@ -33,8 +33,9 @@ def corners_of(slice: Slice, path: str | Mapping[str, Any]) -> tuple[Place, ...]
 
     Raises
     ------
-    ConfigError When the names are not the two axes, a value is not an exact number inside the
-        window, the numbers of values do not fit together, or the path leads nowhere.
+    ConfigError
+        When the names are not the two axes, a value is not an exact number inside the window, the
+        numbers of values do not fit together, or the path leads nowhere.
     """
     given = _of_text(path) if isinstance(path, str) else {n: _listed(v) for n, v in path.items()}
     names = slice.axis_names

@@ -42,9 +42,11 @@ def intervals(
 
     Raises
     ------
-    ConfigError When ``along`` is no axis, or ``at`` does not name exactly the other one with an
-        exact number.
-    DegenerateSliceError When at every point of the line some equilibrium is singular.
+    ConfigError
+        When ``along`` is no axis, or ``at`` does not name exactly the other one with an exact
+        number.
+    DegenerateSliceError
+        When at every point of the line some equilibrium is singular.
     InfiniteSolutionsError
         When every point of it has infinitely many equilibria.
     GeometryError
@@ -66,9 +68,11 @@ def certified_intervals(
 
     Raises
     ------
-    ConfigError As `intervals`.
-    GeometryError When a parameter is not on the whole line what the proofs ask for, or that could
-        not be proved.
+    ConfigError
+        As `intervals`.
+    GeometryError
+        When a parameter is not on the whole line what the proofs ask for, or that could not be
+        proved.
     """
     with loading("the certified engine"):
         from ptmcad.certified.enclosedline import intervals_and_changes

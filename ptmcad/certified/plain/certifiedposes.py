@@ -65,8 +65,9 @@ def plain_poses(model: Model, parameters: Mapping[str, Fraction], digits: int) -
 
     Raises
     ------
-    ConfigError, GeometryError As `ptmcad.certified.plain.pointcounts.plain_counter` does, or where a
-        parameter is not what its kind asks for.
+    ConfigError, GeometryError
+        As `ptmcad.certified.plain.pointcounts.plain_counter` does, or where a parameter is not what
+        its kind asks for.
     """
     slice = proved(point_slice(model, parameters))
     at = numbers_at(model, parameters)
@@ -302,8 +303,9 @@ def _all_bounded(
 
     Raises
     ------
-    ArithmeticError When one has no bounds, which would be a fault of this program: all are of
-        smooth functions in a proved box.
+    ArithmeticError
+        When one has no bounds, which would be a fault of this program: all are of smooth functions
+        in a proved box.
     """
     held = dict(found)
     for name in numbers.keys() - found.keys():

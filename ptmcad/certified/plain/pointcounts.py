@@ -87,8 +87,9 @@ class PlainCounter:
 
         Raises
         ------
-        ArithmeticError When the counts contradict Euler's sum on the torus, which would be a fault
-            of this program.
+        ArithmeticError
+            When the counts contradict Euler's sum on the torus, which would be a fault of this
+            program.
         """
         zeros = self.search.at(x, y, self.stable if count.is_of_stable else self.all, thorough)
         counted, unclear = self._counted(x, y, zeros, count)
@@ -346,8 +347,9 @@ def plain_counter(
     ------
     ConfigError
         As `problem_of` and `ranges` do.
-    DegenerateSliceError When a condition is zero at a solution wherever one looks, so that nothing
-        would ever be decided.
+    DegenerateSliceError
+        When a condition is zero at a solution wherever one looks, so that nothing would ever be
+        decided.
     """
     problem = problem_of(slice, most)
     return BranchCounter(

@@ -162,10 +162,12 @@ def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
 
     Raises
     ------
-    ConfigError When the plain formulas do not take the model: more than ``most`` unknowns; or when
-        a condition on solutions holds nowhere.
-    DegenerateSliceError When a closed loop is proved to fold flat all over the window; the message
-        says what its branches are.
+    ConfigError
+        When the plain formulas do not take the model: more than ``most`` unknowns; or when a
+        condition on solutions holds nowhere.
+    DegenerateSliceError
+        When a closed loop is proved to fold flat all over the window; the message says what its
+        branches are.
     """
     model = slice.model
     if len(model.unknowns) > most:

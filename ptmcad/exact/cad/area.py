@@ -19,7 +19,7 @@ from typing import NamedTuple, TypeVar
 from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.curve_branches import TooFewBits
-from ptmcad.algebra.polynomials import RationalPolynomial
+from ptmcad.algebra.polynomials import RationalUnivariate
 from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.exact.cad.panels import Border, PanelEffort, WallPanel, halves, panels
@@ -40,8 +40,8 @@ _ROUGH_BITS = 8
 _PANELS = 16
 """Twice the number of panels that a border may take, about."""
 _HOPELESS_RATIO = 2**8
-"""So much larger than allowed are strips against rough areas, when it is pointless to find out
-about the exact ones.
+"""Strips that are wider than rough areas allow by more than this are made narrower at once: it is
+pointless to compute the exact areas first.
 """
 _MIN_ORDER = 6
 """Of series, in addition to the tolerance's digits."""
@@ -76,7 +76,7 @@ class RegionStacks(NamedTuple):
     base: Interval
     fibre: Interval
     images: Sequence[int] = ()
-    ceiling: RationalPolynomial | None = None
+    ceiling: RationalUnivariate | None = None
 
     @property
     def number(self) -> int:
@@ -84,9 +84,9 @@ class RegionStacks(NamedTuple):
         return len(self.images) or 1 + max(max(row) for row in self.regions)
 
     @property
-    def top(self) -> RationalPolynomial:
+    def top(self) -> RationalUnivariate:
         """Up to which the last cells reach."""
-        return RationalPolynomial([self.fibre[1]]) if self.ceiling is None else self.ceiling
+        return RationalUnivariate([self.fibre[1]]) if self.ceiling is None else self.ceiling
 
     def whole(self, parts: Sequence[_Sum]) -> list[_Sum]:
         """What belongs to each region, from what belongs to it in the half."""
@@ -133,9 +133,9 @@ class _Frame(NamedTuple):
     lost: fmpq
     allowed: Sequence[fmpq]
 
-    def bounds(self, panels: Sequence[WallPanel]) -> Bounds:
+    def bounds(self, wall_panels: Sequence[WallPanel]) -> Bounds:
         totals = [arb(f) for f in self.fixed]
-        for p in panels:
+        for p in wall_panels:
             totals[p.border.below] += p.integral
             totals[p.border.above] -= p.integral
         totals = self.parts.whole(totals)
@@ -343,22 +343,26 @@ def _edges(spans: Sequence[Interval], parts: RegionStacks) -> list[fmpq]:
 
 
 def _refine(
-    panels: list[WallPanel], frame: _Frame, tolerance: Fraction, effort: PanelEffort, check: Check
+    wall_panels: list[WallPanel],
+    frame: _Frame,
+    tolerance: Fraction,
+    effort: PanelEffort,
+    check: Check,
 ) -> Bounds:
     """Halve panels until every region is known well enough."""
     while True:
-        bounds = frame.bounds(panels)
+        bounds = frame.bounds(wall_panels)
         poor = {i for i, (low, high) in enumerate(bounds) if high - low > tolerance * low}
         if not poor:
             return bounds
         if any(to_fraction(frame.lost) * 4 > tolerance * bounds[i][1] for i in poor):
             raise _StripsTooWide
-        load = Counter(i for p in panels for i in frame.parts.beside(p.border))
+        load = Counter(i for p in wall_panels for i in frame.parts.beside(p.border))
         target = {
             i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor
         }
         refined: list[WallPanel] = []
-        for p in panels:
+        for p in wall_panels:
             allowed = min((target[i] for i in poor & frame.parts.beside(p.border)), default=p.width)
             if p.width > allowed:
                 check()
@@ -368,4 +372,4 @@ def _refine(
                 refined += halves(p, effort, min(least, from_fraction(allowed) / 4))
             else:
                 refined.append(p)
-        panels = refined
+        wall_panels = refined

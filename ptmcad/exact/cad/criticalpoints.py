@@ -55,20 +55,21 @@ class PointsOver:
         self, curves: tuple[FibredCurve, ...], root: RealRoot, check: Check = nothing
     ) -> None:
         self.curves, self.root, self.check = curves, root, check
+        self._enclosures: dict[int, list[Interval] | None] = {}
 
     def between(self, bottom: fmpq, top: fmpq, edges: Sequence[fmpq]) -> list[Interval]:
         """Intervals that hold the points in the open interval (bottom, top), from below.
 
         Parameters
         ----------
-        bottom, top : no points, but for those that are among the edges.
-        edges : which are points.
+        bottom, top : heights that are points of the curves only if they are among ``edges``.
+        edges : the ends of the interval that are points of the curves.
         """
         for bits in _BITS:
             self.check()
-            if bits not in self._known:
-                self._known[bits] = self._enclosed(bits)
-            found = self._known[bits]
+            if bits not in self._enclosures:
+                self._enclosures[bits] = self._enclosed(bits)
+            found = self._enclosures[bits]
             if found is None:
                 continue
             ends = [e for e in (bottom, top) if e not in edges]
@@ -115,10 +116,6 @@ class PointsOver:
         return vanishes_at(
             stretched(*short_resultant(self.curves[k], self.curves[m], self.check)), self.root
         )
-
-    @cached_property
-    def _known(self) -> dict[int, list[Interval] | None]:
-        return {}
 
     @cached_property
     def _discriminants(self) -> list[UnivariatePolynomial]:

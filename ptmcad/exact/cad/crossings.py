@@ -5,7 +5,8 @@ critical abscissa a are adjacent exactly when an open segment of the line u = a,
 belongs to the closure of both.
 
 A *separator* is a rational height e such that no curve meets the horizontal segment [l, r] x {e},
-where l < a < r lie in the two stacks; it proves that the cells at (l, e) and (r, e) are adjacent.
+where l < a < r lie in the two stacks. It proves that the cells at (l, e) and (r, e) are adjacent;
+what it separates are the points of the curves on the line u = a.
 Between consecutive separators lies a *gap* that some branches enter from the left and some from the
 right. All pairs are found once every gap contains at most one point of the line u = a that branches
 run into, because then separators stand on both sides of each such point.
@@ -15,7 +16,7 @@ run into, because then separators stand on both sides of each such point.
   point. Only the point on the window's edge, if a curve passes there, may take an odd number: so a
   gap at the edge with one branch does.
 * A gap with more branches is split, if it can be, by bracketing a more closely; if that fails, the
-  points of the curves over a are enclosed (`points`): heights between them are separators once the
+  points of the curves over a are enclosed (`criticalpoints`): heights between them are separators once the
   bracket is narrow enough.
 """
 
@@ -109,6 +110,7 @@ def cross(
     end = left.right
     assert end.root is not None
     reach, extent = min(end.value - left.sample, right.sample - end.value), fibre[1] - fibre[0]
+    # the largest bracket, the branches' largest intervals, and the bits by which both shrink
     width, resolution, step = reach, extent, 8
     extra: tuple[fmpq, ...] = ()
     points: PointsOver | None = None  # costly, looked for if the rounds do not suffice
@@ -139,11 +141,8 @@ def cross(
         if attempt >= rounds:
             if points is None:
                 points = PointsOver(tuple(curves), end.root, check)
-                width, resolution, step = (
-                    reach,
-                    extent,
-                    8,
-                )  # with the heights now known, wide brackets may do
+                # with the heights now known, wide brackets may do
+                width, resolution, step = reach, extent, 8
             separating = (
                 h for gap in unresolved for h in _between_points(points, gap, curves, end)
             )
@@ -206,7 +205,8 @@ def _reason(
     """Why branches run into at most one point of the gap; None when that is not known.
 
     ``points`` is None while the points on the line are not looked for. A gap without branches may
-    be closed in any way.
+    be closed in any way. An odd number of branches between two separators cannot be: the case is
+    treated as unknown all the same.
     """
     branches, edges = gap.branches, gap.edges
     if branches == 0:

@@ -1,8 +1,7 @@
 """Walls as chains of chords, each with a proved distance that the wall keeps to it.
 
 Guarantee: over its part of the base each wall stays within `Chord.distance` of its chord, measured
-along the fibre; what lies over no chord is a part of the base of at most the width that was asked
-for. Over the whole open interval of its stack it stays within `WallPolyline.distance`.
+along the fibre. Over the whole open interval of its stack it stays within `WallPolyline.distance`.
 
 On a panel that holds no critical value a wall is the graph of a function with two derivatives. If
 its second derivative is at most K in modulus there, a panel of width w has the graph within K
@@ -43,9 +42,8 @@ _GRID_STEPS = 2**60
 """Ends of chords are rounded to this part of the fibre."""
 ROUNDING = Fraction(2, _GRID_STEPS)
 """By which distances are made larger for that."""
-SHORT, FLAT, LITTLE = Fraction(1, 2**12), Fraction(1, 2**12), Fraction(1, 2**34)
-"""Between two heights a wall is shut in on panels of at most the first width; that does when they
-are the second apart, and the third is the largest area between them."""
+SHORT = Fraction(1, 2**12)
+"""The width of the widest panels on which a wall is shut in between two heights."""
 UNPROVED = Fraction(1)
 """The distance where nothing is proved: two points of a fibre are no further apart."""
 
@@ -83,7 +81,7 @@ class WallBranch:
         return self.curve.roots_over(u, self.fibre)[self.root]
 
     def share_at(self, share: Fraction) -> Fraction:
-        """The same in shares of the window, rounded by at most a half of `ROUNDING`."""
+        """Its height over an abscissa, both as shares of the window, rounded by at most a half of `ROUNDING`."""
         bottom, height = self.fibre[0], self.fibre[1] - self.fibre[0]
         at = refine(self.at(from_share(share, self.base)), height / _GRID_STEPS)
         return Fraction(
@@ -97,20 +95,17 @@ def chords(
     max_distance: Fraction,
     narrowest: Fraction,
     check: Check = nothing,
-    flat: tuple[Fraction, Fraction] = (FLAT, LITTLE),
 ) -> tuple[Chord, ...]:
     """A wall from left to right without gaps.
 
     Parameters
     ----------
     span : where, as shares of the base; no critical value lies in it, its ends included.
-    max_distance : the largest distance wanted, as a share of the fibre; exceeded perhaps where the
-        wall is enclosed between two heights, see `FLAT` and `LITTLE`.
+    max_distance : the largest distance wanted, as a share of the fibre; exceeded only on panels
+        that are not halved.
     narrowest : panels of at most this share of the base are not halved. Where nothing is proved on
         one, the distance to its chord is `UNPROVED`, which always holds.
     check : called between panels; may raise to stop.
-    flat : how far apart two heights may be between which a wall is enclosed, and the largest area
-        between them.
     """
     found: list[Chord] = []
     heights: dict[Fraction, Fraction] = {}
@@ -126,14 +121,9 @@ def chords(
         left, right = waiting.pop()
         middle = (left + right) / 2
         distance = _distance(wall, (left, right))
-        enough = distance is not None and distance <= max_distance
         if distance is None and right - left <= SHORT:
-            distance = shut_in(wall, (left, right), (place(left), place(right)), flat[0])
-            enough = (
-                distance is not None
-                and distance <= flat[0]
-                and distance * (right - left) <= flat[1]
-            )
+            distance = shut_in(wall, (left, right), (place(left), place(right)), max_distance)
+        enough = distance is not None and distance <= max_distance
         if right - left > narrowest and not enough:
             waiting += [(middle, right), (left, middle)]
         else:
@@ -156,7 +146,7 @@ def _distance(wall: WallBranch, panel: Span) -> Fraction | None:
     return -((-distance * _GRID_STEPS).__floor__()) * Fraction(1, _GRID_STEPS)
 
 
-def shut_in(wall: WallBranch, panel: Span, ends: Span, most: Fraction = FLAT) -> Fraction | None:
+def shut_in(wall: WallBranch, panel: Span, ends: Span, most: Fraction) -> Fraction | None:
     """How far apart two heights are between which a wall with these ends is shut in over a panel;
     None: not proved.
 
@@ -202,7 +192,7 @@ def to_share(value: fmpq, interval: Interval) -> Fraction:
 
 
 def from_share(share: Fraction, interval: Interval) -> fmpq:
-    """The number that lies there."""
+    """The number that lies at a share of an interval."""
     return interval[0] + (interval[1] - interval[0]) * from_fraction(share)
 
 
@@ -322,9 +312,7 @@ def _chain(
     width = right[0] - left[1]
     start, first = _level(wall, left, width, tolerance)
     end, last = _level(wall, right, -width, tolerance)
-    parts = chords(
-        wall, (start, end), tolerance, _NARROWEST * width, check, (tolerance, Fraction(1))
-    )
+    parts = chords(wall, (start, end), tolerance, _NARROWEST * width, check)
     points = [(start, parts[0].at_left), *((c.right, c.at_right) for c in parts)]
     if not left[2]:
         points.insert(0, ((left[0] + left[1]) / 2, parts[0].at_left))

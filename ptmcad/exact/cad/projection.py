@@ -105,7 +105,7 @@ def by_component(curves: Iterable[FibredCurve]) -> dict[int, FibredCurve]:
 def lines_of(
     components: Sequence[Component], base: int, reason: str = ""
 ) -> dict[int, UnivariatePolynomial]:
-    """The other ones: lines across the base, as polynomials in u by the components' numbers."""
+    """Components that are lines across the base, as polynomials in u by the components' numbers."""
     return {
         n: coefficients_in(from_plane(c.polynomial), 1 - base)[0]
         for n, c in enumerate(components)

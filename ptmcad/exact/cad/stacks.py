@@ -20,7 +20,14 @@ from ptmcad.text.flint_numbers import simplest_between
 
 
 class BaseEnd(NamedTuple):
-    """An end of a stack: the window's edge (``root`` None, at ``value``) or a critical abscissa."""
+    """An end of a stack: the window's edge or a critical abscissa.
+
+    Attributes
+    ----------
+    value : the edge, exactly; of an abscissa the middle of an interval that contains it.
+    root : the abscissa; None at the window's edge.
+    critical : the abscissa's number; None at the window's edge.
+    """
 
     value: fmpq
     root: RealRoot | None
@@ -28,11 +35,12 @@ class BaseEnd(NamedTuple):
 
     @property
     def low(self) -> fmpq:
-        """Of the root's interval, or the edge."""
+        """The lower end of the root's interval, or the edge."""
         return self.root.low if self.root else self.value
 
     @property
     def high(self) -> fmpq:
+        """The upper end of the root's interval, or the edge."""
         return self.root.high if self.root else self.value
 
 
@@ -95,23 +103,19 @@ def lift(
     for left, right in pairwise(ends):
         sample = _simplest_off(left.high, right.low, lines)
         roots = roots_over(curves, sample, fibre)
-        heights = heights_between(roots, fibre, [c.fibre(sample) for c in avoided])
+        heights = heights_between([r for _, r in roots], fibre, [c.fibre(sample) for c in avoided])
         stacks.append(StackData(left, right, sample, tuple(w for w, _ in roots), heights))
     return tuple(stacks)
 
 
 def heights_between(
-    roots: Sequence[tuple[Wall, RealRoot]],
-    fibre: Interval,
-    avoided: Sequence[UnivariatePolynomial] = (),
+    roots: Sequence[RealRoot], fibre: Interval, avoided: Sequence[UnivariatePolynomial] = ()
 ) -> tuple[fmpq, ...]:
     """Simple rational heights below, between and above the given roots, within the fibre interval.
 
     None is a root of the polynomials to be avoided.
     """
-    return tuple(
-        _simplest_off(*gap, avoided) for gap in gaps(inside([r for _, r in roots], fibre), fibre)
-    )
+    return tuple(_simplest_off(*gap, avoided) for gap in gaps(inside(roots, fibre), fibre))
 
 
 def _simplest_off(low: fmpq, high: fmpq, avoided: Sequence[UnivariatePolynomial]) -> fmpq:

@@ -51,7 +51,7 @@ def system_from(model: Model) -> ParametricSystem:
 
 
 def system_counted(model: Model, count: Count) -> ParametricSystem:
-    """The same, with the margins of a count's predicate as conditions for stability.
+    """The system of a model, with the margins of a count's predicate as conditions for stability.
 
     Raises
     ------

@@ -327,7 +327,7 @@ def with_root(
 
 
 def _one(parameters: Ratios) -> Coefficient:
-    """Of the parameters' ring."""
+    """The one of the parameters' ring."""
     return next(
         (constant_like(numerator, 1) for numerator, _ in parameters.values()), PLANE.constant(1)
     )

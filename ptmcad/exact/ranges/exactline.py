@@ -58,8 +58,9 @@ def intervals(
     ------
     ConfigError
         See `line_of`.
-    DegenerateSliceError When the line lies inside the discriminant variety: every point of it has a
-        singular equilibrium.
+    DegenerateSliceError
+        When the line lies inside the discriminant variety: every point of it has a singular
+        equilibrium.
     InfiniteSolutionsError
         When every point of it has infinitely many equilibria.
     GeometryError

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import RationalPolynomial
+from ptmcad.algebra.polynomials import RationalUnivariate
 from ptmcad.algebra.real_roots import Interval, RealRoot, has_root_between, isolate, refine
 from ptmcad.answer.counts import operation_number
 from ptmcad.exact.cad.crossings import Crossing, cross
@@ -218,13 +218,13 @@ def constant_width(strip: RangeStrip) -> bool:
     low, high = (
         at_abscissa(b, strip.sample, strip.fibre, _NARROW) for b in (strip.low, strip.high)
     )
-    shift = RationalPolynomial(
+    shift = RationalUnivariate(
         [simplest_between(high.low - low.high - _NARROW, high.high - low.low + _NARROW), 1]
     )
     isolated = at_abscissa(strip.high, strip.sample, strip.fibre, strip.fibre[1] - strip.fibre[0])
     if not isolated.low <= low.low + shift[0] <= low.high + shift[0] <= isolated.high:
         return False  # the translate of the lower branch is another branch of the upper one's curve
-    lower, upper = (list(map(RationalPolynomial, curve.in_u)) for curve in curves)
+    lower, upper = (list(map(RationalUnivariate, curve.in_u)) for curve in curves)
     scale = lower[-1].coeffs()[-1] / upper[-1].coeffs()[-1]
     return len(lower) == len(upper) and all(
         p == q(shift) * scale for p, q in zip(lower, upper, strict=True)

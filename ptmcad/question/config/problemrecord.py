@@ -116,8 +116,9 @@ def read_record(tree: Tree, faults: Faults) -> Record:
 
     Raises
     ------
-    ConfigError At once for a file that ptmcad wrote itself: each of its keys would be a fault of
-        its own. And without a model.
+    ConfigError
+        At once for a file that ptmcad wrote itself: each of its keys would be a fault of its own.
+        And without a model.
     """
     kind = tree.entries.get("format")
     if isinstance(kind, Scalar) and kind.text.startswith("ptmcad-"):

@@ -35,8 +35,9 @@ def checked_slice(tree: Tree) -> Slice:
 
     Raises
     ------
-    ConfigError That knows all faults of the record, those of keys and shapes and those of what is
-        written there.
+    ConfigError
+        That knows all faults of the record, those of keys and shapes and those of what is written
+        there.
     """
     return slice_of(*described_record(tree))
 

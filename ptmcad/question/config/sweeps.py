@@ -143,8 +143,9 @@ def checked_sweep(tree: Tree) -> Sweeping:
 
     Raises
     ------
-    ConfigError That knows all faults of the record; of the members the first is looked at, and
-        every value's sign.
+    ConfigError
+        That knows all faults of the record; of the members the first is looked at, and every
+        value's sign.
     """
     record, faults = described_record(tree)
     sweep = None

@@ -156,8 +156,9 @@ def cover_outline(result: RegionMap) -> CoverOutline:
 
     Raises
     ------
-    ValueError When the map contradicts itself: a sample is in no component of its own, or a
-        rectangle is none.
+    ValueError
+        When the map contradicts itself: a sample is in no component of its own, or a rectangle is
+        none.
     """
     return _cover_outline(Same(result))
 

@@ -50,8 +50,9 @@ def save_film(motion: Motion, path: Path, style: PictureStyle, fps: int, dpi: in
 
     Raises
     ------
-    ConfigError For a system that cannot be drawn, another suffix, a size that is too small, or MP4
-        without ffmpeg.
+    ConfigError
+        For a system that cannot be drawn, another suffix, a size that is too small, or MP4 without
+        ffmpeg.
     OSError
         When the file cannot be written.
     """

@@ -39,8 +39,9 @@ def plot(
 
     Raises
     ------
-    ConfigError For an unknown style or option, a value that cannot be drawn, or what does not fit
-        into the size.
+    ConfigError
+        For an unknown style or option, a value that cannot be drawn, or what does not fit into the
+        size.
     """
     made = styled(style, **options)
     if ax is not None:

@@ -181,8 +181,9 @@ def compare(old: Row, new: Row) -> tuple[Row, ...]:
 
     Raises
     ------
-    ConfigError When they are of different slices, or were made with different settings that figures
-        depend on.
+    ConfigError
+        When they are of different slices, or were made with different settings that figures depend
+        on.
     """
     for key in ("slice", "seed"):
         if old[key] != new[key]:

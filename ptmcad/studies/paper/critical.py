@@ -57,9 +57,9 @@ def critical_free_lengths(
 
     Raises
     ------
-    MsolveError When msolve is not there, takes longer than ``timeout`` seconds, or finds infinitely
-        many solutions, as it does without loads where two poses are degenerate along a whole
-        interval.
+    MsolveError
+        When msolve is not there, takes longer than ``timeout`` seconds, or finds infinitely many
+        solutions, as it does without loads where two poses are degenerate along a whole interval.
     """
     found = []
     for box in real_solutions([str(u) for u in UNKNOWNS], critical_system(design), timeout):

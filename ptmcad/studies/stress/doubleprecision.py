@@ -126,8 +126,9 @@ def sextic_poses(parameters: Parameters) -> tuple[IndexedPose, ...]:
 
     Raises
     ------
-    ArithmeticError When some equilibrium is degenerate, when N has no finite number of roots, or
-        when the bits do not settle it.
+    ArithmeticError
+        When some equilibrium is degenerate, when N has no finite number of roots, or when the bits
+        do not settle it.
     """
     p = {name: from_fraction(v) for name, v in parameters.items()}
     polynomial = fmpq_poly(list(sextic(p)[0]))

@@ -176,8 +176,9 @@ def _check_beside(claims: CertifiedClaims, cell: Cell, reason: Unproved) -> int:
 
     Raises
     ------
-    Unproved When nothing beside the sample is decided, then for the reason given, or not what is in
-        the boxes.
+    Unproved
+        When nothing beside the sample is decided, then for the reason given, or not what is in the
+        boxes.
     Violation
     """
     said = cell.stable if cell.total is None else cell.total

@@ -86,7 +86,8 @@ def image(values: Sequence[arb], jacobian: Matrix, reach: Sequence[arb]) -> list
 
     Parameters
     ----------
-    values : at the middle; jacobian : over the box.
+    values : at the middle.
+    jacobian : over the box.
     reach : half widths of the box.
     """
     inverse = inverse_of(jacobian)

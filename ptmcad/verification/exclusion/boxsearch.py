@@ -50,7 +50,8 @@ def look(
     Parameters
     ----------
     system : `ptmcad.verification.exclusion.criticalsystems.Compiled`.
-    boxes : (number, variables, 2), made smaller; outcome : (number,), as above.
+    boxes : (number, variables, 2), made smaller.
+    outcome : (number,), as above.
     rest : (number, variables, 2), the second halves of those that are `HALVED`; `boxes` has the
         first ones.
     told : (formulas), those that are zero and then those that are not negative: how many boxes each

@@ -66,7 +66,8 @@ class CriticalSystem:
     ----------
     formulas : which those of ``zeros`` and ``signs`` are of, and which the tape has at ``zero`` and
         ``not_negative``.
-    early, first : as above; start : (variables, 2), a box that has all solutions over the window.
+    early, first : as above.
+    start : (variables, 2), a box that has all solutions over the window.
     """
 
     name: str

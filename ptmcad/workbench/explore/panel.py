@@ -72,8 +72,9 @@ class SliderPanel:
 
         Raises
         ------
-        ConfigError For a name that no slider has, a text that is no number, or a number beyond the
-            slider's ends.
+        ConfigError
+            For a name that no slider has, a text that is no number, or a number beyond the slider's
+            ends.
         """
         values = self.start()
         known = {slider.name: slider for slider in self.sliders}
