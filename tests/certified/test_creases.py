@@ -30,9 +30,10 @@ from ptmcad.certified.plain import criticalcurves as plain_curves
 from ptmcad.certified.plain import pointcounts as plain_points
 from ptmcad.certified.plain import straight
 from ptmcad.certified.plain.certifiedposes import point_slice
+from ptmcad.certified.plain.halfangles import located
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
-from ptmcad.certified.plain.straight import branches, located
+from ptmcad.certified.plain.straight import branches
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
 from ptmcad.text.balls import ball_of

@@ -13,7 +13,8 @@ from dataclasses import replace
 from ptmcad.certified.plain.curvesearch import CurveSearch, Pruning, short_lengths, variable_weights
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.harmonics import Angle, TrigonometricPolynomial, Unknown
-from ptmcad.certified.plain.mirrors import MirrorFrame, frames, mirrors, square_of
+from ptmcad.certified.plain.mirrors import MirrorFrame, frames, square_of
+from ptmcad.certified.plain.omissions import CONES, DEPENDENT, SADDLES, omissions
 from ptmcad.certified.plain.problem import FIRST, TURN, Condition, Problem, SpringCone, problem_of
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.straight import branches
@@ -55,36 +56,31 @@ def _of_branch(
     bounds = ranges(problem, slice.axes)
     exact = geometry(problem, slice.axes)
     at = chart(exact)
-    stable = problem.is_gradient and count.is_of_stable and "folds-of-saddles" not in without
+    left_out = omissions(slice, problem, count, without)
     search = CurveSearch(
         exact,
         bounds,
         variable_weights(slice, at.equations, bounds),
         short_lengths(slice, at.lengths, bounds),
-        stable,
-        not stable or "cones-and-creases" in without,
-        "dependent-equations" not in without and not problem.closing,
+        SADDLES in left_out.made,
+        DEPENDENT in left_out.made,
         problem.conditions(count),
         problem.closing > 0 and count.is_of_stable,
     )
-    found = [] if "mirror-images" in without else mirrors(slice, problem)
-    yield from _quotient(search, found, at) if found else _smooth(search, at)
+    if left_out.mirrors:
+        yield from _quotient(search, left_out.mirrors, at)
+    else:
+        yield from (_fold(search, at), *_short_folds(search, at))
+    if CONES not in left_out.made:
+        yield from cones(search, at)
     yield from _boundaries(search, at)
     yield from _of_predicate(search, at)
-
-
-def _smooth(search: CurveSearch, at: SpringChart) -> tuple[CriticalCurve, ...]:
-    """The folds, and the cones."""
-    if not search.swallowed:
-        # the folds' systems have the points at which a minimum is swallowed
-        return (_fold(search, at), *_short_folds(search, at))
-    return (_fold(search, at), *_short_folds(search, at), *cones(search, at))
 
 
 def _quotient(
     search: CurveSearch, changes: Sequence[Involution], whole: SpringChart
 ) -> Iterator[CriticalCurve]:
-    """The folds where involutions keep the problem, and limits without a spring's length.
+    """The folds where involutions keep the problem.
 
     Minima are searched all about one involution's fixed points if one unknown is odd; else what is
     far from all fixed points is searched as without an involution. So is, where all equilibria are,
@@ -103,7 +99,6 @@ def _quotient(
         search = replace(search, mirrors=(*search.mirrors, around[0]))
     if near:
         yield from (_fold(search, whole), *_short_folds(search, whole))
-    yield from cones(search, whole)
 
 
 def _fold_about(

@@ -21,10 +21,11 @@ from ptmcad.certified.branchandprune import Boxes
 from ptmcad.certified.equationsystem import EquationSystem, system
 from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.geometry import geometry
+from ptmcad.certified.plain.halfangles import in_description
 from ptmcad.certified.plain.problem import MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
-from ptmcad.certified.plain.straight import branches, in_description
+from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.certified.plain.zeros import PRECISIONS, PointCount, Zeros, ZeroSearch, boxed
 from ptmcad.errors import DegenerateSliceError
