@@ -6,6 +6,7 @@ import random
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from math import asin, sqrt, tan
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from ptmcad.certified.plain.opening import Coordinates, coordinates, opening
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.springchart import chart
+from ptmcad.certified.plain.symmetricfolds import MAX_ODD, NEAR_SQUARED
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.formulas.ballarithmetic import run_arb
 from ptmcad.formulas.tape import record
@@ -124,6 +126,13 @@ def slice_of(name: str, **loads: object) -> Slice:
 
 def found(slice: Slice) -> Involution | None:
     return next(iter(mirrors(slice, problem_of(slice))), None)
+
+
+def test_what_is_near_fixed_points_is_searched_about_them() -> None:
+    """Odd coordinates reach a little farther than where the other search begins."""
+    share = sqrt(NEAR_SQUARED)
+    farthest = max(share, asin(share), 2 * tan(asin(share) / 2))
+    assert farthest < MAX_ODD < 1.01 * farthest
 
 
 def test_which_are_found() -> None:

@@ -43,7 +43,7 @@ def located(
         unknowns = (ball(c - solution.radius, c + solution.radius) for c in solution.center)
         own = (*(ball(value, value) for value in point), *unknowns)
     narrow = refined(equations, own, precision)
-    rows = problem.covering
+    rows = problem.rows
     if not rows:
         return solution, narrow
     center = tuple(
@@ -67,7 +67,7 @@ def in_description(
     """Counts of a problem with their solutions in the description's unknowns; undecided where these
     are too near.
     """
-    if not problem.covering:
+    if not problem.rows:
         return counts
     found = []
     for solution in counts.solutions:

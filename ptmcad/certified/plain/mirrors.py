@@ -29,7 +29,7 @@ def mirrors(slice: Slice, problem: Problem) -> list[Involution]:
 
     There are none in half angles, where springs are pushes, and in closed loops.
     """
-    if problem.pushes or problem.covering or problem.closing or not problem.is_gradient:
+    if problem.pushes or problem.rows or problem.closing or not problem.is_gradient:
         return []
     found = [
         each
@@ -74,8 +74,8 @@ def halving(slice: Slice) -> Involution | None:
     """One that takes the window to itself, and does not keep its points; a reflection if there is
     any.
 
-    None where a predicate is counted by that symmetries do not keep; or one of whose margins is a
-    sum of squares, as what vanishes in its place is kept as that sum only.
+    None where the count is by a predicate that symmetries do not keep; or by one of whose margins
+    one is a sum of squares, as what vanishes in its place is kept as that sum only.
     """
     predicate = slice.count.kind.predicate
     if predicate is not None and not predicate.is_symmetric:
@@ -157,9 +157,9 @@ class MirrorFrame:
         """The same of the odd ones."""
         return _members([(p.odd, p.odd_sign) for p in self.places], len(self.reaches))
 
-    def distance(self, unknowns: Sequence[Unknown]) -> Formula:
-        """Of a configuration from its image: of odd coordinates the squares of the sines, or shares
-        of the reach.
+    def distance_squared(self, unknowns: Sequence[Unknown]) -> Formula:
+        """Of a configuration from its image: the sum of the squares of the odd coordinates' sines,
+        or of their shares of the reach.
         """
         graph = unknowns[0].graph
         total = graph.constant(0)

@@ -72,8 +72,10 @@ def branches(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Problem, ...]:
 
 
 def _in_half_angles(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Problem, set[str]]:
-    """The problem in unknowns by whose sums all lines turn, and the springs that change their side
-    between two places of one configuration: of these one side has every configuration once."""
+    """The problem in unknowns by whose sums all lines turn; and the springs whose sides change from
+    one place of a configuration to its other one: either side of such a spring has every
+    configuration once.
+    """
     one_sided = set[str]()
     for k in range(len(problem.cones)):
         first, last = _ends(problem.cones[k].difference)
@@ -98,10 +100,8 @@ def _branch(
             f"the length of spring {line.cone.name}", line.way.scaled(Fraction(side))
         )
         inequalities = (*problem.inequalities, longer)
-        where = (
-            f"{problem.where} {'and' if problem.where else 'with'} spring {line.cone.name} {ahead}"
-        )
-        problem = replace(problem, inequalities=inequalities, where=where)
+        where = f"{problem.where} {'and' if problem.is_branch else 'with'} spring {line.cone.name} {ahead}"
+        problem = replace(problem, inequalities=inequalities, where=where, is_branch=True)
         if norm is None:
             problem = replace(
                 problem, pushes=(*problem.pushes, Push(pull, line.direction, line.weights))
@@ -273,7 +273,7 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
         stability=conditions(problem.stability),
         multiples=tuple(f.substituted(rows) for f in problem.multiples),
         further=conditions(problem.further),
-        covering=_product(problem.covering, rows) if problem.covering else rows,
+        rows=_product(problem.rows, rows) if problem.rows else rows,
     )
 
 
