@@ -8,6 +8,8 @@ from dataclasses import replace
 import pytest
 from support.shipped_records import FREE, OTHER_FREE
 
+pytest.importorskip("numba")
+
 import ptmcad
 from ptmcad.answer.regionmap import PlanStep
 from ptmcad.certified.plain.criticalcurves import curves
