@@ -27,7 +27,8 @@ def mirrors(slice: Slice, problem: Problem) -> list[Involution]:
     """Those that keep each point, and fix some configurations; first those with the most odd
     unknowns.
 
-    There are none in half angles, where springs are pushes, and in closed loops.
+    There are none in half angles, where springs are pushes, and in closed loops; and of a branch none
+    but those that keep the sides on which its springs are.
     """
     if problem.pushes or problem.rows or problem.closing or not problem.is_gradient:
         return []
@@ -36,8 +37,16 @@ def mirrors(slice: Slice, problem: Problem) -> list[Involution]:
         for each in involutions(slice.model, slice.parameters)
         if each.odd and each.has_fixed_unknowns and _squares(problem) == _squares(problem, each)
         if not _is_short_where_fixed(problem, each)
+        if not problem.is_branch or _keeps_sides(problem, each)
     ]
     return sorted(found, key=lambda each: -each.odd)
+
+
+def _keeps_sides(problem: Problem, change: Involution) -> bool:
+    """Whether all inequalities of a branch, and so the parts of the energy that are along its
+    springs' lines, are the same at the images.
+    """
+    return all(image_of(c.value, change) == c.value for c in problem.inequalities)
 
 
 def _is_short_where_fixed(problem: Problem, change: Involution) -> bool:
