@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from pathlib import Path
 
@@ -65,3 +66,19 @@ def test_prose_speaks_of_what_is_there() -> None:
         if p != own and (names := lost(p.read_text("utf-8")))
     }
     assert not found
+
+
+def test_a_rooms_map_names_its_modules() -> None:
+    """Of the certified engine and of formulas: each module, and no other one."""
+    for room in ("certified", "formulas"):
+        folder = ROOT / "ptmcad" / room
+        text = ast.get_docstring(ast.parse((folder / "__init__.py").read_text("utf-8"))) or ""
+        words = {word for word in re.findall(r"`([a-z_.]+)`", text) if "ptmcad." not in word}
+        for line in re.findall(r"^    (\S.*?)  ", text, re.MULTILINE):
+            words.update(line.split(", "))
+        modules = {
+            ".".join(path.relative_to(folder).with_suffix("").parts)
+            for path in folder.rglob("*.py")
+            if path.name != "__init__.py"
+        }
+        assert words == modules

@@ -1,17 +1,51 @@
 """The second engine: certified enclosures of curves and counts by interval arithmetic, for what
 algebra cannot reach.
 
-Guarantee: nothing here imports from `ptmcad.algebra` or `ptmcad.exact.cad`, so that the two engines
+Guarantee: nothing here imports from `ptmcad.algebra` or `ptmcad.exact`, so that the two engines
 check each other.
 
-Data flows one way: a spring's force, from its description compiled once (`ptmcad.model.compile`),
-becomes a cone of a `plain.problem`, whose equations are sums of harmonics, and then formulas of a
-`plain.springchart`, which an `equationsystem` writes on a tape of `ptmcad.formulas`.
+There are three entrances: `engine` makes the map of a slice, `enclosedline` finds where counts
+change along a line, and `plain.certifiedposes` the equilibria at a point. Data flows one way.
 
-    plain.criticalcurves          the curves at which counts change, as systems
-    branchandprune, refinement    their enclosures, in boxes that `contraction` shrinks
-    covering                      the cover of all that the boxes hold
-    ptmcad.cover                  the components of its complement
-    plain.zeros, plain.pointcounts, uniqueness    a count at a sample of each, proved
-    mapassembly, engine           cells and regions
+The formulas of a problem, exact:
+
+    plain.problem           a slice's equations as sums of harmonics, and a cone for each spring
+    plain.harmonics         these sums, over Q(x, y)
+    plain.divisors          common factors of their coefficients
+    plain.straight          springs along one line: a problem for each choice of their sides
+    plain.cones             springs in formulas
+    plain.geometry          the factors, slopes and directions that formulas are made of
+    plain.springchart       equations, Hessian and determinant as formulas of `ptmcad.formulas`
+    plain.unknownranges     where all solutions are, proved
+    plain.mirrors           involutions that keep a problem, and coordinates about fixed points
+    plain.opening           the energy in coordinates that are regular there
+    plain.symmetricfolds    the folds about fixed points
+    plain.omissions         the savings that are made
+    plain.curvesearch       what all curves of a problem have in common
+    plain.criticalcurves    the curves at which counts change, as systems
+    equationsystem          a system on a tape of `ptmcad.formulas`
+
+The search, compiled:
+
+    loading                 compiled code, made ready before the clock starts
+    contraction, linear     a box, shrunk around the solutions in it
+    branchandprune          boxes, shrunk and bisected until they are small
+    uniqueness              proofs that a box holds one solution
+    arb_isolation           the same with any number of digits
+    refinement              the curves' boxes, level by level
+    boxstrips               thin rectangles around the curve in a small box
+    covering                a cover of the window's part that boxes or strips leave open
+    specks                  small clusters of the cover that no curve enters
+    pace                    when to hand a map over, and when to end
+
+The answer:
+
+    plain.zeros             the solutions at a rational point, each proved
+    plain.halfangles        solutions in the description's unknowns
+    plain.spectrum          eigenvalues, and how many of them are negative
+    plain.rational          what is exact at an equilibrium
+    plain.pointcounts       the counts at a point
+    peaks                   a check of these, of the paper's mechanism
+    coverassembly           cells and regions, from the components that `ptmcad.cover` finds
+    statement               what a result says of its problem, and its plan
 """

@@ -112,7 +112,7 @@ def _nonzero(value: arb) -> bool:
     return bool(value > 0 or value < 0)
 
 
-def width(system: EquationSystem, box: Box) -> arb:
+def largest_radius(system: EquationSystem, box: Box) -> arb:
     """The largest radius in the unknowns, as an exact ball."""
     widest = arb(0)
     for k in system.unknowns:
@@ -128,8 +128,8 @@ def refined(equations: EquationSystem, box: Box, precision: int) -> Box:
         step = newton(equations, box, precision)
         if step is None:
             raise ArithmeticError("a zero that was proved to exist is not there")
-        size = width(equations, step[0])
-        if not 100 * size < 99 * width(equations, box) or size < finest:
+        size = largest_radius(equations, step[0])
+        if not 100 * size < 99 * largest_radius(equations, box) or size < finest:
             return step[0]
         box = step[0]
 
@@ -150,7 +150,7 @@ def isolate_arb(
     ----------
     system : with what discards boxes that hold no solution looked for.
     equations : the same equations alone, for the proofs.
-    precision : in bits; boxes are bisected down to about half as many.
+    precision : in bits; boxes are bisected down to two thirds as many.
     budget : number of boxes.
     """
     found: list[tuple[Box, Box]] = []
@@ -164,11 +164,11 @@ def isolate_arb(
         step = newton(system, box, precision)
         if step is None:
             continue
-        size = width(system, step[0])
+        size = largest_radius(system, step[0])
         proved = _proved(equations, step[0], size, precision)
         if proved is not None:
             found.append((proved, refined(equations, proved, precision)))
-        elif 2 * size < width(system, box):
+        elif 2 * size < largest_radius(system, box):
             waiting.append(step[0])
         elif size < finest:
             return None

@@ -26,7 +26,7 @@ from ptmcad.formulas.compilation import ZERO, compiled, inlined
 from ptmcad.formulas.intervalarithmetic import Floats
 
 Boxes = Floats
-"""Shape (k, 2v): low ends of the v variables, then high ends."""
+"""Shape (k, 2v): low ends of the v variables, then high ends; of rectangles v is 2."""
 CUT = 0.5
 SOLVED_WEIGHT = 0.1
 """Of the width of an axis that the equations are solved for: it follows from the other variables.
@@ -36,12 +36,13 @@ MAX_SLIVER_RATIO = 8
 in any variable as its projection would be as a square: a box whose edge alone has the value of the
 axis has no area, and says nothing."""
 FLAT = 1e-6
-"""So are other boxes whose area is less than this part of what is asked: all of a box may lie at
-one value of an axis, at which a spring may have no length, before its other variables have been
-looked at."""
+"""The same holds without such an axis, but only for boxes whose area is less than this part of what
+is asked: all of a box may lie at one value of an axis, at which a spring may have no length, before
+its other variables have been looked at."""
 MAX_PROOF_WIDTH = 1e-2
 """Boxes at most this wide are tried for a proof of existence."""
 NEVER = -1.0
+"""A limit of areas or widths that no box reaches."""
 MAX_BOXES = 2**62
 
 
@@ -133,7 +134,12 @@ def isolate(
 def branch_and_prune(
     system: Arguments, equations: Arguments, start: Boxes, limits: SearchLimits, weights: Floats
 ) -> SearchResult:
-    """The one loop of both."""
+    """The one loop of both: it follows a curve, without proofs, where the limit of areas is
+    positive, and isolates solutions otherwise.
+
+    Boxes of curves are contracted by affine forms where these have room for all unknowns; others
+    by derivatives.
+    """
     variables = start.shape[1] // 2
     larger = (
         system if len(system.program.operations) > len(equations.program.operations) else equations

@@ -60,7 +60,9 @@ class Workspace(NamedTuple):
 
 @compiled
 def workspace(system: Arguments, variables: int) -> Workspace:
-    """Arrays for boxes of a system, or of another one with the same equations and no longer tape."""
+    """Arrays for boxes of a system, or of another one with the same equations whose tape is at most as
+    long.
+    """
     length = len(system.program.operations)
     m, n = system.jacobian.shape
     return Workspace(
@@ -147,7 +149,7 @@ def contract(system: Arguments, box_low: Floats, box_high: Floats, work: Workspa
 
 @inlined
 def determined(quotient: Indices, low: Floats, high: Floats) -> bool:
-    """Whether a row of ``System.solved`` tells its variable from the others over the whole box."""
+    """Whether a row of ``Arguments.solved`` tells its variable from the others over the whole box."""
     slope = quotient[2]
     positive: bool = low[slope] > 0
     negative: bool = high[slope] < 0
@@ -158,7 +160,7 @@ def determined(quotient: Indices, low: Floats, high: Floats) -> bool:
 def narrowed(
     quotient: Indices, low: Floats, high: Floats, box_low: Floats, box_high: Floats
 ) -> bool:
-    """Intersect the variable of a row of ``System.solved`` with its value at solutions; False when
+    """Intersect the variable of a row of ``Arguments.solved`` with its value at solutions; False when
     nothing is left.
     """
     if determined(quotient, low, high):
@@ -203,7 +205,7 @@ def survives(system: Arguments, box_low: Floats, box_high: Floats, work: Workspa
 def contract_curve(
     system: Arguments, box_low: Floats, box_high: Floats, work: Workspace, space: Linear
 ) -> bool:
-    """The same as `contract` by affine forms, without derivatives."""
+    """Shrink the box of a curve as `contract` does, but by affine forms, without derivatives."""
     for _ in range(SWEEPS):
         if not survives(system, box_low, box_high, work):
             return False
@@ -218,7 +220,7 @@ def contract_curve(
 @compiled
 def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> int:
     """Test a box and enclose its equations' derivatives: -1 no solution, 0 a derivative may be
-    unbounded, 1 done.
+    unbounded or the middle tells nothing, 1 done.
 
     Afterwards ``work`` has the middle and the radii of the box, the equations there, their
     derivatives over the box, and the middles of these.
@@ -228,7 +230,8 @@ def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
     m, n = jacobian.shape
     if not survives(system, box_low, box_high, work):
         return -1
-    run(program, box_low, box_high, low, high, stages[2], stages[3])
+    if not run(program, box_low, box_high, low, high, stages[2], stages[3]):
+        return -1
     for k in range(box_low.shape[0]):
         middle_low[k], middle_high[k] = box_low[k], box_high[k]
     for j in range(n):
@@ -237,7 +240,8 @@ def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
         middle_low[k] = middle_high[k] = middle
         radius[j] = up(max(box_high[k] - middle, middle - box_low[k]))
     # only the equations: at a middle that is no solution, the two formulas of a `meet` may differ
-    run(program, middle_low, middle_high, low_at, high_at, ZERO, stages[1])
+    if not run(program, middle_low, middle_high, low_at, high_at, ZERO, stages[1]):
+        return 0
     usable = True
     for i in range(m):
         u, v = low_at[equations[i]], high_at[equations[i]]

@@ -55,8 +55,7 @@ class Lattice:
 
     Attributes
     ----------
-    change : an involution that takes to itself the window, of each tile of which that or its image
-        is searched.
+    change : an involution of the window; of each tile and its image only one is searched.
     """
 
     window: Window
@@ -90,7 +89,9 @@ class Lattice:
 
     @property
     def copies(self) -> int:
-        """How often the window has what is searched, about."""
+        """How many times as much a cover has as is searched: what is searched and its images. Of
+        areas a bound, as a tile may be its own image.
+        """
         return 1 if self.change is None else 2
 
 

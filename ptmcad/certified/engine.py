@@ -54,17 +54,14 @@ FIRST_LEVEL, LAST_LEVEL = 4, 40
 MAX_AXIS_END = Fraction(10**100)
 """Ends of axes; areas and squares of such numbers are floats still."""
 MAX_BOXES = 6_000_000
+"""After a level that leaves more of them, the search ends, as at its deadline."""
 MAX_RECTANGLES = 3_000_000
 """In a cover made of strips: its JSON has some 40 bytes for each, and Python some 200."""
 STRIP_TRIAL_RATIO = 0.1
 """Strips are tried as soon as the square of the boxes' share is at most so many times the
-tolerance: that of strips is about the square at best."""
+tolerance: the strips' share is about that square at best."""
 STRIP_TARGET_SHARE = 0.5
-"""... and used as soon as the finest ones would leave less than this part of it."""
-FIRST_MAP_SHARE = Fraction(97, 100)
-"""... and the first one when they have left this part; at the end of the first level there is one
-in any case.
-"""
+"""Strips are used as soon as the finest ones would leave less than this part of the tolerance."""
 COARSE_SHARE = Fraction(1, 4)
 """While the boxes have more of the window, maps on the way do without strips, which would gain
 little.
@@ -75,6 +72,10 @@ MAP_SHRINK_RATIO = Fraction(9, 10)
 """A map on the way is worth making when the boxes' share is at most this part of what it was at the
 last one.
 """
+FIRST_MAP_SHARE = Fraction(97, 100)
+"""The first map on the way is made when the boxes have at most this share of the window; at the end
+of the first level there is one in any case.
+"""
 LAST_SHARE = 0.7
 """Of the time that a process has when it is asked to leave: the rest is for tasks to end and for
 the map's text.
@@ -82,7 +83,7 @@ the map's text.
 EARLY = 1.5
 """Seconds before the time limit: a search that ends earlier says so."""
 LATTICE_STEPS = 2**24
-"""Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
+"""Lattice steps of a cover along each axis; more for a tolerance below 64 / 2^24, or 3.8e-6."""
 
 
 def certified_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
@@ -126,13 +127,13 @@ class _MapSearch:
         while steps * self.tolerance < 64 and steps < MAX_STEPS:
             steps *= 2
         horizontal, vertical = slice.axes
-        self.resumed = None if options.resume is None else options.resume.cover
-        whole = self.resumed is not None or "mirror-images" in options.without
+        self.earlier = None if options.resume is None else options.resume.cover
+        whole = self.earlier is not None or "mirror-images" in options.without
         window = (horizontal.low, horizontal.high), (vertical.low, vertical.high)
         self.lattice = Lattice(window, steps, None if whole else halving(slice))
         wanted = curves(slice, slice.count, options.without)
         self.enclosures: list[CurveEnclosure] = begin(
-            wanted, first_rectangles(self.lattice, self.resumed)
+            wanted, first_rectangles(self.lattice, self.earlier)
         )
         self.counter = plain_counter(slice)
         self.plan = plan_of(slice, wanted, options.without, self.lattice.change)
@@ -140,10 +141,11 @@ class _MapSearch:
         """The map with the least undetermined area of those that were handed over."""
         self._thinned: Thinning | None = None
         """The strips of the boxes as they are, when they are known."""
-        self.enclosed = Fraction(1)
-        """The share that the boxes had when it was made."""
+        self.tried_at = Fraction(1)
+        """The least share of the window that the boxes had when a map on the way was made, whether
+        it was the best one or not."""
         self.uncounted = Fraction(0)
-        """The share that it leaves outside of its cover."""
+        """The share that the best map leaves outside of its cover."""
         self.seconds["plan"] = self.clock() - self.pace.started
 
     def run(self) -> RegionMap:
@@ -156,14 +158,14 @@ class _MapSearch:
                 self.pace.deadline = (
                     until if self.pace.deadline is None else min(until, self.pace.deadline)
                 )
-                self._hand_over(Fraction(1))
+                self._hand_over()
             raise
 
     def _search(self) -> RegionMap:
         undetermined = Fraction(1)
         tolerance = self.tolerance
-        if self.resumed is not None and share_of(self.resumed) <= tolerance:
-            result = self.map(self.resumed, Status.CERTIFIED)
+        if self.earlier is not None and share_of(self.earlier) <= tolerance:
+            result = self.map(self.earlier, Status.CERTIFIED)
             if result.undetermined <= tolerance:
                 return result
         for level in range(FIRST_LEVEL, LAST_LEVEL):
@@ -177,8 +179,8 @@ class _MapSearch:
             if not in_time:
                 return self._stopped(self._at_limit())
             cover = self._box_cover()
-            undetermined = share_of(cover)
-            thin = None if undetermined <= tolerance else self.thin_cover(undetermined)
+            enclosed = undetermined = share_of(cover)
+            thin = None if undetermined <= tolerance else self.thin_cover(enclosed)
             if thin is not None:
                 cover = thin
             if (thin is not None or undetermined <= tolerance) and self._affordable(cover):
@@ -186,11 +188,11 @@ class _MapSearch:
                 undetermined = result.undetermined
                 if undetermined <= tolerance:
                     return result
-            strips_wanted = self._thinned is None and undetermined <= COARSE_SHARE
+            strips_wanted = self._thinned is None and enclosed <= COARSE_SHARE
             if self.options.partial is not None and (
                 self.best is None or self.pace.due(self.boxes(), thinned=strips_wanted)
             ):
-                self._hand_over(undetermined)
+                self._hand_over(enclosed)
             if self.boxes() > MAX_BOXES:
                 break
         return self._stopped(f"the search ended at {self.boxes():,} boxes")
@@ -208,13 +210,17 @@ class _MapSearch:
         """The number of boxes there are by now."""
         return sum(enclosure.number() for enclosure in self.enclosures)
 
-    def thin_cover(self, undetermined: Fraction) -> Cover | None:
+    def thin_cover(self, enclosed: Fraction) -> Cover | None:
         """A cover of strips that are thin enough for the tolerance, if they can be, in the time
         that there is.
+
+        Parameters
+        ----------
+        enclosed : the boxes' share of the window.
         """
         allowed = self.tolerance
         if (
-            undetermined** 2 > STRIP_TRIAL_RATIO * allowed
+            enclosed** 2 > STRIP_TRIAL_RATIO * allowed
             or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes())
         ):
             return None
@@ -229,7 +235,7 @@ class _MapSearch:
         self.seconds["curves"] += self.clock() - start
         return cover
 
-    def partial(self) -> RegionMap:
+    def map_so_far(self) -> RegionMap:
         """The map so far, with strips as thin as they can be for not many more rectangles than
         boxes.
 
@@ -243,7 +249,7 @@ class _MapSearch:
         most = min(4 * len(strips.thin), MAX_RECTANGLES)
         if self.pace.deadline is not None:
             most = min(most, max(0, int(self.pace.left() / (SAFETY * SECONDS_PER_RECTANGLE))))
-        cover, known = strips.cover(1.5 * strips.least(), most), self.resumed
+        cover, known = strips.cover(1.5 * strips.least(), most), self.earlier
         if known is not None and share_of(known) < share_of(cover):
             cover = known
         found = self.map(cover, Status.PARTIAL)
@@ -312,26 +318,27 @@ class _MapSearch:
             enclosed = share_of(self._box_cover())
             self.pace.looked(self.clock() - start)
             if enclosed <= (
-                FIRST_MAP_SHARE if self.best is None else MAP_SHRINK_RATIO * self.enclosed
+                FIRST_MAP_SHARE if self.best is None else MAP_SHRINK_RATIO * self.tried_at
             ):
                 self._hand_over(enclosed)
             self.pace.resumed()
         return False
 
-    def _hand_over(self, enclosed: Fraction) -> None:
+    def _hand_over(self, enclosed: Fraction | None = None) -> None:
         """Give the map so far to whoever asked for it.
 
         Parameters
         ----------
-        enclosed : the boxes' share of the window.
+        enclosed : the boxes' share of the window; without it the map is one without strips.
         """
         start = self.clock()
         found = (
-            self.partial()
-            if enclosed <= COARSE_SHARE
+            self.map_so_far()
+            if enclosed is not None and enclosed <= COARSE_SHARE
             else self.map(self._box_cover(), Status.PARTIAL)
         )
-        self.enclosed = min(enclosed, self.enclosed)
+        if enclosed is not None:
+            self.tried_at = min(enclosed, self.tried_at)
         if found.undetermined < self._least() and self.options.partial is not None:
             made = self.clock()
             self.options.partial(found)
@@ -351,8 +358,8 @@ class _MapSearch:
         """
         tolerance = self.tolerance
         if self.best is None and self.options.partial is not None:
-            self._hand_over(Fraction(1))  # a cheap one first: what strips take is not known yet
-        so_far = self.partial()
+            self._hand_over()  # a cheap one first: what strips take is not known yet
+        so_far = self.map_so_far()
         if so_far.undetermined <= tolerance:  # strips of what the level had reached were enough
             return replace(so_far, status=Status.CERTIFIED)
         if so_far.undetermined == 1:
@@ -387,16 +394,19 @@ class _MapSearch:
             default=Fraction(1),
         )
 
-    def _kept(self, enclosed: Fraction) -> Fraction:
-        """What a stop would leave undetermined, where the boxes have at most this share of the
-        window.
+    def _kept(self, undetermined: Fraction) -> Fraction:
+        """What a stop would leave undetermined.
 
         It is what the map leaves that `run` makes then, if there is the time to make it: else what
         the best one leaves.
+
+        Parameters
+        ----------
+        undetermined : the share that the cover leaves, of boxes or of strips.
         """
         # half of the time there is: other programs may take the processors meanwhile
         in_time = SAFETY * self.pace.map.of(self.boxes()) < LAST_SHARE * LAST_SECONDS / 2
-        return min(self._least(), enclosed + self.uncounted) if in_time else self._least()
+        return min(self._least(), undetermined + self.uncounted) if in_time else self._least()
 
 
 def _versions() -> dict[str, str]:

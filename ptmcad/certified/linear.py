@@ -41,7 +41,7 @@ ROUNDS = 2
 
 class Rows(NamedTuple):
     """Rows: the sum over j of slopes[i, j] e_j, plus centers[i], plus a number of at most
-    errors[i], is zero.
+    errors[i], is zero; in the last rows, of formulas that are not negative, at least zero.
 
     Attributes
     ----------

@@ -63,8 +63,8 @@ class Pace:
     Attributes
     ----------
     deadline : reading of the clock at which all has to be done; None without a limit.
-    work : reading of a clock that runs while this process works: by the other one it takes longer
-        on a busy machine.
+    work : reading of a clock that runs only while this process works: on a busy machine the other
+        one runs ahead of it.
     started : reading of the clock at the start.
     thin, map, text : what it takes to find the strips, to make a map of their cover, and to hand
         that over.

@@ -31,7 +31,7 @@ from ptmcad.cover.subdivision import COVERED, FREE, rectangle_array
 MAX_SHARE = Fraction(1, 10_000)
 """Of the window: larger clusters are no specks."""
 ROUNDS, FINER = 3, 4.0**-2
-"""Boxes are bisected so often until their projections are so many times smaller."""
+"""The number of rounds, and by what the area of boxes' projections is multiplied in each."""
 MAX_GROWTH = 2
 """A cluster of which there are more than so many times the boxes after a round is no speck: along a
 curve, there are four times as many."""

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 from ptmcad.answer.plan import half_step, saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import PlanStep, System
-from ptmcad.certified.plain.mirrors import mirrors
+from ptmcad.certified.plain.omissions import omissions
 from ptmcad.certified.plain.problem import problem_of
+from ptmcad.certified.plain.straight import branches
 from ptmcad.errors import PtmcadError
 from ptmcad.model import Mechanism, Model
 from ptmcad.model.closed import conditions_of
@@ -21,6 +22,7 @@ from ptmcad.model.description import equations_in
 from ptmcad.model.elements import factor
 from ptmcad.model.involutions import Involution
 from ptmcad.model.work import Split, split_moments
+from ptmcad.question.savings import BY_NAME
 from ptmcad.question.slice import Slice
 from ptmcad.text.tree import to_text
 
@@ -102,32 +104,26 @@ def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
     zero = [name for name in zero_parameters(slice) if name not in free_lengths]
     steps = [saving_step("imports", without, "imports of matplotlib and sympy")]
     steps += zero_terms([*zero, *absent])
-    return (*steps, *_plain(slice, without))
+    return (*steps, *_left_out(slice, without))
 
 
-def _plain(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
-    """The steps of a model without formulas of its own."""
+def _left_out(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
+    """The exact engine's method, and the savings: those that are made in the search for each curve,
+    and those that were switched off.
+    """
     reason = (
         "its degree is out of reach when springs have free lengths"
         if slice.has_free_lengths
         else "curves are enclosed, as the certified engine was asked for"
     )
-    steps = [PlanStep("discriminant variety", False, reason)]
-    if slice.count.is_of_stable:
-        steps.append(saving_step("folds-of-saddles", without))
-        if slice.has_free_lengths:
-            steps.append(saving_step("cones-and-creases", without))
-    if slice.has_free_lengths:
-        steps.append(saving_step("dependent-equations", without))
-    if _is_symmetric(slice):
-        steps.append(saving_step("mirror-images", without))
-    return tuple(steps)
-
-
-def _is_symmetric(slice: Slice) -> bool:
-    """Whether an involution keeps each point of the slice."""
+    variety = PlanStep("discriminant variety", False, reason)
     try:
-        problem = problem_of(slice)
+        found = [
+            omissions(slice, branch, slice.count, without)
+            for branch in branches(problem_of(slice), slice.axes)
+        ]
     except PtmcadError:
-        return False  # the engine says why
-    return bool(mirrors(slice, problem))
+        return (variety,)  # the engine says why
+    made = frozenset[str].intersection(*(each.made for each in found))
+    kept = frozenset[str].union(*(each.kept for each in found))
+    return (variety, *(saving_step(name, without) for name in BY_NAME if name in made | kept))

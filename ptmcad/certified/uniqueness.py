@@ -67,10 +67,10 @@ def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
     """Whether it is proved that the equations have exactly one zero in the box, and that it is an
     inner point.
 
-    With Y the preconditioner, A = Y J(box), c = Y f(middle) and r the half-widths, |c_i| + sum_{j
-    not i} |A_ij| r_j <
-    |A_ii| r_i for each i. So (Y f)_i has opposite signs on opposite faces, which proves existence (Miranda), and no
-    matrix in A is singular, which proves uniqueness.
+    With Y the preconditioner, A = Y J(box), c = Y f(middle), r the half-widths and p the column that
+    row i is solved for, |c_i| plus the sum of |A_ij| r_j over the other columns j is less than
+    |A_ip| r_p for each i. So (Y f)_i has opposite signs on opposite faces, which proves existence
+    (Miranda), and no matrix in A is singular, which proves uniqueness.
     """
     if linearise(system, box_low, box_high, work) < 1:
         return False

@@ -46,7 +46,8 @@ except ValueError as error:  # numba reads its variables as it loads
 
 _CONFIG: Any = config
 ROOMS = ("certified", "formulas")
-"""Folders of the package, all of whose modules the digest is of; elsewhere nothing is compiled."""
+"""Folders of the package of whose own modules the digest is; elsewhere, and in folders within
+them, nothing is compiled."""
 
 
 def _folder() -> Path:

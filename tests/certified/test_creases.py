@@ -30,9 +30,10 @@ from ptmcad.certified.plain import criticalcurves as plain_curves
 from ptmcad.certified.plain import pointcounts as plain_points
 from ptmcad.certified.plain import straight
 from ptmcad.certified.plain.certifiedposes import point_slice
+from ptmcad.certified.plain.halfangles import located
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
-from ptmcad.certified.plain.straight import branches, located
+from ptmcad.certified.plain.straight import branches
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
 from ptmcad.text.balls import ball_of
@@ -139,7 +140,7 @@ def test_creases_of_sums_of_one_another_have_two_branches() -> None:
     slice = ptmcad.slice_from_mapping(record(SPUN))
     found = branches(problem_of(slice), slice.axes)
     assert [len(b.inequalities) for b in found] == [3, 3]
-    assert abs(np.linalg.det(np.array(found[0].covering))) == pytest.approx(4)
+    assert abs(np.linalg.det(np.array(found[0].rows))) == pytest.approx(4)
     assert found[0].where == (
         " with spring PQ forwards along its line and spring AP forwards along its line"
         " and spring AQ forwards along its line"
@@ -224,7 +225,7 @@ def test_a_solution_is_alone_in_the_cube_of_the_descriptions_angles() -> None:
     model = ptmcad.slice_from_mapping(record({**PAIR, "points": points, "springs": [spring]})).model
     values = {"l": Fraction(1), "F": Fraction(1, 2), "G": Fraction(0)}
     (counter,) = plain_counter(point_slice(model, values)).branches
-    assert counter.problem.covering == ((1, 0), (-2, 2))
+    assert counter.problem.rows == ((1, 0), (-2, 2))
     origin = Fraction(0), Fraction(0)
     found = counter.at(*origin, Count.INDEX).solutions
     assert found

@@ -6,6 +6,7 @@ import random
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from math import asin, sqrt, tan
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,8 @@ from ptmcad.certified.plain.opening import Coordinates, coordinates, opening
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.springchart import chart
+from ptmcad.certified.plain.straight import branches
+from ptmcad.certified.plain.symmetricfolds import MAX_ODD, NEAR_SQUARED
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.formulas.ballarithmetic import run_arb
 from ptmcad.formulas.tape import record
@@ -124,6 +127,40 @@ def slice_of(name: str, **loads: object) -> Slice:
 
 def found(slice: Slice) -> Involution | None:
     return next(iter(mirrors(slice, problem_of(slice))), None)
+
+
+def test_a_branch_has_the_mirrors_that_keep_its_sides() -> None:
+    """Of a slider's spring along its guide, one side of which an involution takes to the other."""
+    slice = slice_from_mapping(
+        {
+            "name": "slider",
+            "mechanism": {
+                "parameters": {"l": {"kind": "length"}, "m": {"kind": "length"}},
+                "unknowns": {"u": "length", "w": "length"},
+                "points": {"O": [0, 0], "A": ["u", 0], "P": [0, "w"]},
+                "supports": {"O": "pin"},
+                "springs": [
+                    {"between": ["O", "A"], "k": 1, "free": "l"},
+                    {"between": ["A", "P"], "k": 1, "free": "m"},
+                    {"between": ["O", "P"], "k": 1},
+                ],
+            },
+            "parameters": {},
+            "axes": {"l": [1, 2], "m": [1, 2]},
+        }
+    )
+    sides = branches(problem_of(slice), slice.axes)
+    assert len(sides) == 2
+    for side in sides:
+        (kept,) = mirrors(slice, side)
+        assert kept.text(("u", "w"), slice.axis_names) == "w -> -w"
+
+
+def test_what_is_near_fixed_points_is_searched_about_them() -> None:
+    """Odd coordinates reach a little farther than where the other search begins."""
+    share = sqrt(NEAR_SQUARED)
+    farthest = max(share, asin(share), 2 * tan(asin(share) / 2))
+    assert farthest < MAX_ODD < 1.01 * farthest
 
 
 def test_which_are_found() -> None:

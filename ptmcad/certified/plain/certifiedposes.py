@@ -23,11 +23,11 @@ from ptmcad.answer.poses import Pose, Poses, springs_of
 from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_isolation import Box
 from ptmcad.certified.peaks import peaks
+from ptmcad.certified.plain.halfangles import located
 from ptmcad.certified.plain.pointcounts import BranchCounter, PlainCounter, plain_counter
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.rational import Point, exact_eigenvalues, exact_values, rational_point
 from ptmcad.certified.plain.spectrum import ordered_eigenvalues
-from ptmcad.certified.plain.straight import located
 from ptmcad.formulas.ballarithmetic import ball, run_arb
 from ptmcad.formulas.graph import Formula, Graph, gradient
 from ptmcad.formulas.tape import Tape, record

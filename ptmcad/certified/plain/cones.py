@@ -37,8 +37,8 @@ Pair = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
 
 
 class ConeFormulas(NamedTuple):
-    """A spring in one configuration, with the vectors w_i by which it is in the equations, over
-    these's factors.
+    """A spring in one configuration, with the vectors w_i by which it is in the equations, each over
+    the factor of its equation.
 
     Of open chains w_i is the slope a_i of d by the i-th unknown over the factor of that one's
     equation.

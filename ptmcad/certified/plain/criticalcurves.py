@@ -13,11 +13,12 @@ from dataclasses import replace
 from ptmcad.certified.plain.curvesearch import CurveSearch, Pruning, short_lengths, variable_weights
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.harmonics import Angle, TrigonometricPolynomial, Unknown
-from ptmcad.certified.plain.mirrors import MirrorFrame, frames, mirrors, square_of
+from ptmcad.certified.plain.mirrors import MirrorFrame, frames, square_of
+from ptmcad.certified.plain.omissions import CONES, DEPENDENT, SADDLES, omissions
 from ptmcad.certified.plain.problem import FIRST, TURN, Condition, Problem, SpringCone, problem_of
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.straight import branches
-from ptmcad.certified.plain.symmetricfolds import NEAR, SymmetricFold, folds
+from ptmcad.certified.plain.symmetricfolds import NEAR_SQUARED, SymmetricFold, folds
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.formulas.graph import Formula, Graph, determinant
@@ -55,55 +56,49 @@ def _of_branch(
     bounds = ranges(problem, slice.axes)
     exact = geometry(problem, slice.axes)
     at = chart(exact)
-    stable = problem.is_gradient and count.is_of_stable and "folds-of-saddles" not in without
+    left_out = omissions(slice, problem, count, without)
     search = CurveSearch(
         exact,
         bounds,
         variable_weights(slice, at.equations, bounds),
         short_lengths(slice, at.lengths, bounds),
-        stable,
-        not stable or "cones-and-creases" in without,
-        "dependent-equations" not in without and not problem.closing,
+        SADDLES in left_out.made,
+        DEPENDENT in left_out.made,
         problem.conditions(count),
         problem.closing > 0 and count.is_of_stable,
     )
-    found = [] if "mirror-images" in without else mirrors(slice, problem)
-    yield from _quotient(search, found, at) if found else _smooth(search, at)
+    if left_out.mirrors:
+        yield from _quotient(search, left_out.mirrors, at)
+    else:
+        yield from (_fold(search, at), *_short_folds(search, at))
+    if CONES not in left_out.made:
+        yield from cones(search, at)
     yield from _boundaries(search, at)
     yield from _of_predicate(search, at)
-
-
-def _smooth(search: CurveSearch, at: SpringChart) -> tuple[CriticalCurve, ...]:
-    """The folds, and the cones."""
-    if not search.swallowed:
-        # the folds' systems have the points at which a minimum is swallowed
-        return (_fold(search, at), *_short_folds(search, at))
-    return (_fold(search, at), *_short_folds(search, at), *cones(search, at))
 
 
 def _quotient(
     search: CurveSearch, changes: Sequence[Involution], whole: SpringChart
 ) -> Iterator[CriticalCurve]:
-    """The folds where involutions keep the problem, and limits without a spring's length.
+    """The folds where involutions keep the problem.
 
     Minima are searched all about one involution's fixed points if one unknown is odd; else what is
     far from all fixed points is searched as without an involution. So is, where all equilibria are,
     what is near them with a short spring: such a spring's direction is as good as any there, and no
     equilibrium parts with its image.
     """
-    near = not search.stable or len(changes) > 1 or changes[0].odd > 1
+    only_near = not search.stable or len(changes) > 1 or changes[0].odd > 1
     for change in changes:
         around = list(frames(search.problem, change, search.ranges))
         charted = None if search.stable else around[0]
         for frame in around:
-            for fold in folds(search.exact, frame, stable=search.stable, near=near):
+            for fold in folds(search.exact, frame, stable=search.stable, only_near=only_near):
                 yield _fold_about(search, fold, charted)
         if charted is not None:
             yield from _short_folds(search, whole, charted)
         search = replace(search, mirrors=(*search.mirrors, around[0]))
-    if near:
+    if only_near:
         yield from (_fold(search, whole), *_short_folds(search, whole))
-    yield from cones(search, whole)
 
 
 def _fold_about(
@@ -159,25 +154,25 @@ def _far(search: CurveSearch, at: SpringChart) -> list[Formula]:
     """What is not negative where configurations are not searched about an involution's fixed
     points.
     """
-    return [_distance(search, at, mirror) - NEAR for mirror in search.mirrors]
+    return [_distance_squared(search, at, mirror) - NEAR_SQUARED for mirror in search.mirrors]
 
 
-def _distance(search: CurveSearch, at: SpringChart, mirror: MirrorFrame) -> Formula:
-    """Of a configuration from its image, squared."""
+def _distance_squared(search: CurveSearch, at: SpringChart, mirror: MirrorFrame) -> Formula:
+    """Of a configuration from its image."""
     unknowns = [
         Angle(u.graph, {u: 1}) if isinstance(u, Formula) and is_angle else u
         for u, is_angle in zip(at.unknowns, search.problem.is_angle, strict=True)
     ]
-    return mirror.distance(unknowns)
+    return mirror.distance_squared(unknowns)
 
 
 def _excess(
-    search: CurveSearch, at: SpringChart, s: int, near: MirrorFrame | None = None
+    search: CurveSearch, at: SpringChart, s: int, mirror: MirrorFrame | None = None
 ) -> Formula:
     """What is not negative where a spring is long, near an involution's fixed points or elsewhere."""
-    if near is None:
+    if mirror is None:
         return at.lengths[s] - search.short[s]
-    share = SHORT_RATIO**2 * _distance(search, at, near) + NEAR**2
+    share = SHORT_RATIO**2 * _distance_squared(search, at, mirror) + NEAR_SQUARED**2
     return at.lengths[s].squared() - search.short[s] ** 2 * share
 
 
@@ -250,13 +245,13 @@ def _boundary(
 
 
 def _short_folds(
-    search: CurveSearch, at: SpringChart, near: MirrorFrame | None = None
+    search: CurveSearch, at: SpringChart, mirror: MirrorFrame | None = None
 ) -> Iterator[CriticalCurve]:
     """The same where one spring is short, in its chart; the other ones may have any length.
 
     Parameters
     ----------
-    near : of the involution near whose fixed points they are.
+    mirror : of the involution near whose fixed points they are.
     """
     for s in _charted(search, at):
         cone, at = search.problem.cones[s], chart(search.exact, s)
@@ -269,8 +264,8 @@ def _short_folds(
         cheap, costly = _dependent(search, at)
         nonnegative = [
             at.cones[s].extent,
-            -_excess(search, at, s, near),
-            *([] if near is None else [NEAR - _distance(search, at, near)]),
+            -_excess(search, at, s, mirror),
+            *([] if mirror is None else [NEAR_SQUARED - _distance_squared(search, at, mirror)]),
             *_far(search, at),
             *minima,
             *search.values(at),

@@ -51,10 +51,10 @@ class CurveSearch:
     Attributes
     ----------
     exact : the problem with common factors that are positive in the window.
-    ranges, weights : of the unknowns, and of the axes and these.
+    ranges : of the unknowns.
+    weights : of the axes and the unknowns.
     short : below this length a spring is searched in its chart.
     stable : whether only folds of minima are asked for.
-    swallowed : whether solutions that springs without length swallow have curves of their own.
     dependent : whether formulas that vanish at all solutions are used besides the equations.
     conditions : positive at solutions that count.
     rising : whether only solutions are asked for at which the Jacobian's determinant is not
@@ -68,7 +68,6 @@ class CurveSearch:
     weights: tuple[float, ...]
     short: tuple[Fraction, ...]
     stable: bool
-    swallowed: bool
     dependent: bool
     conditions: tuple[Condition, ...]
     rising: bool

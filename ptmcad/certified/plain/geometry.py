@@ -63,10 +63,8 @@ def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Factore
     factors: tuple[Expression, ...] = (constant(1),) * len(problem.equations)
     found: tuple[Turn, ...] = ()
     if axes is not None and not problem.closing:
-        factors, found = (
-            common_factors(problem, axes),
-            () if problem.pushes else turns(problem, axes),
-        )
+        factors = common_factors(problem, axes)
+        found = tuple(_turn(problem, weights, axes) for weights in turning_directions(problem))
     equations = tuple(over(f, g) for f, g in zip(problem.equations, factors, strict=True))
     return FactoredProblem(
         problem,
@@ -156,8 +154,12 @@ def _written(pair: Pair, unknowns: Sequence[Unknown]) -> tuple[Formula, Formula]
     return first.formula(unknowns), second.formula(unknowns)
 
 
-def turns(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Turn, ...]:
-    """The directions in which springs or terms drop out, the best ones first."""
+def turning_directions(problem: Problem) -> list[tuple[int, ...]]:
+    """The directions in which springs or terms drop out, the best ones first; none of closed loops,
+    and where springs are pushes.
+    """
+    if problem.closing or problem.pushes:
+        return []
     found = []
     for weights in product((0, 1, -1), repeat=len(problem.unknowns)):
         lead = next((w for w in weights if w), 0)
@@ -167,7 +169,7 @@ def turns(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Turn, ...]:
             if gain > 0:
                 found.append((gain, weights))
     found.sort(key=lambda entry: -entry[0])
-    return tuple(_turn(problem, weights, axes) for _, weights in found[:MAX_DIRECTIONS])
+    return [weights for _, weights in found[:MAX_DIRECTIONS]]
 
 
 def _gain(problem: Problem, weights: Sequence[int]) -> int:

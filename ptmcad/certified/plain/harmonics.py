@@ -233,7 +233,7 @@ class Harmonics:
 
 @dataclass(frozen=True, slots=True)
 class Angle:
-    """A sum.
+    """A sum of multiples of angles, quarter turns, and angles given by the tangents of their halves.
 
     Attributes
     ----------

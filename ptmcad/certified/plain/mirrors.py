@@ -27,17 +27,26 @@ def mirrors(slice: Slice, problem: Problem) -> list[Involution]:
     """Those that keep each point, and fix some configurations; first those with the most odd
     unknowns.
 
-    There are none in half angles, where springs are pushes, and in closed loops.
+    There are none in half angles, where springs are pushes, and in closed loops; and of a branch none
+    but those that keep the sides on which its springs are.
     """
-    if problem.pushes or problem.covering or problem.closing or not problem.is_gradient:
+    if problem.pushes or problem.rows or problem.closing or not problem.is_gradient:
         return []
     found = [
         each
         for each in involutions(slice.model, slice.parameters)
         if each.odd and each.has_fixed_unknowns and _squares(problem) == _squares(problem, each)
         if not _is_short_where_fixed(problem, each)
+        if not problem.is_branch or _keeps_sides(problem, each)
     ]
     return sorted(found, key=lambda each: -each.odd)
+
+
+def _keeps_sides(problem: Problem, change: Involution) -> bool:
+    """Whether all inequalities of a branch, and so the parts of the energy that are along its
+    springs' lines, are the same at the images.
+    """
+    return all(image_of(c.value, change) == c.value for c in problem.inequalities)
 
 
 def _is_short_where_fixed(problem: Problem, change: Involution) -> bool:
@@ -74,8 +83,8 @@ def halving(slice: Slice) -> Involution | None:
     """One that takes the window to itself, and does not keep its points; a reflection if there is
     any.
 
-    None where a predicate is counted by that symmetries do not keep; or one of whose margins is a
-    sum of squares, as what vanishes in its place is kept as that sum only.
+    None where the count is by a predicate that symmetries do not keep; or by one of whose margins
+    one is a sum of squares, as what vanishes in its place is kept as that sum only.
     """
     predicate = slice.count.kind.predicate
     if predicate is not None and not predicate.is_symmetric:
@@ -157,9 +166,9 @@ class MirrorFrame:
         """The same of the odd ones."""
         return _members([(p.odd, p.odd_sign) for p in self.places], len(self.reaches))
 
-    def distance(self, unknowns: Sequence[Unknown]) -> Formula:
-        """Of a configuration from its image: of odd coordinates the squares of the sines, or shares
-        of the reach.
+    def distance_squared(self, unknowns: Sequence[Unknown]) -> Formula:
+        """Of a configuration from its image: the sum of the squares of the odd coordinates' sines,
+        or of their shares of the reach.
         """
         graph = unknowns[0].graph
         total = graph.constant(0)

@@ -21,10 +21,11 @@ from ptmcad.certified.branchandprune import Boxes
 from ptmcad.certified.equationsystem import EquationSystem, system
 from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.geometry import geometry
+from ptmcad.certified.plain.halfangles import in_description
 from ptmcad.certified.plain.problem import MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
-from ptmcad.certified.plain.straight import branches, in_description
+from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.certified.plain.zeros import PRECISIONS, PointCount, Zeros, ZeroSearch, boxed
 from ptmcad.errors import DegenerateSliceError
@@ -185,7 +186,7 @@ class PlainCounter:
             counts = self._holds(x, y, unique, asked)
             if counts is False:
                 continue
-            own = self._apart(x, y, unique, narrow) if counts and self.problem.where else unique
+            own = self._apart(x, y, unique, narrow) if counts and self.problem.is_branch else unique
             if counts is None or own is None:
                 unclear += 1
             else:
@@ -193,8 +194,8 @@ class PlainCounter:
         return found, unclear
 
     def _apart(self, x: Fraction, y: Fraction, unique: Boxes, narrow: Boxes) -> Boxes | None:
-        """A box between two around a zero of a branch in which its conditions hold: no other branch
-        has a zero there.
+        """A box around a zero of a branch, between the two given ones, in which the branch's
+        inequalities hold: no other branch has a zero there.
 
         None where they are not proved to hold in the narrower one.
         """
@@ -297,7 +298,9 @@ class BranchCounter:
     branches: tuple[PlainCounter, ...]
 
     def at(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> PointCount:
-        """What ``count`` needs at the point (x, y) of the two axes, as `PlainCounter.at` has it."""
+        """What ``count`` needs at the point (x, y) of the two axes, as `PlainCounter.at` has it; where that
+        is not decided in some branch, nothing of the others.
+        """
         parts = []
         for counter in self.branches:
             own = counter.at(x, y, count, thorough=thorough)
@@ -376,7 +379,7 @@ def _counter(slice: Slice, problem: Problem, pause: Callable[[], None] | None) -
         record([[entry for row in at.hessian for entry in row]]),
         record([[*inequalities, *stability], further]),
     )
-    if not problem.where:  # where sides of kinks are not conditions that anybody asked for
+    if not problem.is_branch:  # sides of kinks are not conditions that anybody asked for
         _check_conditions(counter)
     return counter
 

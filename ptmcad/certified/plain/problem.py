@@ -113,11 +113,13 @@ class Problem:
         among ``stability``. 0 without springs of free lengths, and without loops.
     pushes : of springs along one line each, of which a branch of a problem has one side; the
         equations lack them.
-    where : which branch it is, in words (`ptmcad.certified.plain.straight`).
+    where : which branch it is, in words for the names of curves.
+    is_branch : whether it is one of several problems, each on one side of some springs' kinks
+        (`ptmcad.certified.plain.straight`): its inequalities say which.
     further : all are positive where the predicate holds that a count is by; empty where it is by
         none.
-    covering : of each of the description's unknowns its whole multiples of these, where these are
-        others (`ptmcad.certified.plain.straight`).
+    rows : of each of the description's unknowns, as whole multiples of this problem's; none where
+        the unknowns are the same (`ptmcad.certified.plain.straight`).
     """
 
     unknowns: tuple[str, ...]
@@ -131,8 +133,9 @@ class Problem:
     closing: int = 0
     pushes: tuple[Push, ...] = ()
     where: str = ""
+    is_branch: bool = False
     further: tuple[Condition, ...] = ()
-    covering: tuple[tuple[int, ...], ...] = ()
+    rows: tuple[tuple[int, ...], ...] = ()
 
     @property
     def has_springs(self) -> bool:

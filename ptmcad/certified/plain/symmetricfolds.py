@@ -38,11 +38,12 @@ from ptmcad.certified.plain.problem import Range
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
 from ptmcad.formulas.graph import Formula, determinant
 
-NEAR = Fraction(1, 1024)
-"""The distance from their images below which configurations are searched about the fixed points."""
+NEAR_SQUARED = Fraction(1, 1024)
+"""The square of the distance from their images below which configurations are searched about the
+fixed points."""
 MAX_ODD = 0.0314
-"""A little more than the odd coordinates there, or shares of the reach, and twice the tangents of
-half of these.
+"""A little more than the odd coordinates there, whose sines are at most 1/32, or shares of the
+reach; and than twice the tangents of half of these. To be changed with `NEAR_SQUARED`.
 """
 
 
@@ -69,18 +70,18 @@ class SymmetricFold:
 
 
 def folds(
-    exact: FactoredProblem, frame: MirrorFrame, *, stable: bool, near: bool
+    exact: FactoredProblem, frame: MirrorFrame, *, stable: bool, only_near: bool
 ) -> Iterator[SymmetricFold]:
     """Folds about a component of the fixed points, on it and off it.
 
     Parameters
     ----------
     stable : whether only those of minima are asked for.
-    near : whether only those `NEAR` it are.
+    only_near : whether only those are asked for that are as near as `NEAR_SQUARED` says.
     """
     for fold in (
         *_fixed(exact, frame),
-        *(_moved(exact, frame, lead, near) for lead in range(len(frame.reaches))),
+        *(_moved(exact, frame, lead, only_near) for lead in range(len(frame.reaches))),
     ):
         kind, _, _ = fold.name.partition(" ")
         yield (
@@ -120,7 +121,7 @@ def _fixed(exact: FactoredProblem, frame: MirrorFrame) -> Iterator[SymmetricFold
         )
 
 
-def _moved(exact: FactoredProblem, frame: MirrorFrame, lead: int, near: bool) -> SymmetricFold:
+def _moved(exact: FactoredProblem, frame: MirrorFrame, lead: int, only_near: bool) -> SymmetricFold:
     """Folds off it, each for its image, too: where the odd coordinate of number ``lead`` is the
     largest.
     """
@@ -141,23 +142,23 @@ def _moved(exact: FactoredProblem, frame: MirrorFrame, lead: int, near: bool) ->
         (at.equations, ()),
         tuple(principal_minors(matrix)),
         tuple(
-            (0.0, most) if near and k == len(frame.ranges) else r
+            (0.0, most) if only_near and k == len(frame.ranges) else r
             for k, r in enumerate(place.ranges)
         ),
     )
 
 
-def _matrix(place: Coordinates, near: UnfoldedEnergy, even: Matrix) -> Matrix:
+def _matrix(place: Coordinates, opened: UnfoldedEnergy, even: Matrix) -> Matrix:
     """By the even coordinates, by c, and by w over r each time: symmetric, and singular where
     equilibria meet.
     """
     rows = [
-        [*row, mixed, *(place.r * f[k] for f in near.by_even)]
-        for k, (row, mixed) in enumerate(zip(even, near.mixed, strict=True))
+        [*row, mixed, *(place.r * f[k] for f in opened.by_even)]
+        for k, (row, mixed) in enumerate(zip(even, opened.mixed, strict=True))
     ]
-    rows.append([*near.mixed, near.bend, *(place.r * f for f in near.by_coordinate)])
+    rows.append([*opened.mixed, opened.bend, *(place.r * f for f in opened.by_coordinate)])
     for by_even, by_coordinate, by_ratio in zip(
-        near.by_even, near.by_coordinate, near.by_ratio, strict=True
+        opened.by_even, opened.by_coordinate, opened.by_ratio, strict=True
     ):
         rows.append([*(place.r * f for f in (*by_even, by_coordinate)), *by_ratio])
     return tuple(map(tuple, rows))

@@ -100,7 +100,9 @@ class ZeroSearch:
     def _isolated(
         self, arguments: Arguments, start: Boxes, finest: float, thorough: bool
     ) -> SearchResult:
-        """The search in boxes no finer than that; of more than three unknowns one of many parts."""
+        """What a search finds in boxes no finer than that; a thorough one goes on where a budget ends,
+        with more than three unknowns for longer.
+        """
         equations, weights = self.equations.arguments(), np.ones(start.shape[1] // 2)
         most = MANY_BOXES if len(self.problem.unknowns) > MAX_UNKNOWNS else BUDGET
         part = BUDGET if thorough else QUICK_BUDGET
@@ -173,8 +175,8 @@ QUICK_BUDGET = 6_000
 BUDGET = 60_000
 """Boxes in floating point for one point."""
 MIN_BOX_WIDTHS = (1e-8, 1e-4)
-"""Boxes this narrow are left to Arb; the second number counts where the first leaves too many, next
-to a fold.
+"""Boxes this narrow are left to Arb. Where some are, the search begins again with the second number:
+next to a fold the first one may leave too many.
 """
 PRECISIONS = (128, 320)
 
