@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -11,11 +12,13 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.design import BestDesign
+from ptmcad.answer.intervals import Span
 from ptmcad.cli import run
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.verification import verify_design
-from ptmcad.verification.designclaims import _check_boxes, _DesignLines
-from ptmcad.verification.report import Violation
+from ptmcad.verification.designclaims import _check_bound, _check_boxes, _DesignLines
+from ptmcad.verification.parameterlines import NotKnown
+from ptmcad.verification.report import Unchecked, Violation
 
 BALL: dict[str, Any] = {
     "name": "ball",
@@ -62,6 +65,23 @@ def test_a_condition_with_a_pole_is_not_seen_to_fail(found: BestDesign) -> None:
     )
     with pytest.raises(Violation, match="which satisfies the conditions"):
         _check_boxes(_DesignLines(forged, "3"))
+
+
+def test_designs_of_which_nothing_is_found_out_are_told(
+    found: BestDesign, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    of_all, asked = _DesignLines.ranges, []
+
+    def of_some(self: _DesignLines, design: Mapping[str, Fraction]) -> list[Span]:
+        asked.append(design)
+        if len(asked) == 3:
+            raise NotKnown("too close")
+        return of_all(self, design)
+
+    assert not isinstance(_check_bound(_DesignLines(found, "3")), Unchecked)
+    monkeypatch.setattr(_DesignLines, "ranges", of_some)
+    told = _check_bound(_DesignLines(found, "3"))
+    assert isinstance(told, Unchecked) and "of 1 more nothing was found out" in told
 
 
 def test_forgeries_are_found(found: BestDesign) -> None:
