@@ -129,7 +129,7 @@ def height_on_the_way(r: RegionMap) -> RegionMap:
             for step in range(1, 40):
                 v = other.low + (other.high - other.low) * Fraction(step, 40)
                 if (
-                    claims.free(from_fraction(low), from_fraction(high), from_fraction(v))
+                    claims.met_by(from_fraction(low), from_fraction(high), from_fraction(v))
                     is not None
                 ):
                     return replace(r, adjacencies=put(r.adjacencies, k, segment=(low, high, v)))
