@@ -1,8 +1,15 @@
-"""Verification of a stored result by methods that share no code with the one that made it.
+"""Verification of a stored result: of maps, poses, lines and designs by methods that share no code
+with the one that made it.
 
 Guarantee: nothing here imports the engines (`algebra`, `exact`, `certified`); a contract in
-pyproject.toml holds that. Common to both are FLINT, the text of numbers, descriptions, the slice
-with its table of counts, and the result's data classes.
+pyproject.toml holds that. Common to both are FLINT, the text of numbers with the refinement of
+algebraic ones, descriptions, the slice with its table of counts, a cover's rectangles, and the
+result's data classes with the comparison of two arrangements.
+
+Not guaranteed: what `arrangements` says of a family rests on maps of further members, which its
+caller makes; the command has them from the engine, one by one. `report.check_anew` compares with
+the engine's answer of now. `solutions` asks the slice whether springs have free lengths, by the
+engine's evaluation of what is written in them.
 
 An order of reading, for what an exact map claims:
 
@@ -11,11 +18,13 @@ An order of reading, for what an exact map claims:
 2. `coordinates`, `constraints`, `kinds`, `derivation`: the polynomials that follow from a
    description, derived once for both halves of this package. `claims`: a stored map seen with them.
 3. `polynomialtexts`, `equationtexts`, `parameterclaims`: the stored texts say the same.
+   `certified.parameterdomain`: the signs of parameters, of exact maps and lines too, by
+   `windowsigns`.
 4. `quotientalgebra`, `principalminors`, `fibrealgebra`: the solutions over a point, counted by
    signatures. `solutions`: the stored counts and boxes. `norms`: the stored curves are all of those
    where counts change.
 5. `planecurves`, `rootcounts`, `projections`, `adjacencies`, `merging`: the decomposition of the
-   plane. `windowsigns`, `planclaims`: what was left out.
+   plane. `planclaims` and, once more, `windowsigns`: what was left out.
 6. `disks`, `wallintegrals`, `areaclaims`: enclosures of the areas, by power series alone.
 7. `parameterlines`, `rangeclaims`, `designclaims`, `arrangements`: lines, designs and families.
 

@@ -115,7 +115,7 @@ def _check_free(
         )
     if not claims.height[0] < v < claims.height[1]:
         raise Violation(f"{what}: the segment's height {short(v)} is outside the window")
-    hit = claims.free(low, high, v)
+    hit = claims.met_by(low, high, v)
     if hit is not None:
         raise Violation(
             f"{what}: component {hit.number} meets the segment [{low}, {high}] at height {v}"
@@ -212,15 +212,15 @@ def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
         for height, segment in zip(claims.height, (a.below, a.above), strict=True)
         if segment is None
     ]
-    whole = (a.left[0], a.right[0]) == (
+    starts_at_edge = (a.left[0], a.right[0]) == (
         result.stacks[a.critical_value].cells[0],
         result.stacks[a.critical_value + 1].cells[0],
     )
-    top = (a.left[-1], a.right[-1]) == (
+    ends_at_edge = (a.left[-1], a.right[-1]) == (
         result.stacks[a.critical_value].cells[-1],
         result.stacks[a.critical_value + 1].cells[-1],
     )
-    if (a.below is None and not whole) or (a.above is None and not top):
+    if (a.below is None and not starts_at_edge) or (a.above is None and not ends_at_edge):
         raise Violation(
             f"{what}: a segment is missing, and the cells do not reach the window's edge"
         )
@@ -230,11 +230,11 @@ def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
     elif a.reason is Reason.EDGE:
         holds = branches == 1 and len(at_edges) == 1
     else:
-        bottom = claims.height[0] if a.below is None else from_fraction(a.below[2])
-        top_height = claims.height[1] if a.above is None else from_fraction(a.above[2])
+        low = claims.height[0] if a.below is None else from_fraction(a.below[2])
+        high = claims.height[1] if a.above is None else from_fraction(a.above[2])
         heights = Heights(claims.curves, result.critical_values[a.critical_value])
         # at the window's edge the branches may only run into its corner over the critical value
-        holds = len(at_edges) < 2 and heights.between(bottom, top_height) <= 1 - len(at_edges)
+        holds = len(at_edges) < 2 and heights.between(low, high) <= 1 - len(at_edges)
     if not holds:
         raise Violation(
             f"{what}: {branches} half-branches between cells {a.left} and {a.right} are not closed because "
@@ -248,7 +248,7 @@ def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[in
     left, right = claims.result.stacks[s], claims.result.stacks[s + 1]
     for v in Heights(claims.curves, value).separated(bottom, top):
         low, high = from_fraction(left.sample), from_fraction(right.sample)
-        while claims.free(low, high, v) is not None:
+        while claims.met_by(low, high, v) is not None:
             low, high = _closer(low, high, value)
         pair = (claims.level(low, v), claims.level(high, v))
         if pair not in pairs:

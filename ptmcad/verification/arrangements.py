@@ -9,8 +9,9 @@ along the other sides in another way.
 *Surfaces*, cut at a random value, are the critical curves of the member there, which is classified
 alone, without what the members have in common.
 
-Guarantee: a change that is listed is one, within a stated distance of its value; between changes
-the members that were looked at, at random values, have the arrangement that is listed. Where the
+Guarantee, where the members' maps are true, which are the caller's and are not verified: a change
+that is listed is one, within a stated distance of its value; between changes the members that were
+looked at, at random values, have the arrangement that is listed. Where the
 surfaces, at the random value, have other irreducible factors than the member's curves on which
 solutions meet, they are not those of the family, but for finitely many values, of which a random
 one is none by accident.
@@ -71,7 +72,7 @@ def verify_changes(
     seed : of the random values; a fresh one when None.
     progress : called as ``progress("changes", done, total)`` before each member; may raise to stop.
     """
-    method = "members alone, over either axis"
+    method = "the engine's maps of members alone, over either axis"
     chosen = drawn(seed)
     source = random.Random(chosen)
     try:
@@ -264,7 +265,7 @@ def verify_surfaces(
     """
     if not found.surfaces:
         return Check("surfaces", "", None, "none are stored: those of the family are not said")
-    name, method = "surfaces", "a member alone, factored"
+    name, method = "surfaces", "the engine's map of a member alone, factored"
     chosen = drawn(seed)
     source = random.Random(chosen)
     for _ in range(_DRAWN):

@@ -87,9 +87,9 @@ def verify(
 
     Guarantee
     ---------
-    When the report is ``ok``, every claim in its table holds; the variety's completeness up to an
-    error probability below 1e-10 (`ptmcad.verification.norms`). Of a partial result, what it has
-    is checked.
+    Every claim in a row that says ok holds; the variety's completeness up to an error probability
+    below 1e-10 (`ptmcad.verification.norms`), and a random sample as far as its row says. The
+    report is ``ok`` when no row is false. Of a partial result, what it has is checked.
 
     Not guaranteed
     --------------

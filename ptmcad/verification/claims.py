@@ -1,6 +1,7 @@
 """A stored region map as the checks see it: its polynomials in FLINT, seen from the base axis.
 
-Guarantee: only the result's own data are used. ``u`` is the coordinate on the base axis, ``v`` the
+Guarantee: only the result's own data are used, and what `ptmcad.verification.derivation` derives
+from the description in it. ``u`` is the coordinate on the base axis, ``v`` the
 other one.
 """
 
@@ -181,8 +182,8 @@ class Claims:
         """How many roots of the curves over u lie below v."""
         return sum(roots_between(c.over(u), self.height[0], v) for c in self.curves)
 
-    def free(self, low: fmpq, high: fmpq, v: fmpq) -> PlaneCurve | None:
-        """None when no curve meets the closed segment [low, high] x {v}, else one that does."""
+    def met_by(self, low: fmpq, high: fmpq, v: fmpq) -> PlaneCurve | None:
+        """A curve that meets the closed segment [low, high] x {v}; None where it is free of them."""
         return next((c for c in self.curves if roots_within(c.along(v), low, high) > 0), None)
 
 

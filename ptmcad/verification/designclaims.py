@@ -355,9 +355,12 @@ def _check_bound(lines: _DesignLines) -> str:
                 )
     if not settled:
         return Unchecked(f"of {len(boxes)} random designs nothing was found out")
-    return (
-        f"at {settled} random designs no range is longer than the bound of their box; seed {seed}"
-    )
+    text = f"at {settled} random designs no range is longer than the bound of their box"
+    if settled < len(boxes):
+        return Unchecked(
+            f"{text}; of {len(boxes) - settled} more nothing was found out; seed {seed}"
+        )
+    return f"{text}; seed {seed}"
 
 
 def _check_extremes(lines: _DesignLines) -> str:

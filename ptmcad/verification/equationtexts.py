@@ -32,6 +32,8 @@ def check_system(claims: Claims, seed: str = "") -> str:
         raise Violation(
             f"the relations are {', '.join(relations)}, not {', '.join(system.relations)[:80]}"
         )
+    if system.moments:
+        raise Violation("moments are stated, which are in the equations of an exact map")
     if len(system.hessian) != len(true.jacobian):
         raise Violation(f"there are {len(true.jacobian)} rows of derivatives")
     if true.potential is None and system.potential:

@@ -4,12 +4,16 @@ slice.
 Guarantee: BOUNDARY components are exactly the irreducible factors of the parameters' denominators,
 of lengths and stiffnesses that vary, of what is common to all coefficients of an equation, and, as
 far as they are not critical, of the norms of conditions (these up to the probability of
-`ptmcad.verification.norms`).
+`ptmcad.verification.norms`). On a component that is said to have infinitely many solutions there
+are; where perhaps, an equation vanishes on it, or complex solutions are infinitely many at random
+points of a line.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import random
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from itertools import product
 
 from flint import fmpq_mpoly
@@ -23,10 +27,14 @@ from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.text.syntax import names_in
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import Derivation, derivation_of
+from ptmcad.verification.derivation import Derivation, derivation_at, derivation_of
 from ptmcad.verification.norms import BITS, check_identity, condition_exponents, random_points
 from ptmcad.verification.planecurves import PLANE, factors, polynomial
+from ptmcad.verification.quotientalgebra import NotFinite, algebra
 from ptmcad.verification.report import Violation
+
+_LINE_POINTS = 2
+"""Random points of a line at which solutions are counted."""
 
 
 def auxiliary(model: Model) -> tuple[str, ...]:
@@ -131,6 +139,8 @@ def check_boundary(claims: Claims, seed: str) -> str:
             )
         if c.continuum is Continuum.PROVED:
             _check_continuum(claims, n, c.polynomial)
+        if c.continuum is Continuum.POSSIBLE:
+            _check_possible_continuum(claims, n, c.polynomial, seed)
     return f"{len(needed)} factors of parameters and equations"
 
 
@@ -149,6 +159,42 @@ def _check_continuum(claims: Claims, number: int, curve: PlanePolynomial) -> Non
         raise Violation(
             f"component {number} is said to have infinitely many solutions, which is not proved"
         )
+
+
+def _check_possible_continuum(
+    claims: Claims, number: int, curve: PlanePolynomial, seed: str
+) -> None:
+    """An equation vanishes on the component, or it is a line, and complex solutions are infinitely
+    many at random points of it.
+    """
+    if any(curve in factors(common) for common in equation_factors(claims)):
+        return
+    if curve.total_degree > 1 or any(
+        _has_finitely_many(claims, *at) for at in _points_of_line(curve, seed)
+    ):
+        raise Violation(
+            f"component {number} is said to have perhaps infinitely many solutions, but has not even "
+            "complex ones"
+        )
+
+
+def _points_of_line(line: PlanePolynomial, seed: str) -> Iterator[tuple[Fraction, Fraction]]:
+    by_power = {(i, j): c for i, j, c in line.terms}
+    x, y, c = (by_power.get(power, 0) for power in ((1, 0), (0, 1), (0, 0)))
+    source = random.Random(f"continuum {seed}")
+    for _ in range(_LINE_POINTS):
+        t = Fraction(source.getrandbits(BITS), 2**BITS)
+        yield (-(c + y * t) / Fraction(x), t) if x else (t, Fraction(-c, y))
+
+
+def _has_finitely_many(claims: Claims, x: Fraction, y: Fraction) -> bool:
+    """Whether there are finitely many complex solutions at a point, whatever inequalities say."""
+    point = derivation_at(claims.model, claims.parameters_at(x, y))
+    try:
+        algebra(point.generators(), point.coordinates)
+    except NotFinite:
+        return False
+    return True
 
 
 def _needed(claims: Claims) -> dict[PlanePolynomial, str]:

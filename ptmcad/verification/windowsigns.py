@@ -174,9 +174,13 @@ def has_no_pole(e: Expression, window: Window) -> Sign:
 
 
 def is_in_domain(e: Expression, window: Window, strict: bool) -> Sign:
-    """Whether a function without a pole is positive, or not negative, in the open window."""
+    """Whether a function is positive, or not negative, in the open window; it has no pole there
+    where that is proved. Nothing is said of one that may have a pole.
+    """
     if not e.numerator:
         return Sign.WRONG if strict else Sign.PROVED
+    if has_no_pole(e, window) is not Sign.PROVED:
+        return Sign.UNCHECKED
     denominator = polynomial(e.denominator)
     return _sign(polynomial(e.numerator) * _side(denominator, window), window, strict)
 

@@ -141,14 +141,15 @@ def test_every_command_names_the_line(
     assert "infinitely many equilibria" in told.out and "complex" not in told.out
 
 
-def test_a_forged_line_is_not_accepted(tmp_path: Path) -> None:
+@pytest.mark.parametrize("many", ["infinitely many", "perhaps infinitely many"])
+def test_a_forged_line_is_not_accepted(many: str, tmp_path: Path) -> None:
     """With a load across, both poses stay isolated on every line."""
     record = BALANCER.replace("P: {weight: W}", "P: [1, W]")
     classified(record, tmp_path)
     (path,) = (tmp_path / "map").glob("*.json")
     document = json.loads(path.read_text(encoding="utf-8"))
     assert document["components"] and not any("continuum" in c for c in document["components"])
-    document["components"][0]["continuum"] = "infinitely many"
+    document["components"][0]["continuum"] = many
     path.write_text(json.dumps(document), encoding="utf-8")
     assert run(["verify", str(path)]) == 1
 
@@ -177,6 +178,18 @@ def test_equations_that_depend_on_each_other_on_a_line(
     """
     classified(PRODUCT.replace('["-1/2", "-1/4"]', '["3/4", 1]'), tmp_path)
     assert "perhaps infinitely many solutions where a - b = 0" in capsys.readouterr().out
+    (path,) = (tmp_path / "map").glob("*.json")
+    true = path.read_text(encoding="utf-8")
+    assert run(["verify", str(path)]) == 0
+    # at points of the other components there are finitely many
+    document = json.loads(true)
+    others = [c for c in document["components"] if "continuum" not in c]
+    assert others
+    for component in others:
+        component["continuum"] = "perhaps infinitely many"
+        path.write_text(json.dumps(document), encoding="utf-8")
+        assert run(["verify", str(path)]) == 1
+        del component["continuum"]
 
 
 FOUR_BAR = """

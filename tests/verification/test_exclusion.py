@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -227,6 +228,33 @@ def test_a_search_loses_no_box_where_it_tries_some_with_all_formulas(
     monkeypatch.setattr(running, "LEARNT_FROM", 0)
     monkeypatch.setattr(running, "WORTH", 0.0)
     assert left() == all_at_once
+
+
+def test_a_box_that_is_halved_after_all_keeps_its_second_half(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of 32 boxes two are tried with all formulas; the others are stuck by some, and halved by all."""
+    calls = []
+
+    def looked(
+        _system: Any, _tape: Any, _pieces: Any, boxes: Any, outcome: Any, rest: Any, _told: Any
+    ) -> None:
+        calls.append(len(boxes))
+        outcome[:] = running.HALVED if len(calls) == 3 else running.STUCK
+        if len(calls) == 3:
+            rest[:] = boxes
+            boxes[:, 0, 1] = rest[:, 0, 0] = 0.5
+
+    system: Any = SimpleNamespace(
+        zero=(0,), not_negative=(), tape=None, compiled=lambda _smallest: None
+    )
+    monkeypatch.setattr(running, "look", looked)
+    monkeypatch.setattr(running, "LEARNT_FROM", 0)
+    start = np.tile([[0.0, 1.0], [0.0, 1.0]], (32, 1, 1))
+    unseen, stuck, _ = search(system, no_pieces(1), start, 32, 2.0**-20)
+    assert calls == [2, 30, 30] and len(stuck) == 2
+    assert unseen[:30].tolist() == [[[0.0, 0.5], [0.0, 1.0]]] * 30
+    assert unseen[30:].tolist() == [[[0.5, 1.0], [0.0, 1.0]]] * 30
 
 
 @pytest.mark.parametrize("drawn", [1_000, pytest.param(20_000, marks=pytest.mark.slow)])

@@ -82,7 +82,8 @@ def test_narrow_dips(kind: str, need: Need) -> None:
      ("F^2*(rho-1)^2*(F+3)", False, Sign.PROVED), ("0*F", False, Sign.PROVED), ("0*F", True, Sign.WRONG),
      ("-1-F^2", False, Sign.WRONG), ("rho^2+(F+1/3)^2", True, Sign.PROVED),
      ("(rho-1)^2+(F+1)^2", False, Sign.PROVED), ("(rho-1)^2+(F+1)^2", True, Sign.UNCHECKED),
-     ("(rho-1)^2+(F+1)^2+1e-20", True, Sign.PROVED), ("rho^16*F^16+1+rho*F", True, Sign.UNCHECKED)],
+     ("(rho-1)^2+(F+1)^2+1e-20", True, Sign.PROVED), ("rho^16*F^16+1+rho*F", True, Sign.UNCHECKED),
+     ("1/(rho-1)-3", True, Sign.UNCHECKED), ("-1/(rho-3/2)-F", False, Sign.UNCHECKED), ("1/rho", True, Sign.PROVED)],
 )  # fmt: skip
 def test_known_signs(text: str, strict: bool, expected: Sign) -> None:
     assert is_in_domain(parse(text, NAMES), WINDOW, strict) is expected

@@ -30,17 +30,19 @@ from ptmcad.options import Options
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.expressions import constant
 from ptmcad.text.tree import Chain, Name, Number, Step
-from ptmcad.verification.certified import cellsamples, models
+from ptmcad.verification.certified import cellsamples, models, sampling
 from ptmcad.verification.certified.ballequations import BallEquations
+from ptmcad.verification.certified.counted import CountedPoint
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.krawczyk import zeros
 from ptmcad.verification.certified.narrow import Function, Judgement
+from ptmcad.verification.certified.sampling import check_boxes, check_point
 from ptmcad.verification.coordinates import power
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.normalform.unknownbounds import half_widths
 from ptmcad.verification.normalform.waves import form_of
 from ptmcad.verification.principalminors import inertia
-from ptmcad.verification.report import Violation
+from ptmcad.verification.report import Unchecked, Violation
 
 pytest.importorskip("numba")
 
@@ -157,6 +159,19 @@ def test_a_true_map_is_accepted(name: str) -> None:
     assert undecided == ["plan", "provenance"]
     assert "2 boxes" in report.table()
     assert len({(c.total, c.stable, c.index) for c in map_of(name).cells}) > 1
+
+
+def test_points_that_are_not_decided_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked, true = [], CertifiedClaims(map_of("pendulum"))
+
+    def now_and_then(*given: Any) -> CountedPoint | None:
+        looked.append(given)
+        return None if len(looked) == 5 else check_point(*given)
+
+    assert not isinstance(check_boxes(true, "3", 1), Unchecked)
+    monkeypatch.setattr(sampling, "check_point", now_and_then)
+    told = check_boxes(true, "3", 1)
+    assert isinstance(told, Unchecked) and told.endswith("; 1 point not checked")
 
 
 def recounted(r: RegionMap, n: int, by: int) -> RegionMap:

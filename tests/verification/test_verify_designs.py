@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -11,9 +12,13 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.design import BestDesign
+from ptmcad.answer.intervals import Span
 from ptmcad.cli import run
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.verification import verify_design
+from ptmcad.verification.designclaims import _check_bound, _check_boxes, _DesignLines
+from ptmcad.verification.parameterlines import NotKnown
+from ptmcad.verification.report import Unchecked, Violation
 
 BALL: dict[str, Any] = {
     "name": "ball",
@@ -45,6 +50,38 @@ def test_a_true_design_with_conditions_passes() -> None:
         ptmcad.design(BALL, "range", OVER, where=where, tolerance="1/5", evaluations=60), seed=3
     )
     assert report.ok and "where the conditions hold" in report.checks[1].detail
+
+
+def test_a_condition_with_a_pole_is_not_seen_to_fail(found: BestDesign) -> None:
+    """It holds where b is less than 1/2; beside the pole, in the middle of the gap, it fails."""
+    halves = [(Fraction(0), Fraction(1, 5)), (Fraction(41, 50), Fraction(1))]
+    forged = replace(
+        found,
+        conditions=("1/(b - 1/2) <= 3",),
+        boxes=tuple(
+            replace(found.boxes[0], ranges=((Fraction(0), Fraction(2)), part)) for part in halves
+        ),
+        reason="by branch and bound, over 2 boxes of designs",
+    )
+    with pytest.raises(Violation, match="which satisfies the conditions"):
+        _check_boxes(_DesignLines(forged, "3"))
+
+
+def test_designs_of_which_nothing_is_found_out_are_told(
+    found: BestDesign, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    of_all, asked = _DesignLines.ranges, []
+
+    def of_some(self: _DesignLines, design: Mapping[str, Fraction]) -> list[Span]:
+        asked.append(design)
+        if len(asked) == 3:
+            raise NotKnown("too close")
+        return of_all(self, design)
+
+    assert not isinstance(_check_bound(_DesignLines(found, "3")), Unchecked)
+    monkeypatch.setattr(_DesignLines, "ranges", of_some)
+    told = _check_bound(_DesignLines(found, "3"))
+    assert isinstance(told, Unchecked) and "of 1 more nothing was found out" in told
 
 
 def test_forgeries_are_found(found: BestDesign) -> None:

@@ -5,7 +5,7 @@ Guarantee: every ball contains the exact value at each configuration and for all
 balls given. Where a spring with a free length may have no length, its direction is any unit vector,
 and nothing is said of the Jacobian.
 
-What is evaluated are the formulas of `equations`. With u = d/|d|, slopes g_i of d by the unknowns,
+What is evaluated are the formulas of `normalform.modelequations`. With u = d/|d|, slopes g_i of d by the unknowns,
 second derivatives g_ij, and c_i = u x g_i, a spring's part of the equations is -K u.g_i and of the
 Hessian -K (c_i c_j/|d| + u.g_ij). With closed loops other vectors w_i are in the place of the g_i:
 of the equations -K u.w_i, and -K ((u x w_i) c_j/|d| + u.w_ij). Where u is on a line that turns by

@@ -79,7 +79,7 @@ def verify_certified(
 
 def _is_closed(slice: Slice) -> bool:
     """Whether there are closed loops and springs with free lengths."""
-    return slice.has_free_lengths and bool(form_of(slice).closing)
+    return bool(form_of(slice).closing)
 
 
 def contradiction(result: RegionMap) -> str:

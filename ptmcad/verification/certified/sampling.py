@@ -112,10 +112,10 @@ def check_boxes(
         missing += 1
     text = f"{proved} boxes, {100 * float(area):.2g} % of the window, {points} points; seed {seed}"
     if missing:
-        text += f"; {missing} points not checked"
+        text += f"; {missing} point{'s' * (missing != 1)} not checked"
     if without:
         text += f"; nothing free met with in {without} of {_side(number) ** 2} squares"
-    return text if points else Unchecked(text)
+    return Unchecked(text) if missing or not points else text
 
 
 def _side(number: int) -> int:

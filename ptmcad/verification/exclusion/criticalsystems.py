@@ -2,8 +2,8 @@
 description's normal form.
 
 Guarantee: let p be a point of the window near which the counts of the map are not constant. Then p
-is the projection of a solution of one of the systems, in the box of its start (docs/verify.md, "Why
-an excluded area is free").
+is the projection of a solution of one of the systems, in the box of its start (docs/soundness.md,
+"Where counts change").
 """
 
 from __future__ import annotations

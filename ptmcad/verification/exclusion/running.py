@@ -100,9 +100,10 @@ class _Choice:
         self._look(self._all, boxes[:tried], outcome[:tried], other[:tried], self._told)
         self._look(self._some, boxes[tried:], outcome[tried:], other[tried:])
         small = tried + np.flatnonzero(outcome[tried:] == STUCK)
-        left, anew = boxes[small], outcome[small]
-        self._look(self._all, left, anew, other[small])
-        boxes[small], outcome[small] = left, anew
+        # copies, each of which is written back: a box that became smaller may be halved after all
+        left, anew, second = boxes[small], outcome[small], other[small]
+        self._look(self._all, left, anew, second)
+        boxes[small], outcome[small], other[small] = left, anew, second
         self._looked += len(boxes)
         chosen = self._told >= WORTH * self._told.sum()
         if self._looked >= LEARNT_FROM and (chosen != self._chosen).any():

@@ -18,7 +18,7 @@ from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.coordinates import evaluated
-from ptmcad.verification.windowsigns import Sign, Window, has_no_pole, is_in_domain
+from ptmcad.verification.windowsigns import Sign, Window, is_in_domain
 
 Vanishes = Callable[[fmpq_mpoly], bool]
 """Whether a polynomial in the parameters is zero all over the slice."""
@@ -169,8 +169,6 @@ class Parameters:
     def size(self, p: fmpq_mpoly) -> fmpq_mpoly | None:
         """The absolute value of a polynomial that is proved to be zero nowhere in the window."""
         value = self._expression(p)
-        if has_no_pole(value, self.window) is not Sign.PROVED:
-            return None
         signs = (
             sign for sign in (1, -1) if is_in_domain(sign * value, self.window, True) is Sign.PROVED
         )

@@ -27,6 +27,7 @@ from ptmcad.answer.regionmap import (
     NO_POINT,
     Cell,
     Component,
+    Continuum,
     CriticalValue,
     Kind,
     RegionMap,
@@ -81,6 +82,13 @@ def component_of_another_kind(r: RegionMap) -> Iterator[Alteration]:
         for kind in Kind:
             if kind is not c.kind:
                 yield partial(with_plan, replace(r, components=put(r.components, k, kind=kind)))
+
+
+def continuum_invented(r: RegionMap) -> Iterator[Alteration]:
+    """Solutions that are, or perhaps are, infinitely many on a component where they are not."""
+    for k, c in enumerate(r.components):
+        for many in Continuum if not c.left_out and c.continuum is None else ():
+            yield partial(replace, r, components=put(r.components, k, continuum=many))
 
 
 def component_altered(r: RegionMap) -> Iterator[Alteration]:
@@ -438,5 +446,5 @@ KINDS = (
     component_used_without_reason, separating_component, critical_value_moved, critical_polynomial,
     critical_values_exchanged, critical_value_twice, critical_value_invented, origin_of_a_critical_value, stack_dropped,
     sample_of_a_stack, sample_of_a_cell, root_of_a_wall, component_of_a_wall, walls_exchanged, wall_dropped,
-    wall_invented,
+    wall_invented, continuum_invented,
 )  # fmt: skip

@@ -230,6 +230,7 @@ def relations_and_unknowns(r: RegionMap) -> Iterator[Alteration]:
             if relations != s.relations:
                 yield partial(replace, r, system=replace(s, relations=relations))
     yield partial(replace, r, system=replace(s, hessian=s.hessian[1:]))
+    yield partial(replace, r, system=replace(s, moments=s.gradient))
     yield partial(replace, r, system=replace(s, gradient=(*s.gradient[1:], s.gradient[0] + " + 1")))
 
 

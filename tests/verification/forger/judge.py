@@ -109,6 +109,7 @@ LIKELY = {
     "component": "variety complete", "critical": "critical values", "sample": "walls and samples",
     "wall": "walls and samples", "plan": "plan", "non_adjacency": "non-adjacencies", "area": "areas",
     "region": "regions", "equations": "equations", "text": "parameters as written",
+    "continuum": "boundary components",
 }  # fmt: skip
 """The check that is tried first, by how a kind's name begins: it makes tests faster, and no weaker.
 """

@@ -20,6 +20,7 @@ from ptmcad.answer.regionmap import (
     Adjacency,
     Cell,
     Component,
+    Continuum,
     CriticalValue,
     Kind,
     Merge,
@@ -128,7 +129,7 @@ def height_on_the_way(r: RegionMap) -> RegionMap:
             for step in range(1, 40):
                 v = other.low + (other.high - other.low) * Fraction(step, 40)
                 if (
-                    claims.free(from_fraction(low), from_fraction(high), from_fraction(v))
+                    claims.met_by(from_fraction(low), from_fraction(high), from_fraction(v))
                     is not None
                 ):
                     return replace(r, adjacencies=put(r.adjacencies, k, segment=(low, high, v)))
@@ -285,6 +286,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_system, "fig3", with_system(potential="0*L1"), "the stored potential differs"),
     (check_system, "fig3", with_system(potential="L9"), "the stored potential names 'L9'"),
     (check_system, "fig3", with_system(unknowns=("a",)), "the unknowns are"),
+    (check_system, "fig3", with_system(moments=("17*L1",)), "moments are stated, which are in the equations"),
     (check_system, "fig3", with_system(hessian=()), "there are 2 rows of derivatives"),
     (check_system, "fig3", lambda r: with_system(relations=r.system.relations[::-1])(r), "the relations are"),
     (check_system, "fig3", with_system(potential="L1"), "the stored potential differs from the mechanism's"),
@@ -306,6 +308,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (boundary, "fig3", lambda r: replace(r, components=drop(r.components, first(r, kind=Kind.BOUNDARY))),
      "is not stored, but it bounds the domain of|is not stored, but equation"),
     (boundary, "fig3", lambda r: kind_of(first(r, kind=Kind.BOUNDARY), Kind.CRITICAL)(r), "stored as critical,"),
+    (boundary, "fig3", of("components", 0, continuum=Continuum.POSSIBLE), "component 0 is said to have perhaps"),
     (boundary, "fig3", kind_of(0, Kind.BOUNDARY), "component 0 is stored as boundary, but bounds nothing"),
     (check_left_out, "fig3", of("components", 0, left_out="it is ugly"), "for a reason that cannot be checked"),
     (check_left_out, "fig3", of("components", 0, left_out=NO_POINT), "is left out, but runs through the window"),
