@@ -11,8 +11,10 @@ sign 0 for the Jacobian's determinant there. Its multiplicity is not checked.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
+from itertools import combinations
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution, Status
@@ -45,6 +47,56 @@ def verify_poses(found: Poses, progress: Progress | None = None) -> VerifyReport
         ),
     )
     return VerifyReport(tuple(checked(claims, steps, (), CheckProgress(progress))))
+
+
+RIGHTLY = frozenset({"bits", "flat", "remark", "undecided"})
+"""What another version may have written otherwise of the same poses."""
+
+
+def in_same_order(stored: Poses, found: Poses) -> tuple[Poses, Poses, int]:
+    """Both with their poses in the order of the stored ones, where energies leave that open.
+
+    Where one of them is undecided, those that the other one has not are left out; how many, comes
+    last. Both as they are where that does not pair them.
+    """
+    rest, pairs = list(found.equilibria), list[tuple[Pose, Pose]]()
+    for pose in stored.equilibria:
+        if (match := next((other for other in rest if _meet(pose, other)), None)) is not None:
+            rest.remove(match)
+            pairs.append((pose, match))
+    alone = len(stored.equilibria) - len(pairs)
+    if (alone and found.status is not Status.UNDECIDED) or (
+        rest and stored.status is not Status.UNDECIDED
+    ):
+        return stored, found, 0
+    ordered = [other for _, other in pairs]
+    if any(_is_before(two, one) for one, two in combinations(ordered, 2)):
+        return stored, found, 0
+    kept = tuple(pose for pose, _ in pairs)
+    return (
+        replace(stored, equilibria=kept),
+        replace(found, equilibria=tuple(ordered)),
+        alone + len(rest),
+    )
+
+
+def _meet(one: Pose, other: Pose) -> bool:
+    """Whether two poses may be the same by their unknowns."""
+    return all(
+        a.low <= b.high and b.low <= a.high
+        for a, b in zip(
+            one.cosines_sines + one.reals, other.cosines_sines + other.reals, strict=True
+        )
+    )
+
+
+def _is_before(one: Pose, other: Pose) -> bool:
+    """Whether a pose has to come before another one."""
+    if (one.stable is True) != (other.stable is True):
+        return one.stable is True
+    if one.energy is None or other.energy is None:
+        return False
+    return one.energy.high < other.energy.low
 
 
 def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
@@ -181,7 +233,7 @@ def _check_without_free_lengths(claims: CertifiedClaims, cell: Cell, found: Pose
         return Unchecked(f"{listed} poses hold, and {number - listed} more are not listed")
     if degenerate:
         return Unchecked(
-            f"{number} different poses; {degenerate} of them are degenerate, of what multiplicity is left open"
+            f"{number} different poses; of the degenerate ones ({degenerate}) the multiplicity"
         )
     return f"{number} poses"
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import pytest
 
 import ptmcad
 from ptmcad.cli import run
+from ptmcad.text.enclosure import Enclosure, exact_text
 
 BAR = """
 name: bar
@@ -38,6 +40,7 @@ count: stable
 """
 POINTS = {
     "bar": ["bar.yaml", "--at", "a=1,M=1/20,f=3/2"],
+    "symmetric": ["bar.yaml", "--at", "a=1,M=0,f=3/2"],
     "regular": ["--at", "rho=7/10,L2=3/2,F3=-10,F4=-10"],
     "degenerate": ["cubic", "--at", "a=0,b=0"],
 }
@@ -108,3 +111,83 @@ def test_the_proof_refuses_a_false_pose(kind: str, forge: Callable[[Any], None])
     assert ptmcad.verify(ptmcad.Poses.from_json(json.dumps(data))).ok
     forge(data)
     assert not ptmcad.verify(ptmcad.Poses.from_json(json.dumps(data))).ok
+
+
+def moved(data: Any) -> None:
+    number = data["equilibria"][0]["energy"]
+    number["center"] = str(Fraction(number["center"]) + 1)
+    number["text"] = Enclosure(*[Fraction(number["center"])] * 2).text(data["digits"])
+    number["radius"] = "0"
+
+
+def in_another_order(data: Any) -> None:
+    data["equilibria"].reverse()
+
+
+def threefold(data: Any) -> None:
+    data["equilibria"][0]["multiplicity"] = 2
+
+
+def another_free_length(data: Any) -> None:
+    data["equilibria"][0]["springs"][0]["free_length"] = "7"
+
+
+def one_more_point(data: Any) -> None:
+    data["equilibria"][0]["nodes"]["Z"] = data["equilibria"][0]["nodes"]["O"]
+
+
+@pytest.mark.parametrize("versions", [None, {"ptmcad": "0.1.9"}])
+@pytest.mark.parametrize(
+    ("kind", "forge"),
+    [
+        *(("bar", f) for f in (none, moved, in_another_order, another_free_length, one_more_point)),
+        *(("regular", f) for f in (moved, in_another_order)),
+        ("degenerate", threefold),
+    ],
+)
+def test_what_contradicts_the_answer_is_false_in_any_version(
+    kind: str, forge: Callable[[Any], None], versions: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = document(kind)
+    forge(data)
+    assert _status(data, versions) == 1
+    assert "FALSE" in capsys.readouterr().out
+
+
+def _status(data: Any, versions: Any) -> int:
+    known = {**data, "versions": versions}
+    Path("forged.json").write_text(
+        json.dumps({key: value for key, value in known.items() if value is not None}), "utf-8"
+    )
+    return run(["verify", "forged.json"])
+
+
+def wider(data: Any) -> None:
+    number = data["equilibria"][0]["eigenvalues"][0]
+    number["radius"] = exact_text(2 * Fraction(number["radius"]))
+
+
+def nothing_of_flat(data: Any) -> None:
+    data["equilibria"][0]["flat"] = not data["equilibria"][0]["flat"]
+
+
+def equal_energies(data: Any) -> None:
+    """By symmetry two poses of the bar without a moment have one energy."""
+    data["equilibria"][:2] = data["equilibria"][1::-1]
+
+
+@pytest.mark.parametrize(
+    ("kind", "forge", "told"),
+    [
+        ("regular", wider, "2 claims hold"),
+        ("symmetric", equal_energies, "2 claims hold"),
+        ("regular", nothing_of_flat, "another version made it; now equilibria[0].flat"),
+    ],
+)
+def test_what_an_earlier_version_wrote_otherwise_is_not_false(
+    kind: str, forge: Callable[[Any], None], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = document(kind)
+    forge(data)
+    assert _status(data, None) == 0
+    assert told in " ".join(capsys.readouterr().out.split())
