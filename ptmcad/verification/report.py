@@ -212,7 +212,7 @@ def _contradictions(
     stored: Any, found: Any, rightly: Collection[str], place: str = ""
 ) -> Iterator[str]:
     """Where a document contradicts one of another version; `Unchecked` where they differ without a
-    contradiction. What an earlier version did not write is no difference.
+    contradiction.
     """
     differs = f"{place} is {found!r:.80}, not {stored!r:.80}"
     if _is_number(stored) and _is_number(found):
@@ -220,13 +220,14 @@ def _contradictions(
         if not (low <= least and most <= high):
             yield Unchecked(differs) if low <= most and least <= high else differs
     elif isinstance(stored, dict) and isinstance(found, dict):
-        for key in sorted(stored.keys() - {"versions"}):
+        for key in sorted((stored.keys() | found.keys()) - {"versions"}):
             where = f"{place}.{key}".lstrip(".")
             if key in rightly:
-                if stored[key] != found.get(key):
-                    yield Unchecked(f"{where} is {found.get(key)!r:.80}, not {stored[key]!r:.80}")
-            elif key not in found:
-                yield f"{where} is not there"
+                if stored.get(key) != found.get(key):
+                    differs = f"{where} is {found.get(key)!r:.80}, not {stored.get(key)!r:.80}"
+                    yield Unchecked(differs)
+            elif key not in found or key not in stored:
+                yield f"{where} is {'not there' if key in stored else 'missing'}"
             else:
                 yield from _contradictions(stored[key], found[key], rightly, where)
     elif isinstance(stored, list) and isinstance(found, list) and len(stored) == len(found):

@@ -136,11 +136,25 @@ def one_more_point(data: Any) -> None:
     data["equilibria"][0]["nodes"]["Z"] = data["equilibria"][0]["nodes"]["O"]
 
 
+def one_point_less(data: Any) -> None:
+    del data["equilibria"][0]["nodes"]["P"]
+
+
 @pytest.mark.parametrize("versions", [None, {"ptmcad": "0.1.9"}])
 @pytest.mark.parametrize(
     ("kind", "forge"),
     [
-        *(("bar", f) for f in (none, moved, in_another_order, another_free_length, one_more_point)),
+        *(
+            ("bar", f)
+            for f in (
+                none,
+                moved,
+                in_another_order,
+                another_free_length,
+                one_more_point,
+                one_point_less,
+            )
+        ),
         *(("regular", f) for f in (moved, in_another_order)),
         ("degenerate", threefold),
     ],
