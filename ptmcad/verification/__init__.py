@@ -26,7 +26,8 @@ An order of reading, for what an exact map claims:
 5. `planecurves`, `rootcounts`, `projections`, `adjacencies`, `merging`: the decomposition of the
    plane. `planclaims` and, once more, `windowsigns`: what was left out.
 6. `disks`, `wallintegrals`, `areaclaims`: enclosures of the areas, by power series alone.
-7. `parameterlines`, `rangeclaims`, `designclaims`, `arrangements`: lines, designs and families.
+7. `poseclaims`, `parameterlines`, `rangeclaims`, `designclaims`, `arrangements`: points, lines,
+   designs and families.
 
 Certified maps have their own order in `certified`. There `normalform` derives formulas from the
 polynomials of step 2, `exclusion` finds where their solutions may be, and `certified` itself proves
@@ -38,9 +39,9 @@ from __future__ import annotations
 from ptmcad.verification.arrangements import verify_changes, verify_surfaces
 from ptmcad.verification.checks import verify
 from ptmcad.verification.designclaims import verify_design
+from ptmcad.verification.poseclaims import verify_poses
 from ptmcad.verification.rangeclaims import verify_range
 from ptmcad.verification.report import Check, VerifyReport, check_anew
-from ptmcad.verification.solutions import verify_poses
 
 __all__ = [
     "Check",

@@ -24,9 +24,10 @@ from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.norms import check_conditions, check_irreducible, check_norm
 from ptmcad.verification.parameterclaims import check_boundary, check_text
 from ptmcad.verification.planclaims import check_plan, refuse_ablation
+from ptmcad.verification.poseclaims import verify_poses
 from ptmcad.verification.projections import check_critical_values, check_stacks
 from ptmcad.verification.report import Check, CheckProgress, VerifyReport, checked, drawn
-from ptmcad.verification.solutions import check_counts, check_solutions, verify_poses
+from ptmcad.verification.solutions import check_counts, check_solutions
 from ptmcad.verification.windowsigns import check_left_out
 
 NOT_CHECKED = (

@@ -185,6 +185,10 @@ class SolutionAlgebra:
             "0+-"[self._sum_of_signs(positive, self.matrix(p))] for p in self.point.stability
         )
 
+    def is_degenerate(self, positive: Sequence[fmpq_mat]) -> bool:
+        """Whether the only real solution at which functions are positive is a degenerate one."""
+        return self.norm() == 0 and not self._sum_of_signs(positive, self.jacobian * self.jacobian)
+
     def number_of_real_solutions(self) -> int:
         """Of different ones that count, degenerate ones among them."""
         return self._number([self.matrix(q) for q in self.point.inequalities])

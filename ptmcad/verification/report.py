@@ -135,13 +135,21 @@ FINISHED: ContextVar[Callable[[Check], None]] = ContextVar("FINISHED", default=l
 """Is told each check as soon as it is finished: a process that is ended has printed those."""
 
 
-def check_anew(stored: Any, found: Any, finer: Callable[[], Any] = lambda: None) -> Check:
+def check_anew(
+    stored: Any,
+    found: Any,
+    finer: Callable[[], Any] = lambda: None,
+    rightly: Collection[str] | None = None,
+) -> Check:
     """Compare a document, as JSON's data, with the one that the same question gives now.
 
-    Of a document of another version it is said in what it differs, and not that this is false.
+    Of a document of another version it is said in what it differs. That this is false is said where
+    it is known what may differ rightly.
 
     Parameters
     ----------
+    rightly : the keys of what another version may have written otherwise. Besides, its enclosures
+        may be wider, and it may not have decided what is true or false now.
     finer : asked where they differ, gives the document with more digits. An enclosure that has the
         one in there holds, whatever the one found now is; of one that only meets it nothing is
         said.
@@ -151,6 +159,14 @@ def check_anew(stored: Any, found: Any, finer: Callable[[], Any] = lambda: None)
         part.get("versions") if isinstance(part, dict) else None for part in (stored, found)
     ]
     earlier = versions[0] != versions[1]
+    if earlier and rightly is not None:
+        places = list(_contradictions(stored, found, rightly))
+        if (wrong := next((p for p in places if not isinstance(p, Unchecked)), None)) is not None:
+            return Check(name, method, False, shown(wrong))
+        detail = "of another version; the answer now agrees with it"
+        if not places:
+            return Check(name, method, True, detail)
+        return Check(name, method, None, f"another version made it; now {places[0]}")
     if next(_differences(stored, found, None, earlier), None) is None:
         return Check(name, method, True, "the answer is the same now")
     places = list(_differences(stored, found, finer(), earlier))
@@ -190,6 +206,45 @@ def _differences(
             yield from _differences(one, other, part, earlier, f"{place}[{k}]")
     elif (type(stored), stored) != (type(found), found):
         yield f"{place} is {found!r:.80}, not {stored!r:.80}"
+
+
+def _contradictions(
+    stored: Any, found: Any, rightly: Collection[str], place: str = ""
+) -> Iterator[str]:
+    """Where a document contradicts one of another version; `Unchecked` where they differ without a
+    contradiction.
+    """
+    differs = f"{place} is {found!r:.80}, not {stored!r:.80}"
+    if _is_number(stored) and _is_number(found):
+        (low, high), (least, most) = _reach(stored), _reach(found)
+        if not (low <= least and most <= high):
+            yield Unchecked(differs) if low <= most and least <= high else differs
+    elif isinstance(stored, dict) and isinstance(found, dict):
+        for key in sorted((stored.keys() | found.keys()) - {"versions"}):
+            where = f"{place}.{key}".lstrip(".")
+            if key in rightly:
+                if stored.get(key) != found.get(key):
+                    differs = f"{where} is {found.get(key)!r:.80}, not {stored.get(key)!r:.80}"
+                    yield Unchecked(differs)
+            elif key not in found or key not in stored:
+                yield f"{where} is {'not there' if key in stored else 'missing'}"
+            else:
+                yield from _contradictions(stored[key], found[key], rightly, where)
+    elif isinstance(stored, list) and isinstance(found, list) and len(stored) == len(found):
+        for k, (one, other) in enumerate(zip(stored, found, strict=True)):
+            yield from _contradictions(one, other, rightly, f"{place}[{k}]")
+    elif (type(stored), stored) != (type(found), found):
+        is_open = {type(stored), type(found)} == {bool, type(None)}
+        yield Unchecked(differs) if is_open else differs
+
+
+def _is_number(entry: Any) -> bool:
+    return isinstance(entry, dict) and entry.keys() == {"text", "center", "radius"}
+
+
+def _reach(number: Mapping[str, str]) -> tuple[Fraction, Fraction]:
+    center, radius = fraction_of(number["center"]), fraction_of(number["radius"])
+    return center - radius, center + radius
 
 
 def _is_enclosure(entry: Any) -> bool:

@@ -1,4 +1,4 @@
-"""Checks of the counts and the solutions at every cell's sample, and of the poses at a point.
+"""Checks of the counts and the solutions at every cell's sample.
 
 *Counts* come from signatures of trace forms, exactly. That they hold in the whole cells follows
 from the checks of the variety and of the decomposition.
@@ -9,49 +9,37 @@ inequalities and of conditions for stability are those on its image, or precisio
 Where that shows nothing, as of a box much larger than the distance over which the equations bend,
 trace forms count the solutions in the box and give their signs.
 
-*Poses* are checked as the solutions of a map's cell, and with free lengths as in
-`certified.cellsamples`: a window of two axes on which nothing depends has the point as its sample.
-
 Guarantee: boxes that pass are disjoint and contain at least one solution each. As their number is
 the total that the signatures give, each contains exactly one and together they contain all. No box
 has a real solution that does not count: it has one real solution by the test, or trace forms count
 one; where neither decides, that is listed as not checked. Conditions for stability that are said to
 be zero are so: trace forms give the number of solutions at which one is, and in the other boxes it
-is not. A box is refused on such a count alone. Of degenerate poses the number of different ones
-alone is checked.
+is not. A box is refused on such a count alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from functools import partial
 from itertools import combinations
 
 from flint import arb, ctx
 
 from ptmcad.answer.counts import Counts, euler_sum
-from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution, Status, System
 from ptmcad.cover.rectangles import Cover
 from ptmcad.model import Model
-from ptmcad.options import Progress
-from ptmcad.question.counts import Count
-from ptmcad.question.slice import Axis, Point, Slice
-from ptmcad.text.expressions import constant
+from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.ballequations import Matrix
-from ptmcad.verification.certified.cellsamples import check_cell, check_listed
-from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.narrow import precisions, tested
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import ball_at
-from ptmcad.verification.derivation import Derivation, parameters_of
+from ptmcad.verification.derivation import Derivation
 from ptmcad.verification.fibrealgebra import SolutionAlgebra
-from ptmcad.verification.kinds import kind_of, meaning_of
-from ptmcad.verification.normalform.boxes import Unproved
+from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.principalminors import inertia
-from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
+from ptmcad.verification.report import Unchecked, Violation
 
 
 def check_solutions(claims: Claims) -> str:
@@ -90,13 +78,13 @@ def _check_signs(claims: Claims, cell: Cell, solution: Solution) -> bool:
     ------
     Violation
     """
-    true, alone = _signs_in(claims, cell, solution)
+    true, alone = signs_in(claims, cell, solution)
     if true != solution.signs:
         raise Violation(claims.meaning.in_box.format(true, solution.signs[:10]))
     return alone
 
 
-def _signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool]:
+def signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool]:
     """The signs at the one solution that counts in a box, by a test of the box, else by trace
     forms; and whether it is proved that no other real solution is in it.
 
@@ -114,6 +102,8 @@ def _signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool
     number, place = fibre.within(solution.center, solution.radius, counted=True)
     if number != 1:
         raise Violation(f"{number or 'no'} solution{'s' * (number > 1)} found in it")
+    if fibre.is_degenerate(place):
+        raise Violation("the solution in it is degenerate")
     if not fibre.point.inequalities:
         return fibre.signs(
             place
@@ -254,74 +244,6 @@ def not_positive(model: Model, values: Mapping[str, Fraction]) -> str | None:
     return next((name for name in model.nonnegative if values.get(name, 0) < 0), None)
 
 
-_EXACT = Fraction(1, 2**100)
-"""Half the width of the box of a pose whose coordinates are all known exactly."""
-
-
-def verify_poses(found: Poses, progress: Progress | None = None) -> VerifyReport:
-    """Check stored poses without the code that made them."""
-    claims = CertifiedClaims(_map_of(found))
-    steps = (
-        (
-            "poses",
-            "signatures and interval Newton, or a search in balls",
-            partial(_check_poses, found=found),
-        ),
-    )
-    return VerifyReport(tuple(checked(claims, steps, (), CheckProgress(progress))))
-
-
-def _check_poses(claims: CertifiedClaims, found: Poses) -> str:
-    result, model = claims.result, found.model
-    (cell,) = result.cells
-    for name in parameters_of(model):
-        if name not in found.parameters:
-            raise Violation(f"nothing says what {name} is")
-    if result.slice.has_free_lengths and found.equilibria:
-        try:
-            if found.status is Status.UNDECIDED:
-                number = check_listed(claims, cell)
-                return Unchecked(f"whether there are more than the {number} listed, which hold")
-            number = check_cell(claims, cell)
-            untold = (
-                ""
-                if cell.stable == found.stable
-                else ", of whose stability nothing is checked here"
-            )
-            return f"{number} poses{untold}"
-        except Unproved as reason:
-            return Unchecked(str(reason))
-    try:
-        number = claims.fibre_at(*cell.sample).number_of_real_solutions()
-    except Violation:  # infinitely many
-        number = -1
-    if found.status is Status.UNDECIDED and not found.equilibria:
-        return Unchecked("nothing is said of them")
-    if number != len(found.equilibria):
-        raise Violation(
-            f"{len(found.equilibria)} poses are listed; there are {max(number, 0) or 'infinitely many'}"
-        )
-    check_disjoint(0, cell, model)
-    regular = [
-        (k, pose, box)
-        for k, (pose, box) in enumerate(zip(found.equilibria, cell.solutions, strict=True))
-        if pose.multiplicity == 1
-    ]
-    for k, pose, box in regular:
-        try:
-            signs, _ = _signs_in(claims, cell, box)
-        except Violation as violation:
-            raise Violation(f"the box of pose {k + 1}: {violation}") from None
-        index, stable = claims.meaning.index(signs), claims.meaning.is_stable(signs)
-        if (index, stable) != (pose.index, pose.stable):
-            raise Violation(f"pose {k + 1} has index {index}, and that it is stable is {stable}")
-    if len(regular) < number:
-        return Unchecked(
-            f"{number} different poses; {number - len(regular)} of them are degenerate"
-        )
-    return f"{number} poses"
-
-
 def map_of(slice: Slice, cells: tuple[Cell, ...], status: Status = Status.EXACT) -> RegionMap:
     """A map of a slice that has cells only, for what is checked of points."""
     return RegionMap(
@@ -332,37 +254,4 @@ def map_of(slice: Slice, cells: tuple[Cell, ...], status: Status = Status.EXACT)
         undetermined=Fraction(0),
         versions={},
         cover=Cover(2, ()),
-    )
-
-
-def _map_of(found: Poses) -> RegionMap:
-    """The map of one cell that has the point as its sample."""
-    expressions = {name: constant(value) for name, value in found.parameters.items()}
-    axes = (Axis("x", Fraction(0), Fraction(1)), Axis("y", Fraction(0), Fraction(1)))
-    slice = Slice("", found.model, axes, expressions, Count.TOTAL)
-    boxes = tuple(_box(pose, slice.has_free_lengths) for pose in found.equilibria)
-    meaning = meaning_of(found.model)
-    index = meaning.indices([pose.index for pose in found.equilibria])
-    # a map of all counts with a cover has no stable ones where conditions say which are; each pose
-    # is asked below
-    stable = (
-        meaning.about_stability(found.stable)
-        if meaning.order or not slice.has_free_lengths
-        else None
-    )
-    sample = Point(slice.axis_names, Fraction(1, 2), Fraction(1, 2))
-    return map_of(
-        slice, (Cell(None, 0, sample, 0, len(boxes), stable, index, boxes),), found.status
-    )
-
-
-def _box(pose: Pose, in_angles: bool) -> Solution:
-    numbers = (pose.angles if in_angles else pose.cosines_sines) + pose.reals
-    signs = (
-        "" if pose.index is None else "+" * (len(pose.eigenvalues) - pose.index) + "-" * pose.index
-    )
-    return Solution(
-        tuple(x.center for x in numbers),
-        max((x.radius for x in numbers), default=_EXACT) or _EXACT,
-        signs,
     )

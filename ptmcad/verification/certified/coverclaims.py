@@ -7,12 +7,14 @@ Guarantee: exact; the components of the cover's complement are found by
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
 from ptmcad.answer.regionmap import Status
 from ptmcad.cover.rectangles import Cover
+from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.counted import check_region, contradiction_in, numbers_in
@@ -50,6 +52,11 @@ class CertifiedClaims(Claims):
     def counting(self) -> ModelCounting:
         """How the solutions of the map's model are counted."""
         return ModelCounting(self.lattice)
+
+    def counting_of(self, count: Count) -> ModelCounting:
+        """The same, of another kind of count."""
+        lattice = self.lattice
+        return ModelCounting(lattice._replace(slice=replace(lattice.slice, count=count)))
 
     @cached_property
     def square(self) -> Fraction:

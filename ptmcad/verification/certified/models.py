@@ -178,6 +178,29 @@ class ModelCounting:
             raise Violation(f"{near}, has {len(held)} equilibria, not one")
         return held[0]
 
+    def stability_at(self, x: Fraction, y: Fraction, zero: Zero) -> str:
+        """The signs of the conditions for stability at a solution at a point of the window; empty
+        where there are none, or one is not certain.
+        """
+        values = _balls(_values_at(self.lattice.slice, self.form, x, y))
+        for side in sides(self.form) if self.form.conditions_for_stability else ():
+            field = _field(self.form, values, Count.STABLE, side)
+            if _may_be_on_side(field, zero.within):
+                return _with_signs(field, self.form, [zero])[0].signs
+        return ""
+
+    def has_margins(self, x: Fraction, y: Fraction, zero: Zero) -> bool:
+        """Whether all margins are positive at a solution at a point of the window.
+
+        Raises
+        ------
+        Unproved
+            When one may be zero.
+        """
+        values = _balls(_values_at(self.lattice.slice, self.form, x, y))
+        field = BallEquations(self.form, values, ("margins",))
+        return _has_margins(field, zero, kind_of(self._count).undecided)
+
     def same(self, one: Zero, two: Zero) -> bool:
         """Whether a solution lies where another one is alone.
 
