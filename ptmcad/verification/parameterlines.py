@@ -11,9 +11,10 @@ degenerate while another one leaves every bounded set, but then a coefficient ha
 Guarantee: counts at a point are exact. That no change is missing holds but for the probability that
 a wrong rational function has the right values at `FRESH` random points. Longest ranges, and whether
 they are attained, are checked at rational values: those that the claims name, the window's edges,
-random ones in an interval, and all at which the whole line is exceptional: counts can change there
-on every line across it, so that it is a common critical value of some random ones. On a line with
-degenerate solutions points with another count are sought that leave no room for the range.
+random ones in an interval and in the window, and all at which the whole line is exceptional: counts
+can change there on every line across it, so that it is a common critical value of some random ones.
+On a line with degenerate solutions points with another count are sought that leave no room for the
+range.
 
 Not guaranteed: longest ranges at irrational values, and of places that are enclosed.
 """
@@ -336,7 +337,8 @@ def check_maxima(lines: SliceLines, maxima: Sequence[Maximum]) -> str:
     special = [over.low, *lines.exceptional(), over.high]
     claims: list[tuple[End, Fraction, bool]] = []
     most = max((m.width.high for m in maxima), default=Fraction(0))
-    claims += [(value, most + reach, False) for value in special]
+    others = lines.between(over.low, over.high, INSIDE)
+    claims += [(value, most + reach, False) for value in (*special, *others)]
     for m in maxima:
         known = len(claims)
         if m.place is Place.PLATEAU:

@@ -94,6 +94,19 @@ def no_maxima(data: Any) -> None:
     data["over"]["maxima"] = []
 
 
+def a_shorter_maximum(data: Any) -> None:
+    """Ranges are as long as is said on the rows, and longer between two of them."""
+    (found,) = data["over"]["maxima"]
+    found |= {
+        "place": "edge",
+        "at": {"decimal": "0.4", "enclosure": ["2/5", "2/5"]},
+        "width": {"decimal": "1", "enclosure": ["487/500", "39/40"]},
+        "critical": None,
+        "ends": None,
+        "text": "attained at b = 0.4, the edge of the window",
+    }
+
+
 def a_row_less(data: Any) -> None:
     del data["over"]["rows"][1]
 
@@ -219,6 +232,7 @@ def enclosed_by_nothing(data: Any) -> None:
         ("over", no_ranges_of_seven, "no range with 7 solutions"),
         ("over", ranges_of_one, "of the intervals are at"),
         ("over", no_maxima, "a longer range than"),
+        ("over", a_shorter_maximum, "there is a longer range than is said"),
         ("over", a_row_less, "rows are not at 4 equal distances"),
         ("line", a_point_more, "2 intervals of equal counts, not 3"),
         ("line", overlapping, "2 intervals of equal counts, not 3"),
