@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import partial
-from itertools import groupby
+from itertools import groupby, pairwise
 from typing import Any
 
 from flint import fmpz_poly
@@ -189,7 +189,9 @@ def _check_line(asked: _Asked) -> str:
     (value,) = map(fraction_of, found["at"].values())
     try:
         line = _line(slice, found["along"], seed, value)
-        _check_intervals(line, line.gaps(), found["intervals"], None)
+        gaps = line.gaps()
+        _check_intervals(line, gaps, found["intervals"], None)
+        _check_changes(line, gaps, found["changes"])
     except NotKnown as reason:
         return Unchecked(str(reason))
     return f"{len(found['intervals'])} intervals; seed {seed}"
@@ -346,12 +348,56 @@ def _check_intervals(
             raise Violation(f"the sample {entry['sample']} is not in its interval")
 
 
+def _check_changes(
+    line: ParameterLine, gaps: Sequence[LineGap], changes: Sequence[Mapping[str, Any]]
+) -> None:
+    """Counts on the sides of changes are right, and a change is listed where they differ.
+
+    Raises
+    ------
+    Violation, NotKnown
+    """
+    places = []
+    for change in changes:
+        number, polynomial = _root(change["at"])
+        sides = change["before"], change["after"]
+        if not line.critical % polynomial:
+            place = sum(not _is_below(number, gap.sample) for gap in gaps)
+            true = tuple(map(_told, gaps[max(place - 1, 0) : place + 1]))
+            if sides != true:
+                raise Violation(f"counts do not change as is said near {float(number):.10g}")
+            places.append(place)
+        elif sides[0] != sides[1]:  # a critical value of solutions that do not count is one, too
+            raise Violation(f"counts cannot change near {float(number):.10g}")
+    missing = {n for n, (a, b) in enumerate(pairwise(gaps), start=1) if a.counts != b.counts} - set(
+        places
+    )
+    if missing or places != sorted(set(places)):
+        raise Violation("a change is missing, or they are not in their order")
+
+
+def _told(gap: LineGap) -> list[int] | dict[str, int | None]:
+    """Counts as a document has them."""
+    there = gap.counts
+    if there.index is not None:
+        return [*there.index]
+    return {"total": there.total, "stable": there.stable}
+
+
 def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
     """An end of an interval, if counts can change there."""
     if "window" in data:
         if (edge := fraction_of(data["window"])) not in (line.low, line.high):
             raise Violation(f"{shortest_text(edge)} is no end of the window")
         return edge
+    number, polynomial = _root(data)
+    if bool(line.critical % polynomial):
+        raise Violation(f"counts cannot change at the end near {float(number):.10g}")
+    return number
+
+
+def _root(data: Mapping[str, Any]) -> tuple[AlgebraicNumber, fmpz_poly]:
+    """The only root of an irreducible polynomial between two numbers, and the polynomial."""
     polynomial = fmpz_poly(
         [integer_of(c.removeprefix("-")) * (-1 if c[:1] == "-" else 1) for c in data["polynomial"]]
     )
@@ -366,9 +412,7 @@ def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
         raise Violation(
             f"an end near {float(number):.10g} is not the only root of its polynomial there"
         )
-    if polynomial.degree() < 1 or bool(line.critical % polynomial):
-        raise Violation(f"counts cannot change at the end near {float(number):.10g}")
-    return number
+    return number, polynomial
 
 
 def _is_below(end: End, value: Fraction) -> bool:

@@ -194,6 +194,23 @@ def one_interval_where_two_meet(data: Any) -> None:
     data["line"]["intervals"] = [last | {"low": first["low"], "sample": "0"}]
 
 
+def no_change(data: Any) -> None:
+    data["line"]["changes"] = []
+
+
+def a_change_of_four(data: Any) -> None:
+    data["line"]["changes"][0]["after"]["total"] = 5
+
+
+def a_change_at_another_place(data: Any) -> None:
+    data["line"]["changes"][0]["at"] = {
+        "polynomial": ["-1", "2"],
+        "low": "1/2",
+        "high": "1/2",
+        "decimal": "0.5",
+    }
+
+
 def nothing_enclosed(data: Any) -> None:
     data["enclosed"]["intervals"] = []
 
@@ -247,6 +264,9 @@ def enclosed_by_nothing(data: Any) -> None:
         ("line", at_another_value, "at another value than was asked for"),
         ("line", at_another_name, "at another value than was asked for"),
         ("line", no_line, "there is no answer enclosed or line"),
+        ("line", no_change, "a change is missing"),
+        ("line", a_change_of_four, "counts do not change as is said"),
+        ("line", a_change_at_another_place, "counts cannot change near 0.5"),
         ("beside", one_interval_where_two_meet, "are said to be at"),
         ("enclosed", nothing_enclosed, "nothing is said of M next to -0.5"),
         ("enclosed", an_enclosed_one_less, "nothing is said of M next to -0.418"),
