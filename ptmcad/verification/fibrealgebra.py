@@ -104,6 +104,11 @@ class SolutionAlgebra:
         k = next(k for k, c in enumerate(coefficients) if c != 0)
         return coefficients[k] * (-1 if (self.dimension - k) % 2 else 1)
 
+    def coefficients(self) -> list[fmpq]:
+        """Of the characteristic polynomials of the Jacobian's determinant and of all conditions."""
+        matrices = [self.jacobian, *map(self.matrix, self.conditions)]
+        return [fmpq(c) for matrix in matrices for c in matrix.charpoly().coeffs()]
+
     def signature(self, weight: fmpq_mat) -> tuple[int, int]:
         """Numbers of positive and negative squares of the trace form (f, g) -> trace(weight f g).
 

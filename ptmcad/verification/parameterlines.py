@@ -4,14 +4,17 @@ ranges over a second parameter are longest.
 The norms of the Jacobian's determinant and of all conditions, and a sum of traces, whose poles are
 where solutions leave every bounded set, are rational functions of the parameter. The digits of its
 value over a large integer are the coefficients of each (`ptmcad.verification.fibrealgebra`), where
-it has the right values over further integers, too.
+it has the right values over further integers, too. Of angles alone a sum of the coefficients of
+characteristic polynomials stands for the traces: a norm is finite and not zero where a solution is
+degenerate while another one leaves every bounded set, but then a coefficient has a pole.
 
 Guarantee: counts at a point are exact. That no change is missing holds but for the probability that
 a wrong rational function has the right values at `FRESH` random points. Longest ranges, and whether
 they are attained, are checked at rational values: those that the claims name, the window's edges,
-random ones in an interval, and all at which the whole line is exceptional: counts can change there
-on every line across it, so that it is a common critical value of some random ones. On a line with
-degenerate solutions points with another count are sought that leave no room for the range.
+random ones in an interval and in the window, and all at which the whole line is exceptional: counts
+can change there on every line across it, so that it is a common critical value of some random ones.
+On a line with degenerate solutions points with another count are sought that leave no room for the
+range.
 
 Not guaranteed: longest ranges at irrational values, and of places that are enclosed.
 """
@@ -136,20 +139,25 @@ class ParameterLine:
                 for at, row in fresh
                 for (p, q), v in zip(pairs, row, strict=True)
             ):
-                terms = [
-                    part
-                    for e in self.parameters.values()
-                    for part in (e.numerator, e.denominator)
-                    if part
-                ]
+                terms = [e.denominator for e in self.parameters.values()]
+                terms += [e.numerator for e in self._signed]
+                zeros = [p for p, _ in pairs[:-1]]
+                poles = [q for _, q in pairs]
                 product = fmpz_poly([1])
-                for part in filter(None, (*(p for pair in pairs for p in pair), *map(_row, terms))):
+                for part in filter(None, (*zeros, *poles, *map(_row, filter(None, terms)))):
                     product = squarefree(product * squarefree(part))
                 return product // int(product.content())
         raise NotKnown("the critical values have too long polynomials")
 
+    @property
+    def _signed(self) -> list[Expression]:
+        """The parameters whose signs have a meaning."""
+        signed = (*self.model.positive, *self.model.nonnegative)
+        return [self.parameters[name] for name in signed if name in self.parameters]
+
     def _functions(self, at: int) -> list[fmpq]:
-        """The values of the rational functions over an integer.
+        """The values of the rational functions over an integer: norms, and one of which only the
+        poles say something.
 
         Raises
         ------
@@ -162,13 +170,13 @@ class ParameterLine:
         norms = [found.norm(), *(found.norm_where_nonzero(p) for p in found.conditions)]
         if norms[0] == 0:
             raise NotKnown("there is a degenerate solution at random points")
-        if self.model.reals:
-            form = random.Random(f"form {self.seed}")
-            traces = found.form_traces(
-                [form.getrandbits(10) for _ in range(found.point.coordinates)]
-            )
-            norms.append(sum((t * form.getrandbits(10) for t in traces), fmpq(0)))
-        return norms
+        form = random.Random(f"form {self.seed}")
+        values = (
+            found.form_traces([form.getrandbits(10) for _ in range(found.point.coordinates)])
+            if self.model.reals
+            else found.coefficients()
+        )
+        return [*norms, sum((v * form.getrandbits(10) for v in values), fmpq(0))]
 
     def gaps(self) -> list[LineGap]:
         """The intervals between critical values, in increasing order.
@@ -200,14 +208,18 @@ class ParameterLine:
         return found
 
     def ranges(self, working: int) -> list[Span]:
-        """Where there are so many stable solutions: neighbours that differ in others only are one
-        range.
-        """
-        groups = (
-            (inside, list(group))
-            for inside, group in groupby(self.gaps(), lambda g: g.working == working)
-        )
-        return [Span(group[0].low, group[-1].high) for inside, group in groups if inside]
+        """Where there are so many stable solutions."""
+        return ranges_in(self.gaps(), working)
+
+
+def ranges_in(gaps: Sequence[LineGap], working: int) -> list[Span]:
+    """Where there are so many stable solutions: neighbours that differ in others only are one
+    range.
+    """
+    groups = (
+        (inside, list(group)) for inside, group in groupby(gaps, lambda g: g.working == working)
+    )
+    return [Span(group[0].low, group[-1].high) for inside, group in groups if inside]
 
 
 def _read(value: fmpz, base: int) -> fmpz_poly:
@@ -325,7 +337,8 @@ def check_maxima(lines: SliceLines, maxima: Sequence[Maximum]) -> str:
     special = [over.low, *lines.exceptional(), over.high]
     claims: list[tuple[End, Fraction, bool]] = []
     most = max((m.width.high for m in maxima), default=Fraction(0))
-    claims += [(value, most + reach, False) for value in special]
+    others = lines.between(over.low, over.high, INSIDE)
+    claims += [(value, most + reach, False) for value in (*special, *others)]
     for m in maxima:
         known = len(claims)
         if m.place is Place.PLATEAU:

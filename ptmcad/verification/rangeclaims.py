@@ -1,38 +1,44 @@
 """Checks of the counts along lines: the ends of intervals are values at which counts can change,
 and none is missing.
 
-Guarantee: of exact intervals that of `ptmcad.verification.parameterlines`. Of enclosed ones, with free
-lengths, counts are those that are stored at the samples and next to both ends; that nothing changes
-between these points is not checked.
+Guarantee: of exact intervals that of `ptmcad.verification.parameterlines`; they are all, and each is
+as long as it can be. Of enclosed ones, with free lengths, that of
+`ptmcad.verification.enclosedclaims`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import partial
+from itertools import groupby, pairwise
 from typing import Any
 
 from flint import fmpz_poly
 
-from ptmcad.answer.intervals import End
+from ptmcad.answer.counts import Counts, operation_number
+from ptmcad.answer.intervals import End, lower, upper
 from ptmcad.answer.widths import Maximum
 from ptmcad.options import Progress
-from ptmcad.question.counts import Count
-from ptmcad.question.slice import Slice
+from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.expressions import axis, constant
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.text.numerals import fraction_of, integer_of, shortest_text
+from ptmcad.text.numerals import approximate_text, fraction_of, integer_of, shortest_text
 from ptmcad.text.parsing import parse
-from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import parameters_of
-from ptmcad.verification.normalform.boxes import Unproved
+from ptmcad.verification.enclosedclaims import check_enclosed
 from ptmcad.verification.parameterclaims import check_text
-from ptmcad.verification.parameterlines import NotKnown, ParameterLine, SliceLines, check_maxima
+from ptmcad.verification.parameterlines import (
+    LineGap,
+    NotKnown,
+    ParameterLine,
+    SliceLines,
+    check_maxima,
+    ranges_in,
+)
 from ptmcad.verification.report import (
     Check,
     CheckProgress,
@@ -45,8 +51,6 @@ from ptmcad.verification.report import (
 from ptmcad.verification.rootcounts import roots_within
 from ptmcad.verification.solutions import map_of
 
-_NEAR = 2**7
-"""Counts of enclosed intervals are looked at so small shares of them beside both ends."""
 UNCHECKED = {
     "path": ("paths", "that poses are joined as it is said, and where a mechanism snaps to"),
     "critical": ("critical free lengths", "that they are all"),
@@ -76,15 +80,25 @@ def verify_range(
     """
     chosen = drawn(seed)
     claims = Claims(map_of(slice, ()))
-    steps = [
-        ("parameters as written", "expressions compared", lambda _: check_text(claims)),
+
+    def check_texts(_: object) -> str:
+        _check_axes(data, slice)
+        return check_text(claims)
+
+    steps: list[tuple[str, str, Callable[[_Asked], str]]] = [
+        ("parameters as written", "expressions compared", check_texts),
         ("signs of parameters", "root counts, elimination", lambda _: check_domain(claims)),
     ]
     steps += [
         (name, method, check)
         for part, name, method, check in (
             ("line", "intervals of the line", "norms read off one fibre, signatures", _check_line),
-            ("over", "intervals of the rows", "norms read off one fibre, signatures", _check_rows),
+            (
+                "over",
+                "intervals of the rows",
+                "norms read off one fibre, signatures",
+                partial(_check_rows, maxima=maxima),
+            ),
             (
                 "over",
                 "extremes",
@@ -95,7 +109,7 @@ def verify_range(
                 "enclosed",
                 "intervals of the enclosed line",
                 "Krawczyk's test and exclusion in balls",
-                _check_enclosed,
+                _check_enclosed_line,
             ),
         )
         if part in data
@@ -125,35 +139,129 @@ def _line(slice: Slice, along: Mapping[str, Any], seed: str, value: Fraction) ->
     return ParameterLine(slice.model, parameters, low, high, seed)
 
 
+def _check_axes(data: Mapping[str, Any], slice: Slice) -> None:
+    """Each part is along an axis of the slice over its whole window, as it was asked for.
+
+    Raises
+    ------
+    Violation
+    """
+    request = data["request"]
+    axes = {axis.name: axis for axis in slice.axes}
+    along = request["along"]
+    if along not in axes:
+        raise Violation(f"{along} is no axis of the slice")
+    other = next(name for name in axes if name != along)
+    if request["at"].keys() - {other}:
+        raise Violation(f"a value of {other} alone is asked for, not {', '.join(request['at'])}")
+    asked = {name: fraction_of(value) for name, value in request["at"].items()}
+    for key, found in data.items():
+        if key in ("over", "bands"):
+            _check_axis(key, "over", found["over"], axes[other])
+            number = request["rows"]
+            values = [axes[other].at(Fraction(k, number + 1)) for k in range(1, number + 1)]
+            if [fraction_of(row["value"]) for row in found["rows"]] != values:
+                raise Violation(f"{key}: rows are not at {number} equal distances")
+        elif key in ("line", "enclosed", "path", "branches"):
+            at = {name: fraction_of(value) for name, value in found["at"].items()}
+            if not at or at != asked:
+                raise Violation(f"{key}: it is at another value than was asked for")
+        if key in ("over", "bands", "line", "enclosed", "path"):
+            _check_axis(key, "along", found["along"], axes[along])
+        elif key == "branches" and found["along"] != along:
+            raise Violation(f"{key}: they are along {found['along']}, not {along}")
+    if request.get("critical"):  # free lengths instead, which earlier versions could find
+        return
+    for is_asked, kinds in ((asked, {"line", "enclosed"}), (request["over"], {"over", "bands"})):
+        if is_asked and not kinds & data.keys():
+            raise Violation(f"there is no answer {' or '.join(sorted(kinds))}, which was asked for")
+
+
+def _check_axis(key: str, direction: str, found: Mapping[str, Any], axis: Axis) -> None:
+    low, high = map(fraction_of, found["window"])
+    if (found["name"], low, high) != (axis.name, axis.low, axis.high):
+        raise Violation(f"{key}: {direction} is not the axis {axis} of the slice")
+
+
 def _check_line(asked: _Asked) -> str:
     data, slice, seed = asked
     found = data["line"]
     (value,) = map(fraction_of, found["at"].values())
     try:
-        _check_intervals(_line(slice, found["along"], seed, value), found["intervals"], None)
+        line = _line(slice, found["along"], seed, value)
+        gaps = line.gaps()
+        _check_intervals(line, gaps, found["intervals"], None)
+        _check_changes(line, gaps, found["changes"])
     except NotKnown as reason:
         return Unchecked(str(reason))
     return f"{len(found['intervals'])} intervals; seed {seed}"
 
 
-def _check_rows(asked: _Asked) -> str:
+def _check_enclosed_line(asked: _Asked) -> str:
+    data, slice, _ = asked
+    return check_enclosed(data["enclosed"], slice)
+
+
+def _check_rows(asked: _Asked, maxima: Sequence[Maximum]) -> str:
     data, slice, seed = asked
     found, unknown = data["over"], 0
+    # what earlier versions do not say is the number of the paper's mechanism, or that of all parts
     parts = [part for row in found["rows"] for part in row["operation"]]
-    working = {part["total"] if part["stable"] is None else part["stable"] for part in parts}
-    if len(working) > 1:
-        raise Violation(f"operation ranges have {working} solutions")
+    working = found.get("stable", next(map(_working, parts), 2))
+    longest = max((m.width.high for m in maxima), default=Fraction(0))
+    counts: list[Counts] = []
     for row in found["rows"]:
+        value = fraction_of(row["value"])
+        line = _line(slice, found["along"], seed, value)
         try:
-            line = _line(slice, found["along"], seed, fraction_of(row["value"]))
-            _check_intervals(line, row["operation"], next(iter(working), -1))
+            gaps = line.gaps()
         except NotKnown:
             unknown += 1
+            continue
+        _check_intervals(line, gaps, row["operation"], working)
+        counts += [gap.counts for gap in gaps]
+        if any(span.width.low > longest for span in ranges_in(gaps, working)):
+            where = f"{found['over']['name']} = {shortest_text(value)}"
+            raise Violation(f"at {where} there is a longer range than the longest one")
+    told = f"{len(found['rows']) - unknown} rows; seed {seed}"
     if unknown:
-        return Unchecked(
-            f"{len(found['rows']) - unknown} rows; of {unknown} more nothing was found out"
-        )
-    return f"{len(found['rows'])} rows; seed {seed}"
+        told = f"{told}; of {unknown} more nothing was found out"
+    if "stable" in found and not _occurs(asked, working, counts, maxima):
+        return Unchecked(f"{told}; nor that {working} is the greatest number")
+    return Unchecked(told) if unknown else told
+
+
+def _working(part: Mapping[str, Any]) -> int:
+    return int(part["total"] if part["stable"] is None else part["stable"])
+
+
+def _occurs(
+    asked: _Asked, working: int, counts: Sequence[Counts], maxima: Sequence[Maximum]
+) -> bool:
+    """Whether the claimed number of an operation range was found on a row, or next to where ranges
+    are longest; the least that is asked for need not be anywhere.
+
+    Raises
+    ------
+    Violation
+        When it is not the greatest one that was found, or is nowhere.
+    """
+    data, slice, seed = asked
+    most, least = operation_number(slice.model, counts), operation_number(slice.model, ())
+    if most > working:
+        raise Violation(f"operation ranges are said to have {working}; there are {most} solutions")
+    if not maxima and working != least:
+        raise Violation(f"there is no range with {working} solutions, so they are not the greatest")
+    if working == most:
+        return True
+    for m in maxima:
+        line = _line(slice, data["over"]["along"], seed, m.at.center)
+        try:
+            if any(gap.working == working for gap in line.gaps()):
+                return True
+        except NotKnown:
+            continue
+    return False
 
 
 def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
@@ -179,16 +287,20 @@ def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
 
 
 def _check_intervals(
-    line: ParameterLine, entries: Sequence[Mapping[str, Any]], working: int | None
+    line: ParameterLine,
+    gaps: Sequence[LineGap],
+    entries: Sequence[Mapping[str, Any]],
+    working: int | None,
 ) -> None:
-    """The intervals are those between changes: all of them, or those with so many stable solutions.
+    """The intervals are the longest ones of equal counts between changes: all of them, or those with
+    so many stable solutions, in their order.
 
     Raises
     ------
     Violation, NotKnown
     """
     ends = [(_end(line, entry["low"]), _end(line, entry["high"])) for entry in entries]
-    for gap in line.gaps():
+    for gap in gaps:
         inside = [
             entry
             for entry, (low, high) in zip(entries, ends, strict=True)
@@ -209,6 +321,67 @@ def _check_intervals(
                 raise Violation(
                     f"{entry['total']} solutions are said to be {where}, where there are {there}"
                 )
+    runs = [
+        (group[0], group[-1])
+        for _, group in ((c, list(g)) for c, g in groupby(gaps, lambda gap: gap.counts))
+        if working is None or group[0].working == working
+    ]
+    if len(runs) != len(entries):
+        raise Violation(f"there are {len(runs)} intervals of equal counts, not {len(entries)}")
+    samples = [line.low, *(gap.sample for gap in gaps), line.high]
+    for (first, last), entry, (low, high) in zip(runs, entries, ends, strict=True):
+        # between neighbouring samples is one value at which counts can change
+        before = samples[gaps.index(first)]
+        after = samples[gaps.index(last) + 2]
+        if not (
+            _is_below(low, first.sample)
+            and not _is_below(low, before)
+            and not _is_below(high, last.sample)
+            and not _is_above(high, after)
+        ):
+            raise Violation(
+                f"an interval said to be about {entry['sample']} is not from "
+                f"{approximate_text(lower(first.low))} to {approximate_text(upper(last.high))}"
+            )
+        sample = fraction_of(entry["sample"])
+        if not _is_below(low, sample) or _is_below(high, sample):
+            raise Violation(f"the sample {entry['sample']} is not in its interval")
+
+
+def _check_changes(
+    line: ParameterLine, gaps: Sequence[LineGap], changes: Sequence[Mapping[str, Any]]
+) -> None:
+    """Counts on the sides of changes are right, and a change is listed where they differ.
+
+    Raises
+    ------
+    Violation, NotKnown
+    """
+    places = []
+    for change in changes:
+        number, polynomial = _root(change["at"])
+        sides = change["before"], change["after"]
+        if not line.critical % polynomial:
+            place = sum(not _is_below(number, gap.sample) for gap in gaps)
+            true = tuple(map(_told, gaps[max(place - 1, 0) : place + 1]))
+            if sides != true:
+                raise Violation(f"counts do not change as is said near {float(number):.10g}")
+            places.append(place)
+        elif sides[0] != sides[1]:  # a critical value of solutions that do not count is one, too
+            raise Violation(f"counts cannot change near {float(number):.10g}")
+    missing = {n for n, (a, b) in enumerate(pairwise(gaps), start=1) if a.counts != b.counts} - set(
+        places
+    )
+    if missing or places != sorted(set(places)):
+        raise Violation("a change is missing, or they are not in their order")
+
+
+def _told(gap: LineGap) -> list[int] | dict[str, int | None]:
+    """Counts as a document has them."""
+    there = gap.counts
+    if there.index is not None:
+        return [*there.index]
+    return {"total": there.total, "stable": there.stable}
 
 
 def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
@@ -217,60 +390,34 @@ def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
         if (edge := fraction_of(data["window"])) not in (line.low, line.high):
             raise Violation(f"{shortest_text(edge)} is no end of the window")
         return edge
+    number, polynomial = _root(data)
+    if bool(line.critical % polynomial):
+        raise Violation(f"counts cannot change at the end near {float(number):.10g}")
+    return number
+
+
+def _root(data: Mapping[str, Any]) -> tuple[AlgebraicNumber, fmpz_poly]:
+    """The only root of an irreducible polynomial between two numbers, and the polynomial."""
     polynomial = fmpz_poly(
         [integer_of(c.removeprefix("-")) * (-1 if c[:1] == "-" else 1) for c in data["polynomial"]]
     )
     number = AlgebraicNumber(
         tuple(map(int, polynomial)), fraction_of(data["low"]), fraction_of(data["high"])
     )
+    if number.low > number.high:
+        raise Violation(f"an end is said to be from {data['low']} to {data['high']}")
+    if sum(multiplicity for _, multiplicity in polynomial.factor()[1]) != 1:
+        raise Violation(f"the polynomial of an end near {float(number):.10g} is not irreducible")
     if roots_within(polynomial, from_fraction(number.low), from_fraction(number.high)) != 1:
         raise Violation(
             f"an end near {float(number):.10g} is not the only root of its polynomial there"
         )
-    if polynomial.degree() < 1 or bool(line.critical % polynomial):
-        raise Violation(f"counts cannot change at the end near {float(number):.10g}")
-    return number
+    return number, polynomial
 
 
 def _is_below(end: End, value: Fraction) -> bool:
     return end < value if isinstance(end, Fraction) else end.compare(value) < 0
 
 
-def _check_enclosed(asked: _Asked) -> str:
-    """Counts at the sample and next to both ends of each interval."""
-    data, slice, _ = asked
-    found, number, unknown = data["enclosed"], 0, 0
-    ((other, value),) = found["at"].items()
-    counting = CertifiedClaims(map_of(replace(slice, count=Count.TOTAL), ())).counting
-    for entry in found["intervals"]:
-        low, high = fraction_of(entry["low"]["high"]), fraction_of(entry["high"]["low"])
-        near = (high - low) / _NEAR
-        if not low < fraction_of(entry["sample"]) < high:
-            raise Violation(f"the sample {entry['sample']} is not in its interval")
-        for at in (fraction_of(entry["sample"]), low + near, high - near):
-            point = (
-                (at, fraction_of(value))
-                if other == slice.axis_names[1]
-                else (fraction_of(value), at)
-            )
-            try:
-                there = counting.at(*point).counts
-            except Unproved:
-                unknown += 1
-                continue
-            said = (entry["total"], entry["stable"], entry["index"] and tuple(entry["index"]))
-            pairs = [
-                (a, b)
-                for a, b in zip(said, (there.total, there.stable, there.index), strict=True)
-                if a is not None
-            ]
-            # what is not known here, as stable solutions of loops are not, contradicts nothing
-            is_known = bool(pairs) and all(b is not None for _, b in pairs)
-            number, unknown = number + is_known, unknown + (not is_known)
-            if any(b not in (None, a) for a, b in pairs):
-                raise Violation(
-                    f"(total, stable, index) {said} are said to be at {shortest_text(at)}; there are {there}"
-                )
-    return (
-        Unchecked(f"{number} points; {unknown} were not decided") if unknown else f"{number} points"
-    )
+def _is_above(end: End, value: Fraction) -> bool:
+    return end > value if isinstance(end, Fraction) else end.compare(value) > 0
