@@ -8,7 +8,7 @@ it.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -160,6 +160,10 @@ class Pose:
     def may_be_slack(self) -> bool:
         """Whether it is not proved to be admissible although some spring has a free length."""
         return self.has_predicates and self.admissible is not True
+
+    def as_known_to(self, other: Pose) -> Pose:
+        """Without the torsion springs where another pose, which version 0.1.0 wrote, has none."""
+        return self if other.torsion else replace(self, torsion=())
 
     def quantities(self, model: Model) -> tuple[tuple[NamedNumber, ...], ...]:
         """Unknowns, coordinates of points that move, springs' lengths and forces, torsion springs'

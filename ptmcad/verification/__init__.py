@@ -26,8 +26,8 @@ An order of reading, for what an exact map claims:
 5. `planecurves`, `rootcounts`, `projections`, `adjacencies`, `merging`: the decomposition of the
    plane. `planclaims` and, once more, `windowsigns`: what was left out.
 6. `disks`, `wallintegrals`, `areaclaims`: enclosures of the areas, by power series alone.
-7. `poseclaims`, `parameterlines`, `rangeclaims`, `enclosedclaims`, `designclaims`, `arrangements`:
-   points, lines, designs and families.
+7. `poseclaims`: points. `parameterlines`, `intervalclaims`, `enclosedclaims`, `rangeclaims`: lines.
+   `designclaims`, `arrangements`: designs and families.
 
 Certified maps have their own order in `certified`. There `normalform` derives formulas from the
 polynomials of step 2, `exclusion` finds where their solutions may be, and `certified` itself proves

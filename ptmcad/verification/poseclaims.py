@@ -63,8 +63,7 @@ def in_same_order(stored: Poses, found: Poses) -> tuple[Poses, Poses, int]:
     for pose in stored.equilibria:
         if (match := next((other for other in rest if _meet(pose, other)), None)) is not None:
             rest.remove(match)
-            # which version 0.1.0 did not write
-            pairs.append((pose, match if pose.torsion else replace(match, torsion=())))
+            pairs.append((pose, match.as_known_to(pose)))
     alone = len(stored.equilibria) - len(pairs)
     if (alone and found.status is not Status.UNDECIDED) or (
         rest and stored.status is not Status.UNDECIDED
