@@ -100,7 +100,7 @@ def check_changes(
         sides = change["before"], change["after"]
         if not line.critical % polynomial:
             place = sum(not _is_below(number, gap.sample) for gap in gaps)
-            true = tuple(map(_told, gaps[max(place - 1, 0) : place + 1]))
+            true = tuple(map(_written_counts, gaps[max(place - 1, 0) : place + 1]))
             if sides != true:
                 raise Violation(f"counts do not change as is said near {float(number):.10g}")
             places.append(place)
@@ -113,7 +113,7 @@ def check_changes(
         raise Violation("a change is missing, or they are not in their order")
 
 
-def _told(gap: LineGap) -> list[int] | dict[str, int | None]:
+def _written_counts(gap: LineGap) -> list[int] | dict[str, int | None]:
     """Counts as a document has them."""
     there = gap.counts
     if there.index is not None:
