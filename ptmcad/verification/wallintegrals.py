@@ -58,11 +58,14 @@ class IntegralEffort:
     heights : the window's edges.
     points : approximations of the critical values, or the window's edges, at the ends of the
         branch's stack.
+    degrees : of the polynomials that a branch is compared with; the closer the next branch, the
+        better it has to be.
     """
 
     share: arb
     narrowest: fmpq
     heights: tuple[fmpq, fmpq]
+    degrees: tuple[int, ...]
     points: tuple[fmpq, fmpq]
 
 
@@ -133,8 +136,7 @@ def _more_precisely(
             finer = height if times == 1 else branch.height(middle, *effort.heights)
             assert finer is not None  # there is a root, as there was with fewer bits
             try:
-                rows = [c(arb_poly([middle, 1])) for c in branch.value]
-                return _by_series(rows, half, finer, effort)
+                return _by_series(branch, middle, half, finer, effort)
             except BallsTooWide:
                 continue
     raise BallsTooWide
@@ -146,27 +148,40 @@ def _known_by_edges(left: fmpq, right: fmpq, effort: IntegralEffort, tried: bool
     return PanelPart(left, right, arb(0).union(arb(high - low)) * (right - left), tried)
 
 
-_DEGREE = 2
-"""Of the polynomial that a branch is compared with."""
+_POOR = 4
+"""A polynomial of higher degree is worth its cost where so small a share of a panel is proved, or
+none.
+"""
 
 
 def _by_series(
-    rows: Sequence[arb_poly], half: fmpq, height: arb, effort: IntegralEffort
+    branch: WallSeries, middle: fmpq, half: fmpq, height: arb, effort: IntegralEffort
 ) -> tuple[arb, fmpq] | None:
-    """The integral of a branch over a panel's middle part, by its power series, and half that
+    """The integral of the branch over a panel's middle part, by its power series, and half that
     part's width.
 
     None when no disk of convergence is proved.
-
-    Parameters
-    ----------
-    rows : the curve's coefficients, in the distance from the panel's middle, of the powers of v.
 
     Raises
     ------
     BallsTooWide
     """
-    found = disk(rows, half, height, _DEGREE)
+    best: tuple[arb, fmpq] | None = None
+    shifted = [c(arb_poly([middle, 1])) for c in branch.value]
+    for degree in effort.degrees:
+        if best is not None and best[1] * _POOR > half:
+            break
+        found = _along(shifted, half, height, degree, effort)
+        if found is not None and (best is None or found[1] > best[1]):
+            best = found
+    return best
+
+
+def _along(
+    rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: IntegralEffort
+) -> tuple[arb, fmpq] | None:
+    """As `_by_series`, of the polynomial with these coefficients of the powers of v."""
+    found = disk(rows, half, height, degree)
     if found is None:
         return None
     coefficients, tail = _terms(found, effort.share)
@@ -324,7 +339,7 @@ def _from_point(
     if root is None:
         return None
     try:
-        found = disk(divided, whole, root, _DEGREE)
+        found = disk(divided, whole, root, effort.degrees[0])
     except BallsTooWide:
         return None  # halved panels may do with what precision there is
     # the branch is that of the disk over the nearest place, and so over all others
