@@ -4,7 +4,7 @@ curves' points over a critical value.
 Guarantee: over each stack the curves' roots between the window's edges are constant in number and
 order (discriminants, resultants and edge values have no root there but the stored ones); over its
 sample they are the stored walls. Counts of heights are exact, every point counted once. Roots are
-counted by FLINT's isolation; the decomposition isolates them by Descartes' rule.
+counted by Sturm sequences; the decomposition isolates them by Descartes' rule.
 
 Heights. Let P(u, v) be the product of the curves' polynomials and a the critical value. Where
 deg_v P is the same at a, the Sturm sequence of P(a, v) is computed with balls for the coefficients:
@@ -37,6 +37,7 @@ from ptmcad.verification.claims import Claims, PlaneCurve, ball, is_root, polyno
 from ptmcad.verification.planecurves import discriminant, resultant
 from ptmcad.verification.report import Violation
 from ptmcad.verification.rootcounts import (
+    ball_chain,
     ends_of,
     isolated,
     isolating_intervals,
@@ -288,7 +289,7 @@ class Heights:
         product = prod(
             (arb_poly([c(value) for c in curve.in_v]) for curve in self.curves), start=arb_poly([1])
         )
-        return _sturm_sequence(
+        return ball_chain(
             product, sum(curve.degrees[1] for curve in self.curves), int(self._has_multiple_root)
         )
 
@@ -304,25 +305,3 @@ class Heights:
     def _polynomial(self) -> fmpz_poly:
         """A polynomial in v among whose roots are all points."""
         return prod((points_over(c, self.value) for c in self.curves), start=fmpz_poly([1]))
-
-
-def _sturm_sequence(p: arb_poly, degree: int, last: int) -> list[arb_poly] | None:
-    """A Sturm sequence in balls, each of the degree before less one, down to the last; None where
-    one may be less.
-
-    Parameters
-    ----------
-    p : of that degree, if its leading coefficient is not zero.
-    """
-    chain = [p, p.derivative()]
-    if any(q[degree - k].contains(0) for k, q in enumerate(chain)):
-        return None
-    for d in range(degree - 1, last, -1):
-        # the quotient is linear, the remainder has one coefficient less than the divisor
-        first, second = chain[-2:]
-        leading = first[d + 1] / second[d]
-        quotient = arb_poly([(first[d] - leading * second[d - 1]) / second[d], leading])
-        chain.append((quotient * second - first).truncate(d))
-        if chain[-1][d - 1].contains(0):
-            return None
-    return chain

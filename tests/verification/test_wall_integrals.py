@@ -233,7 +233,9 @@ def part_beside(
     error.
     """
     near = at + ROOM * (1 if far > at else -1)
-    effort = IntegralEffort(arb(2) ** -40, fmpq(1, 10**15), heights, (at + error, at + error))
+    effort = IntegralEffort(
+        arb(2) ** -40, fmpq(1, 10**15), heights, (2, 10), (at + error, at + error)
+    )
     run = -2 if far > at else 2
     return integrals_over(branch_of(terms, root), min(near, far), max(near, far), effort, run)
 
