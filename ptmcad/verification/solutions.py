@@ -32,7 +32,7 @@ from ptmcad.model import Model
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.ballequations import Matrix
-from ptmcad.verification.certified.narrow import precisions, tested
+from ptmcad.verification.certified.narrow import narrowed, precisions, tested
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import ball_at
 from ptmcad.verification.derivation import Derivation
@@ -40,6 +40,9 @@ from ptmcad.verification.fibrealgebra import SolutionAlgebra
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.principalminors import inertia
 from ptmcad.verification.report import Unchecked, Violation
+
+_NARROWINGS = 4
+"""Images of a box that a solution is proved to be in, until signs on it are certain."""
 
 
 def check_solutions(claims: Claims) -> str:
@@ -161,14 +164,18 @@ def _tested(point: Derivation, solution: Solution) -> str | None:
         return list(map(value, system)), [list(map(value, row)) for row in slopes]
 
     found = tested(function, solution)
-    if found is None or not found.holds:
-        return None
-    value = ball_at(found.within)
-    if not all(value(p) > 0 for p in point.inequalities):
-        return None
-    if hessian := [list(map(value, row)) for row in point.hessian]:
-        return inertia(hessian)
-    return _of_conditions(list(map(value, point.stability)), solution.signs)
+    for _ in range(_NARROWINGS):
+        if found is None or not found.holds:
+            return None
+        value = ball_at(found.within)
+        if all(value(p) > 0 for p in point.inequalities):
+            hessian = [list(map(value, row)) for row in point.hessian]
+            conditions = list(map(value, point.stability))
+            signs = inertia(hessian) if hessian else _of_conditions(conditions, solution.signs)
+            if signs is not None:
+                return signs
+        found = narrowed(function, found)
+    return None
 
 
 def _of_conditions(conditions: list[arb], stored: str) -> str | None:

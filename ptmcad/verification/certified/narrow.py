@@ -106,6 +106,17 @@ def tested(function: Function, solution: Solution) -> Judgement | None:
     return None
 
 
+def narrowed(function: Function, found: Judgement) -> Judgement:
+    """The same with a narrower box of the solution, where one more image is narrower."""
+    new = _image(function, [x.mid() for x in found.within], [x.rad() for x in found.within])
+    if new is None:
+        return found
+    within = tuple(
+        (x.mid() + step).intersection(x) for x, step in zip(found.within, new[0], strict=True)
+    )
+    return Judgement(True, within, new[1])
+
+
 def _image(
     function: Function, middle: list[arb], reach: list[arb]
 ) -> tuple[list[arb], Matrix] | None:
