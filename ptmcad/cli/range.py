@@ -207,7 +207,8 @@ def command(
 ) -> None:
     """Find the intervals of constant count along one axis, and the operation range, where the most equilibria are stable.
 
-    For the paper's mechanism, two are stable there. If the model does not define stability, all solutions are counted.
+    For the paper's mechanism, two are stable there; with free lengths, in an open chain, at least two. If the model does not
+    define stability, all solutions are counted.
 
     Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. With free lengths
     they are enclosed by interval arithmetic, and what could not be decided is reported. All digits of the

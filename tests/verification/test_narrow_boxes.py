@@ -205,3 +205,28 @@ def test_numbers_of_a_description_are_as_exact_as_the_precision() -> None:
             arb(from_fraction(Fraction(21, 10)))
         )
     assert evaluated(a / 3 + fmpq(1, 10), {"a": Fraction(1)}) == Fraction(13, 30)
+
+
+@pytest.mark.parametrize(
+    ("off", "holds"), [(Fraction(1, 10**26), True), (Fraction(3, 10**25), False)]
+)
+def test_one_coordinate_narrows_another(off: Fraction, holds: bool) -> None:
+    """x = 10^-14 and y = 10^26 x^2: over all of the box y varies twenty times as much as the box is high."""
+
+    def function(at: Sequence[arb]) -> tuple[list[arb], list[list[arb]]]:
+        x, y = at
+        scale = arb(10) ** 26
+        return [10**14 * x - 1, y - scale * x * x], [
+            [arb(10) ** 14, arb(0)],
+            [-2 * scale * x, arb(1)],
+        ]
+
+    exact = Fraction(1, 10**14), Fraction(1, 100)
+    box = Solution((exact[0] + Fraction(1, 10**26), exact[1] + off), Fraction(1, 10**25), "")
+    with ctx.workprec(precisions(box)[0]):
+        found = narrow.tested(function, box)
+    assert found is not None and found.holds is holds
+    if holds:
+        assert all(
+            x.overlaps(arb(from_fraction(c))) for x, c in zip(found.within, exact, strict=True)
+        )

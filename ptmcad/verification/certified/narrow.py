@@ -89,7 +89,20 @@ def tested(function: Function, solution: Solution) -> Judgement | None:
     # it does not
     wide = [2 * outer] * len(middle)
     found = _image(function, middle, wide)
-    if found is None or not all(abs(s) < w for s, w in zip(found[0], wide, strict=True)):
+    for _ in range(_NARROWINGS):
+        if found is None:
+            return None
+        if all(abs(s) < w for s, w in zip(found[0], wide, strict=True)):
+            break
+        # all solutions of a box are in its image, so that one coordinate may narrow another one's
+        moved = [m + s for m, s in zip(middle, found[0], strict=True)]
+        boxes = [arb(m, w) for m, w in zip(middle, wide, strict=True)]
+        if not all(x.overlaps(box) for x, box in zip(moved, boxes, strict=True)):
+            return Judgement(False)
+        kept = [x.intersection(box) for x, box in zip(moved, boxes, strict=True)]
+        middle, wide = [x.mid() for x in kept], [2 * x.rad() for x in kept]
+        found = _image(function, middle, wide)
+    else:
         return None
     for _ in range(_NARROWINGS):
         steps, jacobian = found

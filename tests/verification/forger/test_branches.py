@@ -55,7 +55,7 @@ from ptmcad.verification.planclaims import check_plan
 from ptmcad.verification.projections import check_critical_values, check_stacks
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.solutions import check_counts, check_solutions
-from ptmcad.verification.wallintegrals import IntegralEffort, _by_series
+from ptmcad.verification.wallintegrals import IntegralEffort, _along
 from ptmcad.verification.windowsigns import check_left_out
 
 Change = Callable[[RegionMap], RegionMap]
@@ -500,12 +500,14 @@ def test_branches_that_are_not_told_apart_ask_for_more_precision() -> None:
     distance = arb(2) ** -20
     rows = [arb_poly([1 - distance * distance, 0, -1]), arb_poly([-2]), arb_poly([1])]
     blurred = [rows[0] + arb(0, 2.0**-40), *rows[1:]]
-    effort = IntegralEffort(arb(2) ** -20, fmpq(1, 2**20), (fmpq(0), fmpq(2)), (fmpq(0), fmpq(1)))
+    effort = IntegralEffort(
+        arb(2) ** -20, fmpq(1, 2**20), (fmpq(0), fmpq(2)), (2,), (fmpq(0), fmpq(1))
+    )
     with ctx.workprec(64):
         with pytest.raises(BallsTooWide):
             _series(rows, arb_series([arb(1)], prec=3), 3)
         with pytest.raises(BallsTooWide):
-            _by_series(blurred, fmpq(1, 8), 1 + distance, effort)
+            _along(blurred, fmpq(1, 8), 1 + distance, 2, effort)
         assert (
-            _by_series(rows, fmpq(1, 8), 1 + distance, effort) is None
+            _along(rows, fmpq(1, 8), 1 + distance, 2, effort) is None
         )  # but not where it is known well
