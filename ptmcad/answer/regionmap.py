@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.counts import Counted, MorseIndex
@@ -71,8 +71,7 @@ HARMLESS = "real solutions stay bounded and regular there"
 """Why a component is left out of the decomposition."""
 
 
-@dataclass(frozen=True, slots=True)
-class System:
+class System(NamedTuple):
     """The exact equations, as text: polynomials over Q in the unknowns and the parameters.
 
     Attributes
@@ -101,8 +100,7 @@ class System:
     moments: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Component:
+class Component(NamedTuple):
     """An irreducible curve of the discriminant variety.
 
     Attributes
@@ -121,8 +119,7 @@ class Component:
     continuum: Continuum | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class CriticalValue:
+class CriticalValue(NamedTuple):
     """A critical value on the base axis: the only root of ``polynomial`` in [low, high];
     ``origin``: where from.
 
@@ -139,8 +136,7 @@ class CriticalValue:
         return AlgebraicNumber(self.polynomial, self.low, self.high)
 
 
-@dataclass(frozen=True, slots=True)
-class Wall:
+class Wall(NamedTuple):
     """Over its stack, the graph of the ``root``-th real root (from 0, in the window) of a
     component.
     """
@@ -149,8 +145,7 @@ class Wall:
     root: int
 
 
-@dataclass(frozen=True, slots=True)
-class Stack:
+class Stack(NamedTuple):
     """The cells over the open base interval between two consecutive critical values (or the
     window's edge).
 
@@ -169,8 +164,7 @@ class Stack:
     cells: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Solution:
+class Solution(NamedTuple):
     """One equilibrium at a sample: the only one within ``radius`` of ``center`` in every unknown.
 
     Attributes
@@ -231,8 +225,7 @@ class Merge(Enum):
     SEPARATED = "separated"
 
 
-@dataclass(frozen=True, slots=True)
-class Adjacency:
+class Adjacency(NamedTuple):
     """Two cells that share an open arc.
 
     Attributes
@@ -272,8 +265,7 @@ axis.
 """
 
 
-@dataclass(frozen=True, slots=True)
-class NonAdjacency:
+class NonAdjacency(NamedTuple):
     """Cells of two neighbouring stacks that are not adjacent although their order would allow it.
 
     Attributes
@@ -320,8 +312,7 @@ class Region(Counted):
         return f"<Region {_counts_in_words(self)}, {len(self.cells)} cells, area {area}>"
 
 
-@dataclass(frozen=True, slots=True)
-class PlanStep:
+class PlanStep(NamedTuple):
     """One decision of the plan: what, whether it is done or left out, and why.
 
     ``saving`` is the name in `ptmcad.question.savings` of the saving that was made when the step is

@@ -48,7 +48,7 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
     components = _union([c for m in (first, second) for c in m.components if c.separates])
     # at a sample both maps have to say what they count there
     others = [
-        replace(c, left_out=HARMLESS)
+        c._replace(left_out=HARMLESS)
         for m in (first, second)
         for c in m.components
         if not c.separates

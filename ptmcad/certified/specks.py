@@ -81,7 +81,7 @@ def without_specks(
     kept = tuple(compress(cover.rectangles, ~np.isin(cluster_of, lost)))
     # what they cover is free now, and no part has to be cut again
     state = np.where((tree.state == COVERED) & np.isin(complement.owner, lost), FREE, tree.state)
-    return components(replace(cover, rectangles=kept), replace(tree, state=state))
+    return components(cover._replace(rectangles=kept), replace(tree, state=state))
 
 
 def _entered(specks: Sequence[Boxes], boxes: Boxes) -> NDArray[np.bool_]:

@@ -5,8 +5,8 @@ Guarantee: all its numbers are integers.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 Rectangle = tuple[int, int, int, int]
 """left, right, bottom, top in lattice steps from the window's lower left corner; closed;
@@ -17,8 +17,7 @@ Window = tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
 MAX_STEPS = 2**40
 
 
-@dataclass(frozen=True, slots=True)
-class Cover:
+class Cover(NamedTuple):
     """The rectangles, sorted and distinct; they may overlap.
 
     Attributes

@@ -25,7 +25,6 @@ determinant because the latter also vanishes where the monomial basis degenerate
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from ptmcad.algebra.bernstein import nowhere_zero
@@ -130,7 +129,7 @@ def discriminant_variety(
     for polynomial in _superfluous(on, equations, algebra, without):
         seen.adopt(irreducible_factors(polynomial), Kind.AUXILIARY)
     components = tuple(
-        replace(c, continuum=continuum(from_plane(c.polynomial), on, given, jacobian_norm[0]))
+        c._replace(continuum=continuum(from_plane(c.polynomial), on, given, jacobian_norm[0]))
         if not c.left_out
         else c
         for c in seen.in_order()

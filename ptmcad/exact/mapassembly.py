@@ -72,7 +72,7 @@ def assemble(
         complex_solutions=variety.complex_solutions,
         components=variety.components
         if cells is None
-        else tuple(replace(c, separates=n in separating) for n, c in enumerate(variety.components)),
+        else tuple(c._replace(separates=n in separating) for n, c in enumerate(variety.components)),
         critical_values=() if cells is None else critical_values_of(cells.cut.projection),
         stacks=() if cells is None else stacks_of_cells(cells.cut),
         cells=() if cells is None else tuple(_cells(problem, cells, samples)),

@@ -239,7 +239,7 @@ def _pose(solution: ExactSolution, settled: Callable[[RealNumber], Enclosure]) -
         energy=None if seen.energy is None else enclosed(seen.energy),
         eigenvalues=eigen,
         multiplicity=solution.point.multiplicity,
-        index=solution.criterion.index(signs),
+        index=solution.criterion.morse_index(signs),
         stable=solution.criterion.is_stable(signs),
         flat=bool(seen.points) and all(y.is_zero for _, y in seen.points.values()),
         reals=tuple(map(enclosed, seen.reals)),

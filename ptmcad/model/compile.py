@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from operator import sub
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.evaluation import Substitution, values
@@ -274,8 +274,7 @@ def _of_followers(
     return crossed.conditions(known.smooth, known.followers, moments, variables)
 
 
-@dataclass(frozen=True, slots=True)
-class _Ring:
+class _Ring(NamedTuple):
     """Formulas as the values of trees."""
 
     graph: Graph

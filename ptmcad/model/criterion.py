@@ -7,8 +7,7 @@ Whoever needs a number, a word or a matrix asks for that; where nothing is known
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from ptmcad.text.tree import Tree, to_text
 
@@ -20,8 +19,7 @@ def critical_point(negative: int, unknowns: int) -> str:
     return "minimum" if negative == 0 else "maximum" if negative == unknowns else "saddle"
 
 
-@dataclass(frozen=True, slots=True)
-class Criterion:
+class Criterion(NamedTuple):
     """By what it is known whether a solution is stable; without arguments by nothing.
 
     Signs are ``+``, ``-`` and ``0``, one for each eigenvalue of the Hessian, or for each condition
@@ -78,13 +76,13 @@ class Criterion:
         """The same where leading minors of a Hessian are conditions for stability."""
         return DEFINITENESS if self.order else self
 
-    def index(self, signs: str) -> int | None:
+    def morse_index(self, signs: str) -> int | None:
         """The number of negative eigenvalues of the Hessian; None where it is not known."""
         return signs.count("-") if 0 < self.order == len(signs) and not signs.strip("+-") else None
 
     def is_stable(self, signs: str) -> bool | None:
         """Whether a solution is stable; None where it is not known."""
-        known = self.index(signs) is not None if self.order else signs and self.is_told
+        known = self.morse_index(signs) is not None if self.order else signs and self.is_told
         return not signs.strip("+") if known else None
 
     def rank(self, signs: str) -> int:
@@ -117,7 +115,7 @@ class Criterion:
     def kind_of_signs(self, signs: str) -> str:
         """The same by signs."""
         stable = self.is_stable(signs)
-        return self.degenerate if stable is None else self.kind(stable, self.index(signs))
+        return self.degenerate if stable is None else self.kind(stable, self.morse_index(signs))
 
     def ranked(self, rank: int, noun: str) -> str:
         """What a solution of a rank is called where it meets others."""
@@ -154,7 +152,7 @@ CONDITIONS = Criterion(
     no_target="where it goes from there is not decided",
 )
 """A solution is stable where all conditions are positive."""
-DEFINITENESS = replace(CONDITIONS, is_definite=True, stable_at_zero=True)
+DEFINITENESS = CONDITIONS._replace(is_definite=True, stable_at_zero=True)
 """The same where they say together that a symmetric matrix is definite."""
 
 
@@ -162,8 +160,7 @@ def by_hessian(unknowns: int) -> Criterion:
     """Solutions are critical points, near each of a function: stable where its Hessian is positive
     definite.
     """
-    return replace(
-        CONDITIONS,
+    return CONDITIONS._replace(
         counts=("total", "stable", "index"),
         order=unknowns,
         stable_at_zero=True,

@@ -10,9 +10,8 @@ new kind with a predicate is a new row, and one in the checker, which derives pr
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from ptmcad.model import Mechanism, Model
 from ptmcad.model.builtinmechanisms import title_of
@@ -55,8 +54,7 @@ class Shades(Enum):
     INDEX = "minima, with hatches for saddles and maxima"
 
 
-@dataclass(frozen=True)  # slots and a type parameter do not go together
-class Margin(Generic[V]):
+class Margin(NamedTuple, Generic[V]):
     """A quantity that has to be positive at a solution; where it vanishes a solution begins or
     stops to count.
 
@@ -77,8 +75,7 @@ class Margin(Generic[V]):
     squares: tuple[V, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class PoseColumn:
+class PoseColumn(NamedTuple):
     """How tables of poses say whether a predicate holds.
 
     Attributes
@@ -94,8 +91,7 @@ class PoseColumn:
     tally: str
 
 
-@dataclass(frozen=True, slots=True)
-class Predicate:
+class Predicate(NamedTuple):
     """What a stable solution has to satisfy beyond a model's own conditions.
 
     Attributes
@@ -121,8 +117,7 @@ class Predicate:
     is_always_stored: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class CountKind:
+class CountKind(NamedTuple):
     """A row of the table. Braces hold words of a model's (`ptmcad.answer.words.count_words`).
 
     Attributes

@@ -12,7 +12,7 @@ from collections.abc import Hashable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from ptmcad.errors import ConfigError
 from ptmcad.model import Kind, Model
@@ -28,8 +28,7 @@ MAX_UNIT = 20
 """Characters of one."""
 
 
-@dataclass(frozen=True, slots=True)
-class Axis:
+class Axis(NamedTuple):
     """One axis of the window: the open interval ``low < name < high`` (its ends belong to the
     picture's edge).
     """

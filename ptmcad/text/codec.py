@@ -9,7 +9,7 @@ its place. Records are read by codecs too (`part`, `reading`).
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import MISSING, Field, fields
+from dataclasses import MISSING, fields
 from enum import Enum
 from fractions import Fraction
 from functools import cache, reduce
@@ -341,7 +341,7 @@ def record_of(
     kind: type[T], known: Known = _ALIKE, make: Callable[..., T] | None = None, /,
     **keys: Codec[Any] | Key | None,
 ) -> Codec[T]:  # fmt: skip
-    """An object with a key for each field of a dataclass, by its annotation, and further ones.
+    """An object with a key for each field of a frozen class, by its annotation, and further ones.
 
     Parameters
     ----------
@@ -350,7 +350,7 @@ def record_of(
     keys : in place of those of fields, or further ones; None for a field that is not written.
     """
     renamed = {key.field: name for name, key in keys.items() if isinstance(key, Key) and key.field}
-    own = {renamed.get(field.name, field.name): Key(field=field.name) for field in _fields(kind)}
+    own = {renamed.get(field, field): Key(field=field) for field in _fields(kind)}
     found = {**own, **keys}
     bare = {n: key for n, key in found.items() if isinstance(key, Key) and key.codec is None}
     hints = _hints(cast(Hashable, kind), tuple(key.field or name for name, key in bare.items()))
@@ -361,10 +361,10 @@ def record_of(
 
 
 def row_of(kind: type[T], make: Callable[..., T] | None = None) -> Codec[T]:
-    """A list of the fields of a dataclass, in their order; those with a default may be missing at
+    """A list of the fields of a frozen class, in their order; those with a default may be missing at
     its end.
     """
-    names = tuple(field.name for field in _fields(kind))
+    names = tuple(_fields(kind))
     codecs = [codec_of(hint) for hint in _hints(cast(Hashable, kind), names).values()]
 
     def read(node: Node) -> T:
@@ -382,12 +382,10 @@ def row_of(kind: type[T], make: Callable[..., T] | None = None) -> Codec[T]:
 def unless_default(kind: type, *names: str, known: Known = _ALIKE) -> dict[str, Key]:
     """Keys of fields that are left out where a field has its default."""
     keys, hints = {}, _hints(kind, names)
-    for field in _fields(kind):
-        if field.name in names:
-            hint = hints[field.name]
-            default = field.default if field.default_factory is MISSING else field.default_factory()
-            written = _without_none(hint) if default is None else hint
-            keys[field.name] = Key(codec_of(written, known), default=default)
+    for name, default in _fields(kind).items():
+        if name in names:
+            written = _without_none(hints[name]) if default is None else hints[name]
+            keys[name] = Key(codec_of(written, known), default=default)
     return keys
 
 
@@ -395,14 +393,26 @@ def _without_none(hint: Any) -> Any:
     return reduce(or_, (part for part in get_args(hint) if part is not NoneType))
 
 
-def _fields(kind: Any) -> tuple[Field[Any], ...]:
-    return fields(kind)
+def _fields(kind: Any) -> dict[str, object]:
+    """The fields of a dataclass or a named tuple, in their order, each with its default or
+    `MISSING`.
+    """
+    if issubclass(kind, tuple):
+        return {name: kind._field_defaults.get(name, MISSING) for name in kind._fields}
+    return {
+        field.name: field.default if field.default_factory is MISSING else field.default_factory()
+        for field in fields(kind)
+    }
 
 
 @cache
 def _hints(kind: Any, names: tuple[str, ...]) -> dict[str, Any]:
     """The types of some fields: of others a module need not have the names while it runs."""
-    written = {field.name: field.type for field in _fields(kind)}
+    written = {
+        name: hint
+        for base in reversed(kind.__mro__)
+        for name, hint in vars(base).get("__annotations__", {}).items()
+    }
     some = type(
         kind.__name__,
         (),

@@ -65,7 +65,7 @@ def test_a_record_has_the_criterion_of_its_kind(name: str, expected: Criterion) 
 def test_signs_say_what_a_solution_is(
     criterion: Criterion, signs: str, stable: bool | None, index: int | None, kind: str
 ) -> None:
-    assert (criterion.is_stable(signs), criterion.index(signs)) == (stable, index)
+    assert (criterion.is_stable(signs), criterion.morse_index(signs)) == (stable, index)
     assert criterion.kind_of_signs(signs) == kind
 
 

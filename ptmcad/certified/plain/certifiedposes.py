@@ -204,7 +204,7 @@ def pose_at(
     numbers, bits = measured(at, lambda bits: boxes_of(counter, solution, bits), digits)
     criterion, signs = at.system.criterion, solution.signs
     return with_further(
-        assembled(at, numbers, criterion.index(signs), criterion.is_stable(signs))
+        assembled(at, numbers, criterion.morse_index(signs), criterion.is_stable(signs))
     ), bits
 
 

@@ -247,8 +247,7 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
 
     def conditions(old: Sequence[Condition]) -> tuple[Condition, ...]:
         return tuple(
-            replace(
-                c,
+            c._replace(
                 value=c.value.substituted(rows),
                 squares=tuple(f.substituted(rows) for f in c.squares),
             )
