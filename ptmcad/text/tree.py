@@ -11,8 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from operator import add, mul, sub, truediv
-from typing import Any, NamedTuple, Protocol, TypeVar
+from operator import add, mul, neg, sub, truediv
+from types import SimpleNamespace
+from typing import Any, NamedTuple, Protocol, TypeVar, cast
 
 from ptmcad.text.numerals import decimal_places, pointed
 
@@ -165,6 +166,31 @@ def _interpreted(
             return interpretation.call(tree)
         case Negative(operand):
             return interpretation.negative(interpret(operand, interpretation, known))
+
+
+def arithmetic(
+    constant: Callable[[Fraction], Any],
+    names: Mapping[str, Any],
+    functions: Mapping[str, Callable[[Any], Any]],
+    power: Callable[[Any, Any], Any],
+) -> Interpretation[Any]:
+    """The interpretation in values that have operators of their own.
+
+    Parameters
+    ----------
+    constant : makes a value of a number.
+    names, functions : what each name stands for.
+    power : of a base and an exponent.
+    """
+    found: Any = SimpleNamespace(
+        number=lambda number: constant(number.value),
+        name=lambda name: names[name.name],
+        call=lambda call: functions[call.function](interpret(call.argument, found)),
+        negative=neg,
+        joined=lambda left, step, right: OPERATORS[step.operator](left, right),
+        power=lambda base, _, exponent: power(base, exponent),
+    )
+    return cast(Interpretation[Any], found)
 
 
 def names_of(tree: Tree) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import in_balls
 from ptmcad.text.syntax import did_you_mean, parse
-from ptmcad.text.tree import OPERATORS, Call, Name, Number, Power, Step, Tree, interpret, names_of
+from ptmcad.text.tree import Tree, arithmetic, interpret, names_of
 
 OPTION = "--value"
 Values = Callable[[ModelState, Floats, Mapping[str, Any]], Floats]
@@ -108,7 +109,7 @@ def _expression(text: str, slice: Slice) -> Valued:
             name: np.float64(math.fmod(math.sqrt(2) * (k + 1), 1)) for k, name in enumerate(known)
         }
         with np.errstate(all="ignore"), suppress(FloatingPointError):
-            interpret(tree, _Arrays(generic))
+            _in_arrays(tree, generic)
         if not in_balls(tree, {name: arb(value) for name, value in generic.items()}).is_finite():
             raise ConfigError(f"{text[:60]!r} divides by zero", key=OPTION)
     except ExpressionError as error:
@@ -134,7 +135,7 @@ def _in_doubles(tree: Tree, given: Mapping[str, Any], shape: tuple[int, ...]) ->
     """An expression's values: nan where it has none, infinite where no double is near it."""
     try:
         with np.errstate(over="raise", under="raise", divide="ignore", invalid="ignore"):
-            found = np.asarray(interpret(tree, _Arrays(given)), dtype=float)
+            found = np.asarray(_in_arrays(tree, given), dtype=float)
             return np.broadcast_to(np.where(np.isfinite(found), found, np.nan), shape) + 0.0
     except FloatingPointError:  # some part of it is beyond doubles at some point
         names = names_of(tree)
@@ -156,32 +157,21 @@ def _double(ball: arb) -> float:
     return float(ball.mid()) if is_near else math.inf
 
 
-class _Arrays:
-    """The interpretation of an expression in arrays; quotients and functions of any argument are
-    allowed.
-    """
+_FUNCTIONS = {"cos": np.cos, "sin": np.sin}
 
-    def __init__(self, values: Mapping[str, Any]):
-        self.values = values
 
-    def number(self, number: Number) -> Any:
-        value = np.float64(number.value)
-        if number.value and abs(value) < _TINY:
-            raise FloatingPointError("the number is nearer to zero than doubles are")
-        return value
+def _in_arrays(tree: Tree, values: Mapping[str, Any]) -> Any:
+    """An expression's value in arrays; quotients and functions of any argument are allowed."""
+    return interpret(tree, arithmetic(_constant, values, _FUNCTIONS, _power))
 
-    def name(self, name: Name) -> Any:
-        return self.values[name.name]
 
-    def call(self, call: Call) -> Any:
-        return (np.cos if call.function == "cos" else np.sin)(interpret(call.argument, self))
+def _constant(number: Fraction) -> Any:
+    value = np.float64(number)
+    if number and abs(value) < _TINY:
+        raise FloatingPointError("the number is nearer to zero than doubles are")
+    return value
 
-    def negative(self, value: Any) -> Any:
-        return -value
 
-    def joined(self, left: Any, step: Step, right: Any) -> Any:
-        return OPERATORS[step.operator](left, right)
-
-    def power(self, base: Any, power: Power, exponent: Any) -> Any:
-        whole = not np.ndim(exponent) and math.isclose(float(exponent), round(float(exponent)))
-        return base ** round(float(exponent)) if whole else base**exponent
+def _power(base: Any, exponent: Any) -> Any:
+    whole = not np.ndim(exponent) and math.isclose(float(exponent), round(float(exponent)))
+    return base ** round(float(exponent)) if whole else base**exponent

@@ -34,7 +34,7 @@ from ptmcad.options import Progress
 from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.question.slice import within_doubles
 from ptmcad.text.numerals import equalities
-from ptmcad.workbench.fields.pixelsolver import GridPoints, PixelSolver, filled
+from ptmcad.workbench.fields.pixelsolver import filled
 from ptmcad.workbench.fields.quantityfield import Choice, choice_of, complete, exact_at
 
 FRAMES, MAX_FRAMES = 90, 600
@@ -135,18 +135,16 @@ def _stops(result: RegionMap, walk: Track, frames: int) -> list[_Stop]:
         points.append(point)
         cells.append(cell)
     x, y = (np.array([[float(point[k]) for point in points]]) for k in (0, 1))
-    places = GridPoints(x, y, np.array([cells], dtype=np.int64))
-    follower = PixelSolver(result, places)
-    solutions = filled(result, follower)
-    complete(result, lambda _, column: points[column], solutions, follower.total)
+    solver = filled(result, x, y, np.array([cells], dtype=np.int64))
+    complete(solver, lambda _, column: points[column])
     stops: list[_Stop] = []
     for k, (share, point, number) in enumerate(zip(shares, points, cells, strict=True)):
         step = Step(float(share), point, (), None)
         if number == NONE:
             stops.append(_open(result, walk, share, step))
             continue
-        counts, many = result.cells[number], int(follower.total[0, k])
-        known = solutions.at[:, 0, k, :many] if solutions.done[0, k] and many >= 0 else None
+        counts, many = result.cells[number], int(solver.total[0, k])
+        known = solver.at[:, 0, k, :many] if solver.done[0, k] and many >= 0 else None
         counted = replace(step, total=counts.total, stable=counts.stable)
         stops.append((share, _with_others(walk, counted, known), known))
     return stops
