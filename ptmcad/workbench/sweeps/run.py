@@ -22,7 +22,7 @@ from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
-from ptmcad.answer.sweep import Sweep
+from ptmcad.answer.sweep import State, Sweep
 from ptmcad.ask.classification import prepare
 from ptmcad.errors import ConfigError, LimitReached, OutputError, PtmcadError
 from ptmcad.extras import Extra, require
@@ -34,7 +34,7 @@ from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import share_for
 from ptmcad.version import __version__
 from ptmcad.workbench.sweeps.index import Index, opened, read_sweep
-from ptmcad.workbench.sweeps.member import Failed, Wanted, computing, reason
+from ptmcad.workbench.sweeps.member import Outcome, Wanted, computing, reason
 from ptmcad.workbench.sweeps.pool import Pool, answers_of
 
 if TYPE_CHECKING:
@@ -209,7 +209,7 @@ def _slice_data(slice: Slice) -> Any:
 
 
 def _left(index: Index, question: Sweeping) -> str:
-    done = sum(number for state, number in index.states().items() if state.value == "done")
+    done = index.states().get(State.DONE, 0)
     return f"{done} of {len(question)} members are done, in {index.folder}"
 
 
@@ -256,9 +256,9 @@ class _Run:
         finally:
             workers.close()
 
-    def _settle(self, number: int, outcome: Any) -> None:
+    def _settle(self, number: int, outcome: Outcome) -> None:
         self.index.record(number, outcome)
-        if isinstance(outcome, Failed) and self.failures[number] < self.retries:
+        if outcome.state is State.FAILED and self.failures[number] < self.retries:
             self.failures[number] += 1
             self.again.append(number)
             return
@@ -335,7 +335,7 @@ def sketches(
     try:
         found = answers_of(pool, lambda: next(left, None), lambda: None)
         for done, (number, drawn) in enumerate(found, 1):
-            if isinstance(drawn, Failed):
+            if isinstance(drawn, Outcome):
                 raise OutputError(f"member {number} cannot be drawn: {drawn.error}")
             if progress is not None:
                 progress("drawings", done, len(numbers))
