@@ -116,11 +116,7 @@ def surface_of(
     members = tuple(sorted({value for run in runs for value, _ in run}))
     return BoundarySurface(
         (axes[0].name, axes[1].name, free.name),
-        mesh.vertices,
-        mesh.faces,
-        mesh.sheet,
-        mesh.member,
-        mesh.sheets,
+        *mesh,
         members,
         search.deviation,
         search.unresolved,

@@ -14,7 +14,7 @@ from typing import Any
 
 from ptmcad.answer.design import BestDesign, Evaluation
 from ptmcad.ask.members import in_common
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.extras import Extra, require
 from ptmcad.options import Options, Progress
 from ptmcad.question.config.designed import Aim, Design
@@ -24,7 +24,7 @@ from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fracti
 from ptmcad.text.parsing import share_for
 from ptmcad.workbench.designs.designbounds import Lengths
 from ptmcad.workbench.designs.evaluation import Evaluate, Value, evaluator
-from ptmcad.workbench.designs.optimiser import Enough, Point, best_of, within
+from ptmcad.workbench.designs.optimiser import Point, best_of, within
 from ptmcad.workbench.designs.proof import (
     Proof,
     bounded,
@@ -166,12 +166,12 @@ class _DesignSearch:
 
         def evaluate(point: Point) -> Fraction | None:
             if self.over_time:
-                raise Enough
+                raise LimitReached("the time is over")
             self.report("designs", len(self.points), most)
             found = self.look(within(bounds, point))
             return None if found is None else found.value.low
 
-        with suppress(Enough):  # the time is over: what was found is there
+        with suppress(LimitReached):  # the time is over: what was found is there
             best_of(evaluate, len(bounds), seed, most)
         self._simpler()
 

@@ -125,7 +125,7 @@ _FINENESS = 16
 _ANY = (fmpq(0), fmpq(1))
 
 
-class AreaStrip(NamedTuple):
+class _AreaStrip(NamedTuple):
     """A part of the window between two values of the axis that is not the line's, with its runs.
 
     Attributes
@@ -152,18 +152,20 @@ class AreaBounder(NamedTuple):
     space: Space
     base: Interval
 
-    def whole(self) -> tuple[AreaStrip, ...]:
+    def whole(self) -> tuple[_AreaStrip, ...]:
         size = self.space.window[1] - self.space.window[0]
         return (
-            AreaStrip(self.base, self.space.whole(), size * (self.base[1] - self.base[0]), fmpq(0)),
+            _AreaStrip(
+                self.base, self.space.whole(), size * (self.base[1] - self.base[0]), fmpq(0)
+            ),
         )
 
-    def over(self, place: Place, state: Sequence[AreaStrip], share: fmpq, enough: fmpq) -> Bounded:
+    def over(self, place: Place, state: Sequence[_AreaStrip], share: fmpq, enough: fmpq) -> Bounded:
         """Strips are cut until they are about as narrow as the designs' interval, in shares of
         their ranges.
         """
         narrowest = (self.base[1] - self.base[0]) * share / _STRIP_FINENESS
-        done: list[AreaStrip] = []
+        done: list[_AreaStrip] = []
         waiting = [self._strip(strip.base, strip.runs, place[0], share) for strip in state]
         while waiting:
             strips = [*done, *waiting]
@@ -171,7 +173,7 @@ class AreaBounder(NamedTuple):
             doubt = bound - sum((s.least for s in strips), fmpq(0))
             if bound <= enough:
                 break
-            cut: list[AreaStrip] = []
+            cut: list[_AreaStrip] = []
             for strip in waiting:
                 low, high = strip.base
                 if high - low <= narrowest or (strip.most - strip.least) * 2 * len(strips) < doubt:
@@ -189,7 +191,7 @@ class AreaBounder(NamedTuple):
 
     def _strip(
         self, base: Interval, runs: Sequence[Run], designs: Interval, share: fmpq
-    ) -> AreaStrip:
+    ) -> _AreaStrip:
         space, width = self.space, base[1] - base[0]
         size = space.window[1] - space.window[0]
         fine = (
@@ -201,7 +203,7 @@ class AreaBounder(NamedTuple):
         least = sum(
             (space.least(p.low, p.high) for run in found for p in run.parts if p.here), fmpq(0)
         )
-        return AreaStrip(base, found, width * measure(space, found), width * least)
+        return _AreaStrip(base, found, width * measure(space, found), width * least)
 
 
 _STRIP_FINENESS = 4

@@ -78,10 +78,6 @@ and fro.
 """
 
 
-class _Enough(Exception):
-    """The map that was handed over is good enough for now."""
-
-
 Job = Mapping[str, Any]
 Reply = tuple[str, bytes]
 """How a job ended (``done``, ``refused``, ``superseded``, ``lost``), and the JSON for the page."""
@@ -179,17 +175,14 @@ class Tasks:
         started, seconds = perf_counter(), FINE_SECONDS if fine else 0
 
         def handed(found: RegionMap) -> None:
-            self.last = found
             if perf_counter() - started >= seconds:
-                raise _Enough
+                raise LimitReached("the map is good enough for now", found)
 
         try:
             options = Options(
                 timeout=CERTIFIED_SECONDS, progress=self._progress, partial=handed, resume=resume
             )
             self.last = region_map(slice, options)
-        except _Enough:
-            pass
         except LimitReached as stop:
             if not isinstance(stop.partial, RegionMap):
                 raise

@@ -48,10 +48,6 @@ _BESIDE = Fraction(1, 10**6)
 """Of the path, by which a step is moved that lies on a curve of the map."""
 
 
-class LostError(PtmcadError):
-    """A pose that could not be followed although it has to be there."""
-
-
 def motion_of(
     result: RegionMap,
     path: str | Mapping[str, Any],
@@ -77,7 +73,7 @@ def motion_of(
     ConfigError
         For a path or pose that has no meaning here, a number of frames that is none, or a map
         without cells.
-    LostError
+    PtmcadError
         Where the map has the pose and it was not found.
 
     >>> import ptmcad
@@ -218,7 +214,7 @@ def _walked(
                 _cell(result, walk.course.at(Fraction(share))) for share in (done, beyond)
             )
             if before == after != NONE:
-                raise LostError(
+                raise PtmcadError(
                     f"the pose was lost at {100 * done:.6g} % of the path, in the middle of a region"
                 )
             if end := _no_fall(walk, own, done):
@@ -264,7 +260,7 @@ def _taken(walk: Track, stop: _Stop, at: Floats) -> Step:
     if solutions is not None:
         gap = apart(solutions, at[:, None], len(walk.model.angles))
         if not np.abs(gap).max(axis=0).min(initial=np.inf) < SAME * (1 + np.abs(at).max()):
-            raise LostError(
+            raise PtmcadError(
                 f"at {_where(walk, float(share))} the followed pose is none of those that are counted"
             )
     return _seen(walk, step, at)
