@@ -3,7 +3,7 @@ position in a text.
 
 Guarantee: `to_text` writes a tree that was read in a form that is read as the same tree.
 
-What a tree means is said by an `Interpretation`: rational functions of two axes in
+What a tree means is said by an interpretation: rational functions of two axes in
 `ptmcad.text.parsing`, the elements of any ring in `ptmcad.model.evaluate`.
 """
 
@@ -95,7 +95,7 @@ Tree = Number | Name | Negative | Chain | Power | Call
 Value = TypeVar("Value")
 
 
-class Interpretation(Protocol[Value]):
+class _Interpretation(Protocol[Value]):
     """What the parts of a tree mean, in values of one type.
 
     `interpret` asks from left to right: operands before what joins them. A method may raise
@@ -121,7 +121,7 @@ class Interpretation(Protocol[Value]):
 
 def interpret(
     tree: Tree,
-    interpretation: Interpretation[Value],
+    interpretation: _Interpretation[Value],
     known: dict[int, tuple[Tree, Value]] | None = None,
 ) -> Value:
     """The value of a tree.
@@ -143,7 +143,7 @@ def interpret(
 
 
 def _interpreted(
-    tree: Tree, interpretation: Interpretation[Value], known: dict[int, tuple[Tree, Value]] | None
+    tree: Tree, interpretation: _Interpretation[Value], known: dict[int, tuple[Tree, Value]] | None
 ) -> Value:
     match tree:
         case Name():
@@ -173,7 +173,7 @@ def arithmetic(
     names: Mapping[str, Any],
     functions: Mapping[str, Callable[[Any], Any]],
     power: Callable[[Any, Any], Any],
-) -> Interpretation[Any]:
+) -> _Interpretation[Any]:
     """The interpretation in values that have operators of their own.
 
     Parameters
@@ -190,7 +190,7 @@ def arithmetic(
         joined=lambda left, step, right: OPERATORS[step.operator](left, right),
         power=lambda base, _, exponent: power(base, exponent),
     )
-    return cast(Interpretation[Any], found)
+    return cast(_Interpretation[Any], found)
 
 
 def names_of(tree: Tree) -> tuple[str, ...]:

@@ -27,7 +27,8 @@ _WELD = float(JUMP)
 """Of the window: ends of walls that are no further apart are one vertex."""
 
 
-Floats, Integers = NDArray[np.float64], NDArray[np.int64]
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 Mesh = tuple[Floats, Integers, Integers, Integers, tuple[Sheet, ...]]
 """Vertices, triangles, each triangle's sheet, each vertex's member by its number among all values,
 and the sheets: as of `BoundarySurface`.

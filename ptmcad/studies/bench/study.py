@@ -15,11 +15,10 @@ import json
 import random
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
 from itertools import zip_longest
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -69,22 +68,10 @@ MAP_SECONDS = 120.0
 WARM_UP_SECONDS = 300.0
 
 
-class Rival(NamedTuple):
-    """One of the methods, as ``programs.yaml`` has them: its title, how a setting is called, and
-    the settings.
-
-    Those are in order from the coarsest; so many of them are run when it has to be quick. It may
-    need a package.
-    """
-
-    title: str
-    label: str
-    settings: Sequence[str]
-    quick: int
-    needs: str = ""
-
-
-RIVALS = {name: Rival(**entry) for name, entry in programs.TEXTS["rivals"].items()}
+RIVALS: Mapping[str, Row] = programs.TEXTS["rivals"]
+"""The methods as ``programs.yaml`` has them: its title, how a setting is called, the settings from
+the coarsest, how many of them are run when it has to be quick, and the package that it may need.
+"""
 
 
 def jobs(method: str, case: Case) -> list[Job] | str:
@@ -94,13 +81,13 @@ def jobs(method: str, case: Case) -> list[Job] | str:
         return "square roots: springs have a free length"
     if method in GRIDS and slice.mechanism != "ptm":
         return f"the sextic is the paper's mechanism's, not that of {slice.mechanism}"
-    if rival.needs and find_spec(rival.needs) is None:
-        return f"{rival.needs} is not installed (make bench installs it)"
-    settings = rival.settings[: rival.quick if case.quick else None]
+    if (package := rival.get("needs")) and find_spec(package) is None:
+        return f"{package} is not installed (make bench installs it)"
+    settings = rival["settings"][: rival["quick"] if case.quick else None]
     start = (
         _start_engine if method in ENGINES else _start_grid if method in GRIDS else programs.start
     )
-    asked = {rival.label.format(setting): start(method, case, setting) for setting in settings}
+    asked = {rival["label"].format(setting): start(method, case, setting) for setting in settings}
     found = [
         Job(slice.name, method, label, **more)
         for label, more in asked.items()

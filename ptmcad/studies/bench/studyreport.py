@@ -20,7 +20,7 @@ from ptmcad.studies import texts as tables
 from ptmcad.studies.bench.harness import Row
 from ptmcad.studies.bench.stored import finest, frame, read_study, write_study, write_table
 from ptmcad.studies.bench.study import RIVALS
-from ptmcad.studies.picture import DPI, STYLES, Curve, Mark, draw
+from ptmcad.studies.picture import DPI, STYLES, Curve, draw
 
 SUFFIXES = ("bench.csv", "bench.svg", "bench.png", "error-time.json", "bench.json")
 PAGE = "error-time.md"
@@ -123,7 +123,7 @@ def curves(study: Row) -> list[Curve]:
     found = [
         _curve(
             number,
-            rival.title,
+            rival["title"],
             table[table["method"] == method],
             "wrong_low",
             "wrong_high",
@@ -134,7 +134,7 @@ def curves(study: Row) -> list[Curve]:
     widths = table[
         (table["method"] == "exact") & (table["area_width"] > 0)
     ]  # another kind of error
-    title = f"{RIVALS['exact'].title}: width of the area bounds"
+    title = f"{RIVALS['exact']['title']}: width of the area bounds"
     found.insert(1, _curve(len(RIVALS), title, widths, "area_width", "area_width", None))
     return [curve for curve in found if curve.marks]
 
@@ -146,8 +146,8 @@ def _curve(
     them.
     """
     marks = [
-        Mark(m["seconds_median"], (m[low] + m[high]) / 2, m["seconds_min"], m["seconds_max"],
-             "" if before is None else m["setting"].removeprefix(before))
+        (m["seconds_median"], (m[low] + m[high]) / 2, m["seconds_min"], m["seconds_max"],
+         "" if before is None else m["setting"].removeprefix(before))
         for m in rows.dropna(subset=low).to_dict("records")
     ]  # fmt: skip
     return Curve(title, STYLES[style], marks)
@@ -158,7 +158,7 @@ def curve_file(study: Row) -> str:
     series = [
         {"name": curve.name, "points": points}
         for curve in curves(study)
-        if (points := [[mark.x, mark.y] for mark in curve.marks if mark.y > 0])
+        if (points := [[x, y] for x, y, *_ in curve.marks if y > 0])
     ]
     text = (
         "Share of the window that is wrong or undetermined; for the exact engine, where that is 0, the width of its "

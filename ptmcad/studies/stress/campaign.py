@@ -193,7 +193,7 @@ def tame(dice: random.Random) -> tuple[Values, str]:
             poses = sextic_poses(p)
         except ArithmeticError:  # a degenerate point
             continue
-        return p, f"{len(poses)}/{sum(pose.index == 0 for pose in poses)}"
+        return p, f"{len(poses)}/{sum(index == 0 for *_, index in poses)}"
 
 
 def _degenerate(dice: random.Random, *, cusp: bool) -> Degenerate:
@@ -299,7 +299,7 @@ colour.
 
 def draw_stress(outcomes: Sequence[Row]) -> Any:
     """One small plot for each family of points; the figure's label is its description."""
-    from ptmcad.studies.picture import Curve, Mark, draw  # brings matplotlib
+    from ptmcad.studies.picture import Curve, draw  # brings matplotlib
 
     points = [o for o in outcomes if o["condition"] is not None or o["error"] is not None]
     double, ours = (sum(not o[key] for o in points) for key in ("double_right", "right"))
@@ -312,7 +312,7 @@ def draw_stress(outcomes: Sequence[Row]) -> Any:
             ]
             places = [float(Fraction(o["stiffness"])) for o in drawn]
             heights = [NO_POSE if o[key] is None else max(o[key], MIN_DRAWN_ERROR) for o in drawn]
-            marks = [Mark(x, y, x, x) for x, y in zip(places, heights, strict=True)]
+            marks = [(x, y, x, x, "") for x, y in zip(places, heights, strict=True)]
             curves.append(
                 Curve(label, {"marker": marker, "color": color, "linestyle": "none"}, marks)
             )

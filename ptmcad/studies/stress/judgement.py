@@ -33,7 +33,7 @@ from ptmcad.studies.stress.doubleprecision import (
     proved_poses,
     sextic_poses,
 )
-from ptmcad.text.balls import ball_of, exact
+from ptmcad.text.balls import ball_of, ball_over, exact
 from ptmcad.text.expressions import Expression, values_at
 
 GRID = 16
@@ -85,7 +85,7 @@ Checks = list[tuple[bool, str]]
 
 def _stable(poses: Sequence[IndexedPose] | None) -> int:
     """How many poses are stable; -1 where there is no answer."""
-    return -1 if poses is None else sum(pose.index == 0 for pose in poses)
+    return -1 if poses is None else sum(index == 0 for *_, index in poses)
 
 
 def _shown(poses: Sequence[IndexedPose] | None) -> str:
@@ -105,9 +105,7 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
     double = double_poses(parameters)
     ours = [_boxed(pose) for pose in found.equilibria]
     if free_lengths(parameters):
-        known = proved_poses(
-            parameters, [(pose.th1, pose.th2) for pose in (*(double or ()), *ours)]
-        )
+        known = proved_poses(parameters, [pose[:2] for pose in (*(double or ()), *ours)])
     else:
         known = sextic_poses(parameters)
     text, other, error = f"{len(ours)}/{found.stable}", _shown(known), _error(ours, known)
@@ -139,8 +137,8 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
 
 def _boxed(pose: Pose) -> IndexedPose:
     """A pose of ptmcad's with balls that hold its enclosures."""
-    first, second = (ball_of(angle.low).union(ball_of(angle.high)) for angle in pose.angles)
-    return IndexedPose(first, second, -1 if pose.index is None else pose.index)
+    first, second = (ball_over(angle.low, angle.high) for angle in pose.angles)
+    return first, second, -1 if pose.index is None else pose.index
 
 
 def _error(found: Sequence[IndexedPose], reference: Sequence[IndexedPose]) -> Fraction | None:
@@ -149,11 +147,11 @@ def _error(found: Sequence[IndexedPose], reference: Sequence[IndexedPose]) -> Fr
     """
     left, largest = list(reference), Fraction(0)
     for pose in found:
-        inside = [r for r in left if r.index == pose.index and apart(pose, r).contains(0)]
+        inside = [r for r in left if r[2] == pose[2] and apart(pose, r).contains(0)]
         if not inside:
             return None
         left.remove(inside[0])
-        middle = IndexedPose(pose.th1.mid(), pose.th2.mid(), pose.index)
+        middle = pose[0].mid(), pose[1].mid(), pose[2]
         largest = max(largest, exact(apart(middle, inside[0]).mid()))
     return None if left else largest
 

@@ -377,7 +377,7 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
         When it is none that this program has written.
     """
     number, parameters, same_as, seconds, attempts, state, *facts = row
-    *facts, open_share, areas, widest, error, file, digest, _ = facts
+    status, cells, regions, open_share, areas, widest, error, file, digest, _ = facts
     summary = None
     with _undamaged(folder, f"the row of member {number}"):
         values = json.loads(parameters)
@@ -385,7 +385,7 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
         if state == State.DONE.value:
             counted = AREAS.read(Node(json.loads(areas), "areas"))
             found = None if widest is None else WIDEST.read(Node(json.loads(widest), "widest"))
-            summary = Summary(*facts, open_share, counted, found)
+            summary = Summary(status, cells, regions, open_share, counted, found)
             exact += [open_share, *(bound for area in counted for bound in area.area if bound)]
             if file != _name(number if same_as is None else same_as):
                 raise ValueError("it names another result")
