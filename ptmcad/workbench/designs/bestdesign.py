@@ -22,17 +22,10 @@ from ptmcad.question.config.designkey import design_from
 from ptmcad.question.shipped import RecordSource
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 from ptmcad.text.parsing import share_for
-from ptmcad.workbench.designs.designbounds import Lengths
+from ptmcad.workbench.designs.designbounds import Lengths, bounded, bounder_of
 from ptmcad.workbench.designs.evaluation import Evaluate, Value, evaluator
 from ptmcad.workbench.designs.optimiser import Point, best_of, within
-from ptmcad.workbench.designs.proof import (
-    Proof,
-    bounded,
-    bounder_of,
-    exact_maximum,
-    most_on_lines,
-    place_of,
-)
+from ptmcad.workbench.designs.proof import Proof, exact_maximum, most_on_lines, place_of
 
 TOLERANCE = Fraction(1, 100)
 BOXES = 100_000
@@ -225,9 +218,9 @@ class _DesignSearch:
                 self.best = (point, found)
         return self.points[point]
 
-    def _improved(self, values: Mapping[str, Fraction]) -> Fraction:
-        if values:
-            self.look(tuple(values[axis.name] for axis in self.asked.over))
+    def _improved(self, point: Point | None) -> Fraction:
+        if point is not None:
+            self.look(point)
         return Fraction(0) if self.best is None else self.best[1].value.low
 
     def _go_on(self, boxes: int, bound: float, best: float) -> bool:
