@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.boundarysurface import Sheet
-from ptmcad.exact.slicearrangement import JUMP, BoundaryOpening, BoundaryStrips, Key
+from ptmcad.exact.slicearrangement import JUMP, BoundaryStrips, Key
 from ptmcad.question.slice import Axes
 
 Joined = list[tuple[Fraction, BoundaryStrips]]
@@ -71,9 +71,7 @@ def _add_walls(builder: _Builder, run: Joined, number: int, tolerance: float) ->
 
 def _add_openings(builder: _Builder, run: Joined) -> None:
     """Pieces of lines across the base that neighbouring members have alike."""
-    openings: list[dict[tuple[tuple[int, int, int], tuple[Key, Key]], BoundaryOpening]] = [
-        {(o.place, o.keys): o for o in strips.openings} for _, strips in run
-    ]
+    openings = [{(o.place, o.keys): o for o in strips.openings} for _, strips in run]
     for k, (before, after) in enumerate(pairwise(openings)):
         for place in sorted(before.keys() & after.keys()):
             sheet = builder.sheet(place[1], run[k : k + 2])

@@ -13,7 +13,7 @@ from typing import Any
 
 import pandas as pd
 
-from ptmcad.process.output import Writer, text_writer, write_files
+from ptmcad.process.output import text_writer, write_files
 from ptmcad.show.columns import aligned
 from ptmcad.show.render.printing import save as save_figure
 from ptmcad.studies import texts as tables
@@ -184,7 +184,7 @@ def save(study: Row, folder: Path) -> tuple[Path, ...]:
             draw(title, x, "share of the window", {"": drawn}, sentences(study)), path, dpi=DPI
         )
 
-    writers: dict[str, Writer] = {f"{name}.bench.csv": text_writer(write_table(study))}
+    writers = {f"{name}.bench.csv": text_writer(write_table(study))}
     if drawn:
         writers |= {f"{name}.bench.svg": picture, f"{name}.bench.png": picture}
         writers[f"{name}.error-time.json"] = text_writer(curve_file(study))

@@ -72,7 +72,7 @@ def judge(case: Case, found: Any) -> Row:
     with ctx.workprec(_BITS):
         checks, row = judgements.get(case.question.kind, _map)(case, found)
     remarks = [remark for holds, remark in checks if not holds]
-    known: Row = {"expected": case.expected, "right": not remarks, "remarks": remarks}
+    known = {"expected": case.expected, "right": not remarks, "remarks": remarks}
     numbers = {
         name: x if not isinstance(x, float) or isfinite(x) else None for name, x in row.items()
     }

@@ -203,7 +203,7 @@ class Tasks:
             name: number_within(name, job["at"][name], axes[name].low, axes[name].high)
             for name in axes
         }
-        place: tuple[Fraction, Fraction] = (at[slice.axes[0].name], at[slice.axes[1].name])
+        place = (at[slice.axes[0].name], at[slice.axes[1].name])
         parameters = values_at(slice.parameters, *place)
         for name, value in parameters.items():
             kind = slice.model.kind(name)
@@ -271,7 +271,7 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
     fine : whether curves are as smooth as in other pictures, and areas are known.
     framed : whether the axes with their ticks are wanted.
     """
-    seen: Shapes = (
+    seen = (
         shapes(result)
         if result.cover is not None
         else outline(result, None, TOLERANCE if fine else COARSE)

@@ -193,7 +193,7 @@ def _walked(
 ) -> tuple[list[Step], list[Fall], str]:
     """All steps; where the pose vanishes those of its fall, as far as it goes."""
     at, own = start, int(walk.state(stops[0][1].at, start[:, None]).negatives[0])
-    steps: list[Step] = [_taken(walk, stops[0], at)]
+    steps = [_taken(walk, stops[0], at)]
     falls: list[Fall] = []
     for number, (last, stop) in enumerate(pairwise(stops), 1):
         if progress is not None:

@@ -185,7 +185,7 @@ class Index:
 
     def record(self, number: int, outcome: Outcome) -> None:
         """Enter what became of a member; a failed one stays to be tried again."""
-        columns: dict[str, Any] = {
+        columns = {
             "state": outcome.state.value, "error": outcome.error, "seconds": outcome.seconds,
         }  # fmt: skip
         if (found := outcome.summary) is not None:

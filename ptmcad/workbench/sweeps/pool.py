@@ -194,7 +194,7 @@ class Cluster:
         require(Extra.distributed, key="--scheduler")
         import distributed
 
-        client: Any = distributed.Client
+        client = distributed.Client
         self.compute, self.address = compute, address
         try:
             self.client: Any = client(address, timeout=CONNECT_SECONDS, set_as_default=False)

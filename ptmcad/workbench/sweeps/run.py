@@ -15,7 +15,6 @@ import json
 import os
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from fractions import Fraction
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -304,7 +303,7 @@ class _Run:
         self, question: Sweeping, number: int
     ) -> tuple[int, dict[str, str], bytes | None, str]:
         """A member's number, its values, a digest of its slice, and why there is no slice."""
-        values: dict[str, Fraction] = question.values(number)
+        values = question.values(number)
         parameters = {name: text_of(value) for name, value in values.items()}
         try:
             data = json.dumps(_slice_data(question.slice(number)), sort_keys=True)
