@@ -20,7 +20,7 @@ from ptmcad.options import Options, Progress
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.designkey import design_from
 from ptmcad.question.shipped import RecordSource
-from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
+from ptmcad.text.flint_numbers import simplest_fraction
 from ptmcad.text.parsing import share_for
 from ptmcad.workbench.designs.designbounds import Lengths, bounded, bounder_of
 from ptmcad.workbench.designs.evaluation import Evaluate, Value, evaluator
@@ -148,11 +148,9 @@ class _DesignSearch:
         proof = bounded(asked, bounder, self._improved, tolerance, boxes, self._go_on)
         if space is not None:
             self._confirm()
-        return (
-            proof
-            if proof.bound is None
-            else proof._replace(bound=max(proof.bound, most_on_lines(asked)))
-        )
+        if proof.bound is not None:
+            proof = proof._replace(bound=max(proof.bound, most_on_lines(asked)))
+        return proof
 
     def _search(self, seed: int, most: int) -> None:
         bounds = [(axis.low, axis.high) for axis in self.asked.over]
@@ -178,10 +176,8 @@ class _DesignSearch:
             point = []
             for axis, at in zip(self.asked.over, self.best[0], strict=True):
                 reach = axis.width * share
-                low, high = (from_fraction(end) for end in (at - reach, at + reach))
-                point.append(
-                    min(max(to_fraction(simplest_between(low, high)), axis.low), axis.high)
-                )
+                simple = simplest_fraction(at - reach, at + reach)
+                point.append(min(max(simple, axis.low), axis.high))
             self.look(tuple(point))
 
     def _confirm(self) -> None:

@@ -165,7 +165,11 @@ def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run
     parts: list[_LinePart] = []
     for part in run.parts:
         if part.here is None and (part.signs is None or len(part.signs) < len(space.tables)):
-            parts += _cut(space, box, part, resolution)
+            ends = part.low, part.high
+            tables = {
+                number: over(table, (ends, *box)) for number, table in enumerate(space.tables)
+            }
+            parts += _pieces(space, tables, {}, ends, resolution)
         else:
             parts.append(part)
     parts = _joined(parts)
@@ -189,17 +193,12 @@ def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run
         yield Run(tuple(kept), left, run.right)
 
 
-def _cut(space: Space, box: Box, part: _LinePart, resolution: fmpq) -> Iterator[_LinePart]:
-    """The part in pieces that are free of the variety, or too short to be cut."""
-    place = ((part.low, part.high), *box)
-    tables = {number: over(table, place) for number, table in enumerate(space.tables)}
-    yield from _pieces(space, tables, {}, (part.low, part.high), resolution)
-
-
 def _pieces(
     space: Space, tables: dict[int, Table], known: dict[int, int], place: Interval, resolution: fmpq
 ) -> Iterator[_LinePart]:
-    """The same, of polynomials that are not ``known`` to have a sign there."""
+    """A part in pieces that are free of the variety, or too short to be cut; of polynomials that
+    are not ``known`` to have a sign there.
+    """
     signs = {number: sign(table) for number, table in tables.items()}
     known = known | {number: found for number, found in signs.items() if found}
     tables = {number: table for number, table in tables.items() if number not in known}
@@ -212,12 +211,9 @@ def _pieces(
         return
     middle = (low + high) / 2
     cut = {number: halves(table) for number, table in tables.items()}
-    yield from _pieces(
-        space, {n: pair[0] for n, pair in cut.items()}, known, (low, middle), resolution
-    )
-    yield from _pieces(
-        space, {n: pair[1] for n, pair in cut.items()}, known, (middle, high), resolution
-    )
+    for side, half in enumerate(((low, middle), (middle, high))):
+        part = {number: pair[side] for number, pair in cut.items()}
+        yield from _pieces(space, part, known, half, resolution)
 
 
 def _joined(parts: Sequence[_LinePart]) -> list[_LinePart]:
@@ -304,8 +300,7 @@ def _space(
     window = ranges[along]
     order = (along, *(k for k in range(len(names)) if k != along))
     ordered = [
-        [(_padded([int(powers[k]) for k in order]), int(c)) for powers, c in p.terms()]
-        for p in found
+        [([int(powers[k]) for k in order] + [0], int(c)) for powers, c in p.terms()] for p in found
     ]
     power = (
         max(1, gcd(*(powers[0] for terms in ordered for powers, _ in terms)))
@@ -323,16 +318,11 @@ def _space(
         except DegenerateSliceError:
             return None
 
-    return Space(tuple(_table(terms, power) for terms in ordered), power, window, count, working)
-
-
-def _padded(powers: Sequence[int]) -> tuple[int, int, int]:
-    first, second, third = (*powers, 0)[:3]
-    return first, second, third
-
-
-def _table(terms: Sequence[tuple[tuple[int, int, int], int]], power: int) -> Table:
-    return table_of(((i // power, j, k), c) for (i, j, k), c in terms)
+    tables = (
+        table_of(((first // power, *others[:2]), c) for (first, *others), c in terms)
+        for terms in ordered
+    )
+    return Space(tuple(tables), power, window, count, working)
 
 
 _WIDTH = fmpq(1, 2**80)

@@ -12,7 +12,7 @@ from contextlib import suppress
 from fractions import Fraction
 from typing import NamedTuple
 
-from ptmcad.answer.intervals import Span
+from ptmcad.answer.intervals import Span, lower, upper
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import region_map
@@ -106,11 +106,8 @@ def _range_of(design: Design) -> Evaluate:
         if not found:
             return Value(Enclosure(Fraction(0), Fraction(0)))
         widest = max(found, key=lambda span: span.width.low)
-        ends = tuple(
-            Enclosure(end, end) if isinstance(end, Fraction) else Enclosure(end.low, end.high)
-            for end in (widest.low, widest.high)
-        )
-        return Value(widest.width, (ends[0], ends[1]))
+        left, right = (Enclosure(lower(end), upper(end)) for end in (widest.low, widest.high))
+        return Value(widest.width, (left, right))
 
     return evaluate
 
@@ -141,16 +138,11 @@ def _area_of(design: Design, common: Common | None) -> Evaluate:
             found = member_map(common, values[common.family.free.name], options)
         else:
             found = region_map(design.slice(values), options)
-        wanted = [
-            r.area
-            for r in found.regions
-            if (r.total if r.stable is None else r.stable) == design.working
-        ]
-        return Value(
-            Enclosure(
-                sum((a for a, _ in wanted), Fraction(0)), sum((b for _, b in wanted), Fraction(0))
-            )
-        )
+        low = high = Fraction(0)
+        for region in found.regions:
+            if (region.total if region.stable is None else region.stable) == design.working:
+                low, high = low + region.area[0], high + region.area[1]
+        return Value(Enclosure(low, high))
 
     return evaluate
 
@@ -167,15 +159,17 @@ def _poses(design: Design, values: Numbers) -> Poses | None:
     return poses if number == design.working else None
 
 
-def chosen(design: Design, poses: Poses) -> int | None:
-    """The number of the pose that is meant, in the order of `Poses`; None where there is no such
-    one.
+def _chosen(design: Design, values: Numbers) -> tuple[Poses, int] | None:
+    """The poses of such a design, and the number of the one that is meant, in their order; None
+    where there is no such one.
     """
     from ptmcad.workbench.fields.quantityfield import choice_of
 
+    if (poses := _poses(design, values)) is None:
+        return None
     choice = choice_of(design.pose, design.model)
     numbers = choice.numbers(poses)
-    return numbers[choice.rank - 1] if choice.rank <= len(numbers) else None
+    return (poses, numbers[choice.rank - 1]) if choice.rank <= len(numbers) else None
 
 
 def _barrier_of(design: Design) -> Evaluate:
@@ -191,10 +185,9 @@ def _barrier_of(design: Design) -> Evaluate:
 
         from ptmcad.workbench.fields.barrier import barriers
 
-        poses = _poses(design, values)
-        number = None if poses is None else chosen(design, poses)
-        if poses is None or number is None:
+        if (chosen := _chosen(design, values)) is None:
             return None
+        poses, number = chosen
         given = {name: float(value) for name, value in poses.parameters.items()}
         at = np.array([unknowns_of(pose) for pose in poses.equilibria]).T[:, None]
         found = barriers(
@@ -224,14 +217,12 @@ def _expression_of(design: Design) -> Evaluate:
     needs_pose = bool(model.unknowns.keys() & set(names_of(tree)))
 
     def evaluate(values: Numbers) -> Value | None:
-        poses = _poses(design, values)
+        found = _chosen(design, values) if needs_pose else (_poses(design, values), 0)
+        poses, number = found or (None, 0)
         if poses is None:
             return None
         known = {name: Enclosure(v, v) for name, v in {**poses.parameters, **values}.items()}
         if needs_pose:
-            number = chosen(design, poses)
-            if number is None:
-                return None
             pose = poses.equilibria[number]
             known |= dict(zip(model.sorted_unknowns, (*pose.angles, *pose.reals), strict=True))
         enclosed = _enclosed(tree, known)
@@ -242,11 +233,10 @@ def _expression_of(design: Design) -> Evaluate:
 
 def _quantity_of(design: Design, quantity: Quantity) -> Evaluate:
     def evaluate(values: Numbers) -> Value | None:
-        poses = _poses(design, values)
-        number = None if poses is None else chosen(design, poses)
-        found = (
-            None if poses is None or number is None else of_pose(quantity, poses.equilibria[number])
-        )
+        if (chosen := _chosen(design, values)) is None:
+            return None
+        poses, number = chosen
+        found = of_pose(quantity, poses.equilibria[number])
         return None if found is None else Value(found)
 
     return evaluate

@@ -15,7 +15,7 @@ from ptmcad.exact.ranges.anyline import lines_of
 from ptmcad.exact.ranges.rangestrips import strips
 from ptmcad.exact.ranges.width import widest
 from ptmcad.question.config.designed import Aim, Design
-from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
+from ptmcad.text.flint_numbers import simplest_fraction
 
 
 class Proof(NamedTuple):
@@ -69,4 +69,4 @@ def place_of(maximum: Maximum) -> Fraction:
         return low
     # of an interval the part before the first value at which the width is not attained
     inside = [upper(v) for v in (*maximum.exceptions, *maximum.doubtful) if low < lower(v)]
-    return to_fraction(simplest_between(from_fraction(low), from_fraction(min([high, *inside]))))
+    return simplest_fraction(low, min([high, *inside]))
