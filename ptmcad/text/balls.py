@@ -31,16 +31,13 @@ def enclosed(ball: arb, digits: int) -> Enclosure | None:
     >>> enclosed(arb(1) / 4, 10) == Enclosure(Fraction(1, 4), Fraction(1, 4)), enclosed(arb(0, 1), 10) is None
     (True, True)
     """
-    if (
-        ball.is_exact() and ball.is_finite()
-    ):  # no wider enclosure of a short decimal settles its digits
+    if not ball.is_finite():
+        return None
+    if ball.is_exact():  # no wider enclosure of a short decimal settles its digits
         return Enclosure(exact(ball), exact(ball))
-    if (
-        not ball.is_finite()
-        or ball.contains(0)
-        or 10 * ball.rel_accuracy_bits() < 33 * (digits + _GUARD - 2)
-    ):
-        return None  # the test of the radius below would say so too; most balls that are too wide end here
+    # the test of the radius below would say so too; most balls that are too wide end here
+    if ball.contains(0) or 10 * ball.rel_accuracy_bits() < 33 * (digits + _GUARD - 2):
+        return None
     middle, radius = exact(ball.mid()), exact(ball.rad())
     # the place of the first digit, to within one: 0.30103 is the logarithm of 2
     first = (middle.numerator.bit_length() - middle.denominator.bit_length()) * 30103 // 100000

@@ -200,14 +200,12 @@ class Tasks:
         if set(job["at"]) != set(axes):
             raise ConfigError(f"a point has {' and '.join(axes)}")
         at = {
-            name: number_within(name, job["at"][name], axes[name].low, axes[name].high)
-            for name in axes
+            name: number_within(name, job["at"][name], axis.low, axis.high)
+            for name, axis in axes.items()
         }
-        place = (at[slice.axes[0].name], at[slice.axes[1].name])
-        parameters = values_at(slice.parameters, *place)
+        parameters = values_at(slice.parameters, *at.values())
         for name, value in parameters.items():
-            kind = slice.model.kind(name)
-            if kind.excludes(value):
+            if slice.model.kind(name).excludes(value):
                 raise ConfigError(f"{name} is {value} there, where the geometry ends")
         return _point_view(poses_at(slice.model, parameters, POSE_DIGITS), at)
 
@@ -238,23 +236,22 @@ class Tasks:
                 raise ConfigError(f"{file} is there already: choose another name")
         check_writable(self.folder, tuple(names))
         if is_certified(slice, "auto"):
-            result = replace(self._certified(self.panel.slice(values), fine=True), slice=slice)
+            found = self._certified(self.panel.slice(values), fine=True)
         else:
-            result = replace(self._exact(slice, values, areas=True, sparing=False), slice=slice)
+            found = self._exact(slice, values, areas=True, sparing=False)
+        result = replace(found, slice=slice)
         written = write_files(self.folder, _writers(result, record, names), new=True)
         return {"files": [path.name for path in written]}
 
 
 def _writers(result: RegionMap, record: str, names: list[str]) -> dict[str, Writer]:
     """For each file what writes it; the JSON, which vouches for the others, comes last."""
-    found: dict[str, Writer] = {}
-    for file in names:
-        kind = file.rpartition(".")[2]
-        if kind in PICTURES:
-            found[file] = partial(_draw, result)
-        else:
-            found[file] = text_writer(record if kind == "yaml" else result.to_json())
-    return found
+    texts = {"yaml": lambda: record, "json": result.to_json}
+    kinds = {file: file.rpartition(".")[2] for file in names}
+    return {
+        file: text_writer(texts[kind]()) if kind in texts else partial(_draw, result)
+        for file, kind in kinds.items()
+    }
 
 
 def _draw(result: RegionMap, path: Path) -> None:
@@ -276,10 +273,10 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
         if result.cover is not None
         else outline(result, None, TOLERANCE if fine else COARSE)
     )
-    slice = result.slice
+    slice, certified = result.slice, result.cover is not None
+    known = fine or certified
     fills = [fill_of(region, slice.count) for region in result.regions]
-    simpler = fine or result.cover is not None
-    drawn, lines = dict(region_outlines(seen, simpler)), wall_lines(seen, simpler)
+    drawn, lines = dict(region_outlines(seen, known)), wall_lines(seen, known)
     return {
         "regions": [
             {
@@ -287,9 +284,7 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
                 "face": fills[number].face,
                 "hatch": hatch_id(fills[number].hatch) if fills[number].hatch else "",
                 "words": counts_text(region, slice.model),
-                "area": area_digits(result, region.area)
-                if fine or result.cover is not None
-                else "",
+                "area": area_digits(result, region.area) if known else "",
             }
             for number, region in enumerate(result.regions)
         ],
@@ -305,10 +300,8 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
         ],
         "patterns": pattern_defs(fills),
         "frame": _frame(seen) if framed else None,
-        "certified": result.cover is not None,
-        "undetermined": approximate_text(100 * result.undetermined)
-        if result.cover is not None
-        else "",
+        "certified": certified,
+        "undetermined": approximate_text(100 * result.undetermined) if certified else "",
         "settled": result.status is not Status.PARTIAL,
         "cells": len(result.cells),
         "digest": _digest(result),

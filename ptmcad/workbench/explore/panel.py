@@ -21,7 +21,7 @@ from ptmcad.question.config.scalars import number_of
 from ptmcad.question.config.typed import ranges_of
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar
-from ptmcad.text.numerals import Numbers, text_of
+from ptmcad.text.numerals import Numbers, magnitude, text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import names_in
 
@@ -234,10 +234,6 @@ def _around(model: Model, name: str, value: Fraction) -> tuple[Fraction, Fractio
 
 def _step(low: Fraction, high: Fraction) -> Fraction:
     """The least of 1, 2, 5 times a power of ten that gives at most `POSITIONS` positions."""
-    span = high - low
-    step = Fraction(1)
-    while span / step > POSITIONS:
-        step *= 10
-    while span / (step / 10) <= POSITIONS:
-        step /= 10
-    return next(step / f for f in (5, 2, 1) if span / (step / f) <= POSITIONS)
+    least = (high - low) / POSITIONS
+    unit = Fraction(10) ** magnitude(least)
+    return next(f * unit for f in (1, 2, 5, 10) if f * unit >= least)

@@ -203,12 +203,9 @@ def _walked(
             at, done, leaves = followed(walk, at, done, until, own)
             if done >= until:
                 break
+            where = f"at {_where(walk, done)}"
             if leaves:
-                return (
-                    steps,
-                    falls,
-                    f"at {_where(walk, done)} the pose leaves what the inequalities allow",
-                )
+                return steps, falls, f"{where} the pose leaves what the inequalities allow"
             beyond = min(done + MIN_STEP, until)
             before, after = (
                 _cell(result, walk.course.at(Fraction(share))) for share in (done, beyond)
@@ -217,8 +214,8 @@ def _walked(
                 raise PtmcadError(
                     f"the pose was lost at {100 * done:.6g} % of the path, in the middle of a region"
                 )
-            if end := _no_fall(walk, own, done):
-                return steps, falls, end
+            if why := _no_fall(walk, own):
+                return steps, falls, f"{where} {why}"
             way = descent(lambda point, share=beyond: walk.at(share, point), at)  # type: ignore[misc]
             if (
                 way is None
@@ -228,23 +225,22 @@ def _walked(
                 return (
                     steps,
                     falls,
-                    f"at {_where(walk, done)} the pose vanishes, and no other was reached from there",
+                    f"{where} the pose vanishes, and no other was reached from there",
                 )
-            if _length(way) > SLIP:
-                fallen = _fallen(walk, beyond, way, fall_frames)
+            if (lengths := _lengths(way))[-1] > SLIP:
+                steps += _fallen(walk, beyond, way, np.linspace(0.0, lengths[-1], fall_frames))
                 falls.append(_fall(walk, beyond, way))
-                steps += fallen
             at, done = way[-1], beyond
         steps.append(_taken(walk, stop, at))
     return steps, falls, ""
 
 
-def _no_fall(walk: Track, own: int, done: float) -> str:
+def _no_fall(walk: Track, own: int) -> str:
     """Why nothing is said about where a pose goes that vanishes; empty where it falls."""
     why = walk.model.criterion.no_descent
     if own and not why:
         why = "the pose, which was not stable, vanishes or becomes one of another kind"
-    return why and f"at {_where(walk, done)} {why}"
+    return why
 
 
 def _where(walk: Track, share: float) -> str:
@@ -274,16 +270,15 @@ def _seen(walk: Track, step: Step, at: Floats) -> Step:
     return replace(step, unknowns=tuple(map(float, at)), height=height, points=points)
 
 
-def _length(way: Floats) -> float:
-    return float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
+def _lengths(way: Floats) -> Floats:
+    """Of a way up to each of its points."""
+    return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1)))
 
 
-def _fallen(walk: Track, share: float, way: Floats, number: int) -> list[Step]:
-    """So many steps of a fall, at equal distances."""
-    done = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1))])
-    places = np.linspace(0.0, done[-1], number)
+def _fallen(walk: Track, share: float, way: Floats, places: Floats) -> list[Step]:
+    """The steps of a fall, at these distances from its start."""
     point = walk.course.at(Fraction(share))
-    taken = np.array([np.interp(places, done, along) for along in way.T]).T
+    taken = np.array([np.interp(places, _lengths(way), along) for along in way.T]).T
     return [_seen(walk, Step(share, point, (), None, True), at) for at in taken]
 
 

@@ -228,21 +228,19 @@ def _most_of(result: RegionMap, kind: str) -> int | None:
         return None
     found = []
     for cell in result.cells:
-        unstable = None if cell.total is None or cell.stable is None else cell.total - cell.stable
-        # where the indices are not known, there are no more of one than are unstable
-        inner, last = (
-            (unstable, unstable) if cell.index is None else (sum(cell.index[1:-1]), cell.index[-1])
-        )
-        counts = {
-            "stable": cell.stable,
-            "pose": cell.total,
-            "unstable": unstable,
-            "saddle": inner,
-            "maximum": last,
-        }
-        found.append(counts[kind])
-    known = [number for number in found if number is not None]
-    return max(known) if len(known) == len(found) else None
+        if kind in ("stable", "pose"):
+            number = cell.stable if kind == "stable" else cell.total
+        elif kind == "unstable" or cell.index is None:
+            # where the indices are not known, there are no more of one than are unstable
+            if cell.total is None or cell.stable is None:
+                return None
+            number = cell.total - cell.stable
+        else:
+            number = cell.index[-1] if kind == "maximum" else sum(cell.index[1:-1])
+        if number is None:
+            return None
+        found.append(number)
+    return max(found)
 
 
 def _at_pixels(
@@ -299,15 +297,16 @@ def _in_order(
     np.put_along_axis(rank, ascending[:, 1:], np.cumsum(steps, axis=1), axis=1)
     # the larger unknown first
     order = np.lexsort((*(-np.round(p, 9) for p in at[::-1]), rank, ~stable, ~there), axis=1)
-    kinds = {"pose": there, "stable": stable, "unstable": there & ~stable}
-    if choice.kind in ("saddle", "maximum"):
-        negative = state.negatives
-        n = len(at)
-        kinds |= {
-            "saddle": there & (negative > 0) & (negative < n),
-            "maximum": there & (negative == n),
-        }
-    return order, kinds[choice.kind]
+    match choice.kind:
+        case "pose":
+            return order, there
+        case "stable":
+            return order, stable
+        case "unstable":
+            return order, there & ~stable
+    negative = state.negatives
+    all_ = negative == len(at)
+    return order, there & (all_ if choice.kind == "maximum" else (negative > 0) & ~all_)
 
 
 def complete(solver: PixelSolver, point: Callable[[int, int], tuple[Fraction, Fraction]]) -> int:
