@@ -135,7 +135,8 @@ def test_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Rows for each size and for the fits; another number of regions is a failure; the picture is
     drawn.
     """
-    small = FAMILIES["fold"]._replace(sizes=(1, 2, 3), regions=lambda n: n + 3 if n < 3 else 4)
+    title, _, record, _ = FAMILIES["fold"]
+    small = title, (1, 2, 3), record, lambda n: n + 3 if n < 3 else 4
     monkeypatch.setattr(scaling, "FAMILIES", {"small": small})
     assert command.main(["scaling", "small", "--rounds", "1", "--out", str(tmp_path)]) == 0
     assert {path.name for path in tmp_path.iterdir()} == {"scaling.json", "scaling.svg"}
