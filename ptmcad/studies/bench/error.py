@@ -270,10 +270,8 @@ def _error(
     drawn : the boundary between them, as of `distance`.
     least : the share that is undetermined.
     """
-    right, areas = (
-        shown_areas(truth, pieces, shown),
-        shown_areas(truth, np.array([[0.0, 1.0, 0.0, 1.0]])),
-    )
+    right = shown_areas(truth, pieces, shown)
+    areas = shown_areas(truth, np.array([[0.0, 1.0, 0.0, 1.0]]))
     doubts = truth.doubts()
     wrong, doubt = 1 - float(right.sum()), float(doubts.sum()) / 2 + ROUNDING
     bounds = (float(np.clip(x, least, 1.0)) for x in (wrong - doubt, wrong + doubt))
@@ -316,16 +314,15 @@ def _below(points: Floats, pieces: Floats) -> float:
     chord += first[of]
     left, right = np.maximum(pieces[of, 0], u[chord]), np.minimum(pieces[of, 1], u[chord + 1])
     slope = (v[chord + 1] - v[chord]) / (u[chord + 1] - u[chord])
-    ends = np.sort(
-        [v[chord] + (left - u[chord]) * slope, v[chord] + (right - u[chord]) * slope], axis=0
-    )
-    low, high = ends - pieces[of, 2]
+    across = np.stack([left, right]) - u[chord]
+    ends = np.sort(v[chord] + across * slope - pieces[of, 2], axis=0)
+    low, high = ends
     tall = pieces[of, 3] - pieces[of, 2]
-    inside = np.clip(ends - pieces[of, 2], 0, tall)
-    risen = (inside[1] - inside[0]) * (inside[0] + inside[1]) / 2
+    first, last = np.clip(ends, 0, tall)
+    risen = (last - first) * (first + last) / 2
     whole = (high - np.maximum(low, tall)).clip(0) * tall
     with np.errstate(divide="ignore", invalid="ignore"):
-        mean = np.where(high > low, (risen + whole) / (high - low), inside[0])
+        mean = np.where(high > low, (risen + whole) / (high - low), first)
     return float(((right - left).clip(0) * mean).sum())
 
 

@@ -95,7 +95,7 @@ def measure(options: argparse.Namespace) -> pd.DataFrame:
     PtmcadError
         When there is no such family.
     """
-    names = options.families or list(FAMILIES)
+    names = options.names or list(FAMILIES)
     unknown = [name for name in names if name not in FAMILIES]
     if unknown:
         raise PtmcadError(f"no family {unknown[0]!r}; there are {', '.join(FAMILIES)}")

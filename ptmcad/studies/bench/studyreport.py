@@ -20,7 +20,7 @@ from ptmcad.studies import texts as tables
 from ptmcad.studies.bench.harness import Row
 from ptmcad.studies.bench.stored import finest, frame, read_study, write_study, write_table
 from ptmcad.studies.bench.study import RIVALS
-from ptmcad.studies.picture import DPI, STYLES, Curve, draw
+from ptmcad.studies.picture import DPI, STYLES, Curve, Mark, draw
 
 SUFFIXES = ("bench.csv", "bench.svg", "bench.png", "error-time.json", "bench.json")
 PAGE = "error-time.md"
@@ -120,37 +120,26 @@ def curves(study: Row) -> list[Curve]:
     exact maps' areas.
     """
     table = finest(study).dropna(subset="seconds_median")
+    errors = {method: table[table["method"] == method] for method in RIVALS}
     found = [
-        _curve(
-            number,
-            rival["title"],
-            table[table["method"] == method],
-            "wrong_low",
-            "wrong_high",
-            _LABELLED.get(method),
-        )
-        for number, (method, rival) in enumerate(RIVALS.items())
+        Curve(RIVALS[method]["title"], style, _marks(rows, "wrong_low", "wrong_high", method))
+        for style, (method, rows) in zip(STYLES, errors.items(), strict=False)
     ]
-    widths = table[
-        (table["method"] == "exact") & (table["area_width"] > 0)
-    ]  # another kind of error
+    widths = errors["exact"][errors["exact"]["area_width"] > 0]  # another kind of error
     title = f"{RIVALS['exact']['title']}: width of the area bounds"
-    found.insert(1, _curve(len(RIVALS), title, widths, "area_width", "area_width", None))
+    marks = _marks(widths, "area_width", "area_width")
+    found.insert(1, Curve(title, STYLES[len(RIVALS)], marks))
     return [curve for curve in found if curve.marks]
 
 
-def _curve(
-    style: int, title: str, rows: pd.DataFrame, low: str, high: str, before: str | None
-) -> Curve:
-    """A curve through the middles of bounds; settings stand beside it, without the words before
-    them.
-    """
-    marks = [
+def _marks(rows: pd.DataFrame, low: str, high: str, method: str = "") -> list[Mark]:
+    """The middles of bounds; settings stand beside them, without the words before these."""
+    before = _LABELLED.get(method)
+    return [
         (m["seconds_median"], (m[low] + m[high]) / 2, m["seconds_min"], m["seconds_max"],
          "" if before is None else m["setting"].removeprefix(before))
         for m in rows.dropna(subset=low).to_dict("records")
     ]  # fmt: skip
-    return Curve(title, STYLES[style], marks)
 
 
 def curve_file(study: Row) -> str:
