@@ -13,7 +13,7 @@ from fractions import Fraction
 from math import gcd
 from typing import Any
 
-from ptmcad.text.numerals import MAX_DIGITS, integer_of, integer_text
+from ptmcad.text.numerals import MAX_DIGITS, integer_of, integer_text, text_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,13 +140,9 @@ def terms_text(terms: Iterable[tuple[Sequence[int], Any]], names: Sequence[str])
     >>> terms_text((((2, 1), 2), ((0, 0), Fraction(-1, 3))), ("x", "y"))
     '2*x^2*y - 1/3'
     """
-    return " ".join(signed_terms(terms, names, number=_rational_text)) or "0"
+    return " ".join(signed_terms(terms, names, number=text_of)) or "0"
 
 
 def plane_text(terms: Iterable[tuple[int, int, Any]], names: Sequence[str]) -> str:
     """The same of terms ``(i, j, c)`` in two names."""
     return terms_text(((powers, c) for *powers, c in terms), names)
-
-
-def _rational_text(value: int | Fraction) -> str:
-    return integer_text(value) if isinstance(value, int) else str(value)

@@ -113,9 +113,9 @@ def _without(
         jobs[0].usages.clear()
         turns(jobs, options)
     results = [RegionMap.from_json(job.said()) if job.usages else None for job in jobs]
-    first = results[0]
-    differs = [difference(first, r) if first and r else None for r in results]
-    return summary(jobs, "all made").assign(differs=differs)
+    rows, first = summary(jobs, "all made"), results[0]
+    rows["differs"] = [difference(first, r) if first and r else None for r in results]
+    return rows
 
 
 STUDIES: dict[str, tuple[str, Callable[[argparse.Namespace], pd.DataFrame], str]] = {

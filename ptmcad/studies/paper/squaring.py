@@ -195,9 +195,8 @@ def _vanishing(values: Mapping[str, Any], tangents: Sequence[acb]) -> list[set[S
     zeros: list[set[Signs]] = [set(), set()]
     for signs in product((1, -1), repeat=3):
         # any continuous choice of the roots serves: both signs are tried
-        for found, slope in zip(
-            zeros, derivatives(values, circles, partial(_root, iter(signs)))[0], strict=True
-        ):
+        slopes, _ = derivatives(values, circles, partial(_root, iter(signs)))
+        for found, slope in zip(zeros, slopes, strict=True):
             if slope.contains(0):
                 found.add(signs)
     return zeros

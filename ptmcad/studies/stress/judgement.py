@@ -65,18 +65,16 @@ Row = dict[str, Any]
 
 def judge(case: Case, found: Any) -> Row:
     """The verdict on an answer to the case, without its cost."""
-    judgements: dict[str, Callable[[Case, Any], tuple[Checks, Row]]] = {
-        "point": _point,
-        "line": _line,
-    }
+    judgements: dict[str, Callable[[Case, Any], tuple[Checks, Row]]]
+    judgements = {"point": _point, "line": _line}
     with ctx.workprec(_BITS):
         checks, row = judgements.get(case.question.kind, _map)(case, found)
     remarks = [remark for holds, remark in checks if not holds]
     known = {"expected": case.expected, "right": not remarks, "remarks": remarks}
-    numbers = {
-        name: x if not isinstance(x, float) or isfinite(x) else None for name, x in row.items()
-    }
-    return {**known, "error": None, "condition": None, "bits": 0, **numbers}
+    for name, x in row.items():
+        if isinstance(x, float) and not isfinite(x):
+            row[name] = None
+    return {**known, "error": None, "condition": None, "bits": 0, **row}
 
 
 Checks = list[tuple[bool, str]]
@@ -229,11 +227,9 @@ def _expected(
     shown = "; ".join(
         f"{float(ball_of(low)):.10g} to {float(ball_of(high)):.10g}" for low, high in numbers
     )
+    text, expected = _text(stable), case.expected
     return [
-        (
-            _text(stable) == case.expected,
-            f"stable counts {_text(stable)}, but {case.expected} are expected",
-        ),
+        (text == expected, f"stable counts {text}, but {expected} are expected"),
         (
             met,
             f"the ends, or the area on which two are stable, are not where they should be: {shown}",

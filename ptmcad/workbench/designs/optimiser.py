@@ -102,7 +102,9 @@ def _climb(look: Evaluate, start: tuple[Fraction, Point]) -> None:
     step = Fraction(1, 64)
     while step * FINEST >= 1:
         for number, way in enumerate(ways):
-            other = _moved(point, way, step)
+            # a step, at most to the bounds
+            moved = (at + sign * step for at, sign in zip(point, way, strict=True))
+            other = tuple(min(max(at, Fraction(0)), Fraction(1)) for at in moved)
             found = None if other == point else look(other)
             if found is not None and found > value:
                 value, point = found, other
@@ -122,14 +124,6 @@ def _ways(number: int) -> list[tuple[int, ...]]:
         for a, b in product((1, -1), repeat=2)
     ]
     return [tuple(way.get(k, 0) for k in range(number)) for way in (*single, *double)]
-
-
-def _moved(point: Point, way: tuple[int, ...], step: Fraction) -> Point:
-    """The point after a step, at most to the bounds."""
-    return tuple(
-        min(max(at + sign * step, Fraction(0)), Fraction(1))
-        for at, sign in zip(point, way, strict=True)
-    )
 
 
 def within(bounds: Sequence[tuple[Fraction, Fraction]], point: Point) -> Point:

@@ -37,7 +37,6 @@ from ptmcad.show.posetable import kind_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.outline import TOLERANCE, outline, shapes
-from ptmcad.show.render.view import Shapes
 from ptmcad.show.report.mapsvg import (
     SIDE,
     counts_text,
@@ -211,9 +210,7 @@ class Tasks:
 
     def _record(self, values: Numbers, _job: Job) -> dict[str, Any]:
         slice = self.panel.slice(values)
-        record, command = reproduction(slice)
-        if record is None:
-            raise ConfigError("no problem record gives this slice")
+        record, command = _reproduction(slice)
         return {"name": slice.name, "record": record, "command": f"ptmcad classify {slice.name}.yaml",
                 "alone": command or ""}  # fmt: skip
 
@@ -223,9 +220,7 @@ class Tasks:
         """
         name = file_name(job["name"], "the name")
         slice = replace(self.panel.slice(values), name=name)
-        record = reproduction(slice)[0]
-        if record is None:
-            raise ConfigError("no problem record gives this slice")
+        record, _ = _reproduction(slice)
         names = [
             f"{name}.yaml",
             *(f"{name}.{kind}" for kind in PICTURES if kind in job["formats"]),
@@ -242,6 +237,14 @@ class Tasks:
         result = replace(found, slice=slice)
         written = write_files(self.folder, _writers(result, record, names), new=True)
         return {"files": [path.name for path in written]}
+
+
+def _reproduction(slice: Slice) -> tuple[str, str | None]:
+    """The record that gives a slice, and a command that needs none."""
+    record, command = reproduction(slice)
+    if record is None:
+        raise ConfigError("no problem record gives this slice")
+    return record, command
 
 
 def _writers(result: RegionMap, record: str, names: list[str]) -> dict[str, Writer]:
@@ -274,7 +277,7 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
         else outline(result, None, TOLERANCE if fine else COARSE)
     )
     slice, certified = result.slice, result.cover is not None
-    known = fine or certified
+    known, around = fine or certified, room(seen, detail=False) if framed else None
     fills = [fill_of(region, slice.count) for region in result.regions]
     drawn, lines = dict(region_outlines(seen, known)), wall_lines(seen, known)
     return {
@@ -299,24 +302,15 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
             for number, x, y in region_labels(seen)
         ],
         "patterns": pattern_defs(fills),
-        "frame": _frame(seen) if framed else None,
+        "frame": around
+        and {"svg": "".join(frame(seen, around)), "view": around.view, "place": around.place},
         "certified": certified,
         "undetermined": approximate_text(100 * result.undetermined) if certified else "",
         "settled": result.status is not Status.PARTIAL,
         "cells": len(result.cells),
-        "digest": _digest(result),
+        # enough for a test to recognise the map
+        "digest": [[r.stable, r.total, len(r.cells)] for r in result.regions],
     }
-
-
-def _frame(seen: Shapes) -> dict[str, Any]:
-    """The axes, and how much room they need around the window."""
-    around = room(seen, detail=False)
-    return {"svg": "".join(frame(seen, around)), "view": around.view, "place": around.place}
-
-
-def _digest(result: RegionMap) -> list[list[Any]]:
-    """Counts and numbers of cells of every region: enough for a test to recognise the map."""
-    return [[region.stable, region.total, len(region.cells)] for region in result.regions]
 
 
 def _point_view(poses: Poses, at: Numbers) -> dict[str, Any]:

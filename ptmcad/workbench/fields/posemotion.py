@@ -228,8 +228,9 @@ def _walked(
                     f"{where} the pose vanishes, and no other was reached from there",
                 )
             if (lengths := _lengths(way))[-1] > SLIP:
-                steps += _fallen(walk, beyond, way, np.linspace(0.0, lengths[-1], fall_frames))
-                falls.append(_fall(walk, beyond, way))
+                fallen = _fallen(walk, beyond, way, np.linspace(0.0, lengths[-1], fall_frames))
+                falls.append(_fall(beyond, fallen[0], fallen[-1]))
+                steps += fallen
             at, done = way[-1], beyond
         steps.append(_taken(walk, stop, at))
     return steps, falls, ""
@@ -282,10 +283,8 @@ def _fallen(walk: Track, share: float, way: Floats, places: Floats) -> list[Step
     return [_seen(walk, Step(share, point, (), None, True), at) for at in taken]
 
 
-def _fall(walk: Track, share: float, way: Floats) -> Fall:
-    point = walk.course.at(Fraction(share))
-    heights = [
-        _seen(walk, Step(share, point, (), None), at).height or 0.0 for at in (way[0], way[-1])
-    ]
-    before, after = (tuple(map(float, at)) for at in (way[0], way[-1]))
-    return Fall(share, (float(point[0]), float(point[1])), before, after, heights[0] - heights[1])
+def _fall(share: float, first: Step, last: Step) -> Fall:
+    """A fall by its first step and its last one."""
+    deep = (first.height or 0.0) - (last.height or 0.0)
+    x, y = map(float, first.at)
+    return Fall(share, (x, y), first.unknowns, last.unknowns, deep)

@@ -17,7 +17,7 @@ from typing import Any
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import Bounds, CountedArea, State, Summary, Widest
-from ptmcad.answer.widths import Maximum, overall
+from ptmcad.answer.widths import overall
 from ptmcad.ask.classification import region_map
 from ptmcad.errors import ConfigError, HypothesisError, LimitReached, PtmcadError
 from ptmcad.options import Options
@@ -172,16 +172,12 @@ def _widest(slice: Slice, along: str) -> Widest:
     over = next(name for name in slice.axis_names if name != along)
     return Widest(
         along,
-        _width(maxima),
+        # each of the maxima may be the largest width
+        bounds(max(m.width.low for m in maxima), max(m.width.high for m in maxima)),
         tuple(bounds(m.at.low, m.at.high) for m in maxima),
         "; ".join(m.words(over) for m in maxima),
         attainment=overall(maxima).value,
     )
-
-
-def _width(maxima: tuple[Maximum, ...]) -> Bounds:
-    """The bounds of the largest width of all: each of the maxima may be it."""
-    return bounds(max(m.width.low for m in maxima), max(m.width.high for m in maxima))
 
 
 def _width_from(*values: Any) -> Widest:

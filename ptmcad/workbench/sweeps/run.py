@@ -26,7 +26,7 @@ from ptmcad.ask.classification import prepare
 from ptmcad.errors import ConfigError, LimitReached, OutputError, PtmcadError
 from ptmcad.extras import Extra, require
 from ptmcad.options import Progress
-from ptmcad.question.config.sweeps import Sweeping, Values, sweep_from
+from ptmcad.question.config.sweeps import Sweeping, sweep_from
 from ptmcad.question.shipped import RecordSource
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
@@ -92,14 +92,21 @@ def sweep(
     wanted = wanted_of(question, wanted)
     place = Path(f"{question.name}-sweep") if folder is None else Path(folder)
     with opened(place) as index:
-        index.claim(_facts(question), _asked(question, wanted))
+        facts = {
+            "name": question.name,
+            "names": json.dumps(question.names, ensure_ascii=False),
+            "members": str(len(question)),
+            "version": __version__,
+        }
+        index.claim(facts, _asked(question, wanted))
         index.check(question.names)
         run = _Run(question, index, retries, progress, timeout)
         try:
             run.all(_workers(question, wanted, jobs, scheduler))
         except (LimitReached, OutputError) as stopped:
+            done = f"{index.states().get(State.DONE, 0)} of {len(question)} members are done"
             raise type(stopped)(
-                f"{stopped}; {_left(index, question)}; the same command goes on"
+                f"{stopped}; {done}, in {place}; the same command goes on"
             ) from stopped
         finally:
             index.share()
@@ -171,33 +178,23 @@ def processors() -> int:
     return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
 
 
-def _facts(question: Sweeping) -> dict[str, str]:
-    """What the index says of the sweep as a whole."""
-    return {
-        "name": question.name,
-        "names": json.dumps(question.names, ensure_ascii=False),
-        "members": str(len(question)),
-        "version": __version__,
-    }
-
-
 def _asked(question: Sweeping, wanted: Wanted) -> str:
     """A digest of all that results depend on."""
     record = question.record
     first = _slice_data(question.slice(0))
     values = [
-        [[name, *_values_data(v)] for name, v in product.items()] for product in question.products
+        [
+            # a list of values, or a progression
+            [name, ",".join(map(text_of, v))]
+            if isinstance(v, tuple)
+            else [name, *(text_of(x) for x in (v.first, v.step, v.number))]
+            for name, v in product.items()
+        ]
+        for product in question.products
     ]
     texts = {name: scalar.text for name, scalar in record.values.items()}
     options = [None if value is None else str(value) for value in dataclasses.astuple(wanted)]
     return hashlib.sha256(json.dumps([first, values, texts, options]).encode()).hexdigest()
-
-
-def _values_data(values: Values) -> list[str]:
-    """A list of values or a progression, as texts."""
-    if isinstance(values, tuple):
-        return [",".join(map(text_of, values))]
-    return [text_of(field) for field in (values.first, values.step, values.number)]
 
 
 def _slice_data(slice: Slice) -> Any:
@@ -205,11 +202,6 @@ def _slice_data(slice: Slice) -> Any:
     from ptmcad.show.document.slicedocument import SLICE
 
     return SLICE.write(slice)
-
-
-def _left(index: Index, question: Sweeping) -> str:
-    done = index.states().get(State.DONE, 0)
-    return f"{done} of {len(question)} members are done, in {index.folder}"
 
 
 class _Run:
