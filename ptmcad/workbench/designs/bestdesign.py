@@ -109,7 +109,7 @@ class _DesignSearch:
     """The designs that have been evaluated, and the best of them; ends when the time is over."""
 
     def __init__(self, asked: Design, timeout: float | None, progress: Progress | None) -> None:
-        self.asked, self.progress = asked, progress
+        self.asked, self.report = asked, progress or (lambda _stage, _done, _total: None)
         self.deadline = None if timeout is None else perf_counter() + timeout
         self.value_of: Evaluate | None = None
         self.points: dict[Point, Value | None] = {}
@@ -118,10 +118,6 @@ class _DesignSearch:
     @property
     def over_time(self) -> bool:
         return self.deadline is not None and perf_counter() > self.deadline
-
-    def report(self, stage: str, done: int, total: int) -> None:
-        if self.progress is not None:
-            self.progress(stage, done, total)
 
     def run(self, tolerance: Fraction, seed: int, evaluations: int | None, boxes: int) -> Proof:
         """Search, and then prove; at the end the best design is evaluated once more by itself."""

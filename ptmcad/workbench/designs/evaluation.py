@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
+from functools import partial
 from typing import NamedTuple
 
 from ptmcad.answer.intervals import Span, lower, upper
 from ptmcad.answer.poses import Poses
-from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.regionmap import Status
 from ptmcad.ask.classification import region_map
 from ptmcad.ask.members import Common, member_map
 from ptmcad.ask.quantities import Quantity, named, of_pose, unknown
@@ -64,11 +65,12 @@ def evaluator(design: Design, common: Common | None = None, space: Space | None 
     ConfigError
         When a quantity or an expression has no meaning for the model.
     """
+    found: Evaluate
     match design.aim:
         case Aim.RANGE:
-            found = _range_of(design) if space is None else _range_in(design, space)
+            found = partial(_range, design) if space is None else partial(_range_in, design, space)
         case Aim.AREA:
-            found = _area_of(design, common)
+            found = partial(_area, design, common)
         case Aim.BARRIER:
             found = _barrier_of(design)
         case Aim.EXPRESSION:
@@ -88,63 +90,49 @@ def evaluator(design: Design, common: Common | None = None, space: Space | None 
     return evaluate
 
 
-def _range_of(design: Design) -> Evaluate:
+def _range(design: Design, values: Numbers) -> Value | None:
     from ptmcad.exact.ranges.anyline import ranges_on
     from ptmcad.exact.ranges.exactline import intervals
 
     first = design.over[0].name
-
-    def evaluate(values: Numbers) -> Value | None:
-        slice = design.slice(values)
-        found: Sequence[Span]
-        try:
-            found = intervals(slice, design.along, {first: values[first]}, design.working).operation
-        except (DegenerateSliceError, InfiniteSolutionsError):
-            found, possible = ranges_on(slice, design.along, values[first], design.working)
-            if found != possible:
-                return None
-        if not found:
-            return Value(Enclosure(Fraction(0), Fraction(0)))
-        widest = max(found, key=lambda span: span.width.low)
-        left, right = (Enclosure(lower(end), upper(end)) for end in (widest.low, widest.high))
-        return Value(widest.width, (left, right))
-
-    return evaluate
+    slice = design.slice(values)
+    found: Sequence[Span]
+    try:
+        found = intervals(slice, design.along, {first: values[first]}, design.working).operation
+    except (DegenerateSliceError, InfiniteSolutionsError):
+        found, possible = ranges_on(slice, design.along, values[first], design.working)
+        if found != possible:
+            return None
+    if not found:
+        return Value(Enclosure(Fraction(0), Fraction(0)))
+    widest = max(found, key=lambda span: span.width.low)
+    left, right = (Enclosure(lower(end), upper(end)) for end in (widest.low, widest.high))
+    return Value(widest.width, (left, right))
 
 
-def _range_in(design: Design, space: Space) -> Evaluate:
+def _range_in(design: Design, space: Space, values: Numbers) -> Value | None:
     from ptmcad.workbench.designs.designlines import longest_on_line
 
-    names = [axis.name for axis in design.over]
-
-    def evaluate(values: Numbers) -> Value | None:
-        found = longest_on_line(space, tuple(from_fraction(values[name]) for name in names))
-        if found is None:
-            return None
-        low, high = (Enclosure(to_fraction(a), to_fraction(b)) for a, b in found)
-        return Value(
-            Enclosure(max(high.low - low.high, Fraction(0)), high.high - low.low), (low, high)
-        )
-
-    return evaluate
+    at = tuple(from_fraction(values[axis.name]) for axis in design.over)
+    if (found := longest_on_line(space, at)) is None:
+        return None
+    low, high = (Enclosure(to_fraction(a), to_fraction(b)) for a, b in found)
+    width = Enclosure(max(high.low - low.high, Fraction(0)), high.high - low.low)
+    return Value(width, (low, high))
 
 
-def _area_of(design: Design, common: Common | None) -> Evaluate:
+def _area(design: Design, common: Common | None, values: Numbers) -> Value:
     options = Options(engine="exact", area_tolerance=AREA_TOLERANCE)
-
-    def evaluate(values: Numbers) -> Value | None:
-        found: RegionMap
-        if common is not None:
-            found = member_map(common, values[common.family.free.name], options)
-        else:
-            found = region_map(design.slice(values), options)
-        low = high = Fraction(0)
-        for region in found.regions:
-            if (region.total if region.stable is None else region.stable) == design.working:
-                low, high = low + region.area[0], high + region.area[1]
-        return Value(Enclosure(low, high))
-
-    return evaluate
+    found = (
+        region_map(design.slice(values), options)
+        if common is None
+        else member_map(common, values[common.family.free.name], options)
+    )
+    low = high = Fraction(0)
+    for region in found.regions:
+        if (region.total if region.stable is None else region.stable) == design.working:
+            low, high = low + region.area[0], high + region.area[1]
+    return Value(Enclosure(low, high))
 
 
 def _poses(design: Design, values: Numbers) -> Poses | None:
@@ -212,7 +200,7 @@ def _expression_of(design: Design) -> Evaluate:
     if quantity is not None and quantity.name in model.angles:
         quantity = None  # by itself an angle is in radians, as in any expression
     if quantity is not None:
-        return _quantity_of(design, quantity)
+        return partial(_quantity, design, quantity)
     tree = _tree(design)
     needs_pose = bool(model.unknowns.keys() & set(names_of(tree)))
 
@@ -231,15 +219,12 @@ def _expression_of(design: Design) -> Evaluate:
     return evaluate
 
 
-def _quantity_of(design: Design, quantity: Quantity) -> Evaluate:
-    def evaluate(values: Numbers) -> Value | None:
-        if (chosen := _chosen(design, values)) is None:
-            return None
-        poses, number = chosen
-        found = of_pose(quantity, poses.equilibria[number])
-        return None if found is None else Value(found)
-
-    return evaluate
+def _quantity(design: Design, quantity: Quantity, values: Numbers) -> Value | None:
+    if (chosen := _chosen(design, values)) is None:
+        return None
+    poses, number = chosen
+    found = of_pose(quantity, poses.equilibria[number])
+    return None if found is None else Value(found)
 
 
 def _tree(design: Design) -> Tree:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -59,33 +60,29 @@ def quantity_of(text: str, slice: Slice) -> Valued:
         For a name or an expression that has no meaning here.
     """
     known = named(slice.model, text, OPTION) or unknown(slice.model, text.strip())
-    if (
-        known is None or known.name in slice.model.angles
-    ):  # by itself an angle is in radians, as in any expression
+    # by itself an angle is in radians, as in any expression
+    if known is None or known.name in slice.model.angles:
         return _expression(text, slice)
-    return Valued(
-        known.name, unit_of(known, slice), _values(known), known.kind is QuantityKind.BARRIER
-    )
+    is_barrier = known.kind is QuantityKind.BARRIER
+    return Valued(known.name, unit_of(known, slice), partial(_value, known), is_barrier)
 
 
-def _values(quantity: Quantity) -> Values:
-    number, part = quantity.number, quantity.part
+def _value(quantity: Quantity, state: ModelState, at: Floats, _: object) -> Any:
     match quantity.kind:
         case QuantityKind.ENERGY | QuantityKind.BARRIER:
-            return lambda state, at, values: state.known_energy
+            return state.known_energy
         case QuantityKind.STIFFNESS:
-            return lambda state, at, values: eigenvalues(state.jacobian)[0]
+            return eigenvalues(state.jacobian)[0]
         case QuantityKind.FORCE:
-            return lambda state, at, values: state.stretches[number][2]
+            return state.stretches[quantity.number][2]
         case QuantityKind.LENGTH:
-            return lambda state, at, values: state.stretches[number][0]
+            return state.stretches[quantity.number][0]
         case QuantityKind.ANGLE:
-            return lambda state, at, values: np.degrees(at[number])
+            return np.degrees(at[quantity.number])
         case QuantityKind.REAL:
-            return lambda state, at, values: at[number]
+            return at[quantity.number]
         case QuantityKind.X | QuantityKind.Y:
-            side = int(quantity.kind is QuantityKind.Y)
-            return lambda state, at, values: state.points[part][side]
+            return state.points[quantity.part][quantity.kind is QuantityKind.Y]
 
 
 def _expression(text: str, slice: Slice) -> Valued:

@@ -214,7 +214,10 @@ def _walked(
                 raise PtmcadError(
                     f"the pose was lost at {100 * done:.6g} % of the path, in the middle of a region"
                 )
-            if why := _no_fall(walk, own):
+            why = walk.model.criterion.no_descent
+            if own and not why:
+                why = "the pose, which was not stable, vanishes or becomes one of another kind"
+            if why:  # nothing is said about where it goes
                 return steps, falls, f"{where} {why}"
             way = descent(lambda point, share=beyond: walk.at(share, point), at)  # type: ignore[misc]
             if (
@@ -234,14 +237,6 @@ def _walked(
             at, done = way[-1], beyond
         steps.append(_taken(walk, stop, at))
     return steps, falls, ""
-
-
-def _no_fall(walk: Track, own: int) -> str:
-    """Why nothing is said about where a pose goes that vanishes; empty where it falls."""
-    why = walk.model.criterion.no_descent
-    if own and not why:
-        why = "the pose, which was not stable, vanishes or becomes one of another kind"
-    return why
 
 
 def _where(walk: Track, share: float) -> str:
