@@ -240,13 +240,10 @@ def made_with() -> dict[str, dict[str, str]]:
         "system": f"{platform.system()} {platform.machine()}",
         "load before": " ".join(f"{load:.2f}" for load in os.getloadavg()),
     }
-    where = shutil.which("qepcad")
-    said = (
-        run((where, "-v"), timeout=10).output.strip().splitlines() or ["unknown"]
-        if where
-        else ["not installed"]
-    )
-    versions = {"python": platform.python_version(), **installed(PACKAGES), "qepcad": said[0]}
+    said = "not installed"
+    if where := shutil.which("qepcad"):
+        said = (run((where, "-v"), timeout=10).output.strip() or "unknown").splitlines()[0]
+    versions = {"python": platform.python_version(), **installed(PACKAGES), "qepcad": said}
     return {"machine": machine, "versions": versions}
 
 

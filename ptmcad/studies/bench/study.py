@@ -100,19 +100,9 @@ def jobs(method: str, case: Case) -> list[Job] | str:
 
 
 def _start_engine(engine: str, case: Case, setting: str) -> Asked:
-    options = (
-        "--engine",
-        engine,
-        "--count",
-        finest_count(case.slice),
-        ENGINES[engine],
-        setting,
-        "--format",
-        "json",
-    )
-    asked = classification(
-        case.record, case.slice.name, case.folder / f"{engine}-{setting}", *options
-    )
+    folder = case.folder / f"{engine}-{setting}"
+    options = ("--engine", engine, "--count", finest_count(case.slice), ENGINES[engine], setting)
+    asked = classification(case.record, case.slice.name, folder, *options, "--format", "json")
     return asked | {"saves": engine == "certified"}
 
 
@@ -125,20 +115,16 @@ def finest_count(slice: Slice) -> str:
 
 def _read_map(case: Case, job: Job) -> Row:
     result = RegionMap.from_json(job.said())
-    notes = (
-        ["stopped at the limit, short of its tolerance"] if result.status is Status.PARTIAL else []
-    )
-    if (
-        case.exact is not None
-        and result.cover is None
-        and (wrong := difference(case.exact, result))
-    ):
+    partial = result.status is Status.PARTIAL
+    notes = ["stopped at the limit, short of its tolerance"] * partial
+    exact = result.cover is None
+    if case.exact is not None and exact and (wrong := difference(case.exact, result)):
         raise PtmcadError(f"two exact maps of {case.slice.name} differ: {wrong}")
     if not case.known:
         notes.append(NO_MAP if case.exact is None else NO_WALLS)
         share = outward(result.undetermined, result.undetermined)
         found = {case.slice.count.value: figures(share, share[1])}
-    elif result.cover is None:
+    elif exact:
         right = figures((0.0, 0.0), 0.0, missed=0, faintest=(1.0, 1.0), distance=(0.0, 0.0))
         found = {
             count: right | {"regions": len(truth.counts)} for count, truth in case.known.items()
@@ -147,10 +133,9 @@ def _read_map(case: Case, job: Job) -> Row:
         errors = {count: cover_error(truth, result, count) for count, truth in case.known.items()}
         found = {count: error for count, error in errors.items() if error is not None}
     window = result.slice.area
-    widest = (
-        max((high - low for low, high in area_by_count(result).values()), default=window) / window
-    )
-    return {"figures": found, "note": "; ".join(notes), "area_width": outward(0, widest)[1]}
+    widest = max((high - low for low, high in area_by_count(result).values()), default=window)
+    width = outward(0, widest / window)[1]
+    return {"figures": found, "note": "; ".join(notes), "area_width": width}
 
 
 def difference(one: RegionMap, other: RegionMap) -> str:

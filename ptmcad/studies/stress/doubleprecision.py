@@ -129,14 +129,11 @@ def sextic_poses(parameters: Parameters) -> tuple[IndexedPose, ...]:
     missing = 6 - polynomial.degree()
     for bits in BITS if polynomial else ():
         with ctx.workprec(bits):
-            factors: Any = [
-                (f.complex_roots(), multiplicity)
-                for f, multiplicity in polynomial.numer().factor()[1]
-            ]
+            factors: Any = polynomial.numer().factor()[1]
             real = [
                 (root.real, multiplicity)
-                for roots, multiplicity in factors
-                for root, _ in roots
+                for factor, multiplicity in factors
+                for root, _ in factor.complex_roots()
                 if root.imag == 0
             ]
             seconds = [2 * t.atan() for t, _ in real] + [arb.pi()] * (missing > 0)

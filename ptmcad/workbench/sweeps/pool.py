@@ -29,7 +29,6 @@ from typing import Any
 
 from ptmcad.answer.sweep import State
 from ptmcad.errors import ConfigError, OutputError, shown
-from ptmcad.extras import Extra, require
 from ptmcad.workbench.sweeps.member import Outcome, out_of_time
 from ptmcad.workbench.worker import Task, Worker
 
@@ -187,11 +186,10 @@ class Cluster:
     Raises
     ------
     ConfigError
-        When distributed is not installed, or no scheduler answers at the address.
+        When no scheduler answers at the address.
     """
 
     def __init__(self, compute: Callable[[int], Any], address: str) -> None:
-        require(Extra.distributed, key="--scheduler")
         import distributed
 
         client = distributed.Client

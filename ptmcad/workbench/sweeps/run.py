@@ -34,11 +34,10 @@ from ptmcad.text.parsing import share_for
 from ptmcad.version import __version__
 from ptmcad.workbench.sweeps.index import Index, opened, read_sweep
 from ptmcad.workbench.sweeps.member import Outcome, Wanted, computing, reason
-from ptmcad.workbench.sweeps.pool import Pool, answers_of
+from ptmcad.workbench.sweeps.pool import Cluster, Pool, answers_of
 
 if TYPE_CHECKING:
     from ptmcad.show.report.atlas import Thumbnail
-    from ptmcad.workbench.sweeps.pool import Cluster
 
 RETRIES = 2
 """How often a member is tried again that has failed."""
@@ -90,6 +89,8 @@ def sweep(
     """
     question = sweep_from(config)
     wanted = wanted_of(question, wanted)
+    if scheduler is not None:  # whether or not there is anything left to compute
+        require(Extra.distributed, key="--scheduler")
     place = Path(f"{question.name}-sweep") if folder is None else Path(folder)
     with opened(place) as index:
         facts = {
@@ -102,7 +103,7 @@ def sweep(
         index.check(question.names)
         run = _Run(question, index, retries, progress, timeout)
         try:
-            run.all(_workers(question, wanted, jobs, scheduler))
+            run.all(partial(_workers, question, wanted, jobs, scheduler))
         except (LimitReached, OutputError) as stopped:
             done = f"{index.states().get(State.DONE, 0)} of {len(question)} members are done"
             raise type(stopped)(
@@ -153,23 +154,13 @@ def axes_of(question: Sweeping) -> tuple[str, ...]:
 
 def _workers(
     question: Sweeping, wanted: Wanted, jobs: int | None, scheduler: str | None
-) -> Callable[[], Pool | Cluster]:
-    """What makes the processes that compute, once something is to be computed."""
-    if scheduler is None:
-
-        def pool() -> Pool:
-            prepare(
-                question.slice(0), wanted.options
-            )  # compiles once for all, where that is needed
-            return Pool(computing(question, wanted), jobs or processors(), wanted.timeout)
-
-        return pool
-    from ptmcad.workbench.sweeps.pool import Cluster
-
-    require(
-        Extra.distributed, key="--scheduler"
-    )  # whether or not there is anything left to compute
-    return lambda: Cluster(computing(question, wanted), scheduler)
+) -> Pool | Cluster:
+    """The processes that compute."""
+    task = computing(question, wanted)
+    if scheduler is not None:
+        return Cluster(task, scheduler)
+    prepare(question.slice(0), wanted.options)  # compiles once for all, where that is needed
+    return Pool(task, jobs or processors(), wanted.timeout)
 
 
 def processors() -> int:
@@ -277,12 +268,9 @@ class _Run:
 
     def _new(self) -> Iterator[int]:
         """The members that no run has come to, as they are entered into the index."""
-        question = self.question
         for low in range(self.planned, self.total, _AT_ONCE):
             self._patience()
-            entered = [
-                self._entry(question, k) for k in range(low, min(low + _AT_ONCE, self.total))
-            ]
+            entered = [self._entry(k) for k in range(low, min(low + _AT_ONCE, self.total))]
             with self.index.transaction():
                 fresh = [self.index.plan(*entry) for entry in entered]
             for entry, is_fresh in zip(entered, fresh, strict=True):
@@ -291,14 +279,12 @@ class _Run:
                 else:
                     self._count()
 
-    def _entry(
-        self, question: Sweeping, number: int
-    ) -> tuple[int, dict[str, str], bytes | None, str]:
+    def _entry(self, number: int) -> tuple[int, dict[str, str], bytes | None, str]:
         """A member's number, its values, a digest of its slice, and why there is no slice."""
-        values = question.values(number)
+        values = self.question.values(number)
         parameters = {name: text_of(value) for name, value in values.items()}
         try:
-            data = json.dumps(_slice_data(question.slice(number)), sort_keys=True)
+            data = json.dumps(_slice_data(self.question.slice(number)), sort_keys=True)
         except PtmcadError as error:
             return number, parameters, None, reason(error)
         return number, parameters, hashlib.sha256(data.encode()).digest(), ""
